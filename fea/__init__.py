@@ -1,0 +1,1 @@
+"""What the loads do: beams, frames, solids, stress, verdicts."""

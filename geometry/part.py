@@ -1,0 +1,202 @@
+"""The parametric shapes of links, with their cross-sections in closed form.
+
+A part lies along the x axis of its link's frame, its pins along z, its mid-plane at z = 0.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from geometry.model import CaseModel, Name
+from geometry.units import NOT_NEGATIVE, POSITIVE, Length
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """A cross-section normal to x: areas in mm², second moments in mm⁴.
+
+    area      A
+    i_y       second moment for bending out of the linkage's plane (about y)
+    i_z       second moment for bending in the linkage's plane (about z)
+    torsion   torsion constant J
+    half_y    distance of the extreme fibre from the axis along y (in the plane) [mm]
+    half_z    the same along z [mm]
+    round     True where the section is a circular tube (its shear coefficient is Cowper's)
+    """
+
+    area: float
+    i_y: float
+    i_z: float
+    torsion: float
+    half_y: float
+    half_z: float
+    round: bool
+    radius_ratio: float = 0.0
+    """Inner over outer radius (tubes)."""
+
+    def shear_coefficient(self, nu: float) -> float:
+        """Timoshenko's shear coefficient after Cowper, J. Appl. Mech. 33 (1966) 335-340, table 1.
+
+        Hollow circle: 6(1+ν)(1+m²)² / [(7+6ν)(1+m²)² + (20+12ν)m²]; rectangle: 10(1+ν)/(12+11ν).
+        """
+        if not self.round:
+            return 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu)
+        m2 = self.radius_ratio**2
+        return 6.0 * (1.0 + nu) * (1.0 + m2) ** 2 / ((7.0 + 6.0 * nu) * (1.0 + m2) ** 2 + (20.0 + 12.0 * nu) * m2)
+
+
+class Tube(CaseModel):
+    """A round tube (hollow, or solid with inner diameter 0) with a cylindrical eye at every pin.
+
+    The bore ends where it meets an eye: eyes are solid but for their pin hole.
+    """
+
+    shape: Literal["tube"]
+    material: Name
+    outer_diameter: Annotated[Length, POSITIVE]
+    inner_diameter: Annotated[Length, NOT_NEGATIVE]
+    eye_diameter: Annotated[Length, POSITIVE]
+    eye_thickness: Annotated[Length, POSITIVE]
+    """Height of the eye's cylinder along the pin."""
+    fillet_radius: Annotated[Length, NOT_NEGATIVE]
+    """Fillet where the tube meets an eye; 0 leaves the edge sharp (and its stress singular)."""
+
+    @model_validator(mode="after")
+    def _sizes(self) -> "Tube":
+        if self.inner_diameter >= self.outer_diameter:
+            raise PydanticCustomError(
+                "no_wall",
+                "inner_diameter {inner} mm leaves no wall in outer_diameter {outer} mm; make the bore smaller",
+                {"inner": f"{self.inner_diameter:g}", "outer": f"{self.outer_diameter:g}"},
+            )
+        if self.eye_diameter <= self.outer_diameter:
+            raise PydanticCustomError(
+                "narrow_eye",
+                "eye_diameter {eye} mm must be greater than outer_diameter {outer} mm; widen the eye",
+                {"eye": f"{self.eye_diameter:g}", "outer": f"{self.outer_diameter:g}"},
+            )
+        if self.eye_thickness < self.outer_diameter + 2.0 * self.fillet_radius:
+            raise PydanticCustomError(
+                "thin_eye",
+                "eye_thickness {eye} mm must be at least outer_diameter + 2 fillet_radius = {least} mm, "
+                "so that the fillet runs all round the tube; make the eye thicker or the fillet smaller",
+                {"eye": f"{self.eye_thickness:g}", "least": f"{self.outer_diameter + 2 * self.fillet_radius:g}"},
+            )
+        return self
+
+    @property
+    def section(self) -> Section:
+        """Cross-section of the tube between its eyes (Roark, 8th ed., table A.1, case 16)."""
+        outer, inner = self.outer_diameter / 2.0, self.inner_diameter / 2.0
+        second = math.pi / 4.0 * (outer**4 - inner**4)
+        return Section(
+            area=math.pi * (outer**2 - inner**2),
+            i_y=second,
+            i_z=second,
+            torsion=2.0 * second,
+            half_y=outer,
+            half_z=outer,
+            round=True,
+            radius_ratio=inner / outer,
+        )
+
+
+class Bar(CaseModel):
+    """A flat bar with round eyes: width in the linkage's plane, thickness along the pins."""
+
+    shape: Literal["bar"]
+    material: Name
+    width: Annotated[Length, POSITIVE]
+    thickness: Annotated[Length, POSITIVE]
+    eye_diameter: Annotated[Length, POSITIVE]
+    eye_thickness: Annotated[Length, POSITIVE]
+    """At least the bar's thickness."""
+    fillet_radius: Annotated[Length, NOT_NEGATIVE]
+    """Fillet in the plane where the bar's sides meet an eye; 0 leaves the edge sharp."""
+
+    @model_validator(mode="after")
+    def _sizes(self) -> "Bar":
+        if self.eye_diameter <= self.width:
+            raise PydanticCustomError(
+                "narrow_eye",
+                "eye_diameter {eye} mm must be greater than width {width} mm; widen the eye",
+                {"eye": f"{self.eye_diameter:g}", "width": f"{self.width:g}"},
+            )
+        if self.eye_thickness < self.thickness:
+            raise PydanticCustomError(
+                "thin_eye",
+                "eye_thickness {eye} mm must be at least the bar's thickness {bar} mm; make the eye thicker",
+                {"eye": f"{self.eye_thickness:g}", "bar": f"{self.thickness:g}"},
+            )
+        return self
+
+    @property
+    def section(self) -> Section:
+        """Cross-section of the bar; torsion constant after Roark, 8th ed., table 10.7, case 4."""
+        a, b = max(self.width, self.thickness) / 2.0, min(self.width, self.thickness) / 2.0
+        ratio = b / a
+        return Section(
+            area=self.width * self.thickness,
+            i_y=self.width * self.thickness**3 / 12.0,
+            i_z=self.thickness * self.width**3 / 12.0,
+            torsion=a * b**3 * (16.0 / 3.0 - 3.36 * ratio * (1.0 - ratio**4 / 12.0)),
+            half_y=self.width / 2.0,
+            half_z=self.thickness / 2.0,
+            round=False,
+        )
+
+
+Part = Annotated[Tube | Bar, Field(discriminator="shape")]
+
+
+class HoleRow(CaseModel):
+    """A row of equal cross holes along the link, such as those that hold feathers."""
+
+    count: Annotated[int, Field(gt=0, le=200)]
+    diameter: Annotated[Length, POSITIVE]
+    first: Length
+    """x of the first hole in the link's frame."""
+    last: Length
+    """x of the last hole; the others are evenly spaced between."""
+    along: Literal["y", "z"]
+    """Direction of the holes' axes: y in the linkage's plane, z along the pins."""
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """The x of every hole [mm]."""
+        if self.count == 1:
+            return (self.first,)
+        step = (self.last - self.first) / (self.count - 1)
+        return tuple(self.first + i * step for i in range(self.count))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """A pin hole of a link: name of the point, position in the link's frame [mm], hole diameter [mm]."""
+
+    name: str
+    x: float
+    y: float
+    diameter: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlainEnd:
+    """A load point that is no pin: name, x in the link's frame [mm], length of the loaded patch [mm]."""
+
+    name: str
+    x: float
+    patch: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """All that shapes one link: what the mesher and the mass properties need."""
+
+    part: Tube | Bar
+    pins: tuple[Pin, ...]
+    ends: tuple[PlainEnd, ...]
+    holes: tuple[HoleRow, ...]

@@ -1,0 +1,204 @@
+"""Quantities with units at the border, plain floats inside.
+
+Inside alula lengths are mm, forces N, masses tonne, times s, angles rad, temperatures °C; hence
+stresses are MPa and densities tonne/mm³. At the border (case files, the Python API, ``--set``)
+every number with a dimension is text with its unit, such as ``"125 mm"``; a bare number is refused.
+
+The types below (``Length``, ``Angle``, ...) are floats for the type checker and parse such text
+when they stand in a pydantic model.
+"""
+
+import math
+from functools import cache
+from typing import Annotated, Any
+
+from pydantic import AfterValidator
+from pydantic_core import PydanticCustomError, core_schema
+
+INTERNAL_UNITS = {
+    "length": "mm",
+    "area": "mm^2",
+    "volume": "mm^3",
+    "angle": "rad",
+    "force": "N",
+    "moment": "N*mm",
+    "line load": "N/mm",
+    "stress": "MPa",
+    "mass": "tonne",
+    "density": "tonne/mm^3",
+    "time": "s",
+    "speed": "mm/s",
+    "acceleration": "mm/s^2",
+    "angular speed": "rad/s",
+    "angular acceleration": "rad/s^2",
+    "power": "N*mm/s",
+    "temperature": "degC",
+    "voltage": "V",
+    "current": "A",
+}
+EXAMPLES = {
+    "length": "125 mm",
+    "area": "20 mm^2",
+    "volume": "2 cm^3",
+    "angle": "30 deg",
+    "force": "0.25 N",
+    "moment": "130 N*mm",
+    "line load": "0.9 N/m",
+    "stress": "2.4 GPa",
+    "mass": "25 g",
+    "density": "1450 kg/m^3",
+    "time": "10 year",
+    "speed": "22 m/s",
+    "acceleration": "9.81 m/s^2",
+    "angular speed": "3500 rpm",
+    "angular acceleration": "15 rad/s^2",
+    "power": "1 W",
+    "temperature": "23 degC",
+    "voltage": "6 V",
+    "current": "170 mA",
+}
+_LONGEST_TEXT = 64
+_UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?[1-4])?"
+
+
+@cache
+def registry() -> Any:
+    """Return the one pint registry (made at first use: importing pint is slow)."""
+    import pint
+
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+
+
+def parse(text: object, dimension: str) -> float:
+    """Convert text such as ``"2.4 GPa"`` to a float in alula's unit of that dimension.
+
+    Raises ``PydanticCustomError`` (so that a model names the entry) for anything but text made of
+    one finite number and one unit of the right dimension.
+    """
+    example = EXAMPLES[dimension]
+    if isinstance(text, bool | int | float):
+        raise PydanticCustomError(
+            "missing_unit",
+            'a {dimension} needs its unit as text; write for example "{example}"',
+            {"dimension": dimension, "example": example},
+        )
+    if not isinstance(text, str):
+        raise PydanticCustomError(
+            "not_a_quantity",
+            'a {dimension} is text with a number and a unit; write for example "{example}"',
+            {"dimension": dimension, "example": example},
+        )
+    number, unit = _split(text)
+    if number is None or not math.isfinite(number):
+        raise PydanticCustomError(
+            "not_a_quantity",
+            'a {dimension} is one finite number and its unit; write for example "{example}"',
+            {"dimension": dimension, "example": example},
+        )
+    if not unit:
+        raise PydanticCustomError(
+            "missing_unit",
+            'a {dimension} needs its unit; write for example "{example}"',
+            {"dimension": dimension, "example": example},
+        )
+    factor, offset = _conversion(unit, dimension)
+    if factor is None or offset is None:
+        raise PydanticCustomError(
+            "wrong_unit",
+            '"{unit}" is not a unit of {dimension}; write for example "{example}"',
+            {"unit": unit, "dimension": dimension, "example": example},
+        )
+    value = number * factor + offset
+    if not math.isfinite(value):
+        raise PydanticCustomError(
+            "not_a_quantity", "the number is too large; write a finite {dimension}", {"dimension": dimension}
+        )
+    return value
+
+
+def _split(text: str) -> tuple[float | None, str]:
+    """Split ``"2.4 GPa"`` into its number and its unit, without evaluating anything."""
+    import re
+
+    if len(text) > _LONGEST_TEXT:
+        return None, ""
+    match = re.fullmatch(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", text, re.ASCII)
+    return (float(match[1]), match[2]) if match else (None, "")
+
+
+@cache
+def _conversion(unit: str, dimension: str) -> tuple[float | None, float | None]:
+    """Return factor and offset from ``unit`` to alula's unit, or Nones where it has another dimension."""
+    import re
+
+    # Only unit names, powers, products and quotients reach pint: no numbers, no calls.
+    if not re.fullmatch(rf"{_UNIT_NAME}(?:(?:\s*[*/]\s*|\s+){_UNIT_NAME})*", unit.replace("·", "*")):
+        return None, None
+    units = registry()
+    target = INTERNAL_UNITS[dimension]
+    try:
+        text = unit.replace("·", "*")
+        zero = units.Quantity(0.0, text).to(target).magnitude
+        one = units.Quantity(1.0, text).to(target).magnitude
+    except Exception:  # pint raises a dozen unrelated types for bad unit text
+        return None, None
+    if dimension != "angle" and dimension != "angular speed" and units.Quantity(1.0, text).units == units.degree:
+        return None, None
+    if dimension == "temperature":
+        return float(one - zero), float(zero)
+    return float(one), 0.0
+
+
+class Quantity:
+    """Tells pydantic to read a field as text with a number and a unit of the given dimension."""
+
+    def __init__(self, dimension: str) -> None:
+        self.dimension = dimension
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """Parse text to a float in alula's unit."""
+        return core_schema.no_info_plain_validator_function(lambda text: parse(text, self.dimension))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """Describe the field as text, with an example."""
+        return {
+            "type": "string",
+            "description": f"{self.dimension} with its unit",
+            "examples": [EXAMPLES[self.dimension]],
+        }
+
+
+def _positive(value: float) -> float:
+    if value <= 0.0:
+        raise PydanticCustomError("not_positive", "it must be greater than zero")
+    return value
+
+
+def _not_negative(value: float) -> float:
+    if value < 0.0:
+        raise PydanticCustomError("negative", "it must not be negative")
+    return value
+
+
+POSITIVE = AfterValidator(_positive)
+NOT_NEGATIVE = AfterValidator(_not_negative)
+
+Length = Annotated[float, Quantity("length")]
+Area = Annotated[float, Quantity("area")]
+Volume = Annotated[float, Quantity("volume")]
+Angle = Annotated[float, Quantity("angle")]
+Force = Annotated[float, Quantity("force")]
+Moment = Annotated[float, Quantity("moment")]
+LineLoad = Annotated[float, Quantity("line load")]
+Stress = Annotated[float, Quantity("stress")]
+Mass = Annotated[float, Quantity("mass")]
+Density = Annotated[float, Quantity("density")]
+Time = Annotated[float, Quantity("time")]
+Speed = Annotated[float, Quantity("speed")]
+Acceleration = Annotated[float, Quantity("acceleration")]
+AngularSpeed = Annotated[float, Quantity("angular speed")]
+AngularAcceleration = Annotated[float, Quantity("angular acceleration")]
+Power = Annotated[float, Quantity("power")]
+Temperature = Annotated[float, Quantity("temperature")]
+Voltage = Annotated[float, Quantity("voltage")]
+Current = Annotated[float, Quantity("current")]

@@ -1,0 +1,1 @@
+"""What acts on the linkage: the case file, statics, weight, pin pressure."""

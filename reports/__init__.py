@@ -1,0 +1,1 @@
+"""What a person needs to see: console, HTML, JSON, figures, VTU."""
