@@ -1,0 +1,104 @@
+"""Material cards with the source of every value, and the library that alula ships."""
+
+import tomllib
+from functools import cache
+from importlib.resources import files
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from geometry.model import CaseModel
+from geometry.units import NOT_NEGATIVE, POSITIVE, Density, Stress
+
+Status = Literal["measured", "datasheet", "handbook", "assumed"]
+
+
+class Fatigue(CaseModel):
+    """Fatigue data: one or more points of the S-N curve, or a power law through them.
+
+    ``amplitude`` is the largest stress of a cycle from zero (R = 0) unless ``stress_ratio`` says
+    otherwise; the law is N = N1 (sigma / sigma1)^(-exponent).
+    """
+
+    stress: Annotated[Stress, POSITIVE]
+    """Peak stress that the material bears for ``cycles``."""
+    cycles: Annotated[float, Field(gt=0)]
+    exponent: Annotated[float, Field(gt=0)] | None = None
+    """Exponent of the power law; none where a single point is known."""
+    stress_ratio: Annotated[float, Field(ge=-1, lt=1)] = 0.0
+    """Least over largest stress of the cycle in the test."""
+    source: str
+
+
+class Material(CaseModel):
+    """An isotropic linear elastic material: density, stiffness, strength and where they come from."""
+
+    title: str
+    density: Annotated[Density, POSITIVE]
+    youngs_modulus: Annotated[Stress, POSITIVE]
+    poissons_ratio: Annotated[float, Field(gt=-1.0, lt=0.5)]
+    yield_strength: Annotated[Stress, POSITIVE] | None = None
+    ultimate_strength: Annotated[Stress, POSITIVE] | None = None
+    strength: Literal["yield", "ultimate"]
+    """Which of the two the safety factor uses: yield against von Mises stress (ductile), ultimate
+    against the largest principal stress (brittle)."""
+    youngs_modulus_range: tuple[Stress, Stress] | None = None
+    strength_range: tuple[Stress, Stress] | None = None
+    """Scatter of the strength that the safety factor uses."""
+    sustained_stress: Annotated[Stress, NOT_NEGATIVE] | None = None
+    """Largest stress under a load that stays."""
+    sustained_modulus: Annotated[Stress, POSITIVE] | None = None
+    """Modulus under a load that stays (creep modulus)."""
+    temperature_factors: tuple[tuple[float, float], ...] = ()
+    """(temperature in °C, factor on strength), rising in temperature."""
+    fatigue: Fatigue | None = None
+    minimum_safety_factor: Annotated[float, Field(gt=0)] | None = None
+    """Default limit for a static check of an untested part."""
+    minimum_safety_factor_tested: Annotated[float, Field(gt=0)] | None = None
+    """Default limit where parts of the same make were tested."""
+    sources: dict[str, str]
+    """Entry -> where its value comes from."""
+    status: dict[str, Status]
+    """Entry -> how well it is known."""
+
+    @model_validator(mode="after")
+    def _strengths(self) -> "Material":
+        if (self.yield_strength if self.strength == "yield" else self.ultimate_strength) is None:
+            raise PydanticCustomError(
+                "no_strength",
+                "strength names '{which}', but {which}_strength is not given; state it or name the other",
+                {"which": self.strength},
+            )
+        if self.yield_strength and self.ultimate_strength and self.yield_strength > self.ultimate_strength:
+            raise PydanticCustomError(
+                "yield_above_ultimate",
+                "yield_strength {y} MPa is above ultimate_strength {u} MPa, which no material can have; "
+                "check the units and the decimal point",
+                {"y": f"{self.yield_strength:g}", "u": f"{self.ultimate_strength:g}"},
+            )
+        return self
+
+    @property
+    def allowable(self) -> float:
+        """The strength that the safety factor uses [MPa]."""
+        value = self.yield_strength if self.strength == "yield" else self.ultimate_strength
+        assert value is not None
+        return value
+
+    @property
+    def brittle(self) -> bool:
+        """True where the largest principal stress is set against the ultimate strength."""
+        return self.strength == "ultimate"
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) [MPa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+
+
+@cache
+def library() -> dict[str, Material]:
+    """Return the materials that alula ships (``geometry/materials.toml``), by name."""
+    text = files("geometry").joinpath("materials.toml").read_text(encoding="utf-8")
+    return {name: Material.model_validate(card) for name, card in tomllib.loads(text).items()}

@@ -1,0 +1,281 @@
+"""The pose of a linkage: Newton on the loop closure, on a stated assembly branch."""
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.closure import LoopClosure
+from geometry.errors import CaseError
+from geometry.linkage import Linkage
+
+Real = NDArray[np.float64]
+
+CLOSED = 1e-10
+"""Largest closure residual of an assembled pose, as a share of the longest link."""
+_TARGET = 1e-14
+_ITERATIONS = 60
+_LARGEST_STEP = 0.5
+_STARTS = 256
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pose:
+    """A linkage in one position.
+
+    linkage       the linkage
+    q             (unknowns,) angles of the moving links [rad] and travels in the slots [mm]
+    coordinate    the link whose angle fixes the pose; None where nothing moves
+    residual      largest closure residual as a share of the longest link
+    """
+
+    linkage: Linkage
+    q: Real
+    coordinate: str | None
+    residual: float
+
+    @cached_property
+    def closure(self) -> LoopClosure:
+        """The loop equations that the pose fulfils."""
+        return LoopClosure(self.linkage)
+
+    @cached_property
+    def angles(self) -> Mapping[str, float]:
+        """Direction of every link's x axis [rad]."""
+        moving = self.linkage.moving
+        return dict(zip(moving, map(float, self.q[: len(moving)]), strict=True)) | {self.linkage.ground: 0.0}
+
+    @cached_property
+    def origins(self) -> Mapping[str, Real]:
+        """Origin of every link's frame in global axes [mm]."""
+        origins = self.closure.origins(self.q)
+        found = {name: np.array([z.real, z.imag]) for name, z in zip(self.linkage.moving, origins, strict=True)}
+        return found | {self.linkage.ground: np.zeros(2)}
+
+    @cached_property
+    def _positions(self) -> Mapping[tuple[str, str], Real]:
+        values = self.closure.positions(self.q)
+        return {key: np.array([z.real, z.imag]) for key, z in zip(self.closure.point_names, values, strict=True)}
+
+    def position(self, link: str, point: str) -> Real:
+        """Position of a link's point in global axes (2,) [mm]."""
+        return self._positions[link, point]
+
+    @cached_property
+    def points(self) -> Mapping[str, Real]:
+        """Every point by name; ``link.point`` where links have different points of one name."""
+        named: dict[str, Real] = {}
+        for (link, point), here in self._positions.items():
+            twins = [p for (_, other), p in self._positions.items() if other == point]
+            same = all(np.linalg.norm(p - here) <= 1e-9 * self.linkage.longest for p in twins)
+            named[point if same else f"{link}.{point}"] = here
+        return named
+
+    def rotation(self, link: str) -> Real:
+        """Matrix (2, 2) that turns vectors of the link's frame into global axes."""
+        c, s = math.cos(self.angles[link]), math.sin(self.angles[link])
+        return np.array([[c, -s], [s, c]])
+
+    def dead_point_distance(self, driven: str) -> float:
+        """How far the pose is from a dead point of the given driven link (0 at the dead point).
+
+        Smallest singular value of the scaled constraint Jacobian with that link held: coordinates
+        are (x, y, L phi) of every moving link with L the longest link, so all entries are pure
+        numbers. Where it vanishes the linkage moves although the link is held.
+        """
+        matrix = np.vstack([constraint_jacobian(self), _held(self.linkage, driven)])
+        return float(np.linalg.svd(matrix, compute_uv=False)[-1])
+
+
+def constraint_jacobian(pose: Pose) -> Real:
+    """Jacobian of all joint constraints by (x, y, L phi) of every moving link, without dimensions.
+
+    Rows: two per revolute joint (x, y), one per pin in slot (normal), two per slider (normal and
+    angle). García de Jalón & Bayo, Kinematic and Dynamic Simulation of Multibody Systems, 1994,
+    section 2.3 (reference-point coordinates).
+    """
+    linkage, scale = pose.linkage, pose.linkage.longest
+    rows: list[Real] = []
+
+    def motion(link: str, at: Real) -> Real:
+        """Motion (2, coordinates) of the point of ``link`` that stands at ``at``."""
+        out = np.zeros((2, 3 * len(linkage.moving)))
+        if link != linkage.ground:
+            k = 3 * linkage.moving.index(link)
+            arm = at - pose.origins[link]
+            out[:, k : k + 2] = np.eye(2)
+            out[:, k + 2] = np.array([-arm[1], arm[0]]) / scale
+        return out
+
+    def turn(link: str) -> Real:
+        out = np.zeros(3 * len(linkage.moving))
+        if link != linkage.ground:
+            out[3 * linkage.moving.index(link) + 2] = 1.0
+        return out
+
+    for name, joint in linkage.joints.items():
+        first, second = joint.links
+        at = pose.position(second, linkage.joint_points(name)[1])
+        relative = motion(second, at) - motion(first, at)
+        if joint.type == "revolute":
+            rows.extend(relative)
+            continue
+        along = pose.angles[first] + joint.direction
+        rows.append(np.array([-math.sin(along), math.cos(along)]) @ relative)
+        if joint.type == "slider":
+            rows.append(turn(second) - turn(first))
+    return np.array(rows)
+
+
+def _held(linkage: Linkage, link: str) -> Real:
+    row = np.zeros(3 * len(linkage.moving))
+    row[3 * linkage.moving.index(link) + 2] = 1.0
+    return row
+
+
+def solve_pose(
+    linkage: Linkage, *, coordinate: str | None, angle: float = 0.0, near: Mapping[str, float] | None = None
+) -> Pose:
+    """Assemble the linkage with ``coordinate`` at ``angle`` [rad], on the branch that ``near`` states.
+
+    ``near`` gives rough directions of links [rad]; the branch is the one assembly in which each of
+    these links lies within 90° of its stated direction.
+
+    Raises ``CaseError`` if the mobility is not the number of pose coordinates, if the linkage
+    cannot be assembled (naming the loop that stays open and by how much), or if ``near`` leaves
+    several assemblies to choose from.
+    """
+    near = dict(near or {})
+    drives = 0 if coordinate is None else 1
+    for name in [*near, *([coordinate] if coordinate else [])]:
+        if name not in linkage.moving:
+            raise CaseError(f"pose: '{name}' is not a moving link; the moving links are {', '.join(linkage.moving)}")
+    if linkage.mobility != drives:
+        raise CaseError(
+            f"pose: the linkage has mobility {linkage.mobility} (Gruebler) but {drives} pose coordinate(s); "
+            "they must be equal, so add or remove joints or links"
+            + (", or state pose.coordinate" if linkage.mobility > drives else "")
+        )
+    closure = LoopClosure(linkage)
+    fixed = {} if coordinate is None else {coordinate: angle}
+    free = [link for link in linkage.moving if link not in fixed]
+
+    unstated = [link for link in free if link not in near]
+    if not unstated:
+        q, gaps = _newton(closure, fixed, near | fixed)
+        if _is_assembled(closure, gaps) and not _astray(closure, q, near):
+            return _pose(closure, q, coordinate, gaps)
+    found, best = _assemblies(closure, fixed, near, free)
+    if not found:
+        _explain_open(closure, best, fixed)
+    kept = [(q, gaps) for q, gaps in found if not _astray(closure, q, near)]
+    if len(kept) == 1:
+        return _pose(closure, *_first(kept, coordinate))
+    listed = "; ".join(_describe(closure, q, free) for q, _ in (kept or found))
+    if kept:
+        raise CaseError(f"pose.near: {len(kept)} assemblies fit it; state more directions to choose one of: {listed}")
+    raise CaseError(f"pose.near: no assembly lies within 90 deg of all its directions; there are: {listed}")
+
+
+def _first(kept: list[tuple[Real, Real]], coordinate: str | None) -> tuple[Real, str | None, Real]:
+    return kept[0][0], coordinate, kept[0][1]
+
+
+def _pose(closure: LoopClosure, q: Real, coordinate: str | None, gaps: Real) -> Pose:
+    return Pose(
+        linkage=closure.linkage,
+        q=q,
+        coordinate=coordinate,
+        residual=float(np.max(np.abs(gaps), initial=0.0)) / closure.linkage.longest,
+    )
+
+
+def _is_assembled(closure: LoopClosure, gaps: Real) -> bool:
+    return bool(np.max(np.abs(gaps), initial=0.0) <= CLOSED * closure.linkage.longest)
+
+
+def _newton(closure: LoopClosure, fixed: Mapping[str, float], start: Mapping[str, float]) -> tuple[Real, Real]:
+    """Newton with the exact Jacobian and halved steps; returns unknowns and closure residual.
+
+    Every step solves by least squares, so that a singular or redundant system is no special case.
+    """
+    moving, scale = closure.linkage.moving, closure.linkage.longest
+    q = np.array([start.get(link, 0.0) for link in moving] + [0.0] * len(closure.slots))
+    free = np.array([link not in fixed for link in moving] + [True] * len(closure.slots))
+    weights = np.array([1.0] * len(moving) + [scale] * len(closure.slots))[free]
+    gaps = closure.residual(q)
+    for _ in range(_ITERATIONS):
+        if np.max(np.abs(gaps), initial=0.0) <= _TARGET * scale:
+            break
+        step, *_ = np.linalg.lstsq(closure.jacobian(q)[:, free] * weights, -gaps, rcond=1e-13)
+        step *= min(1.0, _LARGEST_STEP / max(float(np.max(np.abs(step))), 1e-300)) if not closure.slots else 1.0
+        step = step * weights
+        for _halving in range(12):
+            trial = q.copy()
+            trial[free] += step
+            trial_gaps = closure.residual(trial)
+            if np.linalg.norm(trial_gaps) < np.linalg.norm(gaps):
+                break
+            step = step / 2.0
+        else:
+            break
+        q, gaps = trial, trial_gaps
+    return q, gaps
+
+
+def _assemblies(
+    closure: LoopClosure, fixed: Mapping[str, float], near: Mapping[str, float], free: list[str]
+) -> tuple[list[tuple[Real, Real]], tuple[Real, Real]]:
+    """Look for every assembly from many starts; also return the least open attempt."""
+    quarter = [0.3, 0.3 + math.pi / 2, 0.3 + math.pi, 0.3 + 1.5 * math.pi]
+    choices = [[near[link], near[link] + 0.9, near[link] - 0.9] if link in near else quarter for link in free]
+    starts: Iterable[tuple[float, ...]] = itertools.product(*choices)
+    if math.prod(len(c) for c in choices) > _STARTS:
+        rng = np.random.default_rng(0)
+        starts = [tuple(c[rng.integers(len(c))] for c in choices) for _ in range(_STARTS)]
+    found: list[tuple[Real, Real]] = []
+    best: tuple[Real, Real] | None = None
+    for start in starts:
+        q, gaps = _newton(closure, fixed, dict(zip(free, start, strict=True)) | dict(fixed))
+        if best is None or np.linalg.norm(gaps) < np.linalg.norm(best[1]):
+            best = (q, gaps)
+        if _is_assembled(closure, gaps) and not any(_same(closure, q, other) for other, _ in found):
+            found.append((q, gaps))
+    assert best is not None
+    return found, best
+
+
+def _turned(difference: Real | float) -> Real:
+    return np.abs(np.arctan2(np.sin(difference), np.cos(difference)))
+
+
+def _same(closure: LoopClosure, first: Real, second: Real) -> bool:
+    moving = len(closure.linkage.moving)
+    return bool(np.max(_turned(first[:moving] - second[:moving])) < 1e-5)
+
+
+def _astray(closure: LoopClosure, q: Real, near: Mapping[str, float]) -> bool:
+    angles = dict(zip(closure.linkage.moving, q, strict=False))
+    return any(float(_turned(angles[link] - stated)) > math.pi / 2 for link, stated in near.items())
+
+
+def _describe(closure: LoopClosure, q: Real, free: list[str]) -> str:
+    angles = dict(zip(closure.linkage.moving, q, strict=False))
+    return ", ".join(f"{link} {math.degrees(angles[link]) % 360.0:.1f} deg" for link in free)
+
+
+def _explain_open(closure: LoopClosure, best: tuple[Real, Real], fixed: Mapping[str, float]) -> None:
+    gaps = best[1]
+    count = len(closure.loops)
+    if count:
+        sizes = np.hypot(gaps[:count], gaps[count : 2 * count])
+        worst = int(np.argmax(sizes))
+        where = f"loop {'-'.join(closure.loop_path(closure.loops[worst]))} stays open by {sizes[worst]:.4g} mm"
+    else:
+        where = "the fixed angle of a slider is not met"
+    at = "".join(f" with {link} at {math.degrees(angle):.6g} deg" for link, angle in fixed.items())
+    raise CaseError(f"pose: the linkage cannot be assembled{at}: {where}; change the angle or the links' lengths")
