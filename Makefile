@@ -1,0 +1,65 @@
+# Every target does the set-up that it needs: `make demo` and `make test` work from a fresh clone.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+DEMO := out/owl-wing-static
+
+# One thread per process: the tests fill the cores with processes of their own.
+ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
+PYTEST := $(ONE_THREAD) $(BIN)/pytest --numprocesses auto --dist worksteal
+
+.DEFAULT_GOAL := help
+.PHONY: help setup libraries demo test verify clean distclean
+
+help: ## show this list
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
+
+setup: $(INSTALLED) ## system libraries, .venv, locked packages, alula itself
+
+demo: setup ## check the built-in owl wing and say where its report is
+	@$(BIN)/alula check owl-wing-static -o $(DEMO); status=$$?; \
+	case $$status in \
+	  0|1|3) echo "The report: $(CURDIR)/$(DEMO)/report.html" ;; \
+	  *) exit $$status ;; \
+	esac
+
+test: setup ## lint, types and every test but the converged studies
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(PYTEST) -m "not converged"
+
+verify: setup ## the converged studies, on fine meshes
+	$(PYTEST) -m converged
+
+clean: ## remove results and caches
+	rm -rf out build dist alula.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
+
+distclean: clean ## remove .venv as well
+	rm -rf $(VENV)
+
+# Asked every time, since it takes a tenth of a second and a missing library ends in a crash.
+libraries:
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' || \
+	  { echo "alula needs Python 3.11 to 3.13, and $(PYTHON) is another: make PYTHON=python3.12 $(MAKECMDGOALS)" >&2; exit 1; }
+	@missing=$$($(PYTHON) -m geometry.system_libraries) || exit 1; \
+	if [ -z "$$missing" ]; then exit 0; fi; \
+	if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	  echo "Installing system libraries: $$missing"; \
+	  export DEBIAN_FRONTEND=noninteractive; \
+	  apt-get update -qq && apt-get install -qq --yes --no-install-recommends $$missing >/dev/null; \
+	else \
+	  echo "System libraries are missing. Run this once, then make again:" >&2; \
+	  $(PYTHON) -m geometry.system_libraries --advice >&2; \
+	  exit 1; \
+	fi
+
+$(INSTALLED): requirements.lock pyproject.toml | libraries
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo "Installing the locked packages into $(VENV): some 2 GB, a minute or more"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement requirements.lock
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@touch $@
