@@ -79,26 +79,26 @@ def parse(text: object, dimension: str) -> float:
     if isinstance(text, bool | int | float):
         raise PydanticCustomError(
             "missing_unit",
-            'a {dimension} needs its unit as text; write for example "{example}"',
+            'the {dimension} needs its unit as text; write for example "{example}"',
             {"dimension": dimension, "example": example},
         )
     if not isinstance(text, str):
         raise PydanticCustomError(
             "not_a_quantity",
-            'a {dimension} is text with a number and a unit; write for example "{example}"',
+            'the {dimension} must be text with a number and a unit; write for example "{example}"',
             {"dimension": dimension, "example": example},
         )
     number, unit = _split(text)
     if number is None or not math.isfinite(number):
         raise PydanticCustomError(
             "not_a_quantity",
-            'a {dimension} is one finite number and its unit; write for example "{example}"',
+            'the {dimension} must be one finite number and its unit; write for example "{example}"',
             {"dimension": dimension, "example": example},
         )
     if not unit:
         raise PydanticCustomError(
             "missing_unit",
-            'a {dimension} needs its unit; write for example "{example}"',
+            'the {dimension} needs its unit; write for example "{example}"',
             {"dimension": dimension, "example": example},
         )
     factor, offset = _conversion(unit, dimension)

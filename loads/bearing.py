@@ -1,0 +1,52 @@
+"""Laws of the pressure between a pin and its hole, as functions of the angle from the direction of the force."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Span = Literal[180, 90]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressureLaw:
+    """Frictionless pin pressure p(θ) = p0 cos(kθ) for |θ| < span/2, zero elsewhere.
+
+    span   loaded angle of the hole [degrees]: 180 (k = 1) or 90 (k = 2). Both end at zero pressure;
+           a cosine cut off at ±45° would leave a jump.
+
+    The cosine over 180° is the usual law for a neat-fit pin: Bruhn, Analysis and Design of Flight
+    Vehicle Structures (1973), chapter D1; the narrower law stands for a pin with clearance.
+    """
+
+    span: Span
+
+    @property
+    def wave(self) -> int:
+        """The factor k of the angle in p0 cos(kθ)."""
+        return 180 // self.span
+
+    def shape(self, theta: ArrayLike) -> NDArray[np.float64]:
+        """p(θ)/p0 at the angles ``theta`` [rad] from the direction of the force; same shape, any period."""
+        angle = np.mod(np.asarray(theta, dtype=np.float64) + math.pi, 2.0 * math.pi) - math.pi
+        return np.where(np.abs(angle) < math.radians(self.span) / 2.0, np.cos(self.wave * angle), 0.0)
+
+    def peak(self, *, force: float, diameter: float, thickness: float) -> float:
+        """Peak pressure p0 [MPa] of a force [N] on a hole of that diameter and length [mm].
+
+        Equilibrium F = p0 t (d/2) ∫ cos(kθ) cos θ dθ over the span gives p0 = 4F/(π d t) for 180°
+        and p0 = 3F/(√2 d t) for 90°.
+        """
+        factor = 4.0 / math.pi if self.span == 180 else 3.0 / math.sqrt(2.0)
+        return factor * bearing_stress(force=force, diameter=diameter, thickness=thickness)
+
+
+WIDE = PressureLaw(span=180)
+NARROW = PressureLaw(span=90)
+
+
+def bearing_stress(*, force: float, diameter: float, thickness: float) -> float:
+    """Nominal bearing stress F/(d t) [MPa] (Shigley's Mechanical Engineering Design, 10th ed., eq. 8-30)."""
+    return force / (diameter * thickness)

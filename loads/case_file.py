@@ -1,0 +1,157 @@
+"""Reading a case: a TOML file or a built-in name, overrides, and errors in one sentence each."""
+
+import os
+import tomllib
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from geometry.errors import CaseError
+from loads.case import SCHEMA_VERSION, Case
+
+LARGEST_FILE = 1 << 20
+"""Bytes; a case file is some kilobytes."""
+
+
+def built_in_cases() -> tuple[str, ...]:
+    """Names of the cases that alula ships."""
+    folder = files("loads.cases")
+    return tuple(sorted(f.name[:-5] for f in folder.iterdir() if f.name.endswith(".toml")))
+
+
+def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
+    """Read and validate a case by its built-in name or its path, with ``path=value`` overrides.
+
+    Raises ``CaseError`` with one sentence for whatever is wrong.
+    """
+    text, where = read_text(name_or_path)
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"{where}: this is not valid TOML: {error}; correct that line") from None
+    except RecursionError:
+        raise CaseError(f"{where}: the tables are nested too deeply; flatten them") from None
+    for override in overrides:
+        _override(data, override)
+    return validate(data)
+
+
+def read_text(name_or_path: str) -> tuple[str, str]:
+    """Return the text of a case and what to call it in messages."""
+    if name_or_path in built_in_cases():
+        return files("loads.cases").joinpath(f"{name_or_path}.toml").read_text(encoding="utf-8"), name_or_path
+    path, shown = Path(name_or_path), printable(name_or_path)
+    try:
+        exists = path.is_file()
+    except (OSError, ValueError):
+        exists = False
+    if not exists:
+        what = "is a folder" if os.path.isdir(name_or_path) else "there is no such file or built-in case"
+        choice = ", ".join(built_in_cases())
+        raise CaseError(f"case '{shown}': {what}; give a path to a case file or one of {choice}")
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise CaseError(f"case '{shown}': the file is larger than 1 MiB; a case file is some kilobytes")
+        text = path.read_bytes().decode("utf-8")
+    except OSError as error:
+        raise CaseError(f"case '{shown}': it cannot be read ({error.strerror}); check its permissions") from None
+    except UnicodeDecodeError:
+        raise CaseError(f"case '{shown}': it is not UTF-8 text; save it as UTF-8") from None
+    if not text.strip():
+        raise CaseError(f"case '{shown}': the file is empty; start from 'alula new'")
+    return text, path.name
+
+
+def read_companion(case_path: str, name: str) -> str:
+    """Read a text file that stands beside a case file (or ships with a built-in case)."""
+    if Path(name).name != name or name.startswith("."):
+        raise CaseError(f"'{printable(name)}' must be the plain name of a file beside the case file")
+    if case_path in built_in_cases():
+        source = files("loads.cases").joinpath(name)
+        if source.is_file():
+            return source.read_text(encoding="utf-8")
+    else:
+        path = Path(case_path).parent / name
+        if path.is_file() and path.stat().st_size <= LARGEST_FILE:
+            try:
+                return path.read_text(encoding="utf-8")
+            except (OSError, UnicodeDecodeError):
+                pass
+    raise CaseError(f"'{printable(name)}' is not a readable file beside the case file; put it there")
+
+
+def printable(text: str) -> str:
+    """Return text without control characters, shortened, for a message."""
+    clean = "".join(c if c.isprintable() else "?" for c in text)
+    return clean if len(clean) <= 80 else clean[:77] + "..."
+
+
+def validate(data: dict[str, Any]) -> Case:
+    """Validate a case given as nested tables; raises ``CaseError``."""
+    if data.get("schema_version") != SCHEMA_VERSION:
+        raise CaseError(
+            f"schema_version: it is {printable(repr(data.get('schema_version')))}, but this version of alula reads "
+            f"{SCHEMA_VERSION}; write schema_version = {SCHEMA_VERSION}"
+        )
+    try:
+        return Case.model_validate(data)
+    except ValidationError as error:
+        raise CaseError(_sentence(error)) from None
+
+
+def _override(data: dict[str, Any], override: str) -> None:
+    path, sign, text = override.partition("=")
+    path = path.strip()
+    if not sign or not path:
+        raise CaseError(f"--set '{printable(override)}': write it as path=value, for example pose.angle=\"30 deg\"")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except (tomllib.TOMLDecodeError, RecursionError):
+        value = text.strip()
+    here: Any = data
+    keys = path.split(".")
+    for i, key in enumerate(keys):
+        last = i == len(keys) - 1
+        if isinstance(here, list):
+            if not (key.isascii() and key.isdigit() and len(key) < 6 and int(key) < len(here)):
+                raise CaseError(
+                    f"--set {printable(path)}: '{printable(key)}' must be a number from 0 to {len(here) - 1} here"
+                )
+            index: Any = int(key)
+        elif isinstance(here, dict):
+            index = key
+            if not last and key not in here:
+                here[key] = {}
+        else:
+            raise CaseError(
+                f"--set {printable(path)}: '{printable('.'.join(keys[:i]))}' is a value, so nothing can be set below it"
+            )
+        if last:
+            here[index] = value
+        else:
+            here = here[index]
+
+
+def _sentence(error: ValidationError) -> str:
+    """One sentence for the first problem: entry, value, rule, remedy."""
+    first = error.errors(include_url=False)[0]
+    entry = ".".join(map(str, _without_tag(first["loc"]))) or "case"
+    value = first["input"]
+    shown = "" if isinstance(value, dict | list | tuple) else f" (it is {printable(repr(value))})"
+    kind, message = first["type"], first["msg"]
+    if kind == "extra_forbidden":
+        return f"{printable(entry)}: this key is unknown; correct its name or remove it"
+    if kind == "missing":
+        return f"{printable(entry)}: this entry is missing; add it"
+    more = len(error.errors()) - 1
+    also = f" ({more} more like this)" if more > 3 else ""
+    message = message[0].lower() + message[1:]
+    return f"{printable(entry)}{shown}: {message}{also}"
+
+
+def _without_tag(loc: tuple[int | str, ...]) -> tuple[int | str, ...]:
+    """Leave out the type name that pydantic puts behind the name of a part, check or hand calculation."""
+    return (*loc[:2], *loc[3:]) if loc[0] in ("parts", "checks") else loc

@@ -1,0 +1,264 @@
+"""Pinned-frame statics: three equilibrium equations per moving link, assembled from the pose.
+
+Each link is cut free. With r the arm from the origin of the link's frame to a joint,
+
+    sum F_x = 0,    sum F_y = 0,    sum (r x F)_z + M_z = 0
+
+over joint forces, applied loads and the drive torque (Norton, Design of Machinery, 5th ed.,
+section 11.4, with accelerations zero). The unknown of a revolute joint is the force that the
+joint's first link exerts on its second; a pin in a slot carries a normal force, a slider a normal
+force and a moment.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.errors import CaseError
+from geometry.linkage import Linkage
+from geometry.pose import Pose
+from loads.applied import Load
+
+Real = NDArray[np.float64]
+
+NEARLY_SINGULAR = 1e-6
+"""Smallest singular value of the scaled matrix below which a pose is refused."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    """The drive: it turns ``link`` about ``joint`` against the other link there (often the ground)."""
+
+    link: str
+    joint: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointReaction:
+    """What link ``by`` does to link ``on`` at a joint: wrench (6,) about the pin, global axes [N, N mm]."""
+
+    joint: str
+    on: str
+    by: str
+    wrench: Real
+
+    @property
+    def force(self) -> Real:
+        """Force (3,) [N]."""
+        return self.wrench[:3]
+
+    @property
+    def magnitude(self) -> float:
+        """Size of the force [N]."""
+        return float(np.linalg.norm(self.wrench[:3]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class System:
+    """The equilibrium equations [A][R] = [b], with a name for every row and column.
+
+    matrix   (3 links, unknowns); force rows in N, moment rows in N mm
+    rhs      (3 links,)
+    rows     (link, "Fx" | "Fy" | "Mz") of every row
+    columns  name of every unknown: RAx, RAy, ..., T
+    scale    length by which moments are divided before singular values are taken [mm]
+    """
+
+    matrix: Real
+    rhs: Real
+    rows: tuple[tuple[str, str], ...]
+    columns: tuple[str, ...]
+    scale: float
+
+    @cached_property
+    def scaled(self) -> Real:
+        """The matrix without dimensions: moments and the torque divided by ``scale``."""
+        row = np.array([1.0 / self.scale if kind == "Mz" else 1.0 for _, kind in self.rows])
+        column = np.array([self.scale if self._is_moment(name) else 1.0 for name in self.columns])
+        return np.asarray(row[:, None] * self.matrix * column)
+
+    @staticmethod
+    def _is_moment(column: str) -> bool:
+        return column == "T" or column.startswith("M:")
+
+    @cached_property
+    def singular_values(self) -> Real:
+        """Singular values of the scaled matrix, falling."""
+        return np.asarray(np.linalg.svd(self.scaled, compute_uv=False), dtype=float)
+
+    @property
+    def condition(self) -> float:
+        """Condition number of the scaled matrix (2-norm)."""
+        smallest = float(self.singular_values[-1])
+        return float(self.singular_values[0]) / smallest if smallest > 0.0 else math.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reactions:
+    """Joint reactions and drive torque of one pose under one set of loads.
+
+    drive_torque  N mm, counter-clockwise positive, on the driven link; 0 without drive
+    residual      largest unbalanced force or moment over the longest link, as a share of the load
+    unknowns      (columns,) the solution vector [R]
+    """
+
+    pose: Pose
+    drive: Drive | None
+    system: System
+    unknowns: Real
+    joints: Mapping[str, JointReaction]
+    drive_torque: float
+    residual: float
+
+    def on_link(self, link: str) -> tuple[tuple[str, Real], ...]:
+        """(point, wrench (6,) about it in global axes) of every joint reaction that acts on a link.
+
+        The drive torque is not among them: see ``drive_torque``.
+        """
+        found = []
+        for name, reaction in self.joints.items():
+            if link in (reaction.on, reaction.by):
+                sign = 1.0 if reaction.on == link else -1.0
+                found.append((self.pose.linkage.point_of(name, link), sign * reaction.wrench))
+        return tuple(found)
+
+    def torque_on(self, link: str) -> float:
+        """Drive torque that acts on a link [N mm]: on the driven link, and its reaction on the other."""
+        if self.drive is None:
+            return 0.0
+        if link == self.drive.link:
+            return self.drive_torque
+        return -self.drive_torque if link in self.pose.linkage.joints[self.drive.joint].links else 0.0
+
+
+def assemble(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> System:
+    """Write the equilibrium equations of every moving link at this pose.
+
+    The plane's three equations alone: see ``loads/applied.py`` for the loads; out-of-plane
+    components do not enter.
+    """
+    linkage = pose.linkage
+    entries: list[tuple[str, Real]] = []
+    for name in linkage.joints:
+        entries.extend(_columns(pose, name))
+    if drive is not None:
+        torque = np.zeros(3 * len(linkage.moving))
+        for link in linkage.joints[drive.joint].links:
+            if link != linkage.ground:
+                torque[3 * linkage.moving.index(link) + 2] = 1.0 if link == drive.link else -1.0
+        entries.append(("T", torque))
+    rhs = np.zeros(3 * len(linkage.moving))
+    for load in loads:
+        if load.link != linkage.ground:
+            k = 3 * linkage.moving.index(load.link)
+            rhs[k : k + 3] -= load.resultant(pose)[[0, 1, 5]]
+    return System(
+        matrix=np.array([column for _, column in entries]).T,
+        rhs=rhs,
+        rows=tuple((link, kind) for link in linkage.moving for kind in ("Fx", "Fy", "Mz")),
+        columns=tuple(name for name, _ in entries),
+        scale=linkage.longest,
+    )
+
+
+def _columns(pose: Pose, name: str) -> list[tuple[str, Real]]:
+    """Columns of a joint's unknowns: what each unit of it does to the rows of both links."""
+    linkage = pose.linkage
+    joint = linkage.joints[name]
+    at = pose.position(joint.links[1], linkage.joint_points(name)[1])
+
+    def column(force: Real, moment: float) -> Real:
+        out = np.zeros(3 * len(linkage.moving))
+        for link, sign in zip(joint.links, (-1.0, 1.0), strict=True):
+            if link != linkage.ground:
+                k = 3 * linkage.moving.index(link)
+                arm = at - pose.origins[link]
+                out[k : k + 2] = sign * force
+                out[k + 2] = sign * (arm[0] * force[1] - arm[1] * force[0] + moment)
+        return out
+
+    if joint.type == "revolute":
+        return [
+            (f"R{name}x", column(np.array([1.0, 0.0]), 0.0)),
+            (f"R{name}y", column(np.array([0.0, 1.0]), 0.0)),
+        ]
+    along = pose.angles[joint.links[0]] + joint.direction
+    normal = np.array([-math.sin(along), math.cos(along)])
+    columns = [(f"N{name}", column(normal, 0.0))]
+    if joint.type == "slider":
+        columns.append((f"M:{name}", column(np.zeros(2), 1.0)))
+    return columns
+
+
+def check_drive(linkage: Linkage, drive: Drive | None) -> None:
+    """Raise ``CaseError`` if the drive names a link or joint that does not fit."""
+    if drive is None:
+        return
+    if drive.link not in linkage.moving:
+        raise CaseError(f"drive.link: '{drive.link}' is not a moving link; choose one of {', '.join(linkage.moving)}")
+    if drive.joint not in linkage.joints_of(drive.link):
+        raise CaseError(
+            f"drive.joint: '{drive.joint}' is no joint of link '{drive.link}'; "
+            f"choose one of {', '.join(linkage.joints_of(drive.link))}"
+        )
+
+
+def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Reactions:
+    """Solve the equilibrium of all links for the joint reactions and the drive torque.
+
+    Raises ``CaseError`` where the equations have no single solution: more or fewer unknowns than
+    equations, or a pose at or next to a dead point of the driven link.
+    """
+    linkage = pose.linkage
+    check_drive(linkage, drive)
+    system = assemble(pose, drive, loads)
+    rows, columns = system.matrix.shape
+    if rows != columns:
+        raise CaseError(
+            f"drive: statics has {rows} equilibrium equations for {columns} unknowns, so joint forces do not follow "
+            "from equilibrium; drive as many links as the linkage has degrees of freedom "
+            f"(mobility {linkage.mobility})"
+        )
+    smallest = float(system.singular_values[-1])
+    if smallest < NEARLY_SINGULAR:
+        who = f"driven link '{drive.link}'" if drive else "structure"
+        raise CaseError(
+            f"pose: it stands at (or within a hair of) a dead point of the {who}: the smallest singular value of "
+            f"the scaled equilibrium matrix is {smallest:.2g}, below {NEARLY_SINGULAR:g}, so joint forces would grow "
+            "without bound; change the pose or drive another link"
+        )
+    unknowns = np.linalg.solve(system.scaled, _scaled_rhs(system))
+    unknowns = unknowns * np.array([system.scale if system._is_moment(c) else 1.0 for c in system.columns])
+    leftover = system.matrix @ unknowns - system.rhs
+    row_scale = np.array([system.scale if kind == "Mz" else 1.0 for _, kind in system.rows])
+    load_size = max(float(np.max(np.abs(_scaled_rhs(system)), initial=0.0)), 1e-300)
+    return Reactions(
+        pose=pose,
+        drive=drive,
+        system=system,
+        unknowns=unknowns,
+        joints={name: _reaction(pose, name, system, unknowns) for name in linkage.joints},
+        drive_torque=float(unknowns[system.columns.index("T")]) if drive else 0.0,
+        residual=float(np.max(np.abs(leftover / row_scale))) / load_size,
+    )
+
+
+def _scaled_rhs(system: System) -> Real:
+    return np.asarray(system.rhs / np.array([system.scale if kind == "Mz" else 1.0 for _, kind in system.rows]))
+
+
+def _reaction(pose: Pose, name: str, system: System, unknowns: Real) -> JointReaction:
+    joint = pose.linkage.joints[name]
+    value = dict(zip(system.columns, unknowns, strict=True))
+    wrench = np.zeros(6)
+    if joint.type == "revolute":
+        wrench[:2] = value[f"R{name}x"], value[f"R{name}y"]
+    else:
+        along = pose.angles[joint.links[0]] + joint.direction
+        wrench[:2] = value[f"N{name}"] * np.array([-math.sin(along), math.cos(along)])
+        wrench[5] = value.get(f"M:{name}", 0.0)
+    return JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench)
