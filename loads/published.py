@@ -131,9 +131,12 @@ def audit(
             RowFinding(number=i + 1, link=link, defect=defect, valid=defect <= published.tolerance)
             for i, row in enumerate(exact)
             for link in [published.links[i // 3]]
-            for defect in [_defect(row, columns, link, pose)]
+            for _, defect in [_fit(row, columns, link, pose)]
         ),
-        imbalances=tuple(_imbalance(link, columns, stated, signs, pose, loads) for link in published.links),
+        imbalances=tuple(
+            _imbalance(link, columns, exact, stated, published.links, signs[link], pose, loads)
+            for link in published.links
+        ),
     )
 
 
@@ -174,8 +177,8 @@ def _equilibrium(link: str, columns: Sequence[str], pose: Pose) -> Real:
     return out
 
 
-def _defect(row: Real, columns: Sequence[str], link: str, pose: Pose) -> float:
-    """Share of a row outside the span of the link's equilibrium equations.
+def _fit(row: Real, columns: Sequence[str], link: str, pose: Pose) -> tuple[Real, float]:
+    """Nearest combination (3,) of the link's equilibrium equations to a row, and the share left over.
 
     The drive torque may enter a moment equation of any link with any sign, so it takes no part.
     """
@@ -183,7 +186,7 @@ def _defect(row: Real, columns: Sequence[str], link: str, pose: Pose) -> float:
     space = _equilibrium(link, columns, pose)[:, forces]
     part = row[forces]
     fit, *_ = np.linalg.lstsq(space.T, part, rcond=None)
-    return float(np.linalg.norm(part - fit @ space) / np.linalg.norm(part))
+    return np.asarray(fit), float(np.linalg.norm(part - fit @ space) / np.linalg.norm(part))
 
 
 def _signs(links: Sequence[str], pose: Pose) -> Mapping[str, float]:
@@ -203,20 +206,26 @@ def _signs(links: Sequence[str], pose: Pose) -> Mapping[str, float]:
 
 
 def _imbalance(
-    link: str, columns: Sequence[str], solution: Real, signs: Mapping[str, float], pose: Pose, loads: Sequence[Load]
+    link: str,
+    columns: Sequence[str],
+    matrix: Real,
+    solution: Real,
+    links: Sequence[str],
+    sign: float,
+    pose: Pose,
+    loads: Sequence[Load],
 ) -> Imbalance:
     """Sum the published forces on a link, its loads and the published torque at the assembled pose."""
-    sums = signs[link] * _equilibrium(link, columns, pose) @ solution
+    sums = sign * _equilibrium(link, columns, pose) @ solution
     force, moment = sums[:2], sums[2] * _MM
     if "T" in columns:
-        # The torque acts where the published equations put it, with the sign of its row's link.
-        moment += signs[link] * _torque_share(link, columns, solution, pose)
+        torque = columns.index("T")
+        for row in matrix[3 * links.index(link) : 3 * links.index(link) + 3]:
+            # A moment equation may be written with either sign; its torque turns with it.
+            turn = np.sign(_fit(row, columns, link, pose)[0][2])
+            moment += sign * turn * row[torque] * solution[torque] * _MM
     for load in loads:
         if load.link == link:
             resultant = load.resultant(pose)
             force, moment = force + resultant[:2], moment + resultant[5]
     return Imbalance(link=link, force=force, moment=float(moment))
-
-
-def _torque_share(link: str, columns: Sequence[str], solution: Real, pose: Pose) -> float:
-    raise NotImplementedError
