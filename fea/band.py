@@ -1,0 +1,44 @@
+"""A number with its error band."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Band:
+    """A value, the interval that it may lie in, and what that interval holds.
+
+    holds   the sources of error that low and high cover, each in a few words
+    """
+
+    value: float
+    low: float
+    high: float
+    holds: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """Refuse a band that does not hold its value."""
+        if not self.low <= self.value <= self.high:
+            raise ValueError(f"the band {self.low:g} to {self.high:g} does not hold its value {self.value:g}")
+
+    @classmethod
+    def exact(cls, value: float, *holds: str) -> "Band":
+        """Return a band of no width."""
+        return cls(value=value, low=value, high=value, holds=holds)
+
+    @classmethod
+    def around(cls, value: float, others: tuple[float, ...], *holds: str) -> "Band":
+        """Return the band from the least to the largest of a value and its variants."""
+        return cls(value=value, low=min(value, *others), high=max(value, *others), holds=holds)
+
+    def inverse(self, numerator: float) -> "Band":
+        """Return ``numerator`` divided by the number: strength over stress gives a safety factor."""
+        return Band(
+            value=_ratio(numerator, self.value),
+            low=_ratio(numerator, self.high),
+            high=_ratio(numerator, self.low),
+            holds=self.holds,
+        )
+
+
+def _ratio(numerator: float, denominator: float) -> float:
+    return numerator / denominator if denominator > 0.0 else float("inf")

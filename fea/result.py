@@ -1,0 +1,114 @@
+"""The records that a check hands to the reports."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.band import Band
+from fea.beam import BeamCheck, CantileverCheck
+from fea.solid import SolidSolution
+from fea.verdict import CheckOutcome, Verdict
+from geometry.pose import Pose
+from loads.case import Case
+from loads.published import StaticsAudit
+from loads.statics import Reactions
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """One way to model what is not known: a pin-pressure span [degrees] and a torque transfer.
+
+    transfer   "eye-faces" or "bore-shear"; "" on a link without drive torque
+    """
+
+    span: int
+    transfer: str
+
+    @property
+    def title(self) -> str:
+        """Name for people."""
+        return f"pin pressure over {self.span}°" + (f", torque by {self.transfer}" if self.transfer else "")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SectionComparison:
+    """Hand calculation against the solid model at one section.
+
+    x           station in the link's frame [mm]
+    kind        "bending" (extreme-fibre bending stress) or "axial" (N/A)
+    hand, solid [MPa]
+    difference  (solid - hand) over the link's largest hand stress of that kind
+    """
+
+    x: float
+    kind: str
+    hand: float
+    solid: float
+    difference: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkResult:
+    """What one load case does to one link.
+
+    fidelity           "solid" or "beam": the model that the numbers come from
+    von_mises_max      [MPa]; ``principal_max`` the largest principal stress [MPa]
+    safety_factor      strength over the stress that the material names
+    displacement_max   relative to the line through the link's first and last pin [mm]
+    location           (3,) place of the largest von Mises stress in the link's frame [mm]
+    elements, unknowns size of the solid model; None when no solid ran
+    beam               the hand calculation
+    solids             the solid solutions by variant; empty when no solid ran
+    governing          the variant that ``value`` comes from
+    comparisons        hand against solid, section by section
+    notes              what the reader must know about this link's numbers
+    """
+
+    link: str
+    fidelity: str
+    von_mises_max: Band
+    principal_max: Band
+    safety_factor: Band
+    displacement_max: Band
+    location: NDArray[np.float64]
+    elements: int | None
+    unknowns: int | None
+    beam: BeamCheck
+    solids: Mapping[Variant, SolidSolution]
+    governing: Variant | None
+    comparisons: tuple[SectionComparison, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadCaseResult:
+    """One load case: reactions, links, checks."""
+
+    name: str
+    reactions: Reactions
+    links: Mapping[str, LinkResult]
+    checks: tuple[CheckOutcome, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckResult:
+    """Everything that ``alula check`` found out.
+
+    name            what the case was called on the command line
+    hand            the case's own hand calculations
+    audit           of the published statics, where the case has one
+    timings         stage -> seconds
+    warnings        one sentence each
+    """
+
+    name: str
+    case: Case
+    pose: Pose
+    load_cases: Mapping[str, LoadCaseResult]
+    hand: Mapping[str, CantileverCheck]
+    audit: StaticsAudit | None
+    verdict: Verdict
+    timings: Mapping[str, float]
+    warnings: tuple[str, ...]
