@@ -1,0 +1,86 @@
+"""The wheel holds the four rooms with their data and nothing else, and its command runs from any folder."""
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+ROOMS = ("geometry", "loads", "fea", "reports")
+
+
+def run(*command: str | Path, cwd: Path) -> str:
+    """Run `command` as a user would, with no trace of this test's environment, and return its standard output."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    done = subprocess.run(
+        [str(word) for word in command], cwd=cwd, env=environment, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory) -> Path:
+    """Build the wheel from a copy, so that nothing is left in the checkout and nothing in it is left out."""
+    source = tmp_path_factory.mktemp("source")
+    for folder in (*ROOMS, "tests", "benchmarks"):
+        if (ROOT / folder).is_dir():
+            shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    for file in ROOT.iterdir():
+        if file.is_file() and not file.name.startswith("."):
+            shutil.copy(file, source)
+    target = tmp_path_factory.mktemp("wheel")
+    options = ("--quiet", "--no-deps", "--no-index", "--no-build-isolation", "--wheel-dir", target)
+    run(sys.executable, "-m", "pip", "wheel", *options, source, cwd=target)
+    [built] = target.glob("alula-*.whl")
+    return built
+
+
+@pytest.fixture(scope="module")
+def installed(wheel, tmp_path_factory) -> Path:
+    """Install the wheel alone into a fresh environment that borrows the dependencies of this one."""
+    environment = tmp_path_factory.mktemp("environment")
+    run(sys.executable, "-m", "venv", "--without-pip", environment, cwd=environment)
+    python = environment / "bin" / "python"
+    options = ("--quiet", "--no-deps", "--no-index")
+    run(sys.executable, "-m", "pip", "--python", python, "install", *options, wheel, cwd=environment)
+    [site] = environment.glob("lib/python*/site-packages")
+    # A folder named in a .pth file has its own .pth files ignored: the checkout stays out of reach.
+    (site / "dependencies.pth").write_text(f"{sysconfig.get_path('purelib')}\n{sysconfig.get_path('platlib')}\n")
+    return environment
+
+
+def test_the_wheel_holds_the_rooms_with_their_data_and_no_tests(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        shipped = {name for name in archive.namelist() if ".dist-info/" not in name}
+    tracked = {
+        file.relative_to(ROOT).as_posix()
+        for room in ROOMS
+        for file in (ROOT / room).rglob("*")
+        if file.is_file() and "__pycache__" not in file.parts
+    }
+    assert shipped == tracked
+    assert "geometry/materials.toml" in shipped
+
+
+def test_the_wheel_carries_the_licence(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        [metadata] = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
+        assert "License-Expression: GPL-3.0-or-later" in archive.read(metadata).decode()
+        assert any(name.endswith(".dist-info/licenses/LICENSE") for name in archive.namelist())
+
+
+def test_the_installed_packages_are_those_of_the_wheel(installed, tmp_path):
+    files = run(
+        installed / "bin" / "python",
+        "-c",
+        "import fea, geometry, loads, reports\nfor room in (geometry, loads, fea, reports): print(room.__file__)",
+        cwd=tmp_path,
+    ).splitlines()
+    assert [Path(file).parent.name for file in files] == list(ROOMS)
+    assert all(Path(file).is_relative_to(installed) for file in files)
