@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from fea.band import Band
 from fea.beam import BeamCheck, CantileverCheck
-from fea.solid import SolidSolution
+from fea.solid import SolidCase, SolidSolution
+from fea.stress import StressField
 from fea.verdict import CheckOutcome, Verdict
 from geometry.pose import Pose
 from loads.case import Case
@@ -17,14 +18,20 @@ from loads.statics import Reactions
 
 
 @dataclass(frozen=True, kw_only=True)
-class Variant:
-    """One way to model what is not known: a pin-pressure span [degrees] and a torque transfer.
+class VariantPeak:
+    """Peaks of the solid model under one way to model what is not known.
 
-    transfer   "eye-faces" or "bore-shear"; "" on a link without drive torque
+    span       loaded angle of the pin holes [degrees]
+    transfer   "eye-faces" or "bore-shear"; None on a link without drive torque
+    von_mises, principal   largest von Mises and largest principal stress [MPa]
+    displacement           largest displacement [mm]
     """
 
     span: int
-    transfer: str
+    transfer: str | None
+    von_mises: float
+    principal: float
+    displacement: float
 
     @property
     def title(self) -> str:
@@ -60,8 +67,10 @@ class LinkResult:
     location           (3,) place of the largest von Mises stress in the link's frame [mm]
     elements, unknowns size of the solid model; None when no solid ran
     beam               the hand calculation
-    solids             the solid solutions by variant; empty when no solid ran
-    governing          the variant that ``value`` comes from
+    solid              the solid solutions of all load cases; None when no solid ran
+    variants           the peaks of every variant of this load case; empty when no solid ran
+    governing          the variant that ``value`` comes from; with its displacement field
+                       (``solid_case``) and recovered stress (``stress``) for pictures and files
     comparisons        hand against solid, section by section
     notes              what the reader must know about this link's numbers
     """
@@ -76,8 +85,11 @@ class LinkResult:
     elements: int | None
     unknowns: int | None
     beam: BeamCheck
-    solids: Mapping[Variant, SolidSolution]
-    governing: Variant | None
+    solid: SolidSolution | None
+    variants: tuple[VariantPeak, ...]
+    governing: VariantPeak | None
+    solid_case: SolidCase | None
+    stress: StressField | None
     comparisons: tuple[SectionComparison, ...]
     notes: tuple[str, ...]
 
