@@ -1,0 +1,111 @@
+"""Cutting a link free: all that acts on it, in its own frame, for the beam and for the solid."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea import beam
+from fea.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
+from geometry.part import Body
+from geometry.pose import Pose
+from loads import applied
+from loads.actions import PartMass
+from loads.statics import Reactions
+
+Real = NDArray[np.float64]
+
+
+def _to_link(pose: Pose, link: str, vector: Real) -> Real:
+    """Turn a vector (3,) or wrench (6,) from global axes into the link's frame."""
+    turn = np.eye(3)
+    turn[:2, :2] = pose.rotation(link).T
+    return np.concatenate([turn @ part for part in vector.reshape(-1, 3)])
+
+
+def link_loads(name: str, link: str, body: Body, reactions: Reactions, loads: Sequence[applied.Load]) -> LinkLoads:
+    """Everything that acts on a link in a load case called ``name``: a balanced set.
+
+    Forces at a pin are taken together as one wrench of the pin; the drive torque stays apart,
+    since it enters the part in a way of its own.
+    """
+    pose = reactions.pose
+    wrenches: dict[str, Real] = {}
+    for point, wrench in reactions.on_link(link):
+        wrenches[point] = wrenches.get(point, np.zeros(6)) + _to_link(pose, link, wrench)
+    lines: list[LineLoad] = []
+    bodies: list[BodyLoad] = []
+    for load in loads:
+        if load.link != link:
+            continue
+        if isinstance(load, applied.PointLoad):
+            wrenches[load.point] = wrenches.get(load.point, np.zeros(6)) + _to_link(pose, link, load.wrench)
+        elif isinstance(load, applied.LineLoad):
+            intensity = np.array([_to_link(pose, link, load.at_start), _to_link(pose, link, load.at_end)])
+            lines.append(LineLoad(first=load.start, last=load.end, intensity=intensity))
+        else:
+            bodies.append(
+                BodyLoad(specific_force=_to_link(pose, link, load.acceleration), about=np.array([*load.centroid, 0.0]))
+            )
+    torque = reactions.torque_on(link)
+    drive = reactions.drive
+    return LinkLoads(
+        name=name,
+        pins=tuple(
+            PinLoad(
+                name=pin.name,
+                centre=np.array([pin.x, pin.y, 0.0]),
+                diameter=pin.diameter,
+                wrench=wrenches.get(pin.name, np.zeros(6)),
+            )
+            for pin in body.pins
+        ),
+        couples=(
+            (DriveCouple(pin=pose.linkage.point_of(drive.joint, link), torque=torque),) if drive and torque else ()
+        ),
+        ends=tuple(
+            EndLoad(name=end.name, point=np.array([end.x, 0.0, 0.0]), wrench=wrenches[end.name])
+            for end in body.ends
+            if end.name in wrenches
+        ),
+        bodies=tuple(bodies),
+        lines=tuple(lines),
+    )
+
+
+def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | None) -> beam.BeamLoads:
+    """The same loads on the link's axis.
+
+    A body force is spread along the tube or bar between the link's ends by its mass per length
+    (``density`` in tonne/mm³); what eyes, holes and fillets add to the mass, or shift of its
+    centroid, stands as a point load at each end.
+    """
+    points = [beam.PointLoad(point=pin.centre, wrench=pin.wrench) for pin in loads.pins]
+    centres = {pin.name: pin.centre for pin in loads.pins}
+    for couple in loads.couples:
+        wrench = np.array([0.0, 0.0, 0.0, 0.0, 0.0, couple.torque])
+        points.append(beam.PointLoad(point=centres[couple.pin], wrench=wrench))
+    points += [beam.PointLoad(point=end.point, wrench=end.wrench) for end in loads.ends]
+    lines = [
+        beam.LineLoad(start=line.first, end=line.last, first=line.intensity[0], last=line.intensity[1])
+        for line in loads.lines
+    ]
+    if loads.bodies and mass is not None:
+        stations = [pin.x for pin in body.pins] + [end.x for end in body.ends]
+        first, last = min(stations), max(stations)
+        per_length = body.part.section.area * density
+        excess = mass.mass - per_length * (last - first)
+        moment = mass.mass * mass.centroid[0] - per_length * (last**2 - first**2) / 2.0
+        at_last = (moment - excess * first) / (last - first)
+        for load in loads.bodies:
+            intensity = per_length * load.specific_force
+            lines.append(beam.LineLoad(start=first, end=last, first=intensity, last=intensity))
+            for x, lump in ((first, excess - at_last), (last, at_last)):
+                wrench = np.concatenate([lump * load.specific_force, np.zeros(3)])
+                points.append(beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=wrench))
+            # The centroid's distance from the axis is felt as a moment.
+            off_axis = np.cross([0.0, mass.centroid[1], 0.0], mass.mass * load.specific_force)
+            points.append(
+                beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=np.concatenate([np.zeros(3), off_axis]))
+            )
+    return beam.BeamLoads(points=tuple(points), lines=tuple(lines))
