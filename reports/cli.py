@@ -1,0 +1,193 @@
+"""The command ``alula``. Heavy libraries are imported by the command that needs them."""
+
+import sys
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+from geometry.errors import AlulaError
+
+INTERRUPTED = 130
+CRASHED = 4
+
+app = typer.Typer(
+    name="alula",
+    help="Check planar linkages: pose, statics, stress, verdict.\n\n"
+    "Exit status: 0 pass, 1 fail, 2 bad input, 3 undecided, 4 could not run.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+CaseArgument = Annotated[
+    str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".'),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
+
+
+def main() -> NoReturn:
+    """Run the command line; every way to end has its exit status and at most one sentence."""
+    try:
+        app()
+    except AlulaError as error:
+        _stop(str(error), error.exit_status)
+    except KeyboardInterrupt:
+        _stop("interrupted", INTERRUPTED)
+    except MemoryError:
+        _stop("memory ran out; use a coarser mesh (solid.mesh_size) or fewer links", CRASHED)
+    except BrokenPipeError:
+        sys.stderr.close()
+        sys.exit(CRASHED)
+    except Exception as error:
+        import os
+
+        if os.environ.get("ALULA_TRACEBACK"):
+            raise
+        _stop(
+            f"a fault of alula's own, not of the case: {type(error).__name__}: {error}; "
+            "set ALULA_TRACEBACK=1 to see where, and please report it",
+            CRASHED,
+        )
+    sys.exit(0)
+
+
+def _stop(sentence: str, status: int) -> NoReturn:
+    print(f"alula: {' '.join(sentence.split())}", file=sys.stderr)
+    sys.exit(status)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"alula {version('alula')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
+    ] = False,
+) -> None:
+    """Options of the command itself."""
+
+
+@app.command()
+def check(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for report.html, result.json, pictures and VTU files.")
+    ] = None,
+    json: JsonOption = False,
+    overrides: SetOption = None,
+    fidelity: Annotated[str, typer.Option(help="Model that decides: solid or beam.")] = "solid",
+    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
+) -> None:
+    """Check a case and end in a verdict."""
+    from fea.check import check_case
+    from loads.case_file import read_case
+
+    parsed = read_case(case, overrides or ())
+    result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, progress=_progress)
+    if output is not None:
+        from reports.folder import write_report
+
+        write_report(result, output, progress=_progress)
+    if json:
+        from reports.record import as_json
+
+        print(as_json(result))
+    else:
+        from rich.console import Console
+
+        from reports.console import print_result
+
+        print_result(result, Console())
+        if output is not None:
+            print(f"Report: {output / 'report.html'}")
+    raise SystemExit(result.verdict.exit_status)
+
+
+@app.command()
+def statics(
+    case: CaseArgument,
+    matrix: Annotated[bool, typer.Option("--matrix", help="Print [A] and [b] with named rows and columns.")] = False,
+    json: JsonOption = False,
+    overrides: SetOption = None,
+) -> None:
+    """Solve the pose and the joint reactions alone."""
+    from fea.check import solve_case_statics
+    from loads.case_file import read_case
+    from reports.statics import print_statics
+
+    parsed = read_case(case, overrides or ())
+    print_statics(solve_case_statics(parsed), matrix=matrix, json=json)
+
+
+@app.command()
+def cases() -> None:
+    """List the built-in cases."""
+    from loads.case_file import built_in_cases, read_case
+
+    width = max(map(len, built_in_cases()))
+    for name in built_in_cases():
+        print(f"{name:<{width}}  {read_case(name).title}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of the case file."""
+    import json
+
+    from loads.case import Case
+
+    print(json.dumps(Case.model_json_schema(), indent=2))
+
+
+@app.command()
+def new(
+    path: Annotated[Path, typer.Argument(help="The file to write.", show_default=False)],
+) -> None:
+    """Write a commented starter case: a four-bar linkage."""
+    from importlib.resources import files
+
+    from geometry.errors import CannotRunError, CaseError
+
+    text = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
+    try:
+        with path.open("x", encoding="utf-8") as stream:
+            stream.write(text)
+    except FileExistsError:
+        raise CaseError(f"'{path}' exists; choose another name, so that nothing is lost") from None
+    except OSError as error:
+        raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
+    print(f"Wrote {path}. Check it with: alula check {path} -o out")
+
+
+@app.command()
+def export(
+    case: CaseArgument,
+    step: Annotated[bool, typer.Option("--step", help="Write the parts as STEP files (mm).")] = False,
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")] = Path("parts"),
+    overrides: SetOption = None,
+) -> None:
+    """Write the parts of a case to CAD files."""
+    from geometry.errors import CaseError
+    from geometry.mesh import export_step
+    from loads.case_file import read_case
+
+    if not step:
+        raise CaseError("export: name a format; STEP is the one there is: add --step")
+    parsed = read_case(case, overrides or ())
+    for path in export_step({link: parsed.body(link) for link in parsed.checked_links}, output):
+        print(path)
+
+
+def _progress(message: str) -> None:
+    print(message, file=sys.stderr, flush=True)
