@@ -60,11 +60,15 @@ class SurfaceQuadrature(Quadrature):
 
 def surface_quadrature(space: DisplacementSpace, *names: str, degree: int = 8) -> SurfaceQuadrature:
     """Integration over named surfaces together; degree 8 because a pin pressure has kinks in its angle."""
+    return face_quadrature(space, space.faces(*names), degree=degree)
+
+
+def face_quadrature(space: DisplacementSpace, faces: NDArray[np.int64], *, degree: int) -> SurfaceQuadrature:
+    """Integration over boundary faces given by their nodes (k, 3) or (k, 6), seen from outside."""
     from skfem.element import ElementTriP1, ElementTriP2
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefTri
 
-    faces = space.faces(*names)
     X, W = get_quadrature(RefTri, degree)
     element = ElementTriP1() if space.order == 1 else ElementTriP2()
     basis = [element.lbasis(X, i) for i in range(faces.shape[1])]
