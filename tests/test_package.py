@@ -84,3 +84,19 @@ def test_the_installed_packages_are_those_of_the_wheel(installed, tmp_path):
     ).splitlines()
     assert [Path(file).parent.name for file in files] == list(ROOMS)
     assert all(Path(file).is_relative_to(installed) for file in files)
+
+
+def test_the_command_runs_from_another_folder(installed, tmp_path):
+    alula = installed / "bin" / "alula"
+    assert run(alula, "--version", cwd=tmp_path).startswith("alula ")
+    assert "check" in run(alula, "--help", cwd=tmp_path)
+    listed = {line.split()[0] for line in run(alula, "cases", cwd=tmp_path).splitlines()}
+    assert listed == {file.stem for file in (ROOT / "loads" / "cases").glob("*.toml")}
+    assert "owl-wing-static" in listed
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_line_imports_late(installed, tmp_path):
+    slow = {"numpy", "scipy", "skfem", "gmsh", "pyvista", "matplotlib", "pint", "pydantic", "meshio"}
+    script = f"import sys, reports.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
+    assert run(installed / "bin" / "python", "-c", script, cwd=tmp_path).split() == []
