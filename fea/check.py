@@ -1,0 +1,340 @@
+"""The whole check of a case: pose, statics, beams, solids, bands, verdict."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from geometry.mesh import MeshSettings, mass_properties, mesh_bodies
+
+from fea.band import Band
+from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
+from fea.compare import compare_sections
+from fea.cut_free import beam_loads, link_loads
+from fea.link_loads import LinkLoads
+from fea.result import CheckResult, LinkResult, LoadCaseResult, VariantPeak
+from fea.solid import SolidCase, SolidSolution, solve_solid
+from fea.stress import StressField, stress_field
+from fea.verdict import CheckOutcome, Verdict, at_least, at_most, overall
+from geometry.errors import CaseError
+from geometry.material import Material
+from geometry.pose import Pose
+from geometry.tagged_mesh import TaggedMesh
+from loads.actions import PartMass, actions, needs_masses
+from loads.applied import Load
+from loads.case import Case, SafetyFactorCheck
+from loads.case_file import read_companion
+from loads.published import StaticsAudit, audit
+from loads.statics import Reactions, solve_statics
+
+Progress = Callable[[str], None]
+FIDELITIES = ("solid", "beam")
+NEAR_DEAD_POINT = 0.01
+"""Smallest singular value of the scaled Jacobian below which the run warns."""
+PINNED_HOLDS = ("pin pressure over 180° and over 90°",)
+DRIVEN_HOLDS = (*PINNED_HOLDS, "drive torque by eye-faces and by bore-shear")
+BEAM_HOLDS = ("nothing: beam theory without stress concentration",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CaseStatics:
+    """Pose, loads and reactions of every load case of a case."""
+
+    case: Case
+    pose: Pose
+    loads: Mapping[str, tuple[Load, ...]]
+    reactions: Mapping[str, Reactions]
+    masses: Mapping[str, PartMass]
+    audit: StaticsAudit | None
+
+
+@dataclass
+class _Clock:
+    """Seconds that each stage took."""
+
+    stages: dict[str, float] = field(default_factory=dict)
+    last: float = field(default_factory=time.perf_counter)
+
+    def __call__(self, stage: str) -> None:
+        now = time.perf_counter()
+        self.stages[stage] = self.stages.get(stage, 0.0) + now - self.last
+        self.last = now
+
+
+def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
+    """Solve pose and statics of every load case; ``name`` is the path or built-in name of the case.
+
+    Raises ``CaseError`` for a pose that cannot be assembled or has no single equilibrium.
+    """
+    pose = case.solve_pose()
+    masses = {}
+    if needs_masses(case):
+        for link in case.checked_links:
+            volume = mass_properties(case.body(link))
+            masses[link] = PartMass(
+                mass=volume.volume * case.material_of(link).density, centroid=np.asarray(volume.centroid)[:2]
+            )
+    loads = {title: actions(case, load_case, pose, masses) for title, load_case in case.load_cases.items()}
+    reactions = {title: solve_statics(pose, case.pinned_drive, loads[title]) for title in loads}
+    found = None
+    if case.published_statics is not None:
+        published = case.published_statics
+        found = audit(
+            published,
+            read_companion(name, published.exact),
+            read_companion(name, published.printed),
+            pose,
+            next(iter(loads.values())),
+        )
+    return CaseStatics(case=case, pose=pose, loads=loads, reactions=reactions, masses=masses, audit=found)
+
+
+def check_case(
+    case: Case,
+    *,
+    name: str = "",
+    fidelity: str = "solid",
+    threads: int = 2,
+    progress: Progress = lambda message: None,
+) -> CheckResult:
+    """Check a case: every link under every load case, against every check.
+
+    name       path or built-in name of the case, for companion files and the report
+    fidelity   "solid" for finite elements, "beam" for hand calculations alone
+    progress   called with a sentence before every stage that may take long
+
+    Raises ``CaseError`` for a wrong case and ``CannotRunError`` where a stage fails.
+    """
+    if fidelity not in FIDELITIES:
+        raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
+    clock = _Clock()
+    statics = solve_case_statics(case, name)
+    clock("pose and statics")
+    cut = {
+        link: tuple(
+            link_loads(title, link, case.body(link), reactions, statics.loads[title])
+            for title, reactions in statics.reactions.items()
+        )
+        for link in case.checked_links
+    }
+    beams = {link: tuple(_beam(case, statics, link, loads) for loads in cut[link]) for link in cut}
+    clock("hand calculations")
+    solids: dict[str, SolidSolution | None] = dict.fromkeys(cut)
+    if fidelity == "solid":
+        loaded = {link: tuple(x for x in loads if _acts(x)) for link, loads in cut.items()}
+        loaded = {link: loads for link, loads in loaded.items() if loads}
+        progress(f"Meshing {len(loaded)} links ...")
+        settings = MeshSettings(size=case.solid.mesh_size, curved=case.solid.curved)
+        meshes = mesh_bodies({link: case.body(link) for link in loaded}, settings)
+        clock("meshing")
+        for link, loads in loaded.items():
+            progress(f"Solving {link}: {len(meshes[link].cells)} elements ...")
+            solids[link] = _solid(case, link, meshes[link], loads, threads)
+        clock("solid models")
+    load_cases = {}
+    for i, (title, reactions) in enumerate(statics.reactions.items()):
+        links = {link: _link_result(case, link, title, beams[link][i], solids[link]) for link in cut}
+        load_cases[title] = LoadCaseResult(
+            name=title, reactions=reactions, links=links, checks=_checks(case, title, links)
+        )
+    clock("stress")
+    return CheckResult(
+        name=name,
+        case=case,
+        pose=statics.pose,
+        load_cases=load_cases,
+        hand={title: _cantilever(case, title) for title in case.hand_calculations},
+        audit=statics.audit,
+        verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
+        timings=clock.stages,
+        warnings=tuple(_warnings(case, statics, solids)),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Beam:
+    check: BeamCheck
+    displacement: float
+
+
+def _beam(case: Case, statics: CaseStatics, link: str, loads: LinkLoads) -> _Beam:
+    material, body = case.material_of(link), case.body(link)
+    section = body.part.section
+    check = check_beam(beam_loads(loads, body, material.density, statics.masses.get(link)), section, material.allowable)
+    bent = deflection(
+        check.forces,
+        section,
+        young=material.youngs_modulus,
+        poisson=material.poissons_ratio,
+        line=(body.pins[0].x, body.pins[-1].x),
+    )
+    return _Beam(check=check, displacement=bent.largest)
+
+
+def _acts(loads: LinkLoads) -> bool:
+    """Return True if anything but zeros acts on the link."""
+    wrenches = [p.wrench for p in loads.pins] + [e.wrench for e in loads.ends]
+    return bool(loads.bodies or loads.lines or loads.couples or any(np.any(w != 0.0) for w in wrenches))
+
+
+def _solid(case: Case, link: str, mesh: TaggedMesh, loads: Sequence[LinkLoads], threads: int) -> SolidSolution:
+    material, pins = case.material_of(link), case.body(link).pins
+    return solve_solid(
+        mesh,
+        E=material.youngs_modulus,
+        nu=material.poissons_ratio,
+        density=material.density,
+        loads=loads,
+        line=(f"bore:{pins[0].name}", f"bore:{pins[-1].name}"),
+        threads=threads,
+    )
+
+
+def _link_result(case: Case, link: str, title: str, beam: _Beam, solid: SolidSolution | None) -> LinkResult:
+    material = case.material_of(link)
+    solved = () if solid is None else tuple(c for c in solid.cases if c.load == title)
+    if solid is None or not solved:
+        return _beam_result(link, material, beam, ran=solid is not None)
+    fields = {id(v): stress_field(solid.space, v.displacement, E=solid.E, nu=solid.nu) for v in solved}
+    peaks = {id(v): _peak(v, fields[id(v)]) for v in solved}
+    stated = case.drive.transfer if case.drive else None
+    own = [v for v in solved if v.transfer in (None, stated)]
+    governing = max(own, key=lambda v: _decisive(material, peaks[id(v)]))
+    holds = PINNED_HOLDS if governing.transfer is None else DRIVEN_HOLDS
+    stress = fields[id(governing)]
+
+    def band(quantity: str) -> Band:
+        value = max(getattr(peaks[id(v)], quantity) for v in own)
+        return Band.around(value, tuple(getattr(p, quantity) for p in peaks.values()), *holds)
+
+    decisive = band("principal" if material.brittle else "von_mises")
+    comparisons = compare_sections(case.body(link), beam.check, stress)
+    return LinkResult(
+        link=link,
+        fidelity="solid",
+        von_mises_max=band("von_mises"),
+        principal_max=band("principal"),
+        safety_factor=decisive.inverse(material.allowable),
+        displacement_max=band("displacement"),
+        location=stress.peak.location,
+        elements=len(solid.space.cells),
+        unknowns=solid.space.unknowns,
+        beam=beam.check,
+        solid=solid,
+        variants=tuple(peaks.values()),
+        governing=peaks[id(governing)],
+        solid_case=governing,
+        stress=stress,
+        comparisons=comparisons,
+        notes=solid.notes,
+    )
+
+
+def _decisive(material: Material, peak: VariantPeak) -> float:
+    return peak.principal if material.brittle else peak.von_mises
+
+
+def _peak(variant: SolidCase, stress: StressField) -> VariantPeak:
+    return VariantPeak(
+        span=variant.span,
+        transfer=variant.transfer,
+        von_mises=stress.peak.value,
+        principal=float(stress.principal[:, 0].max()),
+        displacement=variant.displacement_max,
+    )
+
+
+def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> LinkResult:
+    worst = beam.check.worst
+    stress = Band.exact(worst.equivalent, *BEAM_HOLDS)
+    principal = Band.exact(max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0), *BEAM_HOLDS)
+    return LinkResult(
+        link=link,
+        fidelity="beam",
+        von_mises_max=stress,
+        principal_max=principal,
+        safety_factor=(principal if material.brittle else stress).inverse(material.allowable),
+        displacement_max=Band.exact(beam.displacement, *BEAM_HOLDS),
+        location=np.array([beam.check.worst_x, 0.0, 0.0]),
+        elements=None,
+        unknowns=None,
+        beam=beam.check,
+        solid=None,
+        variants=(),
+        governing=None,
+        solid_case=None,
+        stress=None,
+        comparisons=(),
+        notes=(
+            "nothing acts on this link in this load case"
+            if ran or beam.check.worst.equivalent == 0.0
+            else "beam theory alone: stress concentration at eyes and holes is not in these numbers",
+        ),
+    )
+
+
+def _checks(case: Case, title: str, links: Mapping[str, LinkResult]) -> tuple[CheckOutcome, ...]:
+    checks = case.checks or {"safety factor": SafetyFactorCheck(type="safety-factor")}
+    outcomes = []
+    for name, check in checks.items():
+        for link in check.links or case.checked_links:
+            result = links[link]
+            if isinstance(check, SafetyFactorCheck):
+                limit = check.minimum or case.material_of(link).minimum_safety_factor
+                if limit is None:
+                    raise CaseError(f"checks.{name}.minimum: the material of '{link}' has no default; state the limit")
+                value, verdict = result.safety_factor, at_least(result.safety_factor, limit)
+                quantity, unit = "safety factor", ""
+            else:
+                limit = check.maximum
+                value, verdict = result.displacement_max, at_most(result.displacement_max, limit)
+                quantity, unit = "displacement", "mm"
+            if result.fidelity == "beam" and verdict is Verdict.PASS and result.beam.worst.equivalent > 0.0:
+                verdict = Verdict.UNDECIDED
+                reason = "beam theory leaves stress concentration out, so it cannot pass a link; run the solid model"
+            else:
+                reason = _reason(value, limit, verdict)
+            outcomes.append(
+                CheckOutcome(
+                    name=name,
+                    link=link,
+                    load_case=title,
+                    quantity=quantity,
+                    unit=unit,
+                    value=value,
+                    limit=limit,
+                    verdict=verdict,
+                    reason=reason,
+                )
+            )
+    return tuple(outcomes)
+
+
+def _reason(value: Band, limit: float, verdict: Verdict) -> str:
+    band = f"its band {value.low:.3g} to {value.high:.3g}"
+    if verdict is Verdict.UNDECIDED:
+        return f"{band} straddles the limit {limit:g}"
+    side = "on the safe side" if verdict is Verdict.PASS else "on the wrong side"
+    return f"{band} lies wholly {side} of the limit {limit:g}"
+
+
+def _cantilever(case: Case, title: str) -> CantileverCheck:
+    hand = case.hand_calculations[title]
+    part = case.parts[hand.part]
+    strength = case.all_materials[part.material].allowable
+    return uniform_cantilever(hand.load, hand.length, part.section, strength)
+
+
+def _warnings(case: Case, statics: CaseStatics, solids: Mapping[str, SolidSolution | None]) -> list[str]:
+    found = []
+    held = {"the pose coordinate": case.pose.coordinate, "the driven link": case.drive.link if case.drive else None}
+    for what, link in held.items():
+        if link is None:
+            continue
+        distance = statics.pose.dead_point_distance(link)
+        if distance < NEAR_DEAD_POINT:
+            found.append(
+                f"the pose is close to a dead point of {what} {link} (smallest singular value {distance:.2g}): "
+                "small errors of length and angle change the joint forces much"
+            )
+    return found

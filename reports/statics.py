@@ -1,0 +1,100 @@
+"""What ``alula statics`` prints: pose, reactions, and the equations themselves."""
+
+import json as jsonlib
+import math
+
+import numpy as np
+
+from fea.check import CaseStatics
+from loads.statics import Reactions, System
+
+
+def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
+    """Print pose and reactions of every load case; with ``matrix`` also [A] and [b]."""
+    if json:
+        print(jsonlib.dumps(_record(statics, matrix=matrix), indent=2))
+        return
+    pose = statics.pose
+    print(f"Mobility (Gruebler): {pose.linkage.mobility}")
+    print(f"Closure residual: {pose.residual:.1e} of the longest link")
+    for link in pose.linkage.moving:
+        print(f"  {link:<12} at {math.degrees(pose.angles[link]) % 360.0:9.4f} deg")
+    for name, (x, y) in pose.points.items():
+        print(f"  {name:<12} at ({x:10.4f}, {y:10.4f}) mm")
+    for title, reactions in statics.reactions.items():
+        print(f"\nLoad case {title}")
+        for joint in reactions.joints.values():
+            fx, fy = joint.force[:2]
+            print(
+                f"  {joint.joint:<4} {joint.by} pushes {joint.on} with ({fx:10.4f}, {fy:10.4f}) N,"
+                f" {joint.magnitude:.4f} N"
+            )
+        if reactions.drive:
+            print(f"  drive torque on {reactions.drive.link}: {reactions.drive_torque:.2f} N·mm (counter-clockwise +)")
+        system = reactions.system
+        print(f"  system {len(system.rows)}×{len(system.columns)}, condition number {system.condition:.4g} (scaled),")
+        print(f"  residual {reactions.residual:.1e} of the load")
+        if matrix:
+            _print_matrix(reactions)
+
+
+def _print_matrix(reactions: Reactions) -> None:
+    """Print [A] and [b]; every unknown is what a joint's first link does to its second."""
+    system = reactions.system
+    labels = [f"{link} {kind}" for link, kind in system.rows]
+    left = max(map(len, labels))
+    widths = [max(9, len(name) + 1) for name in system.columns]
+    print("\n  [A][R] = [b]; force rows in N, moment rows (about the first point of the link) in N·mm")
+    print(" " * (left + 2) + "".join(f"{n:>{w}}" for n, w in zip(system.columns, widths, strict=True)) + f"{'b':>12}")
+    for label, row, b in zip(labels, system.matrix, system.rhs, strict=True):
+        cells = "".join(f"{_cell(x):>{w}}" for x, w in zip(row, widths, strict=True))
+        print(f"  {label:<{left}}{cells}{b:>12.5g}")
+    solution = "".join(f"{x:>{w}.4g}" for x, w in zip(reactions.unknowns, widths, strict=True))
+    print(f"  {'[R]':<{left}}{solution}")
+
+
+def _cell(value: float) -> str:
+    if value == 0.0:
+        return "."
+    return f"{value:.0f}" if abs(value) == 1.0 else f"{value:.3f}"
+
+
+def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
+    pose = statics.pose
+    return {
+        "units": {"length": "mm", "force": "N", "moment": "N*mm", "angle": "deg"},
+        "pose": {
+            "mobility": pose.linkage.mobility,
+            "closure_residual": pose.residual,
+            "angles": {link: math.degrees(angle) % 360.0 for link, angle in pose.angles.items()},
+            "points": {name: point.tolist() for name, point in pose.points.items()},
+        },
+        "load_cases": {
+            title: {
+                "reactions": [
+                    {
+                        "joint": joint.joint,
+                        "on": joint.on,
+                        "by": joint.by,
+                        "force": joint.force[:2].tolist(),
+                        "magnitude": joint.magnitude,
+                    }
+                    for joint in reactions.joints.values()
+                ],
+                "drive_torque": reactions.drive_torque,
+                "residual": reactions.residual,
+                "condition": reactions.system.condition,
+                **({"system": _system(reactions.system)} if matrix else {}),
+            }
+            for title, reactions in statics.reactions.items()
+        },
+    }
+
+
+def _system(system: System) -> dict[str, object]:
+    return {
+        "rows": [f"{link} {kind}" for link, kind in system.rows],
+        "columns": list(system.columns),
+        "matrix": np.asarray(system.matrix).tolist(),
+        "rhs": np.asarray(system.rhs).tolist(),
+    }
