@@ -1,0 +1,84 @@
+"""`make demo` tells a verdict from a crash, and set-up without root ends in one command to run."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def make(*arguments: str, path: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run make in the checkout, with programs in `path` before those of the system."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
+    if path:
+        environment["PATH"] = f"{path}{os.pathsep}{environment['PATH']}"
+    command = ["make", "--no-print-directory", *arguments]
+    return subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60)
+
+
+def program(folder: Path, name: str, *lines: str) -> Path:
+    """Write a shell script that stands in for a real program."""
+    file = folder / name
+    file.write_text("\n".join(["#!/bin/sh", *lines, ""]), encoding="utf-8")
+    file.chmod(0o755)
+    return file
+
+
+@pytest.mark.parametrize(
+    ("status", "succeeds"), [(0, True), (1, True), (3, True), (2, False), (4, False), (139, False)]
+)
+def test_the_demo_succeeds_whenever_the_check_ran(tmp_path, status, succeeds):
+    program(tmp_path, "alula", f'echo "$@" > {tmp_path}/arguments', f"exit {status}")
+    installed = tmp_path / "installed"
+    installed.touch()
+    result = make("demo", f"BIN={tmp_path}", f"INSTALLED={installed}", f"DEMO={tmp_path}/demo", "PYTHON=true")
+    assert (result.returncode == 0) == succeeds, result.stderr
+    assert ("report.html" in result.stdout) == succeeds
+    assert (tmp_path / "arguments").read_text() == f"check owl-wing-static -o {tmp_path}/demo\n"
+
+
+@pytest.fixture
+def python(tmp_path) -> Path:
+    """Stand in for a Python on a system that lacks libGLU."""
+    return program(
+        tmp_path,
+        "fake-python",
+        'case "$*" in',
+        '  *--advice*) echo "apt-get install libglu1-mesa" ;;',
+        '  *system_libraries*) echo "libglu1-mesa" ;;',
+        "esac",
+    )
+
+
+def test_without_root_one_command_is_printed(tmp_path, python):
+    program(tmp_path, "id", "echo 1000")
+    program(tmp_path, "apt-get", f"touch {tmp_path}/touched")
+    result = make("libraries", f"PYTHON={python}", path=tmp_path)
+    assert result.returncode != 0
+    assert "apt-get install libglu1-mesa\n" in result.stderr
+    assert not (tmp_path / "touched").exists()
+
+
+def test_root_installs_what_is_missing(tmp_path, python):
+    program(tmp_path, "id", "echo 0")
+    program(tmp_path, "apt-get", f'echo "$@" >> {tmp_path}/commands')
+    result = make("libraries", f"PYTHON={python}", path=tmp_path)
+    assert result.returncode == 0, result.stderr
+    update, install = (tmp_path / "commands").read_text().splitlines()
+    assert update.startswith("update")
+    assert install.endswith(" libglu1-mesa")
+
+
+def test_a_failed_installation_stops_the_set_up(tmp_path, python):
+    program(tmp_path, "id", "echo 0")
+    program(tmp_path, "apt-get", "exit 100")
+    assert make("libraries", f"PYTHON={python}", path=tmp_path).returncode != 0
+
+
+def test_a_python_of_another_version_is_refused(tmp_path):
+    old = program(tmp_path, "old-python", "exit 1")
+    result = make("libraries", f"PYTHON={old}")
+    assert result.returncode != 0
+    assert "alula needs Python 3.11 to 3.13" in result.stderr
