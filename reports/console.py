@@ -1,0 +1,131 @@
+"""The result on the terminal: verdict first, then links, checks, hand calculations, warnings."""
+
+from typing import TYPE_CHECKING
+
+from fea.result import CheckResult, LoadCaseResult
+from fea.verdict import Verdict
+from reports.wording import AGREEMENT, band, headline, joined, number, percent, plain, turning
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+COLOURS = {Verdict.PASS: "green", Verdict.FAIL: "red", Verdict.UNDECIDED: "yellow"}
+
+
+def print_result(result: CheckResult, console: "Console") -> None:
+    """Print a compact account of a check, readable at 80 columns."""
+    from rich.text import Text
+
+    colour = COLOURS[result.verdict]
+    console.print(
+        Text.assemble((f" {result.verdict.value.upper()} ", f"bold reverse {colour}"), f" {result.case.title}")
+    )
+    console.print(Text(headline(result)))
+    several = len(result.load_cases) > 1
+    for case in result.load_cases.values():
+        console.print()
+        if several:
+            console.print(Text(f"Load case {case.name}", style="bold"))
+        console.print(Text(_statics(case)))
+        console.print(_links(case))
+        if case.checks:
+            console.print(_checks(case))
+        for line in _hand(case):
+            console.print(Text(line))
+    for name, hand in result.hand.items():
+        console.print(
+            Text(
+                f"Hand calculation {name}: cantilever, M {number(hand.moment)} N·mm, "
+                f"bending stress {number(hand.stress)} MPa, n {number(hand.safety_factor)}."
+            )
+        )
+    if result.audit is not None:
+        wrong = [str(row.number) for row in result.audit.rows if not row.valid]
+        found = (
+            f"equations {joined(wrong)} are no equilibrium equations" if wrong else "every equation is an equilibrium"
+        )
+        console.print(Text(f"Published statics ({result.audit.source}): {found} of this linkage; see report.html."))
+    for warning in result.warnings:
+        console.print(Text(f"Warning: {warning}", style="yellow"))
+
+
+def _statics(case: LoadCaseResult) -> str:
+    forces = "  ".join(f"{name} {number(joint.magnitude)}" for name, joint in case.reactions.joints.items())
+    torque = case.reactions.drive_torque
+    drive = case.reactions.drive
+    driven = "" if drive is None else f"\nDrive torque on {drive.link}: {number(torque)} N·mm ({turning(torque)})"
+    return f"Joint forces [N]: {forces}{driven}"
+
+
+def _table(*columns: tuple[str, bool]) -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    for title, right in columns:
+        table.add_column(title, justify="right" if right else "left", vertical="bottom")
+    return table
+
+
+def _links(case: LoadCaseResult) -> "Table":
+    table = _table(
+        ("link", False),
+        ("model", False),
+        ("von Mises\n[MPa]", True),
+        ("safety factor n\n(band)", True),
+        ("displacement\n[mm]", True),
+        ("worst at x\n[mm]", True),
+    )
+    for name, link in case.links.items():
+        table.add_row(
+            name,
+            link.fidelity,
+            number(link.von_mises_max.value, 3),
+            band(link.safety_factor),
+            number(link.displacement_max.value, 3),
+            f"{link.location[0]:.1f}".replace("-", "−"),
+        )
+    return table
+
+
+def _checks(case: LoadCaseResult) -> "Table":
+    from rich.text import Text
+
+    table = _table(("check", False), ("link", False), ("value (band)", True), ("limit", True), ("verdict", False))
+    for check in case.checks:
+        unit = f" {check.unit}" if check.unit else ""
+        sign = "≥" if check.quantity == "safety factor" else "≤"
+        table.add_row(
+            check.name,
+            check.link,
+            band(check.value) + unit,
+            f"{sign} {plain(check.limit)}{unit}",
+            Text(check.verdict.value, style=COLOURS[check.verdict]),
+        )
+    return table
+
+
+def _hand(case: LoadCaseResult) -> list[str]:
+    """Where hand calculation and solid model agree, and by how much they differ where they do not."""
+    compared = {name: link.comparisons for name, link in case.links.items() if link.comparisons}
+    if not compared:
+        return []
+    worst = {name: max(found, key=lambda c: abs(c.difference)) for name, found in compared.items()}
+    apart = {name: c for name, c in worst.items() if abs(c.difference) > AGREEMENT}
+    sections = sum(len(found) for found in compared.values())
+    most = max(abs(c.difference) for c in worst.values())
+    lines = [
+        f"Hand calculation against solid model at {sections} sections: "
+        + (
+            f"they agree within {100.0 * most:.1f} %."
+            if not apart
+            else f"more than {100.0 * AGREEMENT:.0f} % apart on {joined(list(apart))}."
+        )
+    ]
+    for name, c in apart.items():
+        lines.append(
+            f"  {name}, {c.kind} stress at x = {c.x:.1f} mm: hand {number(c.hand)} MPa, "
+            f"solid {number(c.solid)} MPa ({percent(c.difference)})"
+        )
+    return lines

@@ -1,0 +1,106 @@
+"""Numbers, bands and verdicts in words, for console and page alike."""
+
+import math
+
+from fea.band import Band
+from fea.result import CheckResult
+from fea.verdict import CheckOutcome, Verdict
+
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+NARROW_BAND = 5e-3
+"""Width relative to the value below which a band is not spelled out in tables."""
+AGREEMENT = 0.03
+"""Largest difference between hand calculation and solid model that needs no explanation."""
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Return a number with so many significant digits; a power of ten outside 1e-4 to 1e5."""
+    if math.isnan(value):
+        return "not known"
+    if math.isinf(value):
+        return "∞" if value > 0.0 else "−∞"
+    if value == 0.0:
+        return "0"
+    if 1e-4 <= abs(value) < 1e5:
+        exponent = math.floor(math.log10(float(f"{abs(value):.{digits - 1}e}")))
+        text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
+    else:
+        mantissa, _, exponent_text = f"{value:.{digits - 1}e}".partition("e")
+        text = f"{mantissa}·10{str(int(exponent_text)).translate(_SUPERSCRIPT)}"
+    return text.replace("-", "−")
+
+
+def plain(value: float) -> str:
+    """Return a stated number (a limit, a size) without padding zeros."""
+    return f"{value:g}".replace("-", "−")
+
+
+def band(value: Band, digits: int = 3) -> str:
+    """Return ``3.21 (2.44 to 3.21)``, or the value alone where the band has no visible width."""
+    shown = number(value.value, digits)
+    low, high = number(value.low, digits), number(value.high, digits)
+    return shown if low == high else f"{shown} ({low} to {high})"
+
+
+def percent(ratio: float) -> str:
+    """Return a ratio as a signed percentage."""
+    return f"{100.0 * ratio:+.1f} %".replace("-", "−")
+
+
+def joined(words: tuple[str, ...] | list[str]) -> str:
+    """Return ``a, b and c``."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
+
+
+def turning(torque: float) -> str:
+    """Return the sense of a torque about z."""
+    return "none" if torque == 0.0 else "clockwise" if torque < 0.0 else "counter-clockwise"
+
+
+def checks_of(result: CheckResult) -> tuple[CheckOutcome, ...]:
+    """All checks of all load cases."""
+    return tuple(check for load_case in result.load_cases.values() for check in load_case.checks)
+
+
+def tightness(check: CheckOutcome) -> float:
+    """How far the unfavourable end of a check's band is inside its limit, as a share of the limit."""
+    margin = check.value.low - check.limit if check.quantity == "safety factor" else check.limit - check.value.high
+    return margin / check.limit
+
+
+def tightest(result: CheckResult) -> CheckOutcome | None:
+    """The check nearest to its limit, or furthest beyond it; None where nothing is checked."""
+    return min(checks_of(result), key=tightness, default=None)
+
+
+def headline(result: CheckResult) -> str:
+    """Return the verdict and what it means in one or two plain sentences."""
+    checks = checks_of(result)
+    worst = tightest(result)
+    if worst is None:
+        return "Undecided: the case asks for no check, so nothing was decided."
+    total = "The one check" if len(checks) == 1 else f"All {len(checks)} checks"
+    if result.verdict is Verdict.PASS:
+        kept = "is" if len(checks) == 1 else "are"
+        return f"Pass: {total[0].lower()}{total[1:]} {kept} met over the whole of every error band. {_nearest(worst)}"
+    broken = [c for c in checks if c.verdict is result.verdict]
+    names = joined(list(dict.fromkeys(f"{c.quantity} of {c.link}" for c in broken)))
+    if result.verdict is Verdict.FAIL:
+        missed = (
+            "is missed over its whole error band" if len(broken) == 1 else "are missed over their whole error bands"
+        )
+        return f"Fail: {len(broken)} of {len(checks)} checks {missed}: {names}. {_nearest(worst)}"
+    verb = "is" if len(broken) == 1 else "are"
+    return (
+        f"Undecided: {len(broken)} of {len(checks)} checks {verb} left open: {names}. "
+        f"{broken[0].quantity.capitalize()} of {broken[0].link}: {broken[0].reason}."
+    )
+
+
+def _nearest(check: CheckOutcome) -> str:
+    unit = f" {check.unit}" if check.unit else ""
+    asked = "at least" if check.quantity == "safety factor" else "at most"
+    return (
+        f"Nearest to its limit: the {check.quantity} of link {check.link} is {band(check.value)}{unit}, "
+        f"where {asked} {plain(check.limit)}{unit} is asked for."
+    )
