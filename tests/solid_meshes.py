@@ -116,7 +116,7 @@ def ring(inner, outer, height, *, around=8, radial=3, layers=2, curved=True, gra
             "bottom:A": (np.abs(z + height / 2.0) < 1e-9).all(axis=1),
         }
 
-    return _tagged(points, cells, curved, [(0.0, 0.0, r) for r in radii], pick)
+    return _tagged(points, cells, curved, [(0.0, 0.0, r) for r in (inner, outer)], pick)
 
 
 def bar(

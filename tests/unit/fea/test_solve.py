@@ -1,0 +1,93 @@
+import importlib.util
+
+import numpy as np
+import pytest
+import solid_meshes
+
+from fea import solve
+from fea.elasticity import assemble_stiffness
+from fea.solve import PardisoFactor, available_methods, factorise
+from fea.space import displacement_space
+from fea.supports import isostatic_supports
+from geometry.errors import CannotRunError
+
+METHODS = available_methods()
+
+
+@pytest.fixture(scope="module")
+def system():
+    space = displacement_space(solid_meshes.ring(3.0, 5.0, 2.0, around=12))
+    K = assemble_stiffness(space, E=2900.0, nu=0.38)
+    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    rhs = np.random.default_rng(5).normal(size=(K.size, 3))
+    rhs[fixed] = 0.0
+    return K, K.with_fixed(fixed), rhs, fixed
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_solution_satisfies_the_system(system, method):
+    _, K, rhs, fixed = system
+    factor = factorise(K, method=method, threads=1)
+    x = factor.solve(rhs)
+    assert np.abs(K.full() @ x - rhs).max() < 1e-8 * np.abs(rhs).max()
+    np.testing.assert_array_equal(x[fixed], 0.0)
+    np.testing.assert_allclose(factor.solve(rhs[:, 1]), x[:, 1], atol=1e-9 * np.abs(x).max())
+
+
+@pytest.mark.skipif(len(METHODS) < 2, reason="pypardiso is not installed")
+def test_solvers_agree(system):
+    _, K, rhs, _ = system
+    one, other = (factorise(K, method=m, threads=1).solve(rhs) for m in METHODS)
+    np.testing.assert_allclose(one, other, atol=1e-8 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_unsupported_body_is_refused(system, method):
+    free, _, _, _ = system
+    load = np.zeros(free.size)
+    load[0] = 1.0  # does not balance, so no displacement fits it
+    with pytest.raises(CannotRunError, match=r"not positive definite|residual|could not factorise"):
+        factorise(free, method=method, threads=1).solve(load)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_wrong_solution_is_noticed(system, method, monkeypatch):
+    _, K, rhs, _ = system
+    factor = factorise(K, method=method, threads=1)
+    monkeypatch.setattr(solve, "RESIDUAL_LIMIT", 1e-30)
+    with pytest.raises(CannotRunError, match=r"residual"):
+        factor.solve(rhs)
+
+
+def test_fallback_without_pypardiso(system, monkeypatch):
+    _, K, rhs, _ = system
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert available_methods() == ("superlu",)
+    factor = factorise(K)
+    assert factor.name == "SuperLU"
+    factor.solve(rhs)
+
+
+@pytest.mark.skipif("pardiso" not in METHODS, reason="pypardiso is not installed")
+def test_pardiso_gives_its_memory_back(system):
+    _, K, _, _ = system
+    factor = PardisoFactor(K, threads=1)
+    handle = factor._handle
+    assert handle.any()
+    finalizer = factor._finalizer
+    del factor
+    assert not finalizer.alive
+    assert not handle.any()
+
+
+def test_fixing_keeps_the_matrix_symmetric_and_the_original_unchanged(system):
+    free, fixed_matrix, _, fixed = system
+    full = fixed_matrix.full()
+    assert abs(full - full.T).max() == 0.0
+    diagonal = full.diagonal()
+    for unknown in fixed:
+        row = full[[unknown], :].toarray().ravel()
+        assert np.count_nonzero(row) == 1
+        assert diagonal[unknown] == free.full().diagonal()[unknown] > 0.0
+    free_rows = np.setdiff1d(np.arange(free.size), fixed)
+    assert abs((full - free.full())[free_rows][:, free_rows]).max() == 0.0
