@@ -153,7 +153,7 @@ def bar(
     parts = [
         (eye, triangles),
         block(half_width, length - half_width, along),
-        (eye + (length, 0.0), triangles),
+        (eye + np.array([length, 0.0]), triangles),
     ]
     if tail > 0.0:
         parts.append(block(length + half_width, length + half_width + tail, max(1, round(along * tail / length))))
