@@ -1,0 +1,149 @@
+"""Volumes, areas and validity of straight and curved simplices, from their node coordinates alone.
+
+Nodes stand in VTK's order: corners, then the mid-nodes of the edges 01, 12, 02 of a triangle and
+01, 12, 02, 03, 13, 23 of a tetrahedron.
+"""
+
+import itertools
+import math
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+TETRA_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
+TRIANGLE_EDGES = np.array([[0, 1], [1, 2], [0, 2]])
+
+_Array = NDArray[np.float64]
+_Ints = NDArray[np.int64]
+
+
+def _gradients(edges: _Ints, at: _Array) -> _Array:
+    """Return gradients of the quadratic simplex functions at points (q, d) as (q, nodes, d)."""
+    d = at.shape[1]
+    bary = np.hstack([1.0 - at.sum(axis=1, keepdims=True), at])
+    slope = np.vstack([-np.ones(d), np.eye(d)])
+    corners = (4.0 * bary[:, :, None] - 1.0) * slope[None, :, :]
+    i, j = edges.T
+    mids = 4.0 * (bary[:, i, None] * slope[j] + bary[:, j, None] * slope[i])
+    return np.concatenate([corners, mids], axis=1)
+
+
+@cache
+def _cubic_lattice() -> tuple[_Array, _Array]:
+    """Return 20 lattice points (20, 3) and the matrix from values there to cubic Bernstein coefficients."""
+    powers = np.array([p for p in itertools.product(range(4), repeat=4) if sum(p) == 3])
+    bary = powers / 3.0
+    weight = [6.0 / math.prod(math.factorial(int(k)) for k in p) for p in powers]
+    values = np.stack([w * np.prod(bary**p, axis=1) for p, w in zip(powers, weight, strict=True)], axis=1)
+    return bary[:, 1:], np.linalg.inv(values)
+
+
+def jacobian_coefficients(points: _Array, cells: _Ints) -> _Array:
+    """Return the Bernstein coefficients of each element's Jacobian determinant, (m, 1) or (m, 20).
+
+    Their least and greatest value bound the determinant everywhere in the element; their mean is
+    six times its volume (Johnen, Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359-372, section 3).
+    """
+    x = points[cells]
+    if cells.shape[1] == 4:
+        return np.asarray(np.linalg.det(x[:, 1:] - x[:, :1]))[:, None]
+    lattice, to_bernstein = _cubic_lattice()
+    gradients = _gradients(TETRA_EDGES, lattice)
+    determinants = np.empty((len(cells), len(lattice)))
+    for q, gradient in enumerate(gradients):
+        determinants[:, q] = np.linalg.det(np.einsum("enx,nd->exd", x, gradient))
+    return determinants @ to_bernstein.T
+
+
+def scaled_jacobians(points: _Array, cells: _Ints) -> _Array:
+    """Return each element's least over greatest Jacobian determinant, (m,): 1 straight, not positive if invalid.
+
+    A guaranteed lower bound while positive, since it is taken from Bernstein coefficients.
+    """
+    coefficients = jacobian_coefficients(points, cells)
+    greatest = np.abs(coefficients).max(axis=1)
+    return np.asarray(coefficients.min(axis=1) / np.where(greatest > 0.0, greatest, 1.0))
+
+
+def shape_quality(points: _Array, cells: _Ints) -> _Array:
+    """Return 12 (3V)^(2/3) / Σl² of each element's corners, (m,): 1 for the regular tetrahedron, 0 for a flat one.
+
+    Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218 (inverse mean ratio of a tetrahedron).
+    """
+    x = points[cells[:, :4]]
+    volume = np.linalg.det(x[:, 1:] - x[:, :1]) / 6.0
+    i, j = TETRA_EDGES.T
+    squares = ((x[:, i] - x[:, j]) ** 2).sum(axis=(1, 2))
+    return np.asarray(12.0 * np.cbrt(3.0 * volume) ** 2 * np.sign(volume) / squares)
+
+
+def volumes_and_moments(points: _Array, cells: _Ints) -> tuple[_Array, _Array]:
+    """Return each element's volume (m,) and its first moment ∫x dV (m, 3), exactly for curved ones too."""
+    coefficients = jacobian_coefficients(points, cells)
+    volume = coefficients.mean(axis=1) / 6.0
+    if cells.shape[1] == 4:
+        return volume, volume[:, None] * points[cells].mean(axis=1)
+    at, weights = _tetra_rule()
+    bary = np.hstack([1.0 - at.sum(axis=1, keepdims=True), at])
+    i, j = TETRA_EDGES.T
+    shapes = np.hstack([bary * (2.0 * bary - 1.0), 4.0 * bary[:, i] * bary[:, j]])
+    x = points[cells]
+    moment = np.zeros((len(cells), 3))
+    for shape, gradient, weight in zip(shapes, _gradients(TETRA_EDGES, at), weights, strict=True):
+        determinant = np.linalg.det(np.einsum("enx,nd->exd", x, gradient))
+        moment += weight * determinant[:, None] * np.einsum("enx,n->ex", x, shape)
+    return volume, moment
+
+
+def triangle_areas(points: _Array, triangles: _Ints) -> _Array:
+    """Return the area of each triangle of 3 or 6 nodes, (k,); curved ones to a relative 1e-6 of mild curvature."""
+    x = points[triangles]
+    if triangles.shape[1] == 3:
+        return np.asarray(np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1) / 2.0)
+    at, weights = _triangle_rule()
+    area = np.zeros(len(triangles))
+    for gradient, weight in zip(_gradients(TRIANGLE_EDGES, at), weights, strict=True):
+        tangents = np.einsum("enx,nd->edx", x, gradient)
+        area += weight * np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
+    return area
+
+
+@cache
+def _line_rule() -> tuple[_Array, _Array]:
+    at, weights = np.polynomial.legendre.leggauss(5)
+    return (at + 1.0) / 2.0, weights / 2.0
+
+
+@cache
+def _triangle_rule() -> tuple[_Array, _Array]:
+    """Return the Gauss rule of the square, collapsed onto the triangle: exact to degree 8."""
+    s, w = _line_rule()
+    u, v = (a.ravel() for a in np.meshgrid(s, s, indexing="ij"))
+    return np.stack([u, v * (1.0 - u)], axis=1), np.outer(w, w).ravel() * (1.0 - u)
+
+
+@cache
+def _tetra_rule() -> tuple[_Array, _Array]:
+    """Return the Gauss rule of the cube, collapsed onto the tetrahedron: exact to degree 7."""
+    s, w = _line_rule()
+    u, v, t = (a.ravel() for a in np.meshgrid(s, s, s, indexing="ij"))
+    weights = np.einsum("i,j,k->ijk", w, w, w).ravel() * (1.0 - u) ** 2 * (1.0 - v)
+    return np.stack([u, v * (1.0 - u), t * (1.0 - u) * (1.0 - v)], axis=1), weights
+
+
+def straighten(points: _Array, cells: _Ints, least: float) -> tuple[_Array, int]:
+    """Return points with the edges of elements below ``least`` scaled Jacobian made straight, and their number.
+
+    Moving a mid-node bends the neighbours back too, so this repeats until every element is valid; it
+    ends, since a mesh with all edges straight has scaled Jacobians of one.
+    """
+    points = points.copy()
+    done: set[int] = set()
+    while True:
+        bad = set(np.flatnonzero(scaled_jacobians(points, cells) < least).tolist()) - done
+        if not bad:
+            return points, len(done)
+        done |= bad
+        chosen = cells[sorted(bad)]
+        points[chosen[:, 4:]] = points[chosen[:, :4]][:, TETRA_EDGES].mean(axis=2)

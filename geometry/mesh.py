@@ -1,0 +1,163 @@
+"""From bodies to meshes, mass properties and STEP files, each in a child process with a time limit.
+
+The geometry kernel and the mesher can crash or loop for ever, which no exception reports; a child
+process that does so becomes a ``CannotRunError``.
+"""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.body_rules import check_body
+from geometry.errors import AlulaError, CannotRunError, CaseError
+from geometry.mesh_settings import COARSE, MeshSettings
+from geometry.part import Body
+from geometry.tagged_mesh import TaggedMesh
+
+__all__ = ["COARSE", "MassProperties", "MeshSettings", "export_step", "mass_properties", "mesh_bodies", "mesh_body"]
+
+KERNEL_TIME_LIMIT = 120.0
+"""Seconds for tasks of the geometry kernel that mesh nothing."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MassProperties:
+    """Volume integrals of a body in its link's frame.
+
+    volume     mm³
+    centroid   (3,) mm
+    inertia    (3, 3) mm⁵: the inertia tensor about the centroid for unit density, products of inertia
+               with their minus sign (off-diagonal entries -∫xy dV)
+    """
+
+    volume: float
+    centroid: NDArray[np.float64]
+    inertia: NDArray[np.float64]
+
+
+def mesh_body(body: Body, settings: MeshSettings | None = None) -> TaggedMesh:
+    """Mesh a body into tetrahedra with named surfaces (node order as ``TaggedMesh`` says; cells not sorted).
+
+    Raises ``CaseError`` if the body cannot be built as described, ``CannotRunError`` if the kernel or
+    the mesher fails, crashes or exceeds a limit.
+    """
+    settings = settings or MeshSettings()
+    check_body(body)
+    mesh = _run("mesh", body, settings, time_limit=settings.time_limit)
+    assert isinstance(mesh, TaggedMesh)
+    return mesh
+
+
+def mesh_bodies(
+    bodies: Mapping[str, Body], settings: MeshSettings | None = None, *, processes: int | None = None
+) -> dict[str, TaggedMesh]:
+    """Mesh several bodies by name, at most ``processes`` at once (one per core unless told).
+
+    Raises as ``mesh_body`` does, with the body's name before the sentence.
+    """
+
+    def one(item: tuple[str, Body]) -> TaggedMesh:
+        return _naming(item[0], mesh_body, item[1], settings)
+
+    with ThreadPoolExecutor(max_workers=processes or os.cpu_count() or 1) as pool:
+        return dict(zip(bodies, pool.map(one, bodies.items()), strict=True))
+
+
+def mass_properties(body: Body) -> MassProperties:
+    """Return the body's volume, centroid and inertia by the geometry kernel.
+
+    Raises ``CaseError`` and ``CannotRunError`` as ``mesh_body`` does.
+    """
+    check_body(body)
+    volume, centroid, inertia = _run("mass", body, time_limit=KERNEL_TIME_LIMIT)
+    return MassProperties(volume=volume, centroid=centroid, inertia=inertia)
+
+
+def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:
+    """Write each body as ``<name>.step`` (in mm) into an existing folder and return the paths.
+
+    A file appears whole or not at all. Raises as ``mesh_body`` does, with the body's name before the
+    sentence; ``CannotRunError`` too if the folder cannot be written.
+    """
+    paths: list[Path] = []
+    for name, body in bodies.items():
+        path = folder / f"{name}.step"
+        try:
+            with tempfile.TemporaryDirectory(dir=folder, prefix=".step-") as scratch:
+                draft = Path(scratch) / "part.step"
+                _naming(name, _step, body, draft)
+                draft.replace(path)
+        except OSError as error:
+            raise CannotRunError(
+                f"cannot write '{path}': {error.strerror}; choose a folder that can be written"
+            ) from None
+        paths.append(path)
+    return paths
+
+
+def _step(body: Body, path: Path) -> None:
+    check_body(body)
+    _run("step", body, str(path.resolve()), time_limit=KERNEL_TIME_LIMIT)
+
+
+def _naming(name: str, task: Any, *arguments: Any) -> Any:
+    try:
+        return task(*arguments)
+    except AlulaError as error:
+        raise type(error)(f"{name}: {error}") from None
+
+
+def _command(folder: Path) -> list[str]:
+    # -P: a folder named "geometry" where the user stands must not be taken for this package.
+    return [sys.executable, "-P", "-m", "geometry.mesh_worker", str(folder)]
+
+
+def _run(task: str, *arguments: Any, time_limit: float) -> Any:
+    """Do a task of ``geometry.mesh_worker`` in a child process and return its result."""
+    root = str(Path(__file__).resolve().parents[1])
+    paths = os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH", "")]))
+    environment = os.environ | {"PYTHONPATH": paths, "OMP_NUM_THREADS": "1"}
+    with tempfile.TemporaryDirectory(prefix="alula-") as name:
+        folder = Path(name)
+        (folder / "request").write_bytes(pickle.dumps((task, *arguments)))
+        try:
+            done = subprocess.run(
+                _command(folder),
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                timeout=time_limit,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            raise CannotRunError(
+                f"the mesher was stopped after its time limit of {time_limit:g} s; use a coarser size or raise the limit"
+            ) from None
+        try:
+            kind, result = pickle.loads((folder / "answer").read_bytes())
+        except (OSError, EOFError, pickle.UnpicklingError):
+            raise CannotRunError(_obituary(done.returncode, done.stderr.decode(errors="replace"))) from None
+    if kind == "case":
+        raise CaseError(result)
+    if kind == "cannot":
+        raise CannotRunError(result)
+    return result
+
+
+def _obituary(status: int, stderr: str) -> str:
+    last = (stderr.strip().splitlines() or ["it left no message"])[-1]
+    if status < 0:
+        return f"the mesher crashed ({signal.Signals(-status).name}); change the part's dimensions or the mesh size a little"
+    return f"the mesher ended with status {status} and no answer: {last}"

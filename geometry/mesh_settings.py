@@ -1,0 +1,54 @@
+"""How fine a mesh is to be, and what it may cost."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshSettings:
+    """Element sizes as ratios, so that a part at any scale gets the same mesh; and limits.
+
+    size            general element edge as a fraction of the section's smaller dimension
+                    (outer diameter of a tube; the lesser of width and thickness of a bar)
+    bore_elements   element edges round a pin hole
+    hole_elements   element edges round each hole of a row
+    turn_elements   least number of element edges on a full turn of any other round surface
+    fillet_size     element edge along fillets as a fraction of the fillet radius
+                    (at sharp junctions of the general size)
+    growth          growth of the element edge per distance from a hole or fillet
+    curved          True: quadratic elements that follow round surfaces (10 nodes); False: straight (4 nodes)
+    size_points     (n, 3) mm, with ``size_values`` (n,) mm: element edges at points, interpolated linearly
+                    between; these replace all sizes above but for ``turn_elements``
+    time_limit      seconds of wall time for one body
+    max_elements    largest number of tetrahedra that is accepted
+    """
+
+    size: float = 0.25
+    bore_elements: int = 16
+    hole_elements: int = 8
+    turn_elements: int = 8
+    fillet_size: float = 0.6
+    growth: float = 0.3
+    curved: bool = True
+    size_points: NDArray[np.float64] | None = None
+    size_values: NDArray[np.float64] | None = None
+    time_limit: float = 300.0
+    max_elements: int = 1_500_000
+
+    @property
+    def chord_error(self) -> float:
+        """Largest relative difference of area or volume between mesh and geometry that is accepted.
+
+        An inscribed polygon of n sides has 1 - sin(2π/n)/(2π/n) less area than its circle, about
+        (2π/n)²/6; quadratic sides that touch the circle in three points miss less than (2π/n)⁴/100.
+        Half as much again is allowed for unequal edges.
+        """
+        turn = 2.0 * math.pi / min(self.bore_elements, self.hole_elements, self.turn_elements)
+        return 1e-3 + 1.5 * (turn**4 / 500.0 if self.curved else turn**2 / 6.0)
+
+
+COARSE = MeshSettings(size=0.5, bore_elements=8, hole_elements=6, turn_elements=6, fillet_size=1.0, growth=0.6)
+"""A few thousand elements per link: for tests and first looks, not for stresses at holes."""

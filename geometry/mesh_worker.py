@@ -1,0 +1,73 @@
+"""The child process in which the geometry kernel and the mesher run: ``python -m geometry.mesh_worker FOLDER``.
+
+Reads ``request`` and writes ``answer`` in the folder, both pickled (the folder is private to parent and
+child). The answer is ("done", result), or ("case", sentence) or ("cannot", sentence) for an error.
+"""
+
+import pickle
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from geometry.errors import CannotRunError, CaseError
+from geometry.mesh_settings import MeshSettings
+from geometry.part import Body
+
+LIBRARIES = "libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 libxrender1 libosmesa6"
+"""Debian's packages that gmsh's and VTK's wheels need but do not bring."""
+
+
+def mesh(gmsh: Any, body: Body, settings: MeshSettings) -> object:
+    """Return the ``TaggedMesh`` of a body."""
+    from geometry.mesher import mesh_solid
+    from geometry.solid_model import build
+
+    return mesh_solid(gmsh, build(gmsh, body), settings)
+
+
+def mass(gmsh: Any, body: Body) -> object:
+    """Return (volume, centroid, inertia) of a body in mm."""
+    from geometry.solid_model import build, volume_centroid_inertia
+
+    return volume_centroid_inertia(gmsh, build(gmsh, body))
+
+
+def step(gmsh: Any, body: Body, path: str) -> object:
+    """Write a body as STEP."""
+    from geometry.solid_model import build, write_step
+
+    write_step(gmsh, build(gmsh, body), Path(path))
+    return None
+
+
+TASKS: dict[str, Callable[..., object]] = {"mesh": mesh, "mass": mass, "step": step}
+
+
+def answer(task: str, arguments: tuple[Any, ...]) -> tuple[str, object]:
+    """Do a task and return its answer, with every error as a sentence."""
+    from geometry.solid_model import kernel
+
+    try:
+        with kernel() as gmsh:
+            return "done", TASKS[task](gmsh, *arguments)
+    except CaseError as error:
+        return "case", str(error)
+    except CannotRunError as error:
+        return "cannot", str(error)
+    except (ImportError, OSError) as error:
+        return "cannot", (f"gmsh could not be loaded ({error}); on Debian and Ubuntu run: apt-get install {LIBRARIES}")
+    except Exception as error:
+        # gmsh raises bare Exceptions that carry its last message.
+        return "cannot", f"gmsh failed: {error or type(error).__name__}"
+
+
+def main(folder: Path) -> None:
+    """Answer the request in a folder."""
+    task, *arguments = pickle.loads((folder / "request").read_bytes())
+    result = answer(task, tuple(arguments))
+    (folder / "answer").write_bytes(pickle.dumps(result))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

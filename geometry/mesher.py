@@ -1,0 +1,178 @@
+"""Tetrahedra for a solid of the kernel: element sizes, extraction, and the checks that let a mesh pass.
+
+Runs in a child process only (see ``geometry.mesh``).
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.body_rules import section_width
+from geometry.element_geometry import scaled_jacobians, straighten, triangle_areas, volumes_and_moments
+from geometry.errors import CannotRunError
+from geometry.mesh_settings import MeshSettings
+from geometry.part import Body
+from geometry.solid_model import SECTION_UNITS, Solid
+from geometry.tagged_mesh import TaggedMesh
+
+LEAST_JACOBIAN = 0.2
+"""Least over greatest Jacobian determinant below which a curved element is repaired."""
+
+# gmsh's tetrahedron of ten nodes ends with the edges 23, 13; VTK's with 13, 23.
+_FROM_GMSH = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
+_GMSH_TETRA = {1: 4, 2: 11}
+_GMSH_TRIANGLE = {1: 2, 2: 9}
+
+
+def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
+    """Mesh the solid and return the mesh in mm, checked against the kernel's areas and volume.
+
+    Raises ``CannotRunError`` if the mesher fails, if the mesh exceeds ``max_elements``, if an element
+    stays invalid, or if an area or the volume is off by more than the elements' chord error.
+    """
+    order = 2 if settings.curved else 1
+    _set_sizes(gmsh, solid, settings)
+    options = {"Mesh.Algorithm": 6, "Mesh.Algorithm3D": 1, "Mesh.Optimize": 1, "Mesh.ElementOrder": 1}
+    for option, value in options.items():
+        gmsh.option.setNumber(option, value)
+    gmsh.model.mesh.generate(3)
+    count = len(gmsh.model.mesh.getElementsByType(_GMSH_TETRA[1])[0])
+    if count == 0:
+        raise CannotRunError("the mesher filled no volume")
+    if count > settings.max_elements:
+        raise CannotRunError(
+            f"the mesh has {count} tetrahedra, more than max_elements {settings.max_elements}; "
+            "use a coarser size or raise the limit"
+        )
+    if order == 2:
+        gmsh.model.mesh.setOrder(2)
+    points, cells, numbers = _read(gmsh, order)
+    notes: list[str] = []
+    if order == 2 and scaled_jacobians(points, cells).min() < LEAST_JACOBIAN:
+        gmsh.model.mesh.optimize("HighOrder")
+        points, cells, numbers = _read(gmsh, order)
+        points, straightened = straighten(points, cells, LEAST_JACOBIAN)
+        note = "curved elements were optimised to keep them valid"
+        if straightened:
+            note += f"; {straightened} of {len(cells)} were made straight, which moves the surface there"
+        notes.append(note)
+    return _checked(gmsh, solid, settings, points, cells, numbers, tuple(notes))
+
+
+def _read(gmsh: Any, order: int) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return points and cells numbered from 0, positively oriented, and the map from gmsh's node tags."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    _, flat = gmsh.model.mesh.getElementsByType(_GMSH_TETRA[order])
+    cells = np.asarray(flat, dtype=np.int64).reshape(-1, 4 if order == 1 else 10)
+    if order == 2:
+        cells = cells[:, _FROM_GMSH]
+    used = np.unique(cells)
+    numbers = np.full(int(max(tags)) + 1, -1, dtype=np.int64)
+    numbers[used] = np.arange(len(used))
+    place = np.empty((len(numbers), 3))
+    place[np.asarray(tags, dtype=np.int64)] = np.asarray(coordinates).reshape(-1, 3)
+    return place[used], numbers[cells], numbers
+
+
+def _checked(
+    gmsh: Any,
+    solid: Solid,
+    settings: MeshSettings,
+    points: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    numbers: NDArray[np.int64],
+    notes: tuple[str, ...],
+) -> TaggedMesh:
+    if (least := scaled_jacobians(points, cells).min()) <= 0.0 or (volumes_and_moments(points, cells)[0] <= 0.0).any():
+        raise CannotRunError(f"the mesh holds an inverted element (scaled Jacobian {least:.3g}); change the size")
+    surfaces: dict[str, NDArray[np.int64]] = {}
+    areas: dict[str, float] = {}
+    order = 2 if settings.curved else 1
+    for name, faces in solid.faces.items():
+        flat = np.concatenate([gmsh.model.mesh.getElementsByType(_GMSH_TRIANGLE[order], tag)[1] for tag in faces])
+        triangles = numbers[np.asarray(flat, dtype=np.int64).reshape(-1, 3 if order == 1 else 6)]
+        area = sum(gmsh.model.occ.getMass(2, tag) for tag in faces)
+        meshed = triangle_areas(points, triangles).sum()
+        if abs(meshed - area) > settings.chord_error * area:
+            raise CannotRunError(
+                f"surface '{name}' has {meshed * solid.unit**2:.6g} mm² in the mesh, but {area * solid.unit**2:.6g} mm² "
+                "in the geometry; use a finer size"
+            )
+        surfaces[name] = np.ascontiguousarray(triangles[:, :3])
+        areas[name] = area * solid.unit**2
+    volume = gmsh.model.occ.getMass(3, solid.volume)
+    meshed = volumes_and_moments(points, cells)[0].sum()
+    if abs(meshed - volume) > settings.chord_error * volume:
+        raise CannotRunError(
+            f"the mesh has {meshed * solid.unit**3:.6g} mm³, but the geometry {volume * solid.unit**3:.6g} mm³; "
+            "use a finer size"
+        )
+    return TaggedMesh(
+        points=points * solid.unit,
+        cells=cells,
+        surfaces=surfaces,
+        areas=areas,
+        volume=volume * solid.unit**3,
+        centroid=np.asarray(gmsh.model.occ.getCenterOfMass(3, solid.volume)) * solid.unit,
+        notes=notes,
+    )
+
+
+def _set_sizes(gmsh: Any, solid: Solid, settings: MeshSettings) -> None:
+    for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints"):
+        gmsh.option.setNumber(f"Mesh.{option}", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", settings.turn_elements)
+    if settings.size_points is None or settings.size_values is None:
+        fields = [_formula(gmsh, text) for text in size_formulas(solid.body, settings)]
+    else:
+        fields = [_background(gmsh, settings.size_points / solid.unit, settings.size_values / solid.unit)]
+    smallest = gmsh.model.mesh.field.add("Min")
+    gmsh.model.mesh.field.setNumbers(smallest, "FieldsList", fields)
+    gmsh.model.mesh.field.setAsBackgroundMesh(smallest)
+
+
+def size_formulas(body: Body, settings: MeshSettings) -> list[str]:
+    """Return gmsh expressions in x, y, z whose least value is the element size, in scaled units.
+
+    The general size; round each hole its circumference over the number of elements, growing with the
+    distance from its wall; along each fillet (or sharp junction) a share of its radius, growing likewise.
+    """
+    part, growth = body.part, settings.growth
+    general = settings.size * SECTION_UNITS
+    texts = [f"{general:.12g}"]
+    holes = [(p.diameter, settings.bore_elements, f"Sqrt((x-({p.x:.12g}))^2+(y-({p.y:.12g}))^2)") for p in body.pins]
+    for row in body.holes:
+        across = "y" if row.along == "z" else "z"
+        holes += [(row.diameter, settings.hole_elements, f"Sqrt((x-({x:.12g}))^2+{across}^2)") for x in row.positions]
+    for diameter, elements, distance in holes:
+        size = min(math.pi * diameter / elements, general)
+        texts.append(f"{size:.12g}+{growth:g}*Max({distance}-{diameter / 2.0:.12g},0)")
+    fillet = part.fillet_radius if part.fillet_radius > 0.0 else general
+    size = min(fillet * settings.fillet_size, general)
+    half = section_width(part) / 2.0
+    for pin in body.pins:
+        to_eye = f"(Sqrt((x-({pin.x:.12g}))^2+(y-({pin.y:.12g}))^2)-{part.eye_diameter / 2.0:.12g})"
+        to_side = f"(Sqrt(y^2+z^2)-{half:.12g})" if part.shape == "tube" else f"(Fabs(y)-{half:.12g})"
+        texts.append(f"{size:.12g}+{growth:g}*Max(Sqrt({to_eye}^2+{to_side}^2)-{part.fillet_radius:.12g},0)")
+    return texts
+
+
+def _formula(gmsh: Any, text: str) -> int:
+    field = gmsh.model.mesh.field.add("MathEval")
+    gmsh.model.mesh.field.setString(field, "F", text)
+    return int(field)
+
+
+def _background(gmsh: Any, points: NDArray[np.float64], values: NDArray[np.float64]) -> int:
+    """Return a field that interpolates the sizes linearly on the points' Delaunay tetrahedra."""
+    from scipy.spatial import Delaunay
+
+    tetrahedra = Delaunay(points).simplices
+    data = np.concatenate([points[tetrahedra].transpose(0, 2, 1).reshape(-1, 12), values[tetrahedra]], axis=1)
+    view = gmsh.view.add("sizes")
+    gmsh.view.addListData(view, "SS", len(tetrahedra), data.ravel())
+    field = gmsh.model.mesh.field.add("PostView")
+    gmsh.model.mesh.field.setNumber(field, "ViewTag", view)
+    return int(field)

@@ -1,0 +1,322 @@
+"""Links as solids of gmsh's OpenCASCADE kernel, with the faces that loads and checks refer to.
+
+Runs in a child process only (see ``geometry.mesh``), since the kernel can crash or loop for ever.
+OpenCASCADE works to 1e-7 in whatever unit, so a body is built in a unit of its own: a tenth of its
+section's smaller size. What this module is given and returns is in mm.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.body_rules import extent, patch_span, section_height, section_width
+from geometry.errors import CannotRunError, CaseError
+from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+
+Entity = tuple[int, int]
+
+# Distance, in the scaled unit, within which a point counts as lying on a surface.
+ON_SURFACE = 1e-5
+# Sections are ten units across.
+SECTION_UNITS = 10.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solid:
+    """A solid in the kernel: its tag, the faces of each named surface, and mm per scaled unit."""
+
+    volume: int
+    faces: dict[str, list[int]]
+    unit: float
+    body: Body
+    """The body in scaled units."""
+
+
+@contextmanager
+def kernel() -> Iterator[Any]:
+    """Yield gmsh, silent, on one thread and with fixed random numbers; finalise it afterwards."""
+    import gmsh
+
+    gmsh.initialize(argv=[""], readConfigFiles=False, interruptible=False)
+    try:
+        for option, value in {
+            "General.Terminal": 0,
+            "General.NumThreads": 1,
+            "Mesh.RandomSeed": 1,
+            "Geometry.OCCUnionUnify": 0,
+            "Geometry.OCCBoundsUseStl": 0,
+            "Geometry.OCCParallel": 0,
+        }.items():
+            gmsh.option.setNumber(option, value)
+        yield gmsh
+    finally:
+        gmsh.finalize()
+
+
+def mm_per_unit(body: Body) -> float:
+    """Return the length in mm of the unit in which the body is built."""
+    return min(section_width(body.part), section_height(body.part)) / SECTION_UNITS
+
+
+def scaled(body: Body, unit: float) -> Body:
+    """Return the body with lengths in multiples of ``unit``, rounded so that its real size leaves no trace."""
+
+    def s(length: float) -> float:
+        return round(length / unit, 9)
+
+    part = body.part
+    lengths = {name: s(value) for name, value in part.model_dump().items() if name not in {"shape", "material"}}
+    return Body(
+        part=part.model_copy(update=lengths),
+        pins=tuple(Pin(name=p.name, x=s(p.x), y=s(p.y), diameter=s(p.diameter)) for p in body.pins),
+        ends=tuple(PlainEnd(name=e.name, x=s(e.x), patch=s(e.patch)) for e in body.ends),
+        holes=tuple(
+            HoleRow.model_construct(
+                count=r.count, diameter=s(r.diameter), first=s(r.first), last=s(r.last), along=r.along
+            )
+            for r in body.holes
+        ),
+    )
+
+
+def build(gmsh: Any, body: Body) -> Solid:
+    """Build the body in a fresh model of the kernel and name its faces.
+
+    Raises ``CaseError`` where the fillets do not fit, ``CannotRunError`` where the kernel fails otherwise.
+    """
+    unit = mm_per_unit(body)
+    small = scaled(body, unit)
+    gmsh.model.add("body")
+    solid = _tube(gmsh, small, body) if isinstance(small.part, Tube) else _bar(gmsh, small, body)
+    solid = _cut(gmsh, solid, _pin_holes(gmsh, small) + _hole_rows(gmsh, small))
+    gmsh.model.occ.synchronize()
+    if len(gmsh.model.getEntities(3)) != 1:
+        raise CannotRunError(f"the part came out as {len(gmsh.model.getEntities(3))} solids instead of one")
+    return Solid(volume=solid[1], faces=_named_faces(gmsh, small), unit=unit, body=small)
+
+
+def _stations(body: Body) -> list[float]:
+    """Return the x at which the outer surface is split: its ends and the borders of loaded patches."""
+    stations = set(extent(body))
+    for end in body.ends:
+        stations.update(patch_span(body, end))
+    return sorted(stations)
+
+
+def _eyes(gmsh: Any, body: Body) -> list[Entity]:
+    thickness, radius = body.part.eye_thickness, body.part.eye_diameter / 2.0
+    return [(3, gmsh.model.occ.addCylinder(p.x, p.y, -thickness / 2.0, 0, 0, thickness, radius)) for p in body.pins]
+
+
+def _tube(gmsh: Any, body: Body, named: Body) -> Entity:
+    occ, part = gmsh.model.occ, body.part
+    assert isinstance(part, Tube)
+    stations = _stations(body)
+    pieces = [
+        (3, occ.addCylinder(low, 0, 0, high - low, 0, 0, part.outer_diameter / 2.0))
+        for low, high in zip(stations, stations[1:], strict=False)
+    ]
+    solid = _fuse(gmsh, pieces + _eyes(gmsh, body))
+    radius = part.outer_diameter / 2.0
+
+    def at_eye(p: NDArray[np.float64]) -> bool:
+        return abs(math.hypot(p[1], p[2]) - radius) < ON_SURFACE and _on_an_eye(body, p)
+
+    solid = _fillet(gmsh, solid, _curves(gmsh, at_eye), part.fillet_radius, named)
+    return _cut(gmsh, solid, _hollows(gmsh, body))
+
+
+def _on_an_eye(body: Body, p: NDArray[np.float64]) -> bool:
+    radius = body.part.eye_diameter / 2.0
+    return any(abs(math.hypot(p[0] - pin.x, p[1] - pin.y) - radius) < ON_SURFACE for pin in body.pins)
+
+
+def hollow_spans(body: Body) -> list[tuple[float, float]]:
+    """Return the x between which a tube is hollow: up to each eye's nearest generator, and open at a plain end.
+
+    The bottom of the bore touches the eye's cylinder and is flat but for a fillet at its rim, of
+    ``hollow_fillet``: a bore that ran on to the cylinder would leave a re-entrant edge.
+    """
+    part = body.part
+    assert isinstance(part, Tube)
+    bore, radius = part.inner_diameter / 2.0, part.eye_diameter / 2.0
+    first, last = extent(body)
+    spans: list[tuple[float, float]] = []
+    start = first
+    for pin in sorted(body.pins, key=lambda p: p.x):
+        half = math.sqrt(max(radius**2 - max(abs(pin.y) - bore, 0.0) ** 2, 0.0))
+        spans.append((start, pin.x - half))
+        start = max(start, pin.x + half)
+    spans.append((start, last))
+    return [(low, high) for low, high in spans if high - low > 2.0 * hollow_fillet(part) and bore > 0.0]
+
+
+def hollow_fillet(part: Tube) -> float:
+    """Return the fillet radius at the bottom of a tube's bore: the part's, but at most half the bore's radius."""
+    return min(part.fillet_radius, part.inner_diameter / 4.0)
+
+
+def _hollows(gmsh: Any, body: Body) -> list[Entity]:
+    occ, part = gmsh.model.occ, body.part
+    first, last = extent(body)
+    hollows: list[Entity] = []
+    for low, high in hollow_spans(body):
+        tag = occ.addCylinder(low, 0, 0, high - low, 0, 0, part.inner_diameter / 2.0)
+        occ.synchronize()
+        rims = [
+            curve
+            for _, curve in gmsh.model.getBoundary(
+                gmsh.model.getBoundary([(3, tag)], oriented=False), combined=False, oriented=False
+            )
+            for x in (_point_on_curve(gmsh, curve, 0.3)[0],)
+            if gmsh.model.getType(1, curve) == "Circle"
+            and (abs(x - low) < ON_SURFACE < low - first or abs(x - high) < ON_SURFACE < last - high)
+        ]
+        if rims and part.fillet_radius > 0.0:
+            [(_, tag)] = occ.fillet([tag], sorted(set(rims)), [hollow_fillet(part)])
+        hollows.append((3, tag))
+    return hollows
+
+
+def _bar(gmsh: Any, body: Body, named: Body) -> Entity:
+    raise CannotRunError("bars are not built yet")
+
+
+def _pin_holes(gmsh: Any, body: Body) -> list[Entity]:
+    height = body.part.eye_thickness
+    return [(3, gmsh.model.occ.addCylinder(p.x, p.y, -height, 0, 0, 2.0 * height, p.diameter / 2.0)) for p in body.pins]
+
+
+def _hole_rows(gmsh: Any, body: Body) -> list[Entity]:
+    reach = 2.0 * max(section_width(body.part), section_height(body.part))
+    holes: list[Entity] = []
+    for row in body.holes:
+        dy, dz = (1, 0) if row.along == "y" else (0, 1)
+        for x in row.positions:
+            tag = gmsh.model.occ.addCylinder(
+                x, -reach * dy, -reach * dz, 0, 2.0 * reach * dy, 2.0 * reach * dz, row.diameter / 2.0
+            )
+            holes.append((3, tag))
+    return holes
+
+
+def _fuse(gmsh: Any, pieces: list[Entity]) -> Entity:
+    if len(pieces) == 1:
+        return pieces[0]
+    solids, _ = gmsh.model.occ.fuse(pieces[:1], pieces[1:])
+    return _only(solids)
+
+
+def _cut(gmsh: Any, solid: Entity, tools: list[Entity]) -> Entity:
+    if not tools:
+        return solid
+    solids, _ = gmsh.model.occ.cut([solid], tools)
+    return _only(solids)
+
+
+def _only(solids: list[Entity]) -> Entity:
+    if len(solids) != 1:
+        raise CannotRunError(f"the part came out as {len(solids)} solids instead of one")
+    return solids[0]
+
+
+def _fillet(gmsh: Any, solid: Entity, curves: list[int], radius: float, named: Body) -> Entity:
+    if radius == 0.0:
+        return solid
+    part = named.part
+    try:
+        solids = gmsh.model.occ.fillet([solid[1]], curves, [radius])
+    except Exception as error:
+        raise CaseError(
+            f"fillet_radius {part.fillet_radius:g} mm does not fit where the {part.shape} meets its eyes of "
+            f"{part.eye_diameter:g} mm by {part.eye_thickness:g} mm; make the fillet smaller or the eyes thicker or wider"
+        ) from error
+    return _only(solids)
+
+
+def _curves(gmsh: Any, holds: Callable[[NDArray[np.float64]], bool]) -> list[int]:
+    """Return the curves of the model on which a condition holds at several points."""
+    gmsh.model.occ.synchronize()
+    return [
+        tag
+        for _, tag in gmsh.model.getEntities(1)
+        if all(holds(_point_on_curve(gmsh, tag, at)) for at in (0.13, 0.5, 0.77))
+    ]
+
+
+def _point_on_curve(gmsh: Any, tag: int, at: float) -> NDArray[np.float64]:
+    low, high = gmsh.model.getParametrizationBounds(1, tag)
+    return np.asarray(gmsh.model.getValue(1, tag, [low[0] + at * (high[0] - low[0])]))
+
+
+def _points_on_face(gmsh: Any, tag: int) -> NDArray[np.float64]:
+    """Return points (n, 3) of the surface that carries a face (they may lie outside its borders)."""
+    low, high = gmsh.model.getParametrizationBounds(2, tag)
+    at = np.array([[a, b] for a in (0.1, 0.45, 0.8) for b in (0.2, 0.6, 0.9)])
+    uv = np.asarray(low) + at * (np.asarray(high) - np.asarray(low))
+    return np.asarray(gmsh.model.getValue(2, tag, uv.ravel())).reshape(-1, 3)
+
+
+def _named_faces(gmsh: Any, body: Body) -> dict[str, list[int]]:
+    part = body.part
+    names = [f"{kind}:{pin.name}" for pin in body.pins for kind in ("bore", "top", "bottom")]
+    faces: dict[str, list[int]] = {name: [] for name in names + [f"end:{end.name}" for end in body.ends]}
+    for _, tag in gmsh.model.getEntities(2):
+        points = _points_on_face(gmsh, tag)
+        centre = np.asarray(gmsh.model.occ.getCenterOfMass(2, tag))
+        flat = gmsh.model.getType(2, tag) == "Plane"
+        pin = min(body.pins, key=lambda p: math.hypot(centre[0] - p.x, centre[1] - p.y))
+        off = math.hypot(centre[0] - pin.x, centre[1] - pin.y)
+        for side, height in (("top", part.eye_thickness / 2.0), ("bottom", -part.eye_thickness / 2.0)):
+            if flat and np.abs(points[:, 2] - height).max() < ON_SURFACE and off < part.eye_diameter / 2.0:
+                faces[f"{side}:{pin.name}"].append(tag)
+        for pin in body.pins:
+            distance = np.hypot(points[:, 0] - pin.x, points[:, 1] - pin.y)
+            if not flat and np.abs(distance - pin.diameter / 2.0).max() < ON_SURFACE:
+                faces[f"bore:{pin.name}"].append(tag)
+        for end in body.ends:
+            low, high = patch_span(body, end)
+            if low < centre[0] < high and _on_outside(part, points, centre):
+                faces[f"end:{end.name}"].append(tag)
+    for name, tags in faces.items():
+        if not tags:
+            raise CannotRunError(f"the part came out without a face for surface '{name}'")
+    return faces
+
+
+def _on_outside(part: Tube | Bar, points: NDArray[np.float64], centre: NDArray[np.float64]) -> bool:
+    """Whether a face belongs to the outer surface of the tube or to the four sides of the bar."""
+    if isinstance(part, Tube):
+        radius = np.hypot(points[:, 1], points[:, 2])
+        return bool(np.abs(radius - part.outer_diameter / 2.0).max() < ON_SURFACE)
+    return bool(
+        abs(abs(centre[1]) - part.width / 2.0) < ON_SURFACE
+        and np.ptp(points[:, 1]) < ON_SURFACE
+        or abs(abs(centre[2]) - part.thickness / 2.0) < ON_SURFACE
+        and np.ptp(points[:, 2]) < ON_SURFACE
+    )
+
+
+def write_step(gmsh: Any, solid: Solid, path: Path) -> None:
+    """Write the solid as STEP in mm."""
+    gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+    gmsh.model.occ.dilate([(3, solid.volume)], 0, 0, 0, solid.unit, solid.unit, solid.unit)
+    gmsh.model.occ.synchronize()
+    gmsh.write(str(path))
+
+
+def volume_centroid_inertia(gmsh: Any, solid: Solid) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+    """Return volume [mm³], centroid (3,) [mm] and inertia about it for unit density (3, 3) [mm⁵]."""
+    occ = gmsh.model.occ
+    inertia = np.asarray(occ.getMatrixOfInertia(3, solid.volume)).reshape(3, 3)
+    return (
+        occ.getMass(3, solid.volume) * solid.unit**3,
+        np.asarray(occ.getCenterOfMass(3, solid.volume)) * solid.unit,
+        inertia * solid.unit**5,
+    )
