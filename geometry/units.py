@@ -59,6 +59,10 @@ EXAMPLES = {
 }
 _LONGEST_TEXT = 64
 _UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?[1-4])?"
+_TYPOGRAPHY = str.maketrans(
+    {"·": "*", "⋅": "*", "²": "^2", "³": "^3", "⁴": "^4", "−": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " "}
+)
+"""Signs that people paste from books and word processors, as pint writes them."""
 
 
 @cache
@@ -101,13 +105,14 @@ def parse(text: object, dimension: str) -> float:
             'the {dimension} needs its unit; write for example "{example}"',
             {"dimension": dimension, "example": example},
         )
-    factor, offset = _conversion(unit, dimension)
-    if factor is None or offset is None:
+    conversion = _conversion(unit, dimension)
+    if conversion is None:
         raise PydanticCustomError(
             "wrong_unit",
             '"{unit}" is not a unit of {dimension}; write for example "{example}"',
             {"unit": unit, "dimension": dimension, "example": example},
         )
+    factor, offset = conversion
     value = number * factor + offset
     if not math.isfinite(value):
         raise PydanticCustomError(
@@ -122,31 +127,35 @@ def _split(text: str) -> tuple[float | None, str]:
 
     if len(text) > _LONGEST_TEXT:
         return None, ""
-    match = re.fullmatch(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", text, re.ASCII)
-    return (float(match[1]), match[2]) if match else (None, "")
+    plain = text.translate(_TYPOGRAPHY)
+    match = re.fullmatch(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", plain, re.ASCII)
+    if not match or (match[2] and not match[2][0].isalpha() and match[2][0] not in "°/"):
+        return None, ""
+    return float(match[1]), match[2]
 
 
 @cache
-def _conversion(unit: str, dimension: str) -> tuple[float | None, float | None]:
-    """Return factor and offset from ``unit`` to alula's unit, or Nones where it has another dimension."""
+def _conversion(unit: str, dimension: str) -> tuple[float, float] | None:
+    """Return factor and offset from ``unit`` to alula's unit; None where it has another dimension.
+
+    pint takes radians for pure numbers. So the root units are compared as well: "50 percent" is no
+    angle, "5 mm*deg" no length, and "58 Hz" no angular speed (it would pass for 58 rad/s).
+    """
     import re
 
     # Only unit names, powers, products and quotients reach pint: no numbers, no calls.
-    if not re.fullmatch(rf"{_UNIT_NAME}(?:(?:\s*[*/]\s*|\s+){_UNIT_NAME})*", unit.replace("·", "*")):
-        return None, None
+    if not re.fullmatch(rf"{_UNIT_NAME}(?:(?:\s*[*/]\s*|\s+){_UNIT_NAME})*", unit):
+        return None
     units = registry()
     target = INTERNAL_UNITS[dimension]
     try:
-        text = unit.replace("·", "*")
-        zero = units.Quantity(0.0, text).to(target).magnitude
-        one = units.Quantity(1.0, text).to(target).magnitude
+        if units.get_root_units(unit)[1] != units.get_root_units(target)[1]:
+            return None
+        zero = float(units.Quantity(0.0, unit).to(target).magnitude)
+        one = float(units.Quantity(1.0, unit).to(target).magnitude)
     except Exception:  # pint raises a dozen unrelated types for bad unit text
-        return None, None
-    if dimension != "angle" and dimension != "angular speed" and units.Quantity(1.0, text).units == units.degree:
-        return None, None
-    if dimension == "temperature":
-        return float(one - zero), float(zero)
-    return float(one), 0.0
+        return None
+    return (one - zero, zero) if dimension == "temperature" else (one, 0.0)
 
 
 class Quantity:
