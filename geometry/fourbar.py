@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.dyad import BoolArray, Dyad, FloatArray, close_dyad, triangle_angle, wrap
+from geometry.dyad import CLOSURE_TOLERANCE, BoolArray, Dyad, FloatArray, close_dyad, triangle_angle, wrap
 from geometry.errors import CaseError
 from geometry.grashof import EQUALITY_TOLERANCE, Grashof, classify
 
@@ -181,7 +181,7 @@ class FourBar:
 
     def _open_loop(self, theta2: float, gap: float) -> str:
         angle = math.degrees(theta2)
-        if gap == 0.0:
+        if gap <= CLOSURE_TOLERANCE * (self.b + self.c):
             return (
                 f"the four-bar has no definite pose at input angle {angle:.4f}°: the input pin lies on the output's "
                 "pivot and the equal coupler and output spin about it; drive it to another angle."

@@ -153,13 +153,14 @@ class OrnithopterRules(CaseModel):
         )
 
 
-BUILT = OrnithopterRules()
-VARIANTS = {
-    "30° 8 mm 25 mm": OrnithopterRules(throw="8 mm", wing_angle="30 deg", motor="M-SC 25 mm"),
-    "20° 3 mm 25 mm": OrnithopterRules(throw="3 mm", wing_angle="20 deg", motor="M-SC 25 mm"),
-    "23° 3 mm 10 mm": BUILT,
-}
-"""The variants that the source shows: wing angle, throw, motor."""
+@cache
+def variants() -> dict[str, OrnithopterRules]:
+    """Return the variants that the source shows, named by wing angle, throw and motor; the last is the built one."""
+    return {
+        "30° 8 mm 25 mm": OrnithopterRules(throw="8 mm", wing_angle="30 deg", motor="M-SC 25 mm"),
+        "20° 3 mm 25 mm": OrnithopterRules(throw="3 mm", wing_angle="20 deg", motor="M-SC 25 mm"),
+        "23° 3 mm 10 mm": OrnithopterRules(),
+    }
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

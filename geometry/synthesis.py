@@ -123,7 +123,7 @@ def synthesise(theta: Sequence[float], psi: Sequence[float], d: float) -> Synthe
 
     Solves the 3×3 system [cos ψ, -cos θ, 1] K = cos(θ - ψ) and takes b = d/K1, c = d/K2, a² = b² + c² + d² - 2bcK3.
     Raises CaseError for other than three pairs, a d that is not positive, a singular system (with the
-    reason), a link of infinite length, or an a² that is not positive.
+    reason), or a link of infinite length.
     """
     angles, outputs = np.asarray(theta, dtype=float), np.asarray(psi, dtype=float)
     if angles.shape != (3,) or outputs.shape != (3,) or not np.isfinite([angles, outputs]).all():
@@ -145,13 +145,9 @@ def synthesise(theta: Sequence[float], psi: Sequence[float], d: float) -> Synthe
                 "change one of the precision points."
             )
     b, c = d / K1, d / K2
-    square = b * b + c * c + d * d - 2 * b * c * K3
-    if square <= 0:
-        raise CaseError(
-            f"synthesis gives a² = {square:.6g}, which no length fulfils, so no four-bar passes these three "
-            "points; change one of the precision points."
-        )
-    four_bar = FourBar(a=math.sqrt(square), b=abs(b), c=abs(c), d=d)
+    # The loop itself gives a² = b² + c² + d² - 2 b c K3 without its cancellation, and never a negative one.
+    spans = np.abs(d + c * np.exp(1j * outputs) - b * np.exp(1j * angles))
+    four_bar = FourBar(a=float(spans.mean()), b=abs(b), c=abs(c), d=d)
     points = tuple(_point(four_bar, (K1, K2, K3), *pair) for pair in zip(angles, outputs, strict=True))
     lock_ups = tuple(lock for drive in DRIVES for lock in _lock_ups(four_bar, drive, b < 0, c < 0))
     findings = [*_general(condition, K1, K2, four_bar)]
