@@ -7,15 +7,14 @@ child). The answer is ("done", result), or ("case", sentence) or ("cannot", sent
 import pickle
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from geometry.errors import CannotRunError, CaseError
 from geometry.mesh_settings import MeshSettings
 from geometry.part import Body
-
-LIBRARIES = "libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 libxrender1 libosmesa6"
-"""Debian's packages that gmsh's and VTK's wheels need but do not bring."""
+from geometry.system_libraries import advice
 
 
 def mesh(gmsh: Any, body: Body, settings: MeshSettings) -> object:
@@ -49,14 +48,16 @@ def answer(task: str, arguments: tuple[Any, ...]) -> tuple[str, object]:
     from geometry.solid_model import kernel
 
     try:
+        import_module("gmsh")
+    except (ImportError, OSError) as error:
+        return "cannot", f"gmsh could not be loaded ({error}); {advice()}"
+    try:
         with kernel() as gmsh:
             return "done", TASKS[task](gmsh, *arguments)
     except CaseError as error:
         return "case", str(error)
     except CannotRunError as error:
         return "cannot", str(error)
-    except (ImportError, OSError) as error:
-        return "cannot", (f"gmsh could not be loaded ({error}); on Debian and Ubuntu run: apt-get install {LIBRARIES}")
     except Exception as error:
         # gmsh raises bare Exceptions that carry its last message.
         return "cannot", f"gmsh failed: {error or type(error).__name__}"
