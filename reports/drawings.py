@@ -1,0 +1,258 @@
+"""The drawing of the linkage in its pose with joint forces, loads and drive torque (matplotlib, PNG)."""
+
+import io
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.result import CheckResult
+from reports.labels import along, place_labels
+from reports.wording import number, turning
+
+Real = NDArray[np.float64]
+
+INK = "#1c2733"
+LINK = "#9fb1c1"
+GROUND = "#5d6b78"
+JOINT_FORCE = "#c8460b"
+LOAD = "#0067a8"
+TORQUE = "#00795a"
+DPI = 200
+WIDTH = 7.4
+"""Inches; fonts are in points, so this sets how large they read on the page."""
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.edgecolor": GROUND,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.linewidth": 0.6,
+}
+_ARROW = 0.2
+"""Length of the largest force's arrow, as a share of the linkage's size."""
+
+
+def as_png(figure: Any) -> bytes:
+    """Return a matplotlib figure as PNG, without a date so that equal drawings are equal bytes."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
+    return stream.getvalue()
+
+
+def linkage_drawing(result: CheckResult, load_case: str) -> bytes:
+    """Draw the linkage to scale in its pose under a load case; returns a PNG.
+
+    Every joint force is drawn as it acts on the link that its label names.
+    """
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with rc_context(STYLE):
+        sheet = _Sheet(result, load_case)
+        low, high = sheet.extent
+        left, right, bottom, top = 0.62, 0.1, 0.85, 0.1  # inches
+        wide = WIDTH - left - right
+        tall = min(max(wide * (high - low)[1] / (high - low)[0], 2.6), 8.0)
+        per_inch = max((high - low) / (wide, tall))
+        middle, half = (low + high) / 2.0, per_inch * np.array([wide, tall]) / 2.0
+        height = tall + bottom + top
+        figure = Figure(figsize=(WIDTH, height), dpi=DPI)
+        FigureCanvasAgg(figure)
+        axes = figure.add_axes((left / WIDTH, bottom / height, wide / WIDTH, tall / height))
+        axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
+        axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
+        axes.grid(color="#e8ecef", linewidth=0.5)
+        axes.set_axisbelow(True)
+        axes.set_xlabel("x [mm]")
+        axes.set_ylabel("y [mm]")
+        sheet.draw(axes)
+        figure.legend(
+            handles=sheet.legend(), loc="lower center", ncols=3, frameon=False, fontsize=8.5, handlelength=2.2
+        )
+        return as_png(figure)
+
+
+class _Sheet:
+    """Positions and forces of one load case, and how to draw them."""
+
+    def __init__(self, result: CheckResult, load_case: str) -> None:
+        self.result, self.pose, self.linkage = result, result.pose, result.pose.linkage
+        self.reactions = result.load_cases[load_case].reactions
+        self.stated = result.case.load_cases[load_case]
+        self.points = {
+            (link, point): self.pose.position(link, point)
+            for link, record in self.linkage.links.items()
+            for point in record.points
+        }
+        corners = np.array(list(self.points.values()))
+        self.size = float(np.linalg.norm(np.ptp(corners, axis=0)))
+        forces = [f for *_, f in (*self._joint_forces(), *self._loads())]
+        self.largest = max((float(np.linalg.norm(f)) for f in forces), default=0.0)
+        self.per_newton = _ARROW * self.size / self.largest if self.largest > 0.0 else 0.0
+        tips = [at + f * self.per_newton for _, at, f in (*self._joint_forces(), *self._loads())]
+        everything = np.vstack([corners, *[t[None] for t in tips]])
+        margin = 0.11 * self.size
+        self.extent = everything.min(axis=0) - margin, everything.max(axis=0) + margin
+
+    def _joint_forces(self) -> list[tuple[str, Real, Real]]:
+        """(label, point, force) of every joint force that is not nil."""
+        reactions = self.reactions.joints
+        largest = max((r.magnitude for r in reactions.values()), default=0.0)
+        return [
+            (f"{name}: {number(r.magnitude, 3)} N\non {r.on}", self._joint(name), r.force[:2])
+            for name, r in reactions.items()
+            if r.magnitude > 1e-9 * largest
+        ]
+
+    def _joint(self, name: str) -> Real:
+        joint = self.linkage.joints[name]
+        return self.pose.position(joint.links[1], self.linkage.joint_points(name)[1])
+
+    def _loads(self) -> list[tuple[str, Real, Real]]:
+        found = []
+        for force in self.stated.forces:
+            vector = np.array(force.force[:2])
+            if np.any(vector):
+                label = f"{number(float(np.linalg.norm(vector)), 3)} N\non {force.link}"
+                found.append((label, self.points[force.link, force.at], vector))
+        for spread in self.stated.spread:
+            vector = np.array(spread.total[:2])
+            if np.any(vector):
+                middle = (self.points[spread.link, spread.start] + self.points[spread.link, spread.end]) / 2.0
+                found.append((f"{number(float(np.linalg.norm(vector)), 3)} N\nspread on {spread.link}", middle, vector))
+        return found
+
+    def draw(self, axes: Any) -> None:
+        """Draw everything; labels last, where there is room."""
+        thickness = 0.011 * self.size
+        obstacles: list[Real] = []
+        for link, record in self.linkage.links.items():
+            places = [self.points[link, point] for point in record.points]
+            for a, b in itertools.pairwise(places):
+                if link == self.linkage.ground:
+                    axes.plot(*np.array([a, b]).T, color=GROUND, linewidth=0.8, linestyle=(0, (6, 4)), zorder=1)
+                else:
+                    self._bar(axes, a, b, thickness)
+                normal = np.array([a[1] - b[1], b[0] - a[0]]) / np.linalg.norm(b - a)
+                sides = (-1.0, 0.0, 1.0) if link != self.linkage.ground else (0.0,)
+                obstacles += [along(a + side * thickness * normal, b + side * thickness * normal) for side in sides]
+        for name, joint in self.linkage.joints.items():
+            at = self._joint(name)
+            if self.linkage.ground in joint.links:
+                obstacles.append(self._support(axes, name, at))
+            axes.plot(*at, marker="o", markersize=5.5, markerfacecolor="white", markeredgecolor=INK, zorder=6)
+            obstacles.append(at[None])
+        labels: list[tuple[tuple[float, float], str, str]] = []
+        arrows = [(*entry, JOINT_FORCE) for entry in self._joint_forces()]
+        arrows += [(*entry, LOAD) for entry in self._loads()]
+        for text, at, force, colour in arrows:
+            tip = at + force * self.per_newton
+            self._arrow(axes, at, tip, colour)
+            obstacles.append(along(at, tip))
+            labels.append(((float(tip[0]), float(tip[1])), text, colour))
+        torque = self._torque(axes)
+        if torque is not None:
+            labels.append(torque[0])
+            obstacles.append(torque[1])
+        names = [((float(at[0]), float(at[1])), name, INK) for name, at in self.pose.points.items()]
+        for link in self.linkage.moving:
+            places = [self.points[link, point] for point in self.linkage.links[link].points]
+            a, b = max(itertools.pairwise(places), key=lambda ab: float(np.linalg.norm(ab[1] - ab[0])))
+            middle = (a + b) / 2.0
+            names.append(((float(middle[0]), float(middle[1])), f"link {link}", GROUND))
+        place_labels(axes, [*names, *labels], np.vstack(obstacles), fontsize=8.5)
+
+    @staticmethod
+    def _bar(axes: Any, a: Real, b: Real, thickness: float) -> None:
+        from matplotlib.patches import FancyBboxPatch
+        from matplotlib.transforms import Affine2D
+
+        length, angle = float(np.linalg.norm(b - a)), math.atan2(b[1] - a[1], b[0] - a[0])
+        bar = FancyBboxPatch(
+            (0.0, -thickness / 2.0),
+            length,
+            thickness,
+            boxstyle=f"round,pad={thickness / 2.0},rounding_size={thickness}",
+            facecolor=LINK,
+            edgecolor=INK,
+            linewidth=0.6,
+            zorder=2,
+        )
+        bar.set_transform(Affine2D().rotate(angle).translate(*a) + axes.transData)
+        axes.add_patch(bar)
+
+    def _support(self, axes: Any, joint: str, at: Real) -> Real:
+        """Hatched support of a joint to the ground, on the side where no link is; returns its points."""
+        others = [
+            self.points[link, point] - at
+            for link in self.linkage.joints[joint].links
+            for point in self.linkage.links[link].points
+            if np.linalg.norm(self.points[link, point] - at) > 1e-9 * self.size
+        ]
+        away = [v / np.linalg.norm(v) for v in others]
+        side = min(
+            (np.array(d) for d in ((0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0))),
+            key=lambda d: max((float(d @ v) for v in away), default=0.0),
+        )
+        across = np.array([-side[1], side[0]])
+        depth, half = 0.034 * self.size, 0.024 * self.size
+        base = at + side * depth
+        triangle = np.array([at, base + across * half, base - across * half])
+        axes.fill(*triangle.T, facecolor="white", edgecolor=GROUND, linewidth=0.9, zorder=3)
+        axes.plot(*np.array([base - across * 1.6 * half, base + across * 1.6 * half]).T, color=GROUND, linewidth=1.1)
+        for step in np.linspace(-1.5, 1.5, 7):
+            start = base + across * half * step
+            axes.plot(*np.array([start, start + (side * 0.6 - across * 0.4) * half]).T, color=GROUND, linewidth=0.7)
+        return np.vstack([along(at, base + side * half), along(base - across * 1.6 * half, base + across * 1.6 * half)])
+
+    @staticmethod
+    def _arrow(axes: Any, start: Real, end: Real, colour: str) -> None:
+        axes.annotate(
+            "",
+            xy=tuple(end),
+            xytext=tuple(start),
+            arrowprops={"arrowstyle": "-|>,head_length=0.55,head_width=0.22", "color": colour, "linewidth": 1.5,
+                        "shrinkA": 0.0, "shrinkB": 0.0},
+            zorder=7,
+        )  # fmt: skip
+
+    def _torque(self, axes: Any) -> tuple[tuple[tuple[float, float], str, str], Real] | None:
+        """Draw the drive torque as an arc about its joint, clear of the driven link; its label and points."""
+        drive, torque = self.reactions.drive, self.reactions.drive_torque
+        if drive is None or torque == 0.0:
+            return None
+        at, radius = self._joint(drive.joint), 0.075 * self.size
+        middle = self.pose.angles[drive.link]
+        sweep = np.linspace(-1.0, 1.0, 40) * math.radians(60.0) * math.copysign(1.0, torque) + middle
+        arc = at + radius * np.column_stack([np.cos(sweep), np.sin(sweep)])
+        axes.plot(*arc[:-3].T, color=TORQUE, linewidth=1.5, zorder=7)
+        self._arrow(axes, arc[-5], arc[-1], TORQUE)
+        text = f"{number(abs(torque))} N·mm\n{turning(torque)} on {drive.link}"
+        return ((float(arc[0][0]), float(arc[0][1])), text, TORQUE), arc
+
+    def legend(self) -> list[Any]:
+        """Proxies for the legend, with the scale of the arrows."""
+        from matplotlib.lines import Line2D
+
+        key = _round_down(self.largest)
+        scale = f"; {number(key, 1)} N is {number(key * self.per_newton, 2)} mm long" if key > 0.0 else ""
+        handles = [Line2D([], [], color=JOINT_FORCE, linewidth=1.5, label=f"joint force{scale}")]
+        if self._loads():
+            handles.append(Line2D([], [], color=LOAD, linewidth=1.5, label="applied load"))
+        if self.reactions.drive is not None and self.reactions.drive_torque != 0.0:
+            handles.append(Line2D([], [], color=TORQUE, linewidth=1.5, label="drive torque"))
+        return handles
+
+
+def _round_down(value: float) -> float:
+    """Largest 1, 2 or 5 times a power of ten that is not above a value."""
+    if value <= 0.0:
+        return 0.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= value * (1.0 + 1e-12))

@@ -1,0 +1,72 @@
+"""Placing labels on a drawing so that they cover neither each other nor what is drawn."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_DIRECTIONS = 24
+_REACHES = (0.6, 1.2, 2.0, 3.0, 4.2)
+"""Distances that are tried, in heights of the label's text."""
+
+
+def place_labels(
+    axes: Any,
+    labels: Sequence[tuple[tuple[float, float], str, str]],
+    obstacles: NDArray[np.float64],
+    *,
+    fontsize: float,
+) -> None:
+    """Write labels (anchor, text, colour) beside their anchors, each where least is in its way.
+
+    axes        a matplotlib Axes whose limits and size no longer change
+    obstacles   (n, 2) points of what is drawn, in data coordinates
+
+    A label that had to move far away gets a thin line to its anchor. Greedy, in the order given.
+    """
+    from matplotlib.patheffects import withStroke
+
+    figure = axes.figure
+    renderer = figure.canvas.get_renderer()
+    inside = axes.get_window_extent(renderer)
+    drawn = axes.transData.transform(obstacles)
+    taken: list[tuple[float, float, float, float]] = []
+    for anchor, content, colour in labels:
+        text = axes.text(*anchor, content, fontsize=fontsize, color=colour, ha="center", va="center", zorder=10)
+        text.set_path_effects([withStroke(linewidth=2.0, foreground="white")])
+        box = text.get_window_extent(renderer)
+        half = np.array([box.width, box.height]) / 2.0 + 2.0
+        line = fontsize * figure.dpi / 72.0
+        at = axes.transData.transform(anchor)
+        best: tuple[float, NDArray[np.float64], float] | None = None
+        for reach, k in itertools.product(_REACHES, range(_DIRECTIONS)):
+            angle = 2.0 * math.pi * k / _DIRECTIONS
+            way = np.array([math.cos(angle), math.sin(angle)])
+            centre = at + way * (reach * line + float(np.abs(way) @ half))
+            low, high = centre - half, centre + half
+            covered = int(np.count_nonzero(((drawn > low) & (drawn < high)).all(axis=1)))
+            clash = sum(
+                max(0.0, min(high[0], x1) - max(low[0], x0)) * max(0.0, min(high[1], y1) - max(low[1], y0))
+                for x0, y0, x1, y1 in taken
+            )
+            outside = float(np.maximum(0.0, [*(inside.min - low), *(high - inside.max)]).sum())
+            cost = reach + 1.5 * covered + clash + 10.0 * outside
+            if best is None or cost < best[0]:
+                best = (cost, centre, reach)
+        assert best is not None
+        centre = best[1]
+        text.set_position(axes.transData.inverted().transform(centre))
+        taken.append((*(centre - half), *(centre + half)))
+        if best[2] > 2.5:
+            edge = axes.transData.inverted().transform(
+                centre + (at - centre) * min(1.0, half[1] / abs(at - centre).max())
+            )
+            axes.plot([anchor[0], edge[0]], [anchor[1], edge[1]], color=colour, linewidth=0.5, alpha=0.6, zorder=4)
+
+
+def along(start: NDArray[np.float64], end: NDArray[np.float64], count: int = 60) -> NDArray[np.float64]:
+    """Points (count, 2) on a line: what a label must not cover."""
+    return np.asarray(np.linspace(start, end, count))
