@@ -2,21 +2,47 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from geometry.pose import Pose
 from loads.applied import BodyForce, LineLoad, Load, PointLoad
-from loads.case import Case, LoadCase, vector3
+from loads.case import Axes, Case, LoadCase, vector3
 
 
 @dataclass(frozen=True, kw_only=True)
 class PartMass:
-    """Mass of a link's part [tonne] and its centroid (2,) in the link's frame [mm]."""
+    """Mass of a link [tonne], its centroid (2,) in the link's frame [mm], its moment of inertia [tonne mm²].
+
+    The moment of inertia is the one about the centroid and the axis z, in which the linkage moves.
+    """
 
     mass: float
     centroid: np.ndarray[tuple[int], np.dtype[np.float64]]
+    inertia: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class StatedLoad:
+    """A load as stated, whatever the pose.
+
+    load  its components in the axes named by ``axes``
+    axes  "global", or "link" for a load that turns with its link
+    """
+
+    load: Load
+    axes: Axes = "global"
+
+    def at(self, pose: Pose) -> Load:
+        """Return the load in global axes at a pose."""
+        if self.axes == "global" or isinstance(self.load, BodyForce):
+            return self.load
+        turn = np.eye(3)
+        turn[:2, :2] = pose.rotation(self.load.link)
+        if isinstance(self.load, PointLoad):
+            return replace(self.load, wrench=np.concatenate([turn @ self.load.wrench[:3], turn @ self.load.wrench[3:]]))
+        return replace(self.load, at_start=turn @ self.load.at_start, at_end=turn @ self.load.at_end)
 
 
 def needs_masses(case: Case) -> bool:
@@ -25,24 +51,30 @@ def needs_masses(case: Case) -> bool:
 
 
 def actions(case: Case, load_case: LoadCase, pose: Pose, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
-    """Return every load of a load case; ``masses`` must hold the links with a part if they weigh."""
-    loads: list[Load] = []
+    """Return every load of a load case at a pose, in global axes; ``masses`` as for ``stated_loads``."""
+    return tuple(stated.at(pose) for stated in stated_loads(case, load_case, masses))
+
+
+def stated_loads(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass]) -> tuple[StatedLoad, ...]:
+    """Return every load of a load case, good for any pose; the links in ``masses`` weigh if any weighs."""
+    loads: list[StatedLoad] = []
     for force in load_case.forces:
         wrench = np.concatenate([vector3(force.force), np.zeros(3)])
-        loads.append(PointLoad(link=force.link, point=force.at, wrench=wrench))
+        loads.append(StatedLoad(load=PointLoad(link=force.link, point=force.at, wrench=wrench), axes=force.axes))
     for moment in load_case.moments:
         wrench = np.array([0.0, 0.0, 0.0, 0.0, 0.0, moment.moment])
-        loads.append(PointLoad(link=moment.link, point=moment.at, wrench=wrench))
+        loads.append(StatedLoad(load=PointLoad(link=moment.link, point=moment.at, wrench=wrench)))
     for spread in load_case.spread:
         points = case.links[spread.link].points
         start, end = sorted((points[spread.start][0], points[spread.end][0]))
         density = vector3(spread.total) / (end - start)
-        loads.append(LineLoad(link=spread.link, start=start, end=end, at_start=density, at_end=density))
+        line = LineLoad(link=spread.link, start=start, end=end, at_start=density, at_end=density)
+        loads.append(StatedLoad(load=line, axes=spread.axes))
     if load_case.own_weight:
         direction = load_case.gravity_direction
         gravity = load_case.gravity * np.array([math.cos(direction), math.sin(direction), 0.0])
         loads += [
-            BodyForce(link=link, mass=masses[link].mass, centroid=masses[link].centroid, acceleration=gravity)
-            for link in case.checked_links
+            StatedLoad(load=BodyForce(link=link, mass=own.mass, centroid=own.centroid, acceleration=gravity))
+            for link, own in masses.items()
         ]
     return tuple(loads)

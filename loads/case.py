@@ -7,16 +7,19 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from geometry.body_rules import check_body
 from geometry.errors import CaseError
 from geometry.linkage import Joint, Link, Linkage
 from geometry.material import Material, library
-from geometry.model import CaseModel, Name
+from geometry.model import CaseModel, Name, Text
 from geometry.part import Body, Part, Pin, PlainEnd
 from geometry.pose import Pose, solve_pose
 from geometry.units import NOT_NEGATIVE, POSITIVE, Acceleration, Angle, Force, Length, Moment
+from loads.motion_spec import MotionSpec
 from loads.statics import Drive, check_drive
 
-Vector = tuple[Force, Force] | tuple[Force, Force, Force]
+Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
+Axes = Literal["global", "link"]
 SCHEMA_VERSION = 1
 
 
@@ -43,11 +46,13 @@ class DriveSpec(CaseModel):
 
 
 class PointForce(CaseModel):
-    """A force at a point of a link, in global axes."""
+    """A force at a point of a link."""
 
     link: Name
     at: Name
     force: Vector
+    axes: Axes = "global"
+    """Axes of the components: global, or the link's own, so that the force turns with the link."""
 
 
 class PointMoment(CaseModel):
@@ -59,18 +64,20 @@ class PointMoment(CaseModel):
 
 
 class SpreadForce(CaseModel):
-    """A force spread evenly along the axis of a link between two of its points, in global axes."""
+    """A force spread evenly along the axis of a link between two of its points."""
 
     link: Name
     start: Name
     end: Name
     total: Vector
+    axes: Axes = "global"
+    """Axes of the components: global, or the link's own, so that the force turns with the link."""
 
 
 class LoadCase(CaseModel):
     """One set of loads that act at the same time."""
 
-    title: str = ""
+    title: Text = ""
     own_weight: bool = False
     """True: every link with a part weighs what its volume and density say. False: links are
     massless, and a stated total weight stands among the forces."""
@@ -116,7 +123,7 @@ class CantileverCalculation(CaseModel):
 class PublishedStatics(CaseModel):
     """A published system of equilibrium equations, to be solved and audited."""
 
-    source: str
+    source: Text
     exact: str
     """CSV file beside the case file: the coefficients as the source's formulas give them (N, m)."""
     printed: str
@@ -147,15 +154,16 @@ class Case(CaseModel):
     """A linkage with its pose, drive, parts, loads and checks."""
 
     schema_version: Literal[1]
-    title: str
-    description: str = ""
-    source: str = ""
-    assumptions: tuple[str, ...] = ()
+    title: Text
+    description: Text = ""
+    source: Text = ""
+    assumptions: tuple[Text, ...] = ()
     """What the case assumes beyond its source, one sentence each; the report lists them."""
     links: Annotated[dict[Name, Link], Field(min_length=2, max_length=200)]
     joints: Annotated[dict[Name, Joint], Field(min_length=1, max_length=400)]
     pose: PoseSpec = PoseSpec()
     drive: DriveSpec | None = None
+    motion: MotionSpec | None = None
     materials: dict[Name, Material] = {}
     """Material cards of the case's own; the library's are there by name without being listed."""
     parts: dict[Name, Part] = {}
@@ -173,6 +181,12 @@ class Case(CaseModel):
                 f"drive: the linkage has mobility {self.linkage.mobility}, but nothing drives it; "
                 "add a [drive] with its link and joint"
             )
+        if self.linkage.mobility != (1 if self.drive else 0):
+            raise CaseError(
+                f"drive: the linkage has mobility {self.linkage.mobility} (Gruebler) but {1 if self.drive else 0} "
+                "drive; they must be equal, so add or remove joints or links"
+            )
+        _check_pose(self)
         for name, part in self.parts.items():
             if part.material not in self.all_materials:
                 raise CaseError(
@@ -185,7 +199,7 @@ class Case(CaseModel):
                     f"links.{name}.part: '{link.part}' is unknown; the parts are {', '.join(self.parts) or 'none'}"
                 )
             if link.part is not None:
-                self.body(name)
+                _check_body(f"links.{name}", self.body(name))
         for name, load_case in self.load_cases.items():
             _check_loads(self, f"load_cases.{name}", load_case)
         for name, check in self.checks.items():
@@ -195,11 +209,24 @@ class Case(CaseModel):
                         f"checks.{name}.links: '{checked}' is no moving link with a part; "
                         f"choose among {', '.join(self.checked_links) or 'none'}"
                     )
+            for checked in check.links or self.checked_links:
+                stated = check.type != "safety-factor" or check.minimum is not None
+                if not stated and self.material_of(checked).minimum_safety_factor is None:
+                    raise CaseError(
+                        f"checks.{name}.minimum: it is missing, and '{self.part_of(checked).material}', the material of "
+                        f"link '{checked}', states no minimum_safety_factor; add one of the two"
+                    )
         for name, hand in self.hand_calculations.items():
             if hand.part not in self.parts:
                 raise CaseError(
                     f"hand_calculations.{name}.part: '{hand.part}' is unknown; the parts are {', '.join(self.parts)}"
                 )
+        if self.motion is not None:
+            for moved in (self.motion_coordinate, *self.motion.masses):
+                if moved not in self.linkage.moving:
+                    raise CaseError(
+                        f"motion: '{moved}' is not a moving link; choose among {', '.join(self.linkage.moving)}"
+                    )
         for audited in self.published_statics.links if self.published_statics else ():
             if audited not in self.linkage.moving:
                 raise CaseError(f"published_statics.links: '{audited}' is not a moving link; name moving links")
@@ -241,7 +268,14 @@ class Case(CaseModel):
         Raises ``CaseError`` where a pin has no diameter, or a plain end does not lie on the axis.
         """
         record = self.links[link]
-        pinned = {self.linkage.point_of(j, link): j for j in self.linkage.joints_of(link)}
+        pinned: dict[str, str] = {}
+        for joint in self.linkage.joints_of(link):
+            first = pinned.setdefault(self.linkage.point_of(joint, link), joint)
+            if self.joints[first].pin_diameter != self.joints[joint].pin_diameter:
+                raise CaseError(
+                    f"joints.{joint}.pin_diameter: it differs from that of joint '{first}', but both pins sit in one "
+                    f"hole of link '{link}'; give both the same diameter"
+                )
         pins, ends = [], []
         for name, (x, y) in record.points.items():
             if name in pinned:
@@ -261,9 +295,40 @@ class Case(CaseModel):
                 ends.append(PlainEnd(name=name, x=x, patch=record.end_patch))
         return Body(part=self.part_of(link), pins=tuple(pins), ends=tuple(ends), holes=record.holes)
 
+    @property
+    def motion_coordinate(self) -> str:
+        """The link whose direction the motion prescribes; raises ``CaseError`` where the case has no motion."""
+        name = None if self.motion is None else self.motion.coordinate or self.pose.coordinate
+        if name is None:
+            raise CaseError(
+                "motion: the case does not say what moves; add [motion] with its coordinate and a range or turn = true"
+            )
+        return name
+
     def solve_pose(self) -> Pose:
         """Assemble the linkage in the stated pose."""
         return solve_pose(self.linkage, coordinate=self.pose.coordinate, angle=self.pose.angle, near=self.pose.near)
+
+
+def _check_pose(case: Case) -> None:
+    moving = case.linkage.moving
+    for entry, names in (("pose.coordinate", [case.pose.coordinate]), ("pose.near", [*case.pose.near])):
+        for name in names:
+            if name is not None and name not in moving:
+                raise CaseError(f"{entry}: '{name}' is not a moving link; choose among {', '.join(moving)}")
+    if case.linkage.mobility == 1 and case.pose.coordinate is None:
+        raise CaseError("pose.coordinate: the linkage can move, but no link fixes its pose; name one and its angle")
+    if case.linkage.mobility == 0 and case.pose.coordinate is not None:
+        raise CaseError(
+            f"pose.coordinate: it is '{case.pose.coordinate}', but the linkage cannot move (mobility 0); remove it"
+        )
+
+
+def _check_body(entry: str, body: Body) -> None:
+    try:
+        check_body(body)
+    except CaseError as error:
+        raise CaseError(f"{entry}: {error}") from None
 
 
 def _check_loads(case: Case, where: str, load_case: LoadCase) -> None:
