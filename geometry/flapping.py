@@ -223,7 +223,7 @@ class FlappingWing:
         """Return the metrics as their names say; CaseError where the crank does not turn fully."""
         (low_at, low), (high_at, high) = self.reversals()
         right, left = self._turn
-        difference = left.beta - right.beta
+        difference = wrap(left.beta - right.beta)
         transmission = self.four_bar.transmission_range()
         # The left side stands at crank angle θ as the right one at π - θ.
         lags = [abs(float(wrap(math.pi - 2 * at))) for at in (low_at, high_at)]
@@ -251,8 +251,9 @@ class FlappingWing:
     def criteria(self) -> tuple[Criterion, ...]:
         """Judge the design by the source's criteria, each by the metric that its name says.
 
-        Grashof; phase lag ≤ 3°; oscillation ≤ 40°; 60° ≤ ψ ≤ 120°; |λ| ≤ 40°; rocker not longer than x. The limit
-        of the phase lag is applied to the difference between the sides, which is what the source computed.
+        Grashof; phase lag ≤ 3°; oscillation ≤ 40°, and 70.6° from where flight is said to tremble;
+        60° ≤ ψ ≤ 120°; |λ| ≤ 40°; rocker not longer than x. The limit of the phase lag is applied
+        to the difference between the sides, which is what the source computed.
         """
         grashof = Criterion(name="grashof", fulfilled=self.grashof.satisfied, sentence=self.grashof.sentence)
         collision = Criterion(
@@ -270,6 +271,7 @@ class FlappingWing:
             collision,
             _limit("side difference", metrics.side_difference, 3.0, "The sides differ by at most"),
             _limit("oscillation", metrics.oscillation, 40.0, "The inner wing swings over"),
+            _limit("tremor", metrics.oscillation, 70.6, "Flight is said to tremble from 70.6° on; the swing is"),
             _limit("transmission", metrics.asymmetry, 30.0, "The transmission angle leaves 90° by at most"),
             _limit("outer wing", steepest, 40.0, "The outer wing stands to the horizontal at up to"),
         )
