@@ -58,6 +58,41 @@ def test_negative_lengths_are_links_turned_by_half_a_turn():
     assert min(abs(angle - psi[0]) for angle in found.psi_at(theta[0] + math.pi)) < 1e-9
 
 
+def test_a_turned_output_changes_psi_alone():
+    bar = FourBar(a=6.0, b=3.0, c=5.0, d=7.5)
+    theta, psi = pairs(bar, [0.7, 0.9, 1.1])
+    plain, found = synthesise(theta, psi, bar.d), synthesise(theta, [angle + math.pi for angle in psi], bar.d)
+    assert (found.b_turned, found.c_turned) == (False, True)
+    assert any(finding.kind == "sign" and "link c" in finding.sentence for finding in found.findings)
+    for turned, point in zip(found.points, plain.points, strict=True):
+        assert turned.phi == pytest.approx(point.phi, abs=1e-9)
+        assert turned.branches == point.branches
+    for turned, lock in zip(found.lock_ups, plain.lock_ups, strict=True):
+        assert (turned.phi, turned.theta) == pytest.approx((lock.phi, lock.theta), abs=1e-6)
+        assert math.cos(turned.psi - lock.psi) == pytest.approx(-1.0, abs=1e-9)
+    assert np.cos(np.subtract(found.psi_at(theta[0]), plain.psi_at(theta[0]))) == pytest.approx([-1.0, -1.0], abs=1e-9)
+    defects = [[(f.kind, f.drive) for f in x.findings if "defect" in f.kind] for x in (found, plain)]
+    assert defects[0] == defects[1]
+
+
+def test_a_turned_output_keeps_its_order():
+    bar = FourBar(a=6.0, b=3.0, c=5.0, d=7.5)
+    theta, psi = pairs(bar, [0.7, 1.1, 0.9])
+    found = synthesise(theta, [angle + math.pi for angle in psi], bar.d)
+    plain = synthesise(theta, psi, bar.d)
+    defects = [[(f.kind, f.drive) for f in x.findings if "defect" in f.kind] for x in (found, plain)]
+    assert defects[0] == defects[1]
+    assert ("order-defect", "c") in defects[0]
+
+
+def test_nearly_equal_pairs_are_told_as_ill_conditioned():
+    bar = FourBar(a=2.0, b=4.0, c=3.5, d=5.0)
+    found = synthesise(*pairs(bar, [0.4, 0.401, 0.402]), bar.d)
+    assert found.condition > 1e6
+    (finding,) = [finding for finding in found.findings if finding.kind == "conditioning"]
+    assert "digits at best" in finding.sentence
+
+
 def test_lock_ups_satisfy_freudenstein_and_end_the_range():
     found = synthesise(np.radians([0, 20, 5]), np.radians([30, 110, 130]), 10.0)
     bar = found.four_bar
