@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from geometry.closure import LoopClosure
 from geometry.errors import CaseError
 from geometry.linkage import Linkage
+from geometry.open_loop import open_loop
 
 Real = NDArray[np.float64]
 
@@ -21,6 +22,8 @@ _TARGET = 1e-14
 _ITERATIONS = 60
 _LARGEST_STEP = 0.5
 _STARTS = 256
+_LOOKED_INTO = 12
+"""Attempts from which the least gap of an open loop is sought."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +146,8 @@ def solve_pose(
     """Assemble the linkage with ``coordinate`` at ``angle`` [rad], on the branch that ``near`` states.
 
     ``near`` gives rough directions of links [rad]; the branch is the one assembly in which each of
-    these links lies within 90° of its stated direction.
+    these links lies within 90° of its stated direction. Where ``near`` names all links, it is the
+    assembly that Newton's iteration finds from there.
 
     Raises ``CaseError`` if the mobility is not the number of pose coordinates, if the linkage
     cannot be assembled (naming the loop that stays open and by how much), or if ``near`` leaves
@@ -169,9 +173,9 @@ def solve_pose(
         q, gaps = _newton(closure, fixed, near | fixed)
         if _is_assembled(closure, gaps) and not _astray(closure, q, near):
             return _pose(closure, q, coordinate, gaps)
-    found, best = _assemblies(closure, fixed, near, free)
+    found, attempts = _assemblies(closure, fixed, near, free)
     if not found:
-        _explain_open(closure, best, fixed)
+        raise CaseError(_explain_open(closure, attempts, fixed))
     kept = [(q, gaps) for q, gaps in found if not _astray(closure, q, near)]
     if len(kept) == 1:
         return _pose(closure, *_first(kept, coordinate))
@@ -205,7 +209,7 @@ def _newton(closure: LoopClosure, fixed: Mapping[str, float], start: Mapping[str
     """
     moving, scale = closure.linkage.moving, closure.linkage.longest
     q = np.array([start.get(link, 0.0) for link in moving] + [0.0] * len(closure.slots))
-    free = np.array([link not in fixed for link in moving] + [True] * len(closure.slots))
+    free = _free(closure, fixed)
     weights = np.array([1.0] * len(moving) + [scale] * len(closure.slots))[free]
     gaps = closure.residual(q)
     for _ in range(_ITERATIONS):
@@ -227,10 +231,14 @@ def _newton(closure: LoopClosure, fixed: Mapping[str, float], start: Mapping[str
     return q, gaps
 
 
+def _free(closure: LoopClosure, fixed: Mapping[str, float]) -> NDArray[np.bool_]:
+    return np.array([link not in fixed for link in closure.linkage.moving] + [True] * len(closure.slots))
+
+
 def _assemblies(
     closure: LoopClosure, fixed: Mapping[str, float], near: Mapping[str, float], free: list[str]
-) -> tuple[list[tuple[Real, Real]], tuple[Real, Real]]:
-    """Look for every assembly from many starts; also return the least open attempt."""
+) -> tuple[list[tuple[Real, Real]], list[tuple[Real, Real]]]:
+    """Look for every assembly from many starts; also return all attempts."""
     quarter = [0.3, 0.3 + math.pi / 2, 0.3 + math.pi, 0.3 + 1.5 * math.pi]
     choices = [[near[link], near[link] + 0.9, near[link] - 0.9] if link in near else quarter for link in free]
     starts: Iterable[tuple[float, ...]] = itertools.product(*choices)
@@ -238,15 +246,13 @@ def _assemblies(
         rng = np.random.default_rng(0)
         starts = [tuple(c[rng.integers(len(c))] for c in choices) for _ in range(_STARTS)]
     found: list[tuple[Real, Real]] = []
-    best: tuple[Real, Real] | None = None
+    attempts: list[tuple[Real, Real]] = []
     for start in starts:
         q, gaps = _newton(closure, fixed, dict(zip(free, start, strict=True)) | dict(fixed))
-        if best is None or np.linalg.norm(gaps) < np.linalg.norm(best[1]):
-            best = (q, gaps)
+        attempts.append((q, gaps))
         if _is_assembled(closure, gaps) and not any(_same(closure, q, other) for other, _ in found):
             found.append((q, gaps))
-    assert best is not None
-    return found, best
+    return found, attempts
 
 
 def _turned(difference: Real | float) -> Real:
@@ -268,14 +274,11 @@ def _describe(closure: LoopClosure, q: Real, free: list[str]) -> str:
     return ", ".join(f"{link} {math.degrees(angles[link]) % 360.0:.1f} deg" for link in free)
 
 
-def _explain_open(closure: LoopClosure, best: tuple[Real, Real], fixed: Mapping[str, float]) -> None:
-    gaps = best[1]
-    count = len(closure.loops)
-    if count:
-        sizes = np.hypot(gaps[:count], gaps[count : 2 * count])
-        worst = int(np.argmax(sizes))
-        where = f"loop {'-'.join(closure.loop_path(closure.loops[worst]))} stays open by {sizes[worst]:.4g} mm"
-    else:
-        where = "the fixed angle of a slider is not met"
+def _explain_open(closure: LoopClosure, attempts: list[tuple[Real, Real]], fixed: Mapping[str, float]) -> str:
+    nearest = sorted(attempts, key=lambda attempt: float(np.linalg.norm(attempt[1])))[:_LOOKED_INTO]
+    worst = open_loop(closure, _free(closure, fixed), [q for q, _ in nearest])
+    where = "its joints cannot be brought together"
+    if worst is not None:
+        where = f"loop {'-'.join(closure.loop_path(worst[0]))} stays open by {worst[1]:.4g} mm"
     at = "".join(f" with {link} at {math.degrees(angle):.6g} deg" for link, angle in fixed.items())
-    raise CaseError(f"pose: the linkage cannot be assembled{at}: {where}; change the angle or the links' lengths")
+    return f"pose: the linkage cannot be assembled{at}: {where}; change the angle or the links' lengths"
