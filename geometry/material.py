@@ -1,17 +1,27 @@
 """Material cards with the source of every value, and the library that alula ships."""
 
+import itertools
 import tomllib
 from functools import cache
 from importlib.resources import files
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from geometry.model import CaseModel
-from geometry.units import NOT_NEGATIVE, POSITIVE, Density, Stress
+from geometry.model import CaseModel, Text
+from geometry.units import NOT_NEGATIVE, POSITIVE, Density, Stress, Temperature
 
 Status = Literal["measured", "datasheet", "handbook", "assumed"]
+
+
+def _ordered(value: tuple[float, float]) -> tuple[float, float]:
+    if value[0] > value[1]:
+        raise PydanticCustomError("range_reversed", "the first value of a range must not exceed the second; swap them")
+    return value
+
+
+Range = Annotated[tuple[Annotated[Stress, POSITIVE], Annotated[Stress, POSITIVE]], AfterValidator(_ordered)]
 
 
 class Fatigue(CaseModel):
@@ -28,13 +38,13 @@ class Fatigue(CaseModel):
     """Exponent of the power law; none where a single point is known."""
     stress_ratio: Annotated[float, Field(ge=-1, lt=1)] = 0.0
     """Least over largest stress of the cycle in the test."""
-    source: str
+    source: Text
 
 
 class Material(CaseModel):
     """An isotropic linear elastic material: density, stiffness, strength and where they come from."""
 
-    title: str
+    title: Text
     density: Annotated[Density, POSITIVE]
     youngs_modulus: Annotated[Stress, POSITIVE]
     poissons_ratio: Annotated[float, Field(gt=-1.0, lt=0.5)]
@@ -43,21 +53,21 @@ class Material(CaseModel):
     strength: Literal["yield", "ultimate"]
     """Which of the two the safety factor uses: yield against von Mises stress (ductile), ultimate
     against the largest principal stress (brittle)."""
-    youngs_modulus_range: tuple[Stress, Stress] | None = None
-    strength_range: tuple[Stress, Stress] | None = None
+    youngs_modulus_range: Range | None = None
+    strength_range: Range | None = None
     """Scatter of the strength that the safety factor uses."""
     sustained_stress: Annotated[Stress, NOT_NEGATIVE] | None = None
     """Largest stress under a load that stays."""
     sustained_modulus: Annotated[Stress, POSITIVE] | None = None
     """Modulus under a load that stays (creep modulus)."""
-    temperature_factors: tuple[tuple[float, float], ...] = ()
-    """(temperature in °C, factor on strength), rising in temperature."""
+    temperature_factors: tuple[tuple[Temperature, Annotated[float, Field(gt=0)]], ...] = ()
+    """(temperature, factor on strength), rising in temperature."""
     fatigue: Fatigue | None = None
     minimum_safety_factor: Annotated[float, Field(gt=0)] | None = None
     """Default limit for a static check of an untested part."""
     minimum_safety_factor_tested: Annotated[float, Field(gt=0)] | None = None
     """Default limit where parts of the same make were tested."""
-    sources: dict[str, str]
+    sources: dict[str, Text]
     """Entry -> where its value comes from."""
     status: dict[str, Status]
     """Entry -> how well it is known."""
@@ -76,6 +86,17 @@ class Material(CaseModel):
                 "yield_strength {y} MPa is above ultimate_strength {u} MPa, which no material can have; "
                 "check the units and the decimal point",
                 {"y": f"{self.yield_strength:g}", "u": f"{self.ultimate_strength:g}"},
+            )
+        temperatures = [temperature for temperature, _ in self.temperature_factors]
+        if any(a >= b for a, b in itertools.pairwise(temperatures)):
+            raise PydanticCustomError(
+                "temperatures_not_rising", "temperature_factors must rise in temperature; sort them and state each once"
+            )
+        if unknown := [entry for entry in (*self.sources, *self.status) if entry not in type(self).model_fields]:
+            raise PydanticCustomError(
+                "no_such_entry",
+                "sources or status speak of '{entry}', but a material has no such entry; correct its name",
+                {"entry": unknown[0]},
             )
         return self
 

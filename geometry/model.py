@@ -1,5 +1,6 @@
 """What all records of the case file have in common."""
 
+import unicodedata
 from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict
@@ -15,13 +16,22 @@ class CaseModel(BaseModel):
 
 
 def _name(text: str) -> str:
-    if not (0 < len(text) <= 64 and text[0].isalnum() and all(c.isalnum() or c in "-_+ " for c in text)):
+    letters = all(c.isalnum() or c in "-_+ " for c in text)
+    if not (0 < len(text) <= 64 and text[0].isalnum() and letters and text[-1] != " "):
         raise PydanticCustomError(
             "bad_name",
-            "a name is made of letters, digits, '-', '_', '+' and spaces, begins with a letter or a digit "
-            "and has at most 64 characters",
+            "a name is made of letters, digits, '-', '_', '+' and spaces, begins with a letter or a digit, "
+            "ends without a space and has at most 64 characters; rename it",
         )
     return text
 
 
+def _text(text: str) -> str:
+    # Control characters would reach the terminal, where they can move the cursor or clear the screen.
+    if any(unicodedata.category(c) == "Cc" and c not in "\n\t" for c in text):
+        raise PydanticCustomError("control_character", "text must not hold control characters; remove them")
+    return text
+
+
 Name = Annotated[str, AfterValidator(_name)]
+Text = Annotated[str, AfterValidator(_text)]

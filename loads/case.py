@@ -213,8 +213,8 @@ class Case(CaseModel):
                 stated = check.type != "safety-factor" or check.minimum is not None
                 if not stated and self.material_of(checked).minimum_safety_factor is None:
                     raise CaseError(
-                        f"checks.{name}.minimum: it is missing, and '{self.part_of(checked).material}', the material of "
-                        f"link '{checked}', states no minimum_safety_factor; add one of the two"
+                        f"checks.{name}.minimum: it is missing, and '{self.part_of(checked).material}', the material "
+                        f"of link '{checked}', states no minimum_safety_factor; add one of the two"
                     )
         for name, hand in self.hand_calculations.items():
             if hand.part not in self.parts:

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from geometry.errors import CaseError
 from loads.case import SCHEMA_VERSION, Case
+from loads.explain import printable, sentence
 
 LARGEST_FILE = 1 << 20
 """Bytes; a case file is some kilobytes."""
@@ -30,10 +31,10 @@ def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
     text, where = read_text(name_or_path)
     try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"{where}: this is not valid TOML: {error}; correct that line") from None
     except RecursionError:
         raise CaseError(f"{where}: the tables are nested too deeply; flatten them") from None
+    except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
+        raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; correct that line") from None
     for override in overrides:
         _override(data, override)
     return validate(data)
@@ -49,7 +50,7 @@ def read_text(name_or_path: str) -> tuple[str, str]:
     except (OSError, ValueError):
         exists = False
     if not exists:
-        what = "is a folder" if os.path.isdir(name_or_path) else "there is no such file or built-in case"
+        what = "it is a folder" if os.path.isdir(name_or_path) else "there is no such file or built-in case"
         choice = ", ".join(built_in_cases())
         raise CaseError(f"case '{shown}': {what}; give a path to a case file or one of {choice}")
     try:
@@ -62,7 +63,7 @@ def read_text(name_or_path: str) -> tuple[str, str]:
         raise CaseError(f"case '{shown}': it is not UTF-8 text; save it as UTF-8") from None
     if not text.strip():
         raise CaseError(f"case '{shown}': the file is empty; start from 'alula new'")
-    return text, path.name
+    return text, printable(path.name)
 
 
 def read_companion(case_path: str, name: str) -> str:
@@ -75,50 +76,47 @@ def read_companion(case_path: str, name: str) -> str:
             return source.read_text(encoding="utf-8")
     else:
         path = Path(case_path).parent / name
-        if path.is_file() and path.stat().st_size <= LARGEST_FILE:
-            try:
+        try:
+            if path.is_file() and path.stat().st_size <= LARGEST_FILE:
                 return path.read_text(encoding="utf-8")
-            except (OSError, UnicodeDecodeError):
-                pass
+        except (OSError, ValueError):  # no permission, a name too long, not UTF-8
+            pass
     raise CaseError(f"'{printable(name)}' is not a readable file beside the case file; put it there")
-
-
-def printable(text: str) -> str:
-    """Return text without control characters, shortened, for a message."""
-    clean = "".join(c if c.isprintable() else "?" for c in text)
-    return clean if len(clean) <= 80 else clean[:77] + "..."
 
 
 def validate(data: dict[str, Any]) -> Case:
     """Validate a case given as nested tables; raises ``CaseError``."""
-    if data.get("schema_version") != SCHEMA_VERSION:
+    version = data.get("schema_version")
+    if version != SCHEMA_VERSION or type(version) is not int:
+        what = "it is missing" if version is None else f"it is {printable(repr(version))}"
         raise CaseError(
-            f"schema_version: it is {printable(repr(data.get('schema_version')))}, but this version of alula reads "
-            f"{SCHEMA_VERSION}; write schema_version = {SCHEMA_VERSION}"
+            f"schema_version: {what}, but this version of alula reads {SCHEMA_VERSION}; "
+            f"write schema_version = {SCHEMA_VERSION}"
         )
     try:
         return Case.model_validate(data)
     except ValidationError as error:
-        raise CaseError(_sentence(error)) from None
+        raise CaseError(sentence(error)) from None
 
 
 def _override(data: dict[str, Any], override: str) -> None:
     path, sign, text = override.partition("=")
     path = path.strip()
-    if not sign or not path:
+    keys = [key.strip().strip("\"'") for key in path.split(".")]
+    if not sign or not all(keys):
         raise CaseError(f"--set '{printable(override)}': write it as path=value, for example pose.angle=\"30 deg\"")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         value = text.strip()
     here: Any = data
-    keys = path.split(".")
     for i, key in enumerate(keys):
         last = i == len(keys) - 1
         if isinstance(here, list):
             if not (key.isascii() and key.isdigit() and len(key) < 6 and int(key) < len(here)):
                 raise CaseError(
-                    f"--set {printable(path)}: '{printable(key)}' must be a number from 0 to {len(here) - 1} here"
+                    f"--set {printable(path)}: '{printable(key)}' does not name one of the {len(here)} entries of this "
+                    "list; count them from 0"
                 )
             index: Any = int(key)
         elif isinstance(here, dict):
@@ -126,32 +124,11 @@ def _override(data: dict[str, Any], override: str) -> None:
             if not last and key not in here:
                 here[key] = {}
         else:
+            above = printable(".".join(keys[:i]))
             raise CaseError(
-                f"--set {printable(path)}: '{printable('.'.join(keys[:i]))}' is a value, so nothing can be set below it"
+                f"--set {printable(path)}: '{above}' is a value, so nothing can be set below it; correct the path"
             )
         if last:
             here[index] = value
         else:
             here = here[index]
-
-
-def _sentence(error: ValidationError) -> str:
-    """One sentence for the first problem: entry, value, rule, remedy."""
-    first = error.errors(include_url=False)[0]
-    entry = ".".join(map(str, _without_tag(first["loc"]))) or "case"
-    value = first["input"]
-    shown = "" if isinstance(value, dict | list | tuple) else f" (it is {printable(repr(value))})"
-    kind, message = first["type"], first["msg"]
-    if kind == "extra_forbidden":
-        return f"{printable(entry)}: this key is unknown; correct its name or remove it"
-    if kind == "missing":
-        return f"{printable(entry)}: this entry is missing; add it"
-    more = len(error.errors()) - 1
-    also = f" ({more} more like this)" if more > 3 else ""
-    message = message[0].lower() + message[1:]
-    return f"{printable(entry)}{shown}: {message}{also}"
-
-
-def _without_tag(loc: tuple[int | str, ...]) -> tuple[int | str, ...]:
-    """Leave out the type name that pydantic puts behind the name of a part, check or hand calculation."""
-    return (*loc[:2], *loc[3:]) if loc[0] in ("parts", "checks") else loc

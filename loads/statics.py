@@ -205,6 +205,11 @@ def check_drive(linkage: Linkage, drive: Drive | None) -> None:
             f"drive.joint: '{drive.joint}' is no joint of link '{drive.link}'; "
             f"choose one of {', '.join(linkage.joints_of(drive.link))}"
         )
+    if linkage.joints[drive.joint].type == "slider":
+        raise CaseError(
+            f"drive.joint: '{drive.joint}' is a slider, where no link can turn, so a torque moves nothing there; "
+            "drive a link about a revolute joint"
+        )
 
 
 def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Reactions:

@@ -96,7 +96,8 @@ def test_the_unit_of_any_other_dimension_is_refused(dimension: str) -> None:
         ("length", "5 m^99999999"),
         ("length", "5 (mm)"),
         ("length", "5 mm.__class__"),
-        ("length", "5 #"),
+        ("length", "0x10 mm"),
+        ("length", "1e5e5 mm"),
         ("length", "5 /mm"),
     ],
 )
@@ -114,8 +115,10 @@ def test_a_bare_number_asks_for_its_unit(number: object) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["", " ", "mm", "nan mm", "inf mm", "-inf mm", "1e999 mm", "1,5 mm", "1_000 mm", "0x10 mm", "١ mm", "--1 mm"]
-    + ["1e5e5 mm", "1 mm" + " " * 100, "9" * 100 + " mm", None, [], {}, b"1 mm", ("1 mm",)],
+    [
+        *["", " ", "mm", "nan mm", "inf mm", "-inf mm", "1e999 mm", "1,5 mm", "1_000 mm", "١ mm", "--1 mm"],
+        *["1 mm" + " " * 100, "9" * 100 + " mm", None, [], {}, b"1 mm", ("1 mm",)],
+    ],
 )
 def test_nonsense_is_refused_with_an_example(text: object) -> None:
     with pytest.raises(PydanticCustomError, match=r'write for example "125 mm"') as caught:
