@@ -21,6 +21,7 @@ from geometry.errors import CaseError
 from geometry.pose import Pose
 from loads.applied import Load
 from loads.case import PublishedStatics
+from loads.explain import printable
 
 Real = NDArray[np.float64]
 _MM = 1000.0
@@ -78,17 +79,20 @@ class StaticsAudit:
 
 def read_matrix(text: str) -> tuple[tuple[str, ...], Real]:
     """Read a coefficient matrix from CSV text whose first line names the columns."""
-    rows = list(csv.reader(io.StringIO(text)))
     try:
+        rows = list(csv.reader(io.StringIO(text)))
         columns = tuple(name.strip() for name in rows[0])
         matrix = np.array([[float(x) for x in row] for row in rows[1:] if row])
-    except (IndexError, ValueError) as error:
-        raise CaseError(f"published_statics: the coefficient file cannot be read ({error}); write numbers") from None
+    except (IndexError, ValueError, csv.Error) as error:
+        why = printable(str(error))
+        raise CaseError(f"published_statics: the coefficient file cannot be read ({why}); write numbers") from None
     if matrix.shape != (len(columns), len(columns)):
         raise CaseError(
             f"published_statics: the coefficients have shape {matrix.shape} for {len(columns)} columns; "
-            "as many equations as unknowns are needed"
+            "give as many equations as unknowns"
         )
+    if not np.all(np.isfinite(matrix)):
+        raise CaseError("published_statics: a coefficient is not finite; write finite numbers")
     return columns, matrix
 
 
@@ -109,11 +113,13 @@ def audit(
         )
     rhs = np.zeros(len(columns))
     for number, value in published.rhs.items():
-        if not number.isascii() or not number.isdigit() or not 1 <= int(number) <= len(columns):
-            raise CaseError(f"published_statics.rhs: '{number}' is no equation; number them from 1 to {len(columns)}")
+        if not number.isascii() or not number.isdigit() or len(number) > 6 or not 1 <= int(number) <= len(columns):
+            raise CaseError(
+                f"published_statics.rhs: '{printable(number)}' is no equation; number them from 1 to {len(columns)}"
+            )
         rhs[int(number) - 1] = value
     try:
-        solutions = np.linalg.solve(exact, rhs), np.linalg.solve(printed, rhs)
+        solutions = _solve(exact, rhs), _solve(printed, rhs)
     except np.linalg.LinAlgError:
         raise CaseError("published_statics: the coefficient matrix is singular; check its rows") from None
     half = 0.5 * 10.0**-published.digits
@@ -126,7 +132,7 @@ def audit(
         printed=solutions[1],
         reproduced=bool(np.all(np.abs(solutions[0] - stated) <= half * (1 + 1e-9))),
         printed_error=float(np.max(np.abs(solutions[1] - stated))),
-        rounding_bound=_rounding_bound(printed, solutions[1], half) + half,
+        rounding_bound=_rounding_bound(printed, solutions[0], half) + half,
         rows=tuple(
             RowFinding(number=i + 1, link=link, defect=defect, valid=defect <= published.tolerance)
             for i, row in enumerate(exact)
@@ -140,10 +146,15 @@ def audit(
     )
 
 
-def _rounding_bound(matrix: Real, solution: Real, half: float) -> float:
-    """First-order bound |A^-1| |dA| |x| (Golub & Van Loan, Matrix Computations, 4th ed., section 2.6).
+def _solve(matrix: Real, rhs: Real) -> Real:
+    return np.asarray(np.linalg.solve(matrix, rhs), dtype=np.float64)
 
-    Only coefficients other than 0 and 1 were rounded.
+
+def _rounding_bound(matrix: Real, solution: Real, half: float) -> float:
+    """Bound |A^-1| |dA| |x| on the change that rounding makes (Higham, Accuracy and Stability, 2nd ed., section 7.2).
+
+    With A the rounded matrix and x the solution of the unrounded one it is no approximation:
+    (A - dA) x = b and A y = b give y - x = -A^-1 dA x. Only coefficients other than 0 and 1 were rounded.
     """
     rounded = np.where((matrix == 0.0) | (np.abs(matrix) == 1.0), 0.0, half)
     return float(np.max(np.abs(np.linalg.inv(matrix)) @ (rounded @ np.abs(solution))))
@@ -154,7 +165,9 @@ def _unknown(column: str) -> tuple[str, int] | None:
     if column == "T":
         return None
     if not (column.startswith("R") and column[-1:] in ("x", "y")):
-        raise CaseError(f"published_statics: column '{column}' is not understood; name columns R<joint>x, R<joint>y, T")
+        raise CaseError(
+            f"published_statics: column '{printable(column)}' is not understood; name columns R<joint>x, R<joint>y, T"
+        )
     return column[1:-1], "xy".index(column[-1])
 
 
@@ -168,7 +181,10 @@ def _equilibrium(link: str, columns: Sequence[str], pose: Pose) -> Real:
             continue
         joint, axis = unknown
         if joint not in linkage.joints:
-            raise CaseError(f"published_statics: column '{column}' names joint '{joint}', which does not exist")
+            raise CaseError(
+                f"published_statics: column '{printable(column)}' names a joint that does not exist; "
+                f"the joints are {', '.join(linkage.joints)}"
+            )
         if link not in linkage.joints[joint].links:
             continue
         arm = (pose.position(link, linkage.point_of(joint, link)) - pose.origins[link]) / _MM
@@ -185,23 +201,34 @@ def _fit(row: Real, columns: Sequence[str], link: str, pose: Pose) -> tuple[Real
     forces = np.array([column != "T" for column in columns])
     space = _equilibrium(link, columns, pose)[:, forces]
     part = row[forces]
+    if not np.any(part):
+        return np.zeros(3), 1.0  # no force in it: it says nothing about the equilibrium of forces
     fit, *_ = np.linalg.lstsq(space.T, part, rcond=None)
     return np.asarray(fit), float(np.linalg.norm(part - fit @ space) / np.linalg.norm(part))
 
 
 def _signs(links: Sequence[str], pose: Pose) -> Mapping[str, float]:
-    """Sign of every link such that the two moving links of a joint differ; the last link is +1."""
+    """Sign of every link such that the two moving links of a joint differ; the last published link is +1."""
     linkage = pose.linkage
-    signs = {links[-1]: 1.0}
-    for _ in links:
-        for joint in linkage.joints.values():
-            for here, there in (joint.links, joint.links[::-1]):
-                if here in signs and linkage.ground not in (here, there):
-                    signs.setdefault(there, -signs[here])
-    for name, joint in linkage.joints.items():
-        first, second = joint.links
-        if linkage.ground not in joint.links and signs.get(first, 1.0) == signs.get(second, -1.0):
-            raise CaseError(f"published_statics: no choice of signs makes '{name}' an action and a reaction")
+    inner = [(name, joint.links) for name, joint in linkage.joints.items() if linkage.ground not in joint.links]
+    signs: dict[str, float] = {}
+    for start in reversed(links):
+        if start in signs:
+            continue
+        signs[start], waiting = 1.0, [start]
+        while waiting:
+            here = waiting.pop()
+            for _, pair in inner:
+                other = pair[0] if pair[1] == here else pair[1]
+                if here in pair and other not in signs:
+                    signs[other] = -signs[here]
+                    waiting.append(other)
+    for name, (first, second) in inner:
+        if first in signs and signs[first] == signs[second]:
+            raise CaseError(
+                f"published_statics: no choice of signs makes the force at joint '{name}' an action on one link and "
+                "the reaction on the other, so one unknown per joint does not do; remove published_statics"
+            )
     return signs
 
 
