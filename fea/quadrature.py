@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.elasticity import jacobians, reference_basis
 from fea.space import DisplacementSpace
 
 
@@ -89,10 +90,7 @@ def face_quadrature(space: DisplacementSpace, faces: NDArray[np.int64], *, degre
 
 def volume_quadrature(space: DisplacementSpace, *, degree: int = 5) -> Quadrature:
     """Integration over all elements; degree 5 (14 points, weights positive) is exact for a straight one's mass."""
-    from fea.elasticity import jacobians, reference_basis
-
-    X, W, phi, gradient = reference_basis(space, degree)
-    del X
+    _, W, phi, gradient = reference_basis(space, degree)
     nodes = space.nodes[space.cells]
     _, determinant = jacobians(nodes, gradient)
     return Quadrature(

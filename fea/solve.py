@@ -43,9 +43,12 @@ def factorise(K: SymmetricBlockMatrix, *, method: Method | None = None, threads:
 
     Raises ``CannotRunError`` if the matrix is not positive definite or memory runs out.
     """
-    if (method or available_methods()[0]) == "pardiso":
-        return PardisoFactor(K, threads)
-    return SuperLUFactor(K)
+    if method is None and "pardiso" in available_methods():
+        try:
+            return PardisoFactor(K, threads)
+        except ImportError:  # pypardiso is there, but not the library it wraps
+            return SuperLUFactor(K)
+    return PardisoFactor(K, threads) if method == "pardiso" else SuperLUFactor(K)
 
 
 def _checked(K: SymmetricBlockMatrix, x: NDArray[np.float64], rhs: NDArray[np.float64], name: str) -> None:
@@ -75,7 +78,7 @@ class SuperLUFactor:
         except MemoryError as error:
             raise CannotRunError(f"SuperLU ran out of memory at {K.size} unknowns; use a coarser mesh") from error
         except RuntimeError as error:
-            raise CannotRunError(f"SuperLU could not factorise the stiffness matrix: {error}") from error
+            raise CannotRunError(f"SuperLU could not solve with the stiffness matrix: {error}") from error
 
     def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
         """Solve for (n,) or (n, k)."""
@@ -132,7 +135,7 @@ class PardisoFactor:
             self._library.MKL_Set_Num_Threads_Local(ctypes.c_int(previous))
         if error:
             reason = self._ERRORS.get(error, f"error {error}")
-            raise CannotRunError(f"{self.name} could not factorise the stiffness matrix: {reason}")
+            raise CannotRunError(f"{self.name} could not solve with the stiffness matrix: {reason}")
         return x
 
 

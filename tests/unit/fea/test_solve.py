@@ -46,7 +46,7 @@ def test_unsupported_body_is_refused(system, method):
     free, _, _, _ = system
     load = np.zeros(free.size)
     load[0] = 1.0  # does not balance, so no displacement fits it
-    with pytest.raises(CannotRunError, match=r"not positive definite|residual|could not factorise"):
+    with pytest.raises(CannotRunError, match=r"not positive definite|residual|could not solve"):
         factorise(free, method=method, threads=1).solve(load)
 
 
@@ -66,6 +66,19 @@ def test_fallback_without_pypardiso(system, monkeypatch):
     factor = factorise(K)
     assert factor.name == "SuperLU"
     factor.solve(rhs)
+
+
+@pytest.mark.skipif("pardiso" not in METHODS, reason="pypardiso is not installed")
+def test_fallback_where_the_library_of_pypardiso_is_missing(system, monkeypatch):
+    _, K, _, _ = system
+
+    def missing(*_args, **_kwargs):
+        raise ImportError("Shared library mkl_rt not found.")
+
+    monkeypatch.setattr("pypardiso.PyPardisoSolver", missing)
+    assert factorise(K).name == "SuperLU"
+    with pytest.raises(ImportError):
+        factorise(K, method="pardiso")
 
 
 @pytest.mark.skipif("pardiso" not in METHODS, reason="pypardiso is not installed")

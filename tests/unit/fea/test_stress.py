@@ -17,7 +17,7 @@ def test_von_mises_in_closed_form():
 
 
 def test_principal_stresses_keep_their_sign():
-    # Biaxial state of Shigley, 10th ed., example 3-4: 80 MPa along x and 50 MPa of clockwise shear give 104 and -24 MPa.
+    # Shigley, 10th ed., example 3-4: 80 MPa along x with 50 MPa of clockwise shear give 104 and -24 MPa.
     np.testing.assert_allclose(principal(np.array([80.0, 0, 0, -50.0, 0, 0])), [104.031, 0.0, -24.031], atol=1e-3)
     np.testing.assert_allclose(principal(np.array([[-3.0, -1.0, -2.0, 0, 0, 0]])), [[-1.0, -2.0, -3.0]])
 
@@ -64,7 +64,7 @@ def test_peak_is_found_where_it_is(bent):
     np.testing.assert_allclose(bent.peak.location[1:], [1.0, -0.6], atol=1e-12)
     inside = bent.peak_at_points
     assert 7.0 < inside.value < 8.0
-    x, y, z = inside.location
+    _, y, z = inside.location
     assert inside.value == pytest.approx(2.0 + 3.0 * y - 5.0 * z, rel=1e-9)
     np.testing.assert_allclose(bent.principal[:, 0], np.maximum(bent.nodal[:, 0], 0.0), atol=1e-9)
 
