@@ -127,7 +127,7 @@ def statics(
     from reports.statics import print_statics
 
     parsed = read_case(case, overrides or ())
-    print_statics(solve_case_statics(parsed), matrix=matrix, json=json)
+    print_statics(solve_case_statics(parsed, case), matrix=matrix, json=json)
 
 
 @app.command()
