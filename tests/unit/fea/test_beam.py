@@ -7,6 +7,7 @@ from fea.beam import (
     PointLoad,
     check_beam,
     deflection,
+    euler_load,
     internal_forces,
     section_stress,
     uniform_cantilever,
@@ -199,3 +200,11 @@ def test_deflection_under_pull_and_torque() -> None:
     assert result.largest == 0.0
     with pytest.raises(CannotRunError, match="two different stations"):
         deflection(internal_forces(loads), TUBE, young=2400.0, poisson=0.35, line=(5.0, 5.0))
+
+
+def test_euler_load_and_its_end_conditions() -> None:
+    # Tube 5 over 2.5 mm, E 2400 MPa, 125 mm between pins: π² 2400 28.7621 / 125² = 43.60 N.
+    assert euler_load(2400.0, TUBE.i_z, 125.0) == pytest.approx(43.602, abs=5e-3)
+    assert euler_load(2400.0, TUBE.i_z, 125.0, 2.0) == pytest.approx(43.602 / 4, abs=2e-3)
+    with pytest.raises(CannotRunError, match="length above zero"):
+        euler_load(2400.0, TUBE.i_z, 0.0)

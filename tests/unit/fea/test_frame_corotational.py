@@ -1,0 +1,213 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from fea.corotational import buckling_factor, solve_large_displacement, subdivide
+from fea.frame import FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
+from geometry.errors import CannotRunError
+from geometry.part import Bar, Tube
+
+TUBE = Tube.model_construct(outer_diameter=5.0, inner_diameter=2.5).section
+BAR = Bar.model_construct(width=6.0, thickness=2.0).section
+PIN = frozenset({"ux", "uy", "uz", "rx", "ry"})
+PLANE = frozenset({"uz", "rx", "ry"})
+HINGE = frozenset({"rz"})
+NONE: frozenset = frozenset()
+
+
+def element(a: int, b: int, **more: object) -> FrameElement:
+    return FrameElement(**{"nodes": (a, b), "section": BAR, "young": 2400.0, "poisson": 0.35} | more)
+
+
+def four_bar(force: float, **crank: object) -> FrameModel:
+    """Four-bar with pins B and C, the crank held at A; a coupler with arms and a line load, loads in space."""
+    return FrameModel(
+        nodes=np.array([[0.0, 0, 0], [20, 60, 0], [20, 60, 0], [110, 80, 0], [110, 80, 0], [100, 0, 0]]),
+        elements=(
+            element(0, 1, **crank),
+            element(
+                2,
+                3,
+                offsets=np.array([[1.0, -3, 0], [-1, -3, 0]]),
+                load_first=force * np.array([0.0, -0.01, 0.002]),
+                load_last=force * np.array([0.005, -0.02, 0.0]),
+            ),
+            element(4, 5, section=TUBE),
+        ),
+        supports=(Support(node=0), Support(node=5, dofs=PIN)),
+        ties=(Tie(nodes=(1, 2)), Tie(nodes=(3, 4))),
+        loads=(NodeLoad(node=3, wrench=force * np.array([1.0, -0.4, 0.3, 2.0, -3.0, 0.0])),),
+        names=("A", "B", "B'", "C", "C'", "D"),
+    )
+
+
+def turned(model: FrameModel, R: np.ndarray) -> FrameModel:
+    return replace(
+        model,
+        nodes=model.nodes @ R.T,
+        elements=tuple(
+            replace(
+                e, z_axis=R @ e.z_axis, offsets=e.offsets @ R.T, load_first=R @ e.load_first, load_last=R @ e.load_last
+            )
+            for e in model.elements
+        ),
+        loads=tuple(replace(p, wrench=(p.wrench.reshape(2, 3) @ R.T).ravel()) for p in model.loads),
+    )
+
+
+@pytest.mark.parametrize("release", [NONE, HINGE])
+def test_small_loads_give_the_linear_frame(release: frozenset) -> None:
+    """With pins, arms, line loads and a release; the difference falls with the load, so it is of second order."""
+    differences = []
+    for force in (1e-3, 1e-4):
+        model = four_bar(force)
+        if release:
+            model = replace(model, elements=(*model.elements[:2], element(4, 5, releases=(NONE, release))))
+            model = replace(model, supports=(Support(node=0), Support(node=5)))
+        linear, large = solve_frame(model), solve_large_displacement(model, 2)
+        scale = np.abs(linear.displacements[:, :3]).max()
+        differences.append(np.abs(large.displacements[:6] - linear.displacements[:, :3]).max() / scale)
+        forces = np.abs(large.joint_wrenches[:6] - linear.joint_wrenches).max() / np.abs(linear.joint_wrenches).max()
+        assert forces < 0.1 * np.sqrt(force)
+    assert differences[1] < 2e-3
+    assert differences[1] == pytest.approx(differences[0] / 10, rel=0.1)
+
+
+def test_reactions_balance_the_loads_on_the_deformed_shape() -> None:
+    model = four_bar(5.0)
+    out = solve_large_displacement(model, 4)
+    applied = (
+        model.loads[0].wrench[:3] + model.length(1) * (model.elements[1].load_first + model.elements[1].load_last) / 2
+    )
+    assert np.abs(out.displacements).max() > 5.0
+    assert out.reactions[:, :3].sum(axis=0) == pytest.approx(-applied, abs=1e-8)
+    assert out.residual < 1e-8
+
+
+def test_pins_carry_no_moment_about_their_own_axis() -> None:
+    out = solve_large_displacement(four_bar(1.0), 4)
+    for node in (1, 2, 4, 5):
+        moment, axis = out.joint_wrenches[node, 3:], out.rotations[node][:, 2]
+        assert np.linalg.norm(moment) > 0.1
+        assert moment @ axis == pytest.approx(0.0, abs=1e-6)
+    assert out.rotations[1][:, 2] == pytest.approx(out.rotations[2][:, 2], abs=1e-12)
+    assert np.abs(out.rotations[1] - out.rotations[2]).max() > 0.01
+
+
+def test_turning_the_frame_turns_the_answer() -> None:
+    # Without pins, whose axes are global.
+    model = FrameModel(
+        nodes=np.array([[0.0, 0, 0], [60, 20, 10], [110, -10, 30]]),
+        elements=(
+            element(0, 1, offsets=np.array([[0.0, 0, 0], [-2, 1, 3]])),
+            element(1, 2, load_first=np.array([0.01, -0.02, 0.005])),
+        ),
+        supports=(Support(node=0),),
+        loads=(NodeLoad(node=2, wrench=np.array([0.3, -0.8, 0.9, 10, -20, 5.0])),),
+    )
+    R = Rotation.from_rotvec([0.4, -1.1, 2.0]).as_matrix()
+    a, b = solve_large_displacement(model, 3), solve_large_displacement(turned(model, R), 3)
+    assert np.abs(a.displacements).max() > 20.0
+    assert b.displacements == pytest.approx(a.displacements @ R.T, abs=1e-6)
+    assert b.end_forces == pytest.approx(a.end_forces, abs=1e-6)
+
+
+def test_section_forces_hold_what_lies_beyond() -> None:
+    """Force and moment at the root from the deformed tip's position."""
+    force, moment = np.array([0.2, 0.5, -0.3]), np.array([2.0, -1.0, 3.0])
+    model = FrameModel(
+        nodes=np.array([[0.0, 0, 0], [100, 0, 0]]),
+        elements=(element(0, 1, section=TUBE),),
+        supports=(Support(node=0),),
+        loads=(NodeLoad(node=1, wrench=np.concatenate([force, moment])),),
+    )
+    out = solve_large_displacement(model, 8)
+    tip = np.array([100.0, 0, 0]) + out.displacements[1]
+    assert out.section_forces(0)[0, :3] == pytest.approx(out.axes[0].T @ force, abs=1e-7)
+    assert out.section_forces(0)[0, 3:] == pytest.approx(out.axes[0].T @ (moment + np.cross(tip, force)), abs=1e-5)
+    assert out.origin.tolist() == [0] * 8
+
+
+def test_division_keeps_the_linear_answer() -> None:
+    model = four_bar(1.0)
+    divided, origin = subdivide(model, 3)
+    a, b = solve_frame(model), solve_frame(divided)
+    assert b.displacements[:6] == pytest.approx(a.displacements, rel=1e-8, abs=1e-9)
+    assert origin.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
+
+
+def toggle(force: float) -> FrameModel:
+    hinges = (HINGE, HINGE)
+    # E A 4000 N as of a bar 2 x 2 mm, but too stiff in bending to buckle before the truss snaps.
+    square = replace(Bar.model_construct(width=2.0, thickness=2.0).section, i_y=1e3, i_z=1e3)
+    return FrameModel(
+        nodes=np.array([[0.0, 0, 0], [100, 10, 0], [200, 0, 0]]),
+        elements=tuple(element(*pair, section=square, young=1000.0, releases=hinges) for pair in ((0, 1), (1, 2))),
+        supports=(
+            Support(node=0, dofs=PLANE | {"ux", "uy"}),
+            Support(node=2, dofs=PLANE | {"ux", "uy"}),
+            Support(node=1, dofs=PLANE),
+        ),
+        loads=(NodeLoad(node=1, wrench=np.array([0, -force, 0, 0, 0, 0.0])),),
+    )
+
+
+def toggle_force(drop: np.ndarray | float) -> np.ndarray:
+    """Two bars, engineering strain: P = 2 E A (1/l - 1/L) (h - w)."""
+    return 2 * 4000 * (1 / np.hypot(100, 10 - drop) - 1 / np.hypot(100, 10)) * (10 - drop)
+
+
+LIMIT = float(toggle_force(np.linspace(0, 10, 100001)).max())
+
+
+@pytest.mark.parametrize("share", [0.3, 0.99, 0.9999])
+def test_flat_truss_up_to_its_limit_load(share: float) -> None:
+    out = solve_large_displacement(toggle(share * LIMIT), 1)
+    assert toggle_force(-out.displacements[1, 1]) == pytest.approx(share * LIMIT, rel=1e-7)
+    assert -out.displacements[1, 1] < 4.3
+    assert out.stable
+
+
+@pytest.mark.parametrize("share", [1.0001, 1.3, 2.0, 4.0, 10.0])
+def test_snap_through_is_an_error_and_no_answer(share: float) -> None:
+    with pytest.raises(CannotRunError, match="no equilibrium in large displacement"):
+        solve_large_displacement(toggle(share * LIMIT), 1)
+
+
+def test_straight_column_beyond_eulers_load_is_told_unstable() -> None:
+    model = FrameModel(
+        nodes=np.array([[0.0, 0, 0], [100, 0, 0]]),
+        elements=(element(0, 1, section=TUBE),),
+        supports=(Support(node=0),),
+        loads=(NodeLoad(node=1, wrench=np.array([-1.0, 0, 0, 0, 0, 0])),),
+    )
+    critical = buckling_factor(model)
+    for share, stable in ((0.98, True), (1.02, False)):
+        scaled = replace(model, loads=(NodeLoad(node=1, wrench=np.array([-share * critical, 0, 0, 0, 0, 0])),))
+        assert solve_large_displacement(scaled).stable is stable
+
+
+def test_mechanism_is_refused() -> None:
+    model = replace(four_bar(1.0), supports=(Support(node=0, dofs=PIN), Support(node=5, dofs=PIN)))
+    with pytest.raises(CannotRunError, match="mechanism"):
+        solve_large_displacement(model, 2)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"supports": (Support(node=0, dofs=PIN - {"ry"}), Support(node=5))}, "about x alone"),
+        ({"ties": (Tie(nodes=(1, 2), dofs=PIN - {"ry"}), Tie(nodes=(3, 4)))}, "tie shares"),
+        ({"ties": (Tie(nodes=(1, 2), dofs=PIN - {"uz"}), Tie(nodes=(3, 4)))}, "tie shares"),
+        (
+            {"elements": (element(0, 1, releases=(NONE, frozenset({"rx", "ry"}))), *four_bar(1.0).elements[1:])},
+            "released",
+        ),
+    ],
+)
+def test_what_makes_no_sense_for_finite_turns_is_refused(change: dict, message: str) -> None:
+    model = replace(four_bar(1.0), **change)
+    with pytest.raises(CannotRunError, match=message):
+        solve_large_displacement(model, 2)
