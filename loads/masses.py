@@ -1,0 +1,36 @@
+"""What each link weighs: from its part's volume and density, or as stated."""
+
+import numpy as np
+
+from geometry.mesh import mass_properties
+from loads.actions import PartMass
+from loads.case import Case
+
+
+def part_mass(case: Case, link: str) -> PartMass:
+    """Return mass, centroid and moment of inertia of a link's part, by the geometry kernel.
+
+    Raises ``CaseError`` for a link without part or a body that cannot be built, ``CannotRunError`` where
+    the kernel fails.
+    """
+    solid, density = mass_properties(case.body(link)), case.material_of(link).density
+    return PartMass(
+        mass=solid.volume * density,
+        centroid=np.asarray(solid.centroid)[:2],
+        inertia=float(solid.inertia[2, 2]) * density,
+    )
+
+
+def moving_masses(case: Case) -> dict[str, PartMass]:
+    """Return the masses of a motion: stated, else of the part; massless links are left out."""
+    stated = case.motion.masses if case.motion is not None else {}
+    found = {}
+    for link in case.linkage.moving:
+        if link in stated:
+            own = stated[link]
+            found[link] = PartMass(
+                mass=own.mass, centroid=np.array(own.centroid), inertia=own.mass * own.radius_of_gyration**2
+            )
+        elif link in case.checked_links:
+            found[link] = part_mass(case, link)
+    return found
