@@ -124,7 +124,9 @@ def test_transmission_range_of_a_crank_rocker_lies_at_zero_and_half_turn():
     assert reach.minimum == pytest.approx(float(transmission.min()), abs=1e-12)
     assert reach.maximum == pytest.approx(float(transmission.max()), abs=1e-12)
     assert reach.least_acute == reach.minimum
-    assert TRIPLE_ROCKER.transmission_range().maximum == math.pi
+    # An input with two ranges runs between its folded and its stretched dead point.
+    stopped = FourBar(a=7, b=2, c=6, d=9).transmission_range()
+    assert (stopped.minimum, stopped.maximum) == (0.0, math.pi)
 
 
 def test_output_range_bounds_the_output():

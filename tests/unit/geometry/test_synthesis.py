@@ -58,6 +58,19 @@ def test_negative_lengths_are_links_turned_by_half_a_turn():
     assert min(abs(angle - psi[0]) for angle in found.psi_at(theta[0] + math.pi)) < 1e-9
 
 
+def test_a_turned_coupler_changes_theta_alone():
+    bar = FourBar(a=2.0, b=4.0, c=3.5, d=5.0)
+    theta, psi = pairs(bar, [0.7, 1.1, 0.9])
+    plain, found = synthesise(theta, psi, bar.d), synthesise([angle + math.pi for angle in theta], psi, bar.d)
+    assert (found.b_turned, found.c_turned) == (True, False)
+    for turned, lock in zip(found.lock_ups, plain.lock_ups, strict=True):
+        assert (turned.phi, turned.psi) == pytest.approx((lock.phi, lock.psi), abs=1e-6)
+        assert math.cos(turned.theta - lock.theta) == pytest.approx(-1.0, abs=1e-9)
+    defects = [[(f.kind, f.drive) for f in x.findings if "defect" in f.kind] for x in (found, plain)]
+    assert defects[0] == defects[1]
+    assert ("order-defect", "b") in defects[0]
+
+
 def test_a_turned_output_changes_psi_alone():
     bar = FourBar(a=6.0, b=3.0, c=5.0, d=7.5)
     theta, psi = pairs(bar, [0.7, 0.9, 1.1])
