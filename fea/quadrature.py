@@ -37,15 +37,16 @@ class Quadrature:
     def load_vector(self, density: NDArray[np.float64], count: int) -> NDArray[np.float64]:
         """Consistent load vector (3 count,) [N] of a force density (k, q, 3) per volume or area."""
         local = np.einsum("kq,qb,kqi->kbi", self.w, self.phi, density, optimize=True)
-        load = np.zeros((count, 3))
-        np.add.at(load, self.nodes.ravel(), local.reshape(-1, 3))
-        return load.ravel()
+        node = self.nodes.ravel()
+        columns = [np.bincount(node, local[..., i].ravel(), minlength=count) for i in range(3)]
+        return np.asarray(np.column_stack(columns).ravel(), dtype=np.float64)
 
     def wrench(self, density: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
         """Force [N] and moment about ``point`` [N mm] of a force density (k, q, 3), as (6,)."""
-        force = np.einsum("kq,kqi->i", self.w, density)
-        moment = np.einsum("kq,kqi->i", self.w, np.cross(self.x - point, density))
-        return np.concatenate([force, moment])
+        weighted = (self.w[..., None] * density).reshape(-1, 3)
+        product = (self.x.reshape(-1, 3) - point).T @ weighted  # ∫ r_i f_j
+        turning = product - product.T
+        return np.array([*weighted.sum(axis=0), turning[1, 2], turning[2, 0], turning[0, 1]])
 
     def mean(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
         """Mean (3,) of a nodal field (n, 3) over the volume or area."""

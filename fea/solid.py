@@ -116,10 +116,14 @@ def solve_solid(
     for case in loads:
         torque = any(c.torque != 0.0 for c in case.couples) or any(p.wrench[5] != 0.0 for p in case.pins)
         scale = vectors.scale(case)
+        rest = vectors.spread(case)
+        pushed = {law.span: vectors.pins(case, law) for law in laws}
+        variants: Sequence[Transfer | None] = transfers if torque else (None,)
+        turned = {transfer: vectors.couples(case, transfer) for transfer in variants}
         for law in laws:
-            for transfer in transfers if torque else (None,):
+            for transfer in variants:
                 names.append((case.name, law.span, transfer))
-                columns.append(vectors.total(case, law, transfer))
+                columns.append(rest + pushed[law.span] + turned[transfer])
                 scales.append(scale)
     F = np.array(columns).T
     size = np.array(scales)
@@ -211,27 +215,36 @@ class _LoadVectors:
             raise CannotRunError(f"load case '{case.name}' puts no load on the link; leave it out")
         return total
 
-    def total(self, case: LinkLoads, law: PressureLaw, transfer: Transfer | None) -> NDArray[np.float64]:
-        """Return the load vector (3n,) of a load case under one variant."""
+    def pins(self, case: LinkLoads, law: PressureLaw) -> NDArray[np.float64]:
+        """Load vector (3n,) of the pins' pressures and thrusts."""
         count = len(self._space.nodes)
         load = np.zeros(3 * count)
-        torques = {c.pin: 0.0 for c in case.couples}
-        for couple in case.couples:
-            torques[couple.pin] += couple.torque
         for pin in case.pins:
             bore = self.surface(f"bore:{pin.name}")
             load += bore.load_vector(pin_traction(bore, pin, law), count)
             if pin.wrench[2] != 0.0:
                 face = self.surface(f"{'bottom' if pin.wrench[2] > 0.0 else 'top'}:{pin.name}")
                 load += face.load_vector(thrust_traction(face, pin), count)
-            torques[pin.name] = torques.get(pin.name, 0.0) + pin.wrench[5]
+        return load
+
+    def couples(self, case: LinkLoads, transfer: Transfer | None) -> NDArray[np.float64]:
+        """Load vector (3n,) of the torques about the pins."""
+        count = len(self._space.nodes)
+        load = np.zeros(3 * count)
+        torques = [(c.pin, c.torque) for c in case.couples] + [(p.name, float(p.wrench[5])) for p in case.pins]
         centres = {pin.name: pin.centre for pin in case.pins}
-        for name, torque in torques.items():
+        for name, torque in torques:
             if torque != 0.0:
                 bore = self.surface(f"bore:{name}")
                 faces = (f"top:{name}", f"bottom:{name}")
                 surface = bore if transfer == "bore-shear" else self.surface(*faces)
                 load += surface.load_vector(couple_traction(surface, centres.get(name, bore.centroid), torque), count)
+        return load
+
+    def spread(self, case: LinkLoads) -> NDArray[np.float64]:
+        """Load vector (3n,) of what does not come from pins: plain ends, weight and inertia, spread loads."""
+        count = len(self._space.nodes)
+        load = np.zeros(3 * count)
         for end in case.ends:
             patch = self.surface(f"end:{end.name}")
             load += patch.load_vector(wrench_density(patch, end.point, end.wrench), count)

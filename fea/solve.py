@@ -6,6 +6,7 @@ MKL PARDISO where pypardiso can be imported (x86-64), else SuperLU.
 import ctypes
 import importlib.util
 import weakref
+from functools import cache
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -104,11 +105,9 @@ class PardisoFactor:
     }
 
     def __init__(self, K: SymmetricBlockMatrix, threads: int | None = None) -> None:
-        from pypardiso import PyPardisoSolver
-
         self._K = K
         self._threads = threads
-        self._library = PyPardisoSolver(mtype=self._MTYPE).libmkl
+        self._library = _mkl()
         self._handle = np.zeros(64, dtype=np.int64)
         self._iparm = np.zeros(64, dtype=np.int32)
         self._iparm[0] = 1  # no defaults
@@ -137,6 +136,17 @@ class PardisoFactor:
             reason = self._ERRORS.get(error, f"error {error}")
             raise CannotRunError(f"{self.name} could not solve with the stiffness matrix: {reason}")
         return x
+
+
+@cache
+def _mkl() -> Any:
+    """Load MKL; kept, because pypardiso searches the whole environment for it.
+
+    Raises ``ImportError`` where it is missing.
+    """
+    from pypardiso import PyPardisoSolver
+
+    return PyPardisoSolver().libmkl
 
 
 def _pardiso(

@@ -190,6 +190,7 @@ def _averaged(space: DisplacementSpace, X: NDArray[np.float64], at_points: NDArr
     else:
         linear = np.vstack([np.ones(X.shape[1]), X]).T
         carry = np.vstack([np.ones(local), _NODES[:, :local]]).T @ np.linalg.inv(linear)
-    nodal = np.zeros((len(space.nodes), 6))
-    np.add.at(nodal, space.cells, np.einsum("bq,kqs->kbs", carry, at_points, optimize=True))
-    return np.asarray(nodal / np.bincount(space.cells.ravel(), minlength=len(nodal))[:, None])
+    values = np.einsum("bq,kqs->kbs", carry, at_points, optimize=True)
+    node = space.cells.ravel()
+    sums = [np.bincount(node, values[..., i].ravel(), minlength=len(space.nodes)) for i in range(6)]
+    return np.column_stack(sums) / np.bincount(node, minlength=len(space.nodes))[:, None]

@@ -27,24 +27,22 @@ def wrench_density(
 ) -> Density:
     """Density w(x) (a + b × r) that delivers the wrench (6,) about ``point`` exactly.
 
-    The six coefficients follow from the Gram matrix of the rigid-body fields under the weight
-    (k, q), by default 1. Raises ``CannotRunError`` if the surface cannot carry every component.
+    ``weight``: w (k, q), by default 1. With r from the weighted centroid the 6×6 Gram matrix of the
+    rigid-body fields falls apart into the measure A = ∫w and the inertia J = ∫w (r² I − r rᵀ), hence
+    a = F/A and J b = M. Raises ``CannotRunError`` if the surface cannot carry every component.
     """
-    measure = quadrature.w if weight is None else quadrature.w * weight
-    total = measure.sum()
-    centre = np.einsum("kq,kqi->i", measure, quadrature.x) / total
-    arm = quadrature.x - centre
-    length = math.sqrt(float(np.einsum("kq,kqi,kqi->", measure, arm, arm)) / total)
-    fields = np.zeros((6, *arm.shape))
-    for i in range(3):
-        fields[i, ..., i] = 1.0
-        fields[3 + i] = np.cross(np.eye(3)[i], arm / length)
-    gram = np.einsum("akqi,kq,bkqi->ab", fields, measure, fields, optimize=True)
-    if np.linalg.cond(gram) > 1e10:
-        raise CannotRunError("a loaded surface is too small or too narrow to carry a moment; enlarge it")
-    force = wrench[:3]
-    moment = (wrench[3:] - np.cross(centre - point, force)) / length
-    density = np.tensordot(np.linalg.solve(gram, np.concatenate([force, moment])), fields, axes=1)
+    measure = (quadrature.w if weight is None else quadrature.w * weight).ravel()
+    x = quadrature.x.reshape(-1, 3)
+    centre = measure @ x / measure.sum()
+    arm = x - centre
+    second = arm.T @ (measure[:, None] * arm)
+    inertia = np.trace(second) * np.eye(3) - second
+    spread = np.linalg.eigvalsh(inertia)
+    if spread[0] <= 1e-8 * spread[2]:
+        raise CannotRunError("a loaded surface is too narrow to carry a moment about its length; enlarge it")
+    moment = wrench[3:] - np.cross(centre - point, wrench[:3])
+    turn = np.cross(np.linalg.solve(inertia, moment), np.eye(3))  # rows b × e_i, so that b × r = r @ turn
+    density = (wrench[:3] / measure.sum() + arm @ turn).reshape(quadrature.x.shape)
     return np.asarray(density if weight is None else density * weight[..., None])
 
 
