@@ -1,5 +1,6 @@
 """What a body must obey before it can be built: checked by closed form, without the geometry kernel."""
 
+import itertools
 import math
 
 from geometry.errors import CaseError
@@ -52,7 +53,7 @@ def check_body(body: Body) -> None:
         raise CaseError(f"the link's pins and ends all lie at x = {first:g} mm, so it has no length; move them apart")
     for pin in body.pins:
         _check_pin(body, pin, first, last)
-    for one, other in zip(_by_place(body.pins), _by_place(body.pins)[1:], strict=False):
+    for one, other in itertools.combinations(body.pins, 2):
         if math.hypot(one.x - other.x, one.y - other.y) <= (one.diameter + other.diameter) / 2.0:
             raise CaseError(
                 f"the pin holes at {one.name} and {other.name} run into each other; move the pins apart "
@@ -62,10 +63,6 @@ def check_body(body: Body) -> None:
         _check_end(body, end)
     for number, row in enumerate(body.holes, start=1):
         _check_row(body, number, row, first, last)
-
-
-def _by_place(pins: tuple[Pin, ...]) -> list[Pin]:
-    return sorted(pins, key=lambda p: (p.x, p.y))
 
 
 def _check_pin(body: Body, pin: Pin, first: float, last: float) -> None:
@@ -132,10 +129,9 @@ def _check_row(body: Body, number: int, row: HoleRow, first: float, last: float)
                     f"{name} has a hole at x = {x:g} mm that runs into the eye or fillet at {pin.name}, which needs "
                     f"{eye_reach(body, pin) + radius:g} mm from x = {pin.x:g} mm; move or shorten the row"
                 )
-    if row.count > 1 and abs(row.last - row.first) / (row.count - 1) <= row.diameter:
-        raise CaseError(
-            f"{name} are {abs(row.last - row.first) / (row.count - 1):g} mm apart and overlap; use fewer or smaller holes"
-        )
+    spacing = abs(row.last - row.first) / max(row.count - 1, 1)
+    if row.count > 1 and spacing <= row.diameter:
+        raise CaseError(f"{name} are {spacing:g} mm apart and overlap; use fewer or smaller holes")
     for second, other in enumerate(body.holes[number:], start=number + 1):
         for x in row.positions:
             for x2 in other.positions:

@@ -132,18 +132,18 @@ def _tetra_rule() -> tuple[_Array, _Array]:
     return np.stack([u, v * (1.0 - u), t * (1.0 - u) * (1.0 - v)], axis=1), weights
 
 
-def straighten(points: _Array, cells: _Ints, least: float) -> tuple[_Array, int]:
-    """Return points with the edges of elements below ``least`` scaled Jacobian made straight, and their number.
+def flatten(points: _Array, cells: _Ints, least: float) -> tuple[_Array, int]:
+    """Return points with elements of less than ``least`` scaled Jacobian flattened, and the number of those.
 
-    Moving a mid-node bends the neighbours back too, so this repeats until every element is valid; it
-    ends, since a mesh with all edges straight has scaled Jacobians of one.
+    The mid-nodes of such an element move half-way to the middle of their edges, and all the way from the
+    fifth time on. Moving a mid-node bends the neighbours too, so this repeats until every element is
+    valid; it ends, since elements with straight edges have scaled Jacobians of one.
     """
     points = points.copy()
-    done: set[int] = set()
-    while True:
-        bad = set(np.flatnonzero(scaled_jacobians(points, cells) < least).tolist()) - done
-        if not bad:
-            return points, len(done)
-        done |= bad
-        chosen = cells[sorted(bad)]
-        points[chosen[:, 4:]] = points[chosen[:, :4]][:, TETRA_EDGES].mean(axis=2)
+    times = np.zeros(len(cells), dtype=int)
+    while (bad := np.flatnonzero((scaled_jacobians(points, cells) < least) & (times < 5))).size:
+        times[bad] += 1
+        for share, chosen in ((0.5, cells[bad[times[bad] < 5]]), (1.0, cells[bad[times[bad] == 5]])):
+            middles = points[chosen[:, :4]][:, TETRA_EDGES].mean(axis=2)
+            points[chosen[:, 4:]] = (1.0 - share) * points[chosen[:, 4:]] + share * middles
+    return points, int((times > 0).sum())

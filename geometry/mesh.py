@@ -54,8 +54,7 @@ def mesh_body(body: Body, settings: MeshSettings | None = None) -> TaggedMesh:
     """
     settings = settings or MeshSettings()
     check_body(body)
-    mesh = _run("mesh", body, settings, time_limit=settings.time_limit)
-    assert isinstance(mesh, TaggedMesh)
+    mesh: TaggedMesh = _run("mesh", body, settings, time_limit=settings.time_limit)
     return mesh
 
 
@@ -143,7 +142,8 @@ def _run(task: str, *arguments: Any, time_limit: float) -> Any:
             )
         except subprocess.TimeoutExpired:
             raise CannotRunError(
-                f"the mesher was stopped after its time limit of {time_limit:g} s; use a coarser size or raise the limit"
+                f"the mesher was stopped after its time limit of {time_limit:g} s; "
+                "use a coarser size or raise the limit"
             ) from None
         try:
             kind, result = pickle.loads((folder / "answer").read_bytes())
@@ -159,5 +159,6 @@ def _run(task: str, *arguments: Any, time_limit: float) -> Any:
 def _obituary(status: int, stderr: str) -> str:
     last = (stderr.strip().splitlines() or ["it left no message"])[-1]
     if status < 0:
-        return f"the mesher crashed ({signal.Signals(-status).name}); change the part's dimensions or the mesh size a little"
+        name = signal.Signals(-status).name
+        return f"the mesher crashed ({name}); change the part's dimensions or the mesh size a little"
     return f"the mesher ended with status {status} and no answer: {last}"

@@ -30,8 +30,8 @@ class MeshSettings:
     bore_elements: int = 16
     hole_elements: int = 8
     turn_elements: int = 8
-    fillet_size: float = 0.6
-    growth: float = 0.3
+    fillet_size: float = 0.8
+    growth: float = 0.5
     curved: bool = True
     size_points: NDArray[np.float64] | None = None
     size_values: NDArray[np.float64] | None = None
@@ -50,5 +50,5 @@ class MeshSettings:
         return 1e-3 + 1.5 * (turn**4 / 500.0 if self.curved else turn**2 / 6.0)
 
 
-COARSE = MeshSettings(size=0.5, bore_elements=8, hole_elements=6, turn_elements=6, fillet_size=1.0, growth=0.6)
+COARSE = MeshSettings(size=0.4, bore_elements=8, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)
 """A few thousand elements per link: for tests and first looks, not for stresses at holes."""

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.body_rules import section_width
-from geometry.element_geometry import scaled_jacobians, straighten, triangle_areas, volumes_and_moments
+from geometry.element_geometry import flatten, scaled_jacobians, triangle_areas, volumes_and_moments
 from geometry.errors import CannotRunError
 from geometry.mesh_settings import MeshSettings
 from geometry.part import Body
 from geometry.solid_model import SECTION_UNITS, Solid
 from geometry.tagged_mesh import TaggedMesh
 
-LEAST_JACOBIAN = 0.2
+LEAST_JACOBIAN = 0.1
 """Least over greatest Jacobian determinant below which a curved element is repaired."""
 
 # gmsh's tetrahedron of ten nodes ends with the edges 23, 13; VTK's with 13, 23.
@@ -49,16 +49,15 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
     if order == 2:
         gmsh.model.mesh.setOrder(2)
     points, cells, numbers = _read(gmsh, order)
-    notes: list[str] = []
-    if order == 2 and scaled_jacobians(points, cells).min() < LEAST_JACOBIAN:
+    notes: tuple[str, ...] = ()
+    if order == 2 and (scaled_jacobians(points, cells) < LEAST_JACOBIAN).any():
         gmsh.model.mesh.optimize("HighOrder")
-        points, cells, numbers = _read(gmsh, order)
-        points, straightened = straighten(points, cells, LEAST_JACOBIAN)
-        note = "curved elements were optimised to keep them valid"
-        if straightened:
-            note += f"; {straightened} of {len(cells)} were made straight, which moves the surface there"
-        notes.append(note)
-    return _checked(gmsh, solid, settings, points, cells, numbers, tuple(notes))
+        curved, cells, numbers = _read(gmsh, order)
+        points, flattened = flatten(curved, cells, LEAST_JACOBIAN)
+        if flattened:
+            moved = np.linalg.norm(points - curved, axis=1).max() * solid.unit
+            notes = (f"{flattened} of {len(cells)} curved elements were flattened, by up to {moved:.2g} mm",)
+    return _checked(gmsh, solid, settings, points, cells, numbers, notes)
 
 
 def _read(gmsh: Any, order: int) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
@@ -97,8 +96,8 @@ def _checked(
         meshed = triangle_areas(points, triangles).sum()
         if abs(meshed - area) > settings.chord_error * area:
             raise CannotRunError(
-                f"surface '{name}' has {meshed * solid.unit**2:.6g} mm² in the mesh, but {area * solid.unit**2:.6g} mm² "
-                "in the geometry; use a finer size"
+                f"surface '{name}' has {meshed * solid.unit**2:.6g} mm² in the mesh, but "
+                f"{area * solid.unit**2:.6g} mm² in the geometry; use a finer size"
             )
         surfaces[name] = np.ascontiguousarray(triangles[:, :3])
         areas[name] = area * solid.unit**2

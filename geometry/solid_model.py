@@ -5,6 +5,7 @@ OpenCASCADE works to 1e-7 in whatever unit, so a body is built in a unit of its 
 section's smaller size. What this module is given and returns is in mm.
 """
 
+import itertools
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -95,6 +96,7 @@ def build(gmsh: Any, body: Body) -> Solid:
     gmsh.model.add("body")
     solid = _tube(gmsh, small, body) if isinstance(small.part, Tube) else _bar(gmsh, small, body)
     solid = _cut(gmsh, solid, _pin_holes(gmsh, small) + _hole_rows(gmsh, small))
+    solid = _imprint(gmsh, small, solid)
     gmsh.model.occ.synchronize()
     if len(gmsh.model.getEntities(3)) != 1:
         raise CannotRunError(f"the part came out as {len(gmsh.model.getEntities(3))} solids instead of one")
@@ -120,7 +122,7 @@ def _tube(gmsh: Any, body: Body, named: Body) -> Entity:
     stations = _stations(body)
     pieces = [
         (3, occ.addCylinder(low, 0, 0, high - low, 0, 0, part.outer_diameter / 2.0))
-        for low, high in zip(stations, stations[1:], strict=False)
+        for low, high in itertools.pairwise(stations)
     ]
     solid = _fuse(gmsh, pieces + _eyes(gmsh, body))
     radius = part.outer_diameter / 2.0
@@ -164,6 +166,7 @@ def hollow_fillet(part: Tube) -> float:
 
 def _hollows(gmsh: Any, body: Body) -> list[Entity]:
     occ, part = gmsh.model.occ, body.part
+    assert isinstance(part, Tube)
     first, last = extent(body)
     hollows: list[Entity] = []
     for low, high in hollow_spans(body):
@@ -185,7 +188,52 @@ def _hollows(gmsh: Any, body: Body) -> list[Entity]:
 
 
 def _bar(gmsh: Any, body: Body, named: Body) -> Entity:
-    raise CannotRunError("bars are not built yet")
+    occ, part = gmsh.model.occ, body.part
+    assert isinstance(part, Bar)
+    first, last = extent(body)
+    box = (3, occ.addBox(first, -part.width / 2.0, -part.thickness / 2.0, last - first, part.width, part.thickness))
+    # Eye and bar of one thickness must share one flat face while the corners between them are filleted.
+    gmsh.option.setNumber("Geometry.OCCUnionUnify", 1)
+    solid = _fuse(gmsh, [box, *_eyes(gmsh, body)])
+    gmsh.option.setNumber("Geometry.OCCUnionUnify", 0)
+    # The kernel fails on a fillet that just touches the eye's rim: such a step stays sharp.
+    step_filleted = part.eye_thickness > part.thickness + 2.05 * part.fillet_radius
+
+    def at_eye(p: NDArray[np.float64]) -> bool:
+        on_side = abs(abs(p[1]) - part.width / 2.0) < ON_SURFACE and abs(p[2]) < part.thickness / 2.0 + ON_SURFACE
+        on_top = abs(abs(p[2]) - part.thickness / 2.0) < ON_SURFACE and abs(p[1]) < part.width / 2.0 + ON_SURFACE
+        return _on_an_eye(body, p) and (on_side or (on_top and step_filleted))
+
+    return _fillet(gmsh, solid, _curves(gmsh, at_eye), part.fillet_radius, named)
+
+
+def _imprint(gmsh: Any, body: Body, solid: Entity) -> Entity:
+    """Split a bar's faces along the borders of the surfaces that carry names.
+
+    These are the discs of the eyes where they lie flush with the bar, and the loaded patches.
+    """
+    occ, part = gmsh.model.occ, body.part
+    if not isinstance(part, Bar):
+        return solid
+    discs: list[Entity] = []
+    if part.eye_thickness - part.thickness < ON_SURFACE:
+        radius = part.eye_diameter / 2.0
+        for side in (-0.5, 0.5):
+            discs += [(2, occ.addDisk(p.x, p.y, side * part.thickness, radius, radius)) for p in body.pins]
+    for end in body.ends:
+        low, high = patch_span(body, end)
+        for side in (-0.5, 0.5):
+            flat = occ.addRectangle(low, -part.width / 2.0, side * part.thickness, high - low, part.width)
+            upright = occ.addRectangle(low, -part.thickness / 2.0, side * part.width, high - low, part.thickness)
+            occ.rotate([(2, upright)], 0, 0, 0, 1, 0, 0, math.pi / 2.0)
+            discs += [(2, flat), (2, upright)]
+    if not discs:
+        return solid
+    pieces, _ = occ.fragment([solid], discs)
+    occ.synchronize()
+    # What lay over a hole belongs to no solid.
+    occ.remove([p for p in pieces if p[0] == 2 and not gmsh.model.getAdjacencies(*p)[0].size], recursive=True)
+    return _only([p for p in pieces if p[0] == 3])
 
 
 def _pin_holes(gmsh: Any, body: Body) -> list[Entity]:
@@ -235,7 +283,8 @@ def _fillet(gmsh: Any, solid: Entity, curves: list[int], radius: float, named: B
     except Exception as error:
         raise CaseError(
             f"fillet_radius {part.fillet_radius:g} mm does not fit where the {part.shape} meets its eyes of "
-            f"{part.eye_diameter:g} mm by {part.eye_thickness:g} mm; make the fillet smaller or the eyes thicker or wider"
+            f"{part.eye_diameter:g} mm by {part.eye_thickness:g} mm; "
+            "make the fillet smaller or the eyes thicker or wider"
         ) from error
     return _only(solids)
 
@@ -282,7 +331,7 @@ def _named_faces(gmsh: Any, body: Body) -> dict[str, list[int]]:
                 faces[f"bore:{pin.name}"].append(tag)
         for end in body.ends:
             low, high = patch_span(body, end)
-            if low < centre[0] < high and _on_outside(part, points, centre):
+            if low < centre[0] < high and _on_outside(part, points):
                 faces[f"end:{end.name}"].append(tag)
     for name, tags in faces.items():
         if not tags:
@@ -290,17 +339,13 @@ def _named_faces(gmsh: Any, body: Body) -> dict[str, list[int]]:
     return faces
 
 
-def _on_outside(part: Tube | Bar, points: NDArray[np.float64], centre: NDArray[np.float64]) -> bool:
+def _on_outside(part: Tube | Bar, points: NDArray[np.float64]) -> bool:
     """Whether a face belongs to the outer surface of the tube or to the four sides of the bar."""
     if isinstance(part, Tube):
         radius = np.hypot(points[:, 1], points[:, 2])
         return bool(np.abs(radius - part.outer_diameter / 2.0).max() < ON_SURFACE)
-    return bool(
-        abs(abs(centre[1]) - part.width / 2.0) < ON_SURFACE
-        and np.ptp(points[:, 1]) < ON_SURFACE
-        or abs(abs(centre[2]) - part.thickness / 2.0) < ON_SURFACE
-        and np.ptp(points[:, 2]) < ON_SURFACE
-    )
+    offsets = ((points[:, 1], part.width / 2.0), (points[:, 2], part.thickness / 2.0))
+    return any(bool(np.abs(np.abs(offset.mean()) - half) < ON_SURFACE > np.ptp(offset)) for offset, half in offsets)
 
 
 def write_step(gmsh: Any, solid: Solid, path: Path) -> None:
