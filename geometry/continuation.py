@@ -33,10 +33,12 @@ _AGREEMENT = 1e-3
 _SHARE = 0.1
 _SETTLED = 1e-8
 """Newton's last step [rad]: the next one would be some 1e-16, since it converges quadratically."""
-_PROBE = 2e-4
+_PROBE = 1e-4
+"""Distance [rad] from a stop at which branches are told apart; nearer to it rates are lost in rounding."""
 _BLOCK = 1024
 """Poses refined at once, so that the arrays stay in the processor's cache."""
-RANK_TOLERANCE = 1e-9
+_RANK_TOLERANCE = 1e-12
+"""Singular values of the scaled Jacobian below this share of the largest count as zero."""
 
 
 class DeadPointError(CaseError):
@@ -85,7 +87,7 @@ class DrivenClosure:
         if held.shape[-1] == held.shape[-2]:
             found = np.linalg.solve(held, rhs[..., None])[..., 0]
         else:  # more equations than unknowns, but not independent: a redundant linkage that moves
-            found = (np.linalg.pinv(held, rcond=RANK_TOLERANCE) @ rhs[..., None])[..., 0]
+            found = (np.linalg.pinv(held, rcond=_RANK_TOLERANCE) @ rhs[..., None])[..., 0]
         out = np.zeros((*rhs.shape[:-1], self.closure.unknowns))
         out[..., self._free] = found * self.sizes[self._free]
         return out
@@ -253,12 +255,14 @@ def _stopped(driven: DrivenClosure, nodes: Sequence[Node], end: float) -> DeadPo
     """Tell a dead point, where the branch turns back, from a point where two branches cross.
 
     Next to a dead point every unknown goes with the square root of the distance left, so that the
-    distance is x' / (2 x'').
+    distance is x' / (2 x''). A crossing is told by the branch's going on beyond it, as seen from before it.
     """
-    last = nodes[-1]
-    here, sense = float(last[0][driven.column]), math.copysign(1.0, end - float(last[0][driven.column]))
+    last, column = nodes[-1], driven.column
+    here = float(last[0][column])
+    sense = math.copysign(1.0, end - here)
     fastest = int(np.argmax(np.abs(last[1] / driven.sizes)))
-    beyond = _taylor(last, sense * _PROBE)
+    before = next((n for n in reversed(nodes) if abs(here - float(n[0][column])) > _PROBE), nodes[0])
+    beyond = _taylor(before, 2.0 * (here - float(before[0][column])) + sense * _PROBE)
     try:
         q, settled = driven.correct(beyond)
         crossed = settled and float(np.max(np.abs((q - beyond) / driven.sizes))) < _AGREEMENT

@@ -22,6 +22,8 @@ _TARGET = 1e-14
 _ITERATIONS = 60
 _LARGEST_STEP = 0.5
 _STARTS = 256
+_RANK_TOLERANCE = 1e-9
+"""Singular values of the scaled Jacobian (entries of order 1) below it count as zero."""
 _LOOKED_INTO = 12
 """Attempts from which the least gap of an open loop is sought."""
 
@@ -151,19 +153,44 @@ def solve_pose(
 
     Raises ``CaseError`` if the mobility is not the number of pose coordinates, if the linkage
     cannot be assembled (naming the loop that stays open and by how much), or if ``near`` leaves
-    several assemblies to choose from.
+    several assemblies to choose from. Where the counted mobility is too small, such as for a
+    parallelogram with a further link, the rank of the Jacobian in the assembled pose decides.
     """
     near = dict(near or {})
     drives = 0 if coordinate is None else 1
     for name in [*near, *([coordinate] if coordinate else [])]:
         if name not in linkage.moving:
             raise CaseError(f"pose: '{name}' is not a moving link; the moving links are {', '.join(linkage.moving)}")
-    if linkage.mobility != drives:
+    if linkage.mobility > drives:
         raise CaseError(
             f"pose: the linkage has mobility {linkage.mobility} (Gruebler) but {drives} pose coordinate(s); "
-            "they must be equal, so add or remove joints or links"
-            + (", or state pose.coordinate" if linkage.mobility > drives else "")
+            "they must be equal, so add or remove joints or links, or state pose.coordinate"
         )
+    try:
+        pose = _assemble(linkage, coordinate, angle, near)
+        fits = linkage.mobility == drives or freedom(pose) == drives
+    except CaseError:
+        if linkage.mobility == drives:
+            raise
+        fits = False
+    if not fits:
+        raise CaseError(
+            f"pose: the linkage has mobility {linkage.mobility} (Gruebler) but {drives} pose coordinate(s); they must "
+            "be equal, or the rank of the Jacobian must leave as many degrees of freedom at the stated angle; "
+            "add or remove joints or links"
+        )
+    return pose
+
+
+def freedom(pose: Pose) -> int:
+    """Degrees of freedom of the pose: unknowns less the rank of the closure's Jacobian."""
+    scale = pose.linkage.longest
+    sizes = np.array([1.0] * len(pose.linkage.moving) + [scale] * len(pose.closure.slots))
+    matrix = pose.closure.jacobian(pose.q) * sizes / scale
+    return pose.closure.unknowns - int(np.linalg.matrix_rank(matrix, tol=_RANK_TOLERANCE))
+
+
+def _assemble(linkage: Linkage, coordinate: str | None, angle: float, near: dict[str, float]) -> Pose:
     closure = LoopClosure(linkage)
     fixed = {} if coordinate is None else {coordinate: angle}
     free = [link for link in linkage.moving if link not in fixed]

@@ -1,124 +1,147 @@
-"""Linkages shared by the tests, built from plain numbers (mm, rad)."""
+"""Small linkages that the tests of several rooms share."""
 
 import math
-from typing import Any
-
-import numpy as np
 
 from geometry.linkage import Joint, Link, Linkage
+from geometry.pose import Pose, solve_pose
 
 
 def link(*, ground: bool = False, **points: tuple[float, float]) -> Link:
-    return Link(ground=ground, points={name: (f"{x!r} mm", f"{y!r} mm") for name, (x, y) in points.items()})  # type: ignore[misc]
+    """A link with points in mm."""
+    return Link(ground=ground, points={n: (f"{x!r} mm", f"{y!r} mm") for n, (x, y) in points.items()})
 
 
-def joint(first: str, second: str, **entries: Any) -> Joint:
-    return Joint(links=(first, second), **entries)
-
-
-def deg(angle: float) -> str:
-    return f"{angle!r} deg"
-
-
-def four_bar(a: float, b: float, c: float, d: float) -> Linkage:
-    """Crank a, coupler b (with a point P off its axis), rocker c, ground d; crank pin A at the origin."""
+def fourbar(a: float = 40.0, b: float = 120.0, c: float = 80.0, d: float = 100.0) -> Linkage:
+    """Crank-rocker, with a point P off the coupler's axis."""
     return Linkage(
         {
-            "ground": link(ground=True, A=(0.0, 0.0), D=(d, 0.0)),
-            "crank": link(A=(0.0, 0.0), B=(a, 0.0)),
-            "coupler": link(B=(0.0, 0.0), C=(b, 0.0), P=(0.4 * b, 0.3 * b)),
-            "rocker": link(D=(0.0, 0.0), C=(c, 0.0)),
+            "base": link(ground=True, O2=(0.0, 0.0), O4=(d, 0.0)),
+            "crank": link(O2=(0.0, 0.0), A=(a, 0.0)),
+            "coupler": link(A=(0.0, 0.0), B=(b, 0.0), P=(0.5 * b, 0.3 * b)),
+            "rocker": link(O4=(0.0, 0.0), B=(c, 0.0)),
         },
         {
-            "A": joint("ground", "crank"),
-            "B": joint("crank", "coupler"),
-            "C": joint("coupler", "rocker"),
-            "D": joint("ground", "rocker"),
+            "O2": Joint(links=("base", "crank")),
+            "A": Joint(links=("crank", "coupler")),
+            "B": Joint(links=("coupler", "rocker")),
+            "O4": Joint(links=("base", "rocker")),
         },
     )
 
 
-def slider_crank(a: float, b: float, offset: float) -> Linkage:
-    """Crank a, coupler b, block that slides along x at the height ``offset``."""
+def fourbar_pose(angle: float = math.radians(40.0), linkage: Linkage | None = None, *, up: bool = True) -> Pose:
+    """The four-bar's open (up) or crossed pose."""
+    near = {"rocker": math.radians(60.0 if up else -60.0)}
+    return solve_pose(linkage or fourbar(), coordinate="crank", angle=angle, near=near)
+
+
+def slider_crank(a: float = 40.0, b: float = 130.0, offset: float = 10.0) -> Linkage:
+    """Offset slider-crank; the block slides along x on the frame."""
     return Linkage(
         {
-            "ground": link(ground=True, A=(0.0, 0.0), S=(0.0, offset)),
-            "crank": link(A=(0.0, 0.0), B=(a, 0.0)),
-            "coupler": link(B=(0.0, 0.0), C=(b, 0.0)),
-            "block": link(C=(0.0, 0.0), Q=(10.0, 5.0)),
+            "frame": link(ground=True, O=(0.0, 0.0), S=(0.0, offset)),
+            "crank": link(O=(0.0, 0.0), A=(a, 0.0)),
+            "rod": link(A=(0.0, 0.0), B=(b, 0.0)),
+            "block": link(B=(0.0, 0.0), S=(0.0, 0.0), P=(20.0, 5.0)),
         },
         {
-            "A": joint("ground", "crank"),
-            "B": joint("crank", "coupler"),
-            "C": joint("coupler", "block"),
-            "S": joint("ground", "block", type="slider", points=("S", "C")),
+            "O": Joint(links=("frame", "crank")),
+            "A": Joint(links=("crank", "rod")),
+            "B": Joint(links=("rod", "block")),
+            "S": Joint(type="slider", links=("frame", "block")),
         },
     )
 
 
-def scotch_yoke(a: float) -> Linkage:
-    """Crank a whose pin B runs in the upright slot of a yoke that slides along x."""
+def slider_crank_pose(angle: float = math.radians(30.0), linkage: Linkage | None = None) -> Pose:
+    """The slider-crank with the rod pointing to the right."""
+    return solve_pose(linkage or slider_crank(), coordinate="crank", angle=angle, near={"rod": 0.0, "block": 0.0})
+
+
+def slotted_lever(crank: float = 15.0, distance: float = 40.0, length: float = 90.0) -> Linkage:
+    """Crank pin in the slot of a lever (quick-return): the half joint of the ornithopter's drive."""
     return Linkage(
         {
-            "ground": link(ground=True, A=(0.0, 0.0), S=(0.0, 0.0)),
-            "crank": link(A=(0.0, 0.0), B=(a, 0.0)),
-            "yoke": link(Y=(0.0, 0.0), Z=(30.0, 0.0)),
+            "base": link(ground=True, O=(0.0, 0.0), Q=(0.0, -distance)),
+            "crank": link(O=(0.0, 0.0), K=(crank, 0.0)),
+            "lever": link(Q=(0.0, 0.0), T=(length, 0.0)),
         },
         {
-            "A": joint("ground", "crank"),
-            "S": joint("ground", "yoke", type="slider", points=("S", "Y")),
-            "B": joint("yoke", "crank", type="pin-in-slot", points=("Y", "B"), direction=deg(90.0)),
+            "O": Joint(links=("base", "crank")),
+            "Q": Joint(links=("base", "lever")),
+            "K": Joint(type="pin-in-slot", links=("lever", "crank"), points=("Q", "K")),
         },
     )
 
 
-def quick_return(a: float, d: float) -> Linkage:
-    """Crank a about A whose pin B runs along the slot of a lever about O, which stands d below A."""
+def slotted_lever_pose(angle: float = 0.4, linkage: Linkage | None = None) -> Pose:
+    """The lever points up, to the crank pin."""
+    return solve_pose(linkage or slotted_lever(), coordinate="crank", angle=angle, near={"lever": math.pi / 2})
+
+
+def sixbar() -> Linkage:
+    """The owl wing's six-bar: AG ground, H its free tip."""
     return Linkage(
         {
-            "ground": link(ground=True, A=(0.0, 0.0), O=(0.0, -d)),
-            "crank": link(A=(0.0, 0.0), B=(a, 0.0)),
-            "lever": link(O=(0.0, 0.0), E=(3.0 * d, 0.0)),
+            "AG": link(ground=True, A=(0.0, 0.0), G=(0.0, 125.0)),
+            "GF": link(G=(0.0, 0.0), F=(50.0, 0.0)),
+            "AE": link(A=(0.0, 0.0), B=(112.0, 0.0), E=(190.0, 0.0)),
+            "CF": link(F=(0.0, 0.0), B=(60.0, 0.0), C=(150.0, 0.0)),
+            "CH": link(C=(0.0, 0.0), D=(77.0, 0.0), H=(124.0, 0.0)),
+            "ED": link(E=(0.0, 0.0), D=(88.0, 0.0)),
         },
         {
-            "A": joint("ground", "crank"),
-            "O": joint("ground", "lever"),
-            "B": joint("lever", "crank", type="pin-in-slot", points=("O", "B")),
+            name: Joint(links=links)
+            for name, links in {
+                "A": ("AG", "AE"),
+                "B": ("AE", "CF"),
+                "C": ("CF", "CH"),
+                "D": ("CH", "ED"),
+                "E": ("AE", "ED"),
+                "F": ("GF", "CF"),
+                "G": ("AG", "GF"),
+            }.items()
         },
     )
 
 
-def six_bar(scale: float = 1.0, ground_turn: float = 0.0, mirror: float = 1.0, shift: complex = 0.0) -> Linkage:
-    """The owl wing (Paredes 2018, table 7); its ground may be scaled, mirrored, turned and moved."""
+def sixbar_pose(degrees: float = 228.15) -> Pose:
+    """The owl wing, open."""
+    near = {"AE": 143.0, "CF": 200.0, "CH": 142.0, "ED": 200.0}
+    return solve_pose(
+        sixbar(),
+        coordinate="GF",
+        angle=math.radians(degrees),
+        near={name: math.radians(angle) for name, angle in near.items()},
+    )
 
-    def at(z: complex) -> tuple[float, float]:
-        z = z.conjugate() if mirror < 0 else z
-        z = z * np.exp(1j * ground_turn) * scale + shift
-        return float(z.real), float(z.imag)
 
-    def along(**stations: float) -> Link:
-        return link(**{name: (x * scale, 0.0) for name, x in stations.items()})
+def parallelogram(*, third: tuple[float, float] = (50.0, 20.0)) -> Linkage:
+    """Three equal cranks under one coupler: mobility 0 by count, yet it moves.
 
+    With ``third`` off the line of the other two pivots no pose lets the cranks choose.
+    """
+    x, y = third
     return Linkage(
         {
-            "AG": link(ground=True, A=at(0j), G=at(125j)),
-            "GF": along(G=0.0, F=50.0),
-            "AE": along(A=0.0, B=112.0, E=190.0),
-            "CF": along(F=0.0, B=60.0, C=150.0),
-            "CH": along(C=0.0, D=77.0, H=124.0),
-            "ED": along(E=0.0, D=88.0),
+            "base": link(ground=True, P=(0.0, 0.0), Q=(100.0, 0.0), R=third),
+            "first": link(P=(0.0, 0.0), U=(30.0, 0.0)),
+            "second": link(Q=(0.0, 0.0), V=(30.0, 0.0)),
+            "third": link(R=(0.0, 0.0), W=(30.0, 0.0)),
+            "top": link(U=(0.0, 0.0), V=(100.0, 0.0), W=(x, y)),
         },
         {
-            "A": joint("AG", "AE"),
-            "B": joint("AE", "CF"),
-            "C": joint("CF", "CH"),
-            "D": joint("CH", "ED"),
-            "E": joint("AE", "ED"),
-            "F": joint("GF", "CF"),
-            "G": joint("AG", "GF"),
+            "P": Joint(links=("base", "first")),
+            "Q": Joint(links=("base", "second")),
+            "R": Joint(links=("base", "third")),
+            "U": Joint(links=("first", "top")),
+            "V": Joint(links=("second", "top")),
+            "W": Joint(links=("third", "top")),
         },
     )
 
 
-OPEN_WING = {name: math.radians(angle) for name, angle in {"AE": 143, "CF": 200, "CH": 142, "ED": 200}.items()}
-"""Rough directions of the owl wing's links with the wing open (F at 228.15° from G)."""
+def parallelogram_pose(angle: float = 0.7, linkage: Linkage | None = None) -> Pose:
+    """All cranks parallel, the coupler level."""
+    near = {"second": angle, "third": angle, "top": 0.0}
+    return solve_pose(linkage or parallelogram(), coordinate="first", angle=angle, near=near)
