@@ -367,7 +367,7 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
                 (
                     f"largest: {number(float(scene.values.max()))} MPa (circles)",
                     f"    at x = {_place(x)}, y = {_place(y)}, z = {_place(z)} mm",
-                    "",
+                    "    (faint above: on the far side)" if scene.far_side else "",
                     f"upper picture: deformed, × {plain(scene.scale)}",
                     f"    largest displacement {number(largest, 3)} mm",
                     "    grey line: undeformed",

@@ -1,0 +1,158 @@
+"""``report.html``: one file that holds everything, pictures included, and loads nothing from elsewhere."""
+
+import base64
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from fea.result import CheckResult, LinkResult, LoadCaseResult
+from fea.verdict import Verdict
+from geometry.material import Material
+from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
+from reports.record import alula_version, worst_load_case
+from reports.wording import AGREEMENT, band, checks_of, headline, joined, number, percent, plain, turning
+
+MEANING = {
+    Verdict.PASS: "In this pose and under these loads every checked link keeps the margin that was asked for, "
+    "wherever in its error band the truth lies. What the model leaves out is listed at the end.",
+    Verdict.FAIL: "At least one link misses its limit wherever in its error band the truth lies: "
+    "change its section, its material or its load.",
+    Verdict.UNDECIDED: "At least one answer cannot be given with the models that ran: its error band reaches over "
+    "the limit, or the model leaves out what matters there. This is neither a pass nor a fail.",
+}
+NOT_COVERED = (
+    ("Other poses", "One pose was checked. Another pose of the linkage may load a link more."),
+    ("Stacking", "All links lie in one plane. In a real linkage they are stacked along the pins, and the offset "
+     "bends and twists them."),
+    ("Pins and contact", "A pin is a pressure on its hole. Clearance, friction, wear, the pins' own strength and "
+     "what happens in the contact itself are left out."),
+    ("Fatigue", "The loads act once and stay. Loads that come and go break parts at lower stresses."),
+    ("Creep, temperature, moisture, ageing", "Plastics lose strength and stiffness under load that lasts, in warmth "
+     "and with the years; the material values are short-term ones at room temperature."),
+    ("Large displacements", "Forces follow from the shape before loading. Where a displacement is not small against "
+     "the link, they would change."),
+    ("Buckling and impact", "A slender link in compression may give way sideways; a blow loads it more than the same "
+     "load at rest."),
+    ("Making", "Voids, layers, notches, scatter of dimensions and of strength are left to the safety factor."),
+    ("Discretisation", "The error of the mesh is not in the bands: they hold what their list says and no more."),
+)  # fmt: skip
+_PROPERTIES = (
+    ("density", "density", "kg/m³", 1e12),
+    ("youngs_modulus", "Young's modulus E", "GPa", 1e-3),
+    ("poissons_ratio", "Poisson's ratio ν", "", 1.0),
+    ("yield_strength", "yield strength", "MPa", 1.0),
+    ("ultimate_strength", "ultimate strength", "MPa", 1.0),
+)
+
+
+def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
+    """Return the report as one HTML page.
+
+    figures   PNG pictures by the names of ``reports.pictures``; a missing one is left out of the page
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("reports"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "number": number,
+        "plain": plain,
+        "band": band,
+        "percent": percent,
+        "joined": joined,
+        "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
+    }
+    first = next(iter(result.load_cases.values()))
+    return environment.get_template("report.html.jinja").render(
+        result=result,
+        case=result.case,
+        pose=result.pose,
+        first=first,
+        several=len(result.load_cases) > 1,
+        verdict=result.verdict.value,
+        headline=headline(result),
+        meaning=MEANING[result.verdict],
+        checks=checks_of(result),
+        bands=_bands(result),
+        drawings=[(name, result.load_cases[name], figures.get(linkage_name(name))) for name in _drawn(result)],
+        dead_points=_dead_points(result),
+        turning=turning,
+        links=[_link(result, link, figures) for link in first.links],
+        agreement=AGREEMENT,
+        materials=_materials(result),
+        not_covered=NOT_COVERED,
+        version=alula_version(),
+        data_uri=data_uri,
+        inf=math.inf,
+    )
+
+
+def data_uri(picture: bytes) -> str:
+    """Return a PNG as a URI that holds it."""
+    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
+
+
+def _drawn(result: CheckResult) -> tuple[str, ...]:
+    return governing_load_cases(result)
+
+
+def _bands(result: CheckResult) -> tuple[str, ...]:
+    """What the bands of this result hold, each once."""
+    return tuple(
+        dict.fromkeys(
+            held
+            for case in result.load_cases.values()
+            for link in case.links.values()
+            for held in link.safety_factor.holds
+        )
+    )
+
+
+def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
+    """(what, link, distance from its dead point)."""
+    drive = result.case.drive
+    held = (("the pose coordinate", result.pose.coordinate), ("the driven link", drive.link if drive else None))
+    return [(what, link, result.pose.dead_point_distance(link)) for what, link in held if link is not None]
+
+
+def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[str, Any]:
+    """What the page tells of one link, under the load case that stresses it most."""
+    worst: LoadCaseResult = worst_load_case(result, name)
+    found: LinkResult = worst.links[name]
+    apart = [c for c in found.comparisons if abs(c.difference) > AGREEMENT]
+    return {
+        "name": name,
+        "load_case": worst.name,
+        "found": found,
+        "material": result.case.material_of(name),
+        "part": result.case.part_of(name),
+        "plot": figures.get(stress_name(name)),
+        "diagram": figures.get(diagram_name(name)),
+        "apart": apart,
+        "checks": [c for c in worst.checks if c.link == name],
+        "others": [(case.name, case.links[name]) for case in result.load_cases.values() if case is not worst],
+    }
+
+
+def _materials(result: CheckResult) -> list[dict[str, Any]]:
+    used: dict[str, list[str]] = {}
+    for link in result.case.checked_links:
+        used.setdefault(result.case.part_of(link).material, []).append(link)
+    return [_material(name, result.case.all_materials[name], links) for name, links in used.items()]
+
+
+def _material(name: str, material: Material, links: list[str]) -> dict[str, Any]:
+    rows = [
+        (title, f"{plain(float(f'{value * factor:.6g}'))} {unit}".strip(),
+         material.status.get(key, "not stated"), material.sources.get(key, "not stated"))
+        for key, title, unit, factor in _PROPERTIES
+        for value in [getattr(material, key)]
+        if value is not None
+    ]  # fmt: skip
+    return {"name": name, "title": material.title, "links": links, "rows": rows, "strength": material.strength,
+            "allowable": material.allowable, "brittle": material.brittle}  # fmt: skip
