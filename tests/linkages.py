@@ -8,7 +8,7 @@ from geometry.pose import Pose, solve_pose
 
 def link(*, ground: bool = False, **points: tuple[float, float]) -> Link:
     """A link with points in mm."""
-    return Link(ground=ground, points={n: (f"{x!r} mm", f"{y!r} mm") for n, (x, y) in points.items()})
+    return Link(ground=ground, points={n: (f"{float(x)!r} mm", f"{float(y)!r} mm") for n, (x, y) in points.items()})
 
 
 def fourbar(a: float = 40.0, b: float = 120.0, c: float = 80.0, d: float = 100.0) -> Linkage:
