@@ -14,7 +14,7 @@ _CHUNK = 4096  # elements at a time: some 40 MB of working memory
 
 
 def lame_constants(E: float, nu: float) -> tuple[float, float]:
-    """Lamé's λ and μ [MPa]: λ = Eν/((1+ν)(1−2ν)), μ = E/(2(1+ν)) (Timoshenko-Goodier, 3rd ed., § 85)."""
+    """Lamé's λ and μ [MPa]: λ = Eν/((1+ν)(1−2ν)), μ = E/(2(1+ν)) (Timoshenko-Goodier, 3rd ed., art. 6)."""
     return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
 
 

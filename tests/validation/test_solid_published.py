@@ -60,7 +60,7 @@ def breathing(space):
 
 
 def kirsch_stress(x, tension):
-    """Stress of Kirsch's infinite plate with a hole of radius 1 (Timoshenko-Goodier, 3rd ed., eq. 61), plane."""
+    """Stress of Kirsch's infinite plate with a hole of radius 1 (Timoshenko-Goodier, 3rd ed., art. 35), plane."""
     r2 = x[..., 0] ** 2 + x[..., 1] ** 2
     angle = np.arctan2(x[..., 1], x[..., 0])
     cos2, sin2 = np.cos(2.0 * angle), np.sin(2.0 * angle)

@@ -1,7 +1,7 @@
 """Observed orders of convergence on distorted meshes, against a chosen displacement field.
 
 u = a exp(k·x) with the body force that belongs to it; theory: order p in energy, p + 1 in displacement
-(Brenner-Scott, The Mathematical Theory of Finite Element Methods, 3rd ed., theorems 5.4.4 and 5.4.8).
+(Brenner-Scott, The Mathematical Theory of Finite Element Methods, 3rd ed., sec. 5.4).
 """
 
 import numpy as np
