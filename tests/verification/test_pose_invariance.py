@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from linkages import OPEN_WING, four_bar, six_bar
+from planar_linkages import OPEN_WING, four_bar, six_bar
 
 from geometry.errors import CaseError
 from geometry.pose import CLOSED, Pose, solve_pose

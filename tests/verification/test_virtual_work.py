@@ -6,7 +6,7 @@ T w_drive + sum F·v + sum M w = 0, whatever the joint forces are.
 
 import numpy as np
 import pytest
-from linkages import OPEN_WING, four_bar, joint, link, quick_return, slider_crank
+from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, slider_crank
 
 from geometry.closure import LoopClosure
 from geometry.errors import CaseError

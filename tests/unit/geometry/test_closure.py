@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from linkages import four_bar, quick_return, scotch_yoke, six_bar, slider_crank
+from planar_linkages import four_bar, quick_return, scotch_yoke, six_bar, slider_crank
 
 from geometry.closure import LoopClosure
 from geometry.linkage import Linkage

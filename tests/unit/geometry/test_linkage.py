@@ -1,7 +1,7 @@
 import math
 
 import pytest
-from linkages import four_bar, joint, link, quick_return, scotch_yoke, six_bar, slider_crank
+from planar_linkages import four_bar, joint, link, quick_return, scotch_yoke, six_bar, slider_crank
 from pydantic import ValidationError
 
 from geometry.errors import CaseError
