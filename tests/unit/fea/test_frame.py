@@ -226,3 +226,13 @@ def test_unloaded_frame_rests() -> None:
     out = solve_frame(replace(CANTILEVER, loads=()))
     assert not out.displacements.any()
     assert out.residual == 0.0
+
+
+def test_forces_that_do_not_balance_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A factor that leaves out a part of the element's answer: the whole frame no longer balances."""
+    import fea.frame
+
+    wrong = fea.frame.natural_deformations(60.0) * (1.0 + 1e-7)
+    monkeypatch.setattr(fea.frame, "natural_deformations", lambda length: wrong)
+    with pytest.raises(CannotRunError, match=r"leave .* of the load unbalanced"):
+        solve_frame(CANTILEVER)
