@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from fea.result import CheckResult, LoadCaseResult
 from fea.verdict import Verdict
-from reports.wording import AGREEMENT, band, headline, joined, number, percent, plain, turning
+from reports.wording import AGREEMENT, band, fixed, headline, joined, number, percent, plain, turning
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -84,7 +84,7 @@ def _links(case: LoadCaseResult) -> "Table":
             number(link.von_mises_max.value, 3),
             band(link.safety_factor),
             number(link.displacement_max.value, 3),
-            f"{link.location[0]:.1f}".replace("-", "−"),
+            fixed(float(link.location[0]), 1),
         )
     return table
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from fea.result import LinkResult
 from reports.drawings import DPI, GROUND, INK, STYLE, WIDTH, as_png
-from reports.wording import number, plain
+from reports.wording import fixed, number, plain
 
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]
@@ -127,8 +127,8 @@ def scene_of(link: LinkResult) -> Scene:
     largest = float(np.linalg.norm(displacement, axis=1).max())
     scale = round_scale(_VISIBLE_SHIFT * length / largest) if largest > 0.0 else 1.0
     hottest = int(np.argmax(values))
-    reach = 0.8 * thickness
-    near = np.linalg.norm(space.nodes[space.cells[:, :4]].mean(axis=1) - space.nodes[hottest], axis=1) < 2.5 * reach
+    reach = 0.65 * thickness
+    near = np.linalg.norm(space.nodes[space.cells[:, :4]].mean(axis=1) - space.nodes[hottest], axis=1) < 3.0 * reach
     cells = space.cells[near]
     return Scene(
         points=space.nodes,
@@ -185,7 +185,7 @@ def _free_direction(points: Real, triangles: Int, node: int, reach: float) -> Re
     around = (triangles == node).any(axis=1)
     if not around.any():
         return None
-    near = (np.linalg.norm(corners.mean(axis=1) - points[node], axis=1) < 6.0 * reach) & ~around
+    near = (np.linalg.norm(corners.mean(axis=1) - points[node], axis=1) < 8.0 * reach) & ~around
     a, ab, ac = corners[near, 0], corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0]
     normal = np.cross(corners[around, 1] - corners[around, 0], corners[around, 2] - corners[around, 0]).sum(axis=0)
     normal /= np.linalg.norm(normal)
@@ -367,7 +367,7 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
                 (
                     f"largest: {number(float(scene.values.max()))} MPa (circles)",
                     f"    at x = {_place(x)}, y = {_place(y)}, z = {_place(z)} mm",
-                    "    (faint above: on the far side)" if scene.far_side else "",
+                    "    (faint above: on the far side)\n" if scene.far_side else "",
                     f"upper picture: deformed, × {plain(scene.scale)}",
                     f"    largest displacement {number(largest, 3)} mm",
                     "    grey line: undeformed",
@@ -381,7 +381,7 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
 
 
 def _place(value: float) -> str:
-    return f"{value:.1f}".replace("-0.0", "0.0").replace("-", "−")
+    return fixed(float(value), 1)
 
 
 def _name_points(axes: Any, scene: Scene, points: Mapping[str, float]) -> None:

@@ -10,7 +10,7 @@ from fea.verdict import Verdict
 from geometry.material import Material
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
 from reports.record import alula_version, worst_load_case
-from reports.wording import AGREEMENT, band, checks_of, headline, joined, number, percent, plain, turning
+from reports.wording import AGREEMENT, band, checks_of, fixed, headline, joined, number, percent, plain, turning
 
 MEANING = {
     Verdict.PASS: "In this pose and under these loads every checked link keeps the margin that was asked for, "
@@ -62,6 +62,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
     environment.filters |= {
         "number": number,
         "plain": plain,
+        "fixed": fixed,
         "band": band,
         "percent": percent,
         "joined": joined,
@@ -79,7 +80,9 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         meaning=MEANING[result.verdict],
         checks=checks_of(result),
         bands=_bands(result),
-        drawings=[(name, result.load_cases[name], figures.get(linkage_name(name))) for name in _drawn(result)],
+        drawings=[
+            (name, result.load_cases[name], figures.get(linkage_name(name))) for name in governing_load_cases(result)
+        ],
         dead_points=_dead_points(result),
         turning=turning,
         links=[_link(result, link, figures) for link in first.links],
@@ -88,17 +91,12 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         not_covered=NOT_COVERED,
         version=alula_version(),
         data_uri=data_uri,
-        inf=math.inf,
     )
 
 
 def data_uri(picture: bytes) -> str:
     """Return a PNG as a URI that holds it."""
     return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
-
-
-def _drawn(result: CheckResult) -> tuple[str, ...]:
-    return governing_load_cases(result)
 
 
 def _bands(result: CheckResult) -> tuple[str, ...]:

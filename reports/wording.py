@@ -7,19 +7,21 @@ from fea.result import CheckResult
 from fea.verdict import CheckOutcome, Verdict
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-NARROW_BAND = 5e-3
-"""Width relative to the value below which a band is not spelled out in tables."""
+_ROUNDING = 1e-12
 AGREEMENT = 0.03
 """Largest difference between hand calculation and solid model that needs no explanation."""
 
 
-def number(value: float, digits: int = 4) -> str:
-    """Return a number with so many significant digits; a power of ten outside 1e-4 to 1e5."""
+def number(value: float, digits: int = 4, beside: float = 0.0) -> str:
+    """Return a number with so many significant digits; a power of ten outside 1e-4 to 1e5.
+
+    beside   a number of which this one is a part: what is smaller than rounding leaves of it counts as zero
+    """
     if math.isnan(value):
         return "not known"
     if math.isinf(value):
         return "∞" if value > 0.0 else "−∞"
-    if value == 0.0:
+    if abs(value) <= _ROUNDING * abs(beside):
         return "0"
     if 1e-4 <= abs(value) < 1e5:
         exponent = math.floor(math.log10(float(f"{abs(value):.{digits - 1}e}")))
@@ -28,6 +30,12 @@ def number(value: float, digits: int = 4) -> str:
         mantissa, _, exponent_text = f"{value:.{digits - 1}e}".partition("e")
         text = f"{mantissa}·10{str(int(exponent_text)).translate(_SUPERSCRIPT)}"
     return text.replace("-", "−")
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Return a number with so many decimals; zero has no sign."""
+    text = f"{value:.{decimals}f}"
+    return text.lstrip("-") if float(text) == 0.0 else text.replace("-", "−")
 
 
 def plain(value: float) -> str:

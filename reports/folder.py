@@ -1,0 +1,44 @@
+"""The output folder of a check: report, result, pictures and VTU files."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from fea.result import CheckResult
+from reports.output import MARK, write_folder
+from reports.record import as_json, worst_load_case
+
+REPORT = "report.html"
+PICTURES = "pictures"
+FIELDS = "vtu"
+
+
+def write_report(result: CheckResult, target: Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
+    """Write ``report.html``, ``result.json``, ``pictures/*.png`` and ``vtu/<link>.vtu`` into a folder, or nothing.
+
+    The VTU file of a link holds the load case that stresses it most. Pictures that cannot be rendered are
+    left out with a warning in report and result. Raises ``CaseError`` for a folder that holds something
+    else, ``CannotRunError`` where the disk refuses.
+    """
+    from reports.export import write_vtu
+    from reports.html import render
+    from reports.pictures import draw_pictures
+
+    def fill(folder: Path) -> None:
+        pictures, warnings = draw_pictures(result, progress)
+        told = replace(result, warnings=(*result.warnings, *warnings))
+        for warning in warnings:
+            progress(f"Warning: {warning}")
+        (folder / REPORT).write_text(render(told, pictures), encoding="utf-8")
+        (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
+        (folder / PICTURES).mkdir()
+        for name, picture in pictures.items():
+            (folder / PICTURES / f"{name}.png").write_bytes(picture)
+        progress("Writing the VTU files ...")
+        for link in next(iter(result.load_cases.values())).links:
+            found = worst_load_case(result, link).links[link]
+            if found.stress is not None and found.solid_case is not None:
+                (folder / FIELDS).mkdir(exist_ok=True)
+                write_vtu(folder / FIELDS / f"{link}.vtu", found.solid_case.displacement, found.stress)
+
+    write_folder(target, fill)
