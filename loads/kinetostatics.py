@@ -224,6 +224,16 @@ def torque_by_virtual_work(
     return np.where(_leverage(bodies, drive) >= NEARLY_SINGULAR, torque, np.nan)
 
 
+def is_determinate(linkage: Linkage) -> bool:
+    """Return True where equilibrium gives all joint forces of the driven linkage: as many equations as unknowns."""
+    return _unknowns(linkage) == 3 * len(linkage.moving)
+
+
+def _unknowns(linkage: Linkage) -> int:
+    """Force components of all joints, and the drive torque."""
+    return sum(1 if joint.type == "pin-in-slot" else 2 for joint in linkage.joints.values()) + 1
+
+
 def _counterpart(linkage: Linkage, drive: Drive) -> str:
     """The link that carries the reaction of the drive torque."""
     first, second = linkage.joints[drive.joint].links
@@ -355,8 +365,8 @@ class _Equations:
         for name, joint in self.linkage.joints.items():
             self.start[name] = columns
             columns += 1 if joint.type == "pin-in-slot" else 2
-        self.columns = columns + 1
-        if self.columns != 3 * self.links:
+        self.columns = _unknowns(self.linkage)
+        if not is_determinate(self.linkage):
             raise CaseError(
                 f"drive: statics has {3 * self.links} equilibrium equations for {self.columns} unknowns, so joint "
                 "forces do not follow from equilibrium; remove redundant joints or links, or drive as many links "

@@ -1,0 +1,106 @@
+"""The motion of a case: poses, joint forces and drive torque over its range, for every load case."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.errors import CaseError
+from geometry.motion import Motion, solve_motion
+from geometry.pose import Pose
+from loads.actions import PartMass, needs_masses, stated_loads
+from loads.case import Case
+from loads.kinetostatics import Kinetostatics, is_determinate, solve_kinetostatics, torque_by_virtual_work
+from loads.masses import moving_masses
+from loads.statics import Drive
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CaseMotion:
+    """A case over its motion.
+
+    masses  the links' masses; empty where nothing weighs and inertia is left out
+    forces  load case -> joint forces; empty where they do not follow from equilibrium (redundant linkages)
+    torque  load case -> drive torque (n,) [N mm]; NaN at dead points of the driven link
+    dead_points  angles of the coordinate [rad] at which the driven link turns back
+    """
+
+    case: Case
+    motion: Motion
+    drive: Drive
+    masses: Mapping[str, PartMass]
+    forces: Mapping[str, Kinetostatics]
+    torque: Mapping[str, Real]
+    dead_points: tuple[float, ...]
+
+
+def solve_case_motion(case: Case) -> CaseMotion:
+    """Move the case's linkage as its table [motion] says and solve every load case at every pose.
+
+    Raises ``CaseError`` where the motion meets a dead point or the case states no motion, drive or masses.
+    """
+    coordinate = case.motion_coordinate
+    spec, drive = case.motion, case.pinned_drive
+    assert spec is not None
+    if drive is None:
+        raise CaseError("drive: the linkage moves, but nothing drives it; add a [drive] with its link and joint")
+    pose = case.solve_pose()
+    angles = drive_angles(case, pose)
+    speed, acceleration = drive_speeds(case, angles)
+    motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate)
+    masses = moving_masses(case) if spec.inertia or needs_masses(case) else {}
+    if spec.inertia and not masses:
+        raise CaseError(
+            "motion.inertia: no moving link has a mass; give a link a part, or state a mass under [motion.masses]"
+        )
+    inert = masses if spec.inertia else {}
+    loads = {name: stated_loads(case, load_case, masses) for name, load_case in case.load_cases.items()}
+    forces: dict[str, Kinetostatics] = {}
+    if is_determinate(case.linkage):
+        forces = {name: solve_kinetostatics(motion, drive, acting, inert) for name, acting in loads.items()}
+    torque = {
+        name: forces[name].torque if forces else torque_by_virtual_work(motion, drive, acting, inert)
+        for name, acting in loads.items()
+    }
+    first, second = case.linkage.joints[drive.joint].links
+    return CaseMotion(
+        case=case,
+        motion=motion,
+        drive=drive,
+        masses=masses,
+        forces=forces,
+        torque=torque,
+        dead_points=motion.turning_points(drive.link, second if first == drive.link else first),
+    )
+
+
+def drive_angles(case: Case, pose: Pose) -> Real:
+    """Angles of the motion's coordinate (poses,) [rad]: its range, or a full turn from the stated pose."""
+    spec = case.motion
+    assert spec is not None
+    if spec.range is not None:
+        return np.linspace(*spec.range, spec.poses)
+    start = pose.angles[case.motion_coordinate]
+    return np.linspace(start, start + math.copysign(2.0 * math.pi, spec.speed), spec.poses)
+
+
+def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
+    """Angular speed [rad/s] and acceleration [rad/s²] of the motion's coordinate at its angles (poses,).
+
+    With constant acceleration: speed² = first speed² + 2 acceleration (angle - first angle).
+    """
+    spec = case.motion
+    assert spec is not None
+    sense, first, rate = math.copysign(1.0, angles[-1] - angles[0]), abs(spec.speed), spec.acceleration
+    square = first**2 + 2.0 * rate * np.abs(angles - angles[0])
+    if square.min() < 0.0:
+        stop = math.degrees(angles[0] + sense * first**2 / (-2.0 * rate))
+        raise CaseError(
+            f"motion.acceleration: the drive slows down to a stop at {stop:.6g} deg, before the motion ends; "
+            "state a smaller deceleration, a higher speed or a shorter range"
+        )
+    return sense * np.sqrt(square), np.full(len(angles), sense * rate)
