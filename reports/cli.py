@@ -131,6 +131,31 @@ def statics(
 
 
 @app.command()
+def motion(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for tables, figures and the animation.")
+    ] = None,
+    json: JsonOption = False,
+    overrides: SetOption = None,
+) -> None:
+    """Move a linkage: directions, paths, joint forces and drive torque over its range."""
+    from loads.case_file import read_case
+    from loads.case_motion import solve_case_motion
+    from reports.motion import print_motion, write_motion
+
+    result = solve_case_motion(read_case(case, overrides or ()))
+    if output is not None:
+        from reports.output import write_folder
+
+        _progress("Drawing figures and the animation ...")
+        write_folder(output, lambda folder: write_motion(result, folder, case))
+    print_motion(result, case, json=json)
+    if output is not None and not json:
+        print(f"\nTables and figures: {output}")
+
+
+@app.command()
 def cases() -> None:
     """List the built-in cases."""
     from loads.case_file import built_in_cases, read_case

@@ -1,0 +1,265 @@
+"""What ``alula motion`` prints and writes: a summary, tables and figures of a case's motion."""
+
+import csv
+import json as jsonlib
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.motion import Motion
+from loads.case_motion import CaseMotion
+
+Real = NDArray[np.float64]
+
+MOTION_SCHEMA_VERSION = 1
+UNITS = {"angle": "deg", "length": "mm", "force": "N", "moment": "N*mm", "time": "s", "power": "W"}
+_SAME = 1e-9
+
+
+def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
+    """Write ``result.json``, the tables, the figures and the animation into an existing folder."""
+    from reports.motion_animation import draw_animation
+    from reports.motion_figures import draw_figures
+
+    (folder / "result.json").write_text(jsonlib.dumps(record(result, name), indent=2) + "\n", encoding="utf-8")
+    write_tables(result, folder)
+    draw_figures(result, folder)
+    draw_animation(result.motion, folder / "linkage.gif")
+
+
+def write_tables(result: CaseMotion, folder: Path) -> None:
+    """Write ``links.csv``, ``points.csv`` and, load case below load case, ``torque.csv`` and ``joint-forces.csv``."""
+    motion = result.motion
+    _write(folder / "links.csv", {**_base(motion), **_link_columns(motion)})
+    _write(folder / "points.csv", {**_base(motion), **_point_columns(motion)})
+    _write_cases(folder / "torque.csv", motion, {n: _torque_columns(result, n) for n in result.torque})
+    if result.forces:
+        _write_cases(folder / "joint-forces.csv", motion, {n: _force_columns(result, n) for n in result.forces})
+
+
+def record(result: CaseMotion, name: str) -> dict[str, Any]:
+    """Return the motion's result as plain data; angles in degrees, unbounded torques as null."""
+    motion = result.motion
+    return {
+        "schema_version": MOTION_SCHEMA_VERSION,
+        "case": name,
+        "title": result.case.title,
+        "units": UNITS,
+        "motion": {
+            "coordinate": motion.coordinate,
+            "first": _degrees(motion.angles[0]),
+            "last": _degrees(motion.angles[-1]),
+            "poses": len(motion.angles),
+            "speed_rad_per_s": [float(motion.speed[0]), float(motion.speed[-1])],
+            "duration": None if motion.times is None else float(motion.times[-1]),
+            "closure_residual": motion.residual,
+            "returns_to_start": motion.returns,
+            "inertia": bool(result.case.motion and result.case.motion.inertia),
+            "links": {
+                link: {
+                    "first": _degrees(motion.angle(link)[0]),
+                    "last": _degrees(motion.angle(link)[-1]),
+                    "smallest": _degrees(motion.angle(link).min()),
+                    "largest": _degrees(motion.angle(link).max()),
+                }
+                for link in motion.linkage.moving
+            },
+            "points": {label: {"path_length": _path_length(xy)} for label, xy in moving_points(motion).items()},
+        },
+        "drive": {
+            "link": result.drive.link,
+            "joint": result.drive.joint,
+            "dead_points": [_degrees(a) for a in result.dead_points],
+        },
+        "load_cases": {load_case: _case_record(result, load_case) for load_case in result.torque},
+    }
+
+
+def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
+    found: dict[str, Any] = {"drive_torque": _extremes(result, result.torque[load_case])}
+    if not result.forces:
+        return found | {"joints": None}
+    solved = result.forces[load_case]
+    found["joints"] = {
+        joint: _extremes(result, np.linalg.norm(force, axis=1)) for joint, force in solved.forces.items()
+    }
+    if result.motion.times is not None:
+        found["drive_power"] = _extremes(result, solved.drive_power / 1000.0)
+        scale = max(float(np.nanmax(np.abs(solved.drive_power), initial=0.0)), math.ulp(0.0))
+        found["energy_imbalance"] = float(np.nanmax(np.abs(solved.imbalance), initial=0.0)) / scale
+    return found
+
+
+def _extremes(result: CaseMotion, values: Real) -> dict[str, Any]:
+    """First, last and extreme values; extremes next to a dead point of the drive mean nothing, hence are null."""
+    ends: dict[str, Any] = {"first": _number(values[0]), "last": _number(values[-1])}
+    if result.dead_points or not np.any(np.isfinite(values)):
+        return ends | {"smallest": None, "largest": None, "unbounded": True}
+    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+    for key, i in (("smallest", low), ("largest", high)):
+        ends |= {key: _number(values[i]), f"{key}_at": _degrees(result.motion.angles[i])}
+    return ends | {"unbounded": False}
+
+
+def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
+    """Print the summary, or the record as JSON."""
+    found = record(result, name)
+    if json:
+        print(jsonlib.dumps(found, indent=2))
+        return
+    motion, drive = found["motion"], found["drive"]
+    print(result.case.title)
+    duration = "" if motion["duration"] is None else f", {motion['duration']:.4g} s"
+    print(
+        f"{motion['coordinate']} from {motion['first']:.6g} to {motion['last']:.6g} deg: "
+        f"{motion['poses']} poses{duration}; loops closed to {motion['closure_residual']:.1g} of the longest link"
+    )
+    if motion["returns_to_start"]:
+        print("The linkage returns to its start.")
+    width = max(map(len, motion["links"]))
+    print("\nLink directions [deg]")
+    for link, row in motion["links"].items():
+        print(
+            f"  {link:<{width}}  {row['first']:9.3f} -> {row['last']:9.3f}   "
+            f"(between {row['smallest']:.3f} and {row['largest']:.3f})"
+        )
+    for angle in drive["dead_points"]:
+        print(
+            f"\n{drive['link']} turns back at {motion['coordinate']} = {angle:.4f} deg: a dead point of the driven "
+            "link. There it cannot drive the linkage; torque and joint forces grow without bound."
+        )
+    for load_case, row in found["load_cases"].items():
+        print(f"\nLoad case {load_case}{'' if motion['inertia'] else ' (without inertia)'}")
+        print(f"  drive torque on {drive['link']} at {drive['joint']}: {_line(row['drive_torque'], 'N mm')}")
+        if row["joints"] is None:
+            print("  joint forces do not follow from equilibrium, since the linkage is redundant")
+            continue
+        if "drive_power" in row:
+            print(f"  drive power: {_line(row['drive_power'], 'W')}; energy balance to {row['energy_imbalance']:.1g}")
+        for joint, extremes in row["joints"].items():
+            print(f"  joint {joint}: {_line(extremes, 'N')}")
+
+
+def _line(row: Mapping[str, Any], unit: str) -> str:
+    ends = f"{_text(row['first'])} -> {_text(row['last'])} {unit}"
+    if row["unbounded"]:
+        return ends
+    return (
+        f"{ends}, least {_text(row['smallest'])} at {row['smallest_at']:.1f} deg, "
+        f"most {_text(row['largest'])} at {row['largest_at']:.1f} deg"
+    )
+
+
+def _text(value: float | None) -> str:
+    return "unbounded" if value is None else f"{value:.4g}"
+
+
+def moving_points(motion: Motion) -> dict[str, Real]:
+    """Paths (n, 2) [mm] of all points that move, by name; ``link.point`` where points of one name differ."""
+    groups: dict[str, list[tuple[str, Real]]] = {}
+    for link, point in motion.closure.point_names:
+        groups.setdefault(point, []).append((link, motion.position(link, point)))
+    found: dict[str, Real] = {}
+    near = _SAME * motion.linkage.longest
+    for point, members in groups.items():
+        same = all(float(np.max(np.abs(xy - members[0][1]))) <= near for _, xy in members)
+        for link, xy in members[:1] if same else members:
+            if float(np.max(np.abs(xy - xy[0]))) > near:
+                found[point if same else f"{link}.{point}"] = xy
+    return found
+
+
+def _path_length(xy: Real) -> float:
+    return float(np.sum(np.linalg.norm(np.diff(xy, axis=0), axis=1)))
+
+
+def _base(motion: Motion) -> dict[str, Real]:
+    columns = {f"{motion.coordinate} angle [deg]": np.degrees(motion.angles)}
+    return columns if motion.times is None else columns | {"time [s]": motion.times}
+
+
+def _link_columns(motion: Motion) -> dict[str, Real]:
+    columns: dict[str, Real] = {}
+    for i, link in enumerate(motion.linkage.moving):
+        if link != motion.coordinate:
+            columns[f"{link} angle [deg]"] = np.degrees(motion.angle(link))
+        columns[f"{link} speed over speed of {motion.coordinate} [1]"] = motion.first[:, i]
+        if motion.times is not None:
+            columns[f"{link} speed [rad/s]"] = motion.angular_speed(link)
+            columns[f"{link} acceleration [rad/s^2]"] = motion.angular_acceleration(link)
+    for joint in motion.closure.slots:
+        columns[f"{joint} travel [mm]"] = motion.travel(joint)
+    return columns
+
+
+def _point_columns(motion: Motion) -> dict[str, Real]:
+    columns: dict[str, Real] = {}
+    fields = [("", "mm", motion.position)]
+    if motion.times is not None:
+        fields += [("v", "mm/s", motion.velocity), ("a", "mm/s^2", motion.linear_acceleration)]
+    for label in moving_points(motion):
+        link, _, point = label.rpartition(".")
+        owner = link or next(n for n, p in motion.closure.point_names if p == point)
+        for prefix, unit, of in fields:
+            values = of(owner, point)
+            columns[f"{label} {prefix}x [{unit}]"] = values[:, 0]
+            columns[f"{label} {prefix}y [{unit}]"] = values[:, 1]
+    return columns
+
+
+def _torque_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
+    columns = {f"torque on {result.drive.link} [N mm]": result.torque[load_case]}
+    if result.forces and result.motion.times is not None:
+        solved = result.forces[load_case]
+        columns["drive power [N mm/s]"] = solved.drive_power
+        columns["kinetic energy [N mm]"] = solved.power.kinetic
+        columns["potential energy [N mm]"] = solved.power.potential
+    return columns
+
+
+def _force_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
+    columns: dict[str, Real] = {}
+    solved = result.forces[load_case]
+    for name, force in solved.forces.items():
+        first, second = result.case.joints[name].links
+        columns[f"{name} Fx of {first} on {second} [N]"] = force[:, 0]
+        columns[f"{name} Fy of {first} on {second} [N]"] = force[:, 1]
+        columns[f"{name} size [N]"] = np.linalg.norm(force, axis=1)
+        if name in solved.moments:
+            columns[f"{name} M of {first} on {second} [N mm]"] = solved.moments[name]
+    return columns
+
+
+def _write(path: Path, columns: Mapping[str, Real]) -> None:
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(_rows(columns))
+
+
+def _write_cases(path: Path, motion: Motion, cases: Mapping[str, Mapping[str, Real]]) -> None:
+    base = _base(motion)
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        for i, (name, columns) in enumerate(cases.items()):
+            if i == 0:
+                writer.writerow(["load case", *base, *columns])
+            writer.writerows([name, *row] for row in _rows({**base, **columns}))
+
+
+def _rows(columns: Mapping[str, Real]) -> Sequence[list[str]]:
+    """Rows of a table with twelve digits; an unbounded value is left empty."""
+    table = np.column_stack(list(columns.values()))
+    return [[f"{v:.12g}" if math.isfinite(v) else "" for v in row] for row in table.tolist()]
+
+
+def _degrees(angle: float) -> float:
+    return math.degrees(float(angle))
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
