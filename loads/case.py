@@ -14,7 +14,18 @@ from geometry.material import Material, library
 from geometry.model import CaseModel, Name, Text
 from geometry.part import Body, Part, Pin, PlainEnd
 from geometry.pose import Pose, solve_pose
-from geometry.units import NOT_NEGATIVE, POSITIVE, Acceleration, Angle, Force, Length, Moment
+from geometry.units import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Acceleration,
+    Angle,
+    AngularSpeed,
+    Force,
+    Length,
+    Moment,
+)
+from loads.claim import Claim
+from loads.carried import CarriedBody, CarriedSpread
 from loads.motion_spec import MotionSpec
 from loads.statics import Drive, check_drive
 
@@ -84,6 +95,9 @@ class LoadCase(CaseModel):
     gravity: Annotated[Acceleration, NOT_NEGATIVE] = 9810.0
     gravity_direction: Angle = -math.pi / 2
     """Direction of the weight, from the global x axis."""
+    speed: AngularSpeed = 0.0
+    """Constant angular speed of the pose's coordinate, counter-clockwise positive; where stated, the
+    inertia of the parts and of what they carry acts as well."""
     forces: tuple[PointForce, ...] = ()
     moments: tuple[PointMoment, ...] = ()
     spread: tuple[SpreadForce, ...] = ()
@@ -167,10 +181,14 @@ class Case(CaseModel):
     materials: dict[Name, Material] = {}
     """Material cards of the case's own; the library's are there by name without being listed."""
     parts: dict[Name, Part] = {}
+    carried: tuple[CarriedSpread | CarriedBody, ...] = ()
+    """Masses that links carry besides their parts; they weigh where the parts weigh, and have inertia."""
     load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=100)]
     checks: dict[Name, Check] = {}
     hand_calculations: dict[Name, CantileverCalculation] = {}
     published_statics: PublishedStatics | None = None
+    claims: Annotated[tuple[Claim, ...], Field(max_length=1000)] = ()
+    """Published figures about the case, for ``alula claims`` to re-derive."""
     solid: SolidSettings = SolidSettings()
 
     def model_post_init(self, context: object) -> None:
@@ -200,6 +218,8 @@ class Case(CaseModel):
                 )
             if link.part is not None:
                 _check_body(f"links.{name}", self.body(name))
+        for i, mass in enumerate(self.carried):
+            _check_carried(self, f"carried.{i}", mass)
         for name, load_case in self.load_cases.items():
             _check_loads(self, f"load_cases.{name}", load_case)
         for name, check in self.checks.items():
@@ -345,8 +365,30 @@ def _check_loads(case: Case, where: str, load_case: LoadCase) -> None:
                     )
             if kind == "spread" and np.isclose(points[load.start][0], points[load.end][0]):
                 raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
-    if load_case.own_weight and not case.checked_links:
+    if load_case.own_weight and not (case.checked_links or case.carried):
         raise CaseError(f"{where}.own_weight: no moving link has a part, so nothing has a weight; add a part")
+    if load_case.speed != 0.0 and case.pose.coordinate is None:
+        raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
+
+
+def _check_carried(case: Case, entry: str, mass: CarriedSpread | CarriedBody) -> None:
+    if mass.link not in case.linkage.moving:
+        raise CaseError(
+            f"{entry}.link: '{mass.link}' is not a moving link; choose among {', '.join(case.linkage.moving)}"
+        )
+    points = case.links[mass.link].points
+    named = (mass.start, mass.end) if isinstance(mass, CarriedSpread) else (mass.at,)
+    for point in named:
+        if point not in points:
+            raise CaseError(f"{entry}: link '{mass.link}' has no point '{point}'; its points are {', '.join(points)}")
+    if isinstance(mass, CarriedSpread) and np.isclose(points[mass.start][0], points[mass.end][0]):
+        raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
+
+
+def gravity(load_case: LoadCase) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Return the weight per mass of a load case (3,) [mm/s²]."""
+    direction = load_case.gravity_direction
+    return load_case.gravity * np.array([math.cos(direction), math.sin(direction), 0.0])
 
 
 def vector3(components: tuple[float, ...]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

@@ -1,0 +1,1 @@
+"""Published figures of the source documents, one file of claims per document."""
