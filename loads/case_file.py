@@ -56,7 +56,7 @@ def read_text(name_or_path: str) -> tuple[str, str]:
     try:
         if path.stat().st_size > LARGEST_FILE:
             raise CaseError(f"case '{shown}': the file is larger than 1 MiB; a case file is some kilobytes")
-        text = path.read_bytes().decode("utf-8")
+        text = path.read_bytes().decode("utf-8-sig")  # Windows editors put a byte order mark
     except OSError as error:
         raise CaseError(f"case '{shown}': it cannot be read ({error.strerror}); check its permissions") from None
     except UnicodeDecodeError:
@@ -70,17 +70,13 @@ def read_companion(case_path: str, name: str) -> str:
     """Read a text file that stands beside a case file (or ships with a built-in case)."""
     if Path(name).name != name or name.startswith("."):
         raise CaseError(f"'{printable(name)}' must be the plain name of a file beside the case file")
-    if case_path in built_in_cases():
-        source = files("loads.cases").joinpath(name)
-        if source.is_file():
-            return source.read_text(encoding="utf-8")
-    else:
-        path = Path(case_path).parent / name
-        try:
-            if path.is_file() and path.stat().st_size <= LARGEST_FILE:
-                return path.read_text(encoding="utf-8")
-        except (OSError, ValueError):  # no permission, a name too long, not UTF-8
-            pass
+    built_in = case_path in built_in_cases()
+    source = files("loads.cases").joinpath(name) if built_in else Path(case_path).parent / name
+    try:
+        if source.is_file() and (built_in or Path(str(source)).stat().st_size <= LARGEST_FILE):
+            return source.read_text(encoding="utf-8-sig")
+    except (OSError, ValueError):  # no permission, a name too long, not UTF-8
+        pass
     raise CaseError(f"'{printable(name)}' is not a readable file beside the case file; put it there")
 
 

@@ -1,0 +1,375 @@
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from geometry.errors import CaseError
+from loads.case import Case
+from loads.case_file import LARGEST_FILE, built_in_cases, read_case, read_companion, read_text, validate
+
+OWL = "owl-wing-static"
+
+
+def sentence(*arguments: object) -> str:
+    """The one sentence that reading ends in."""
+    with pytest.raises(CaseError) as caught:
+        read_case(*arguments)  # type: ignore[arg-type]
+    text = str(caught.value)
+    assert caught.value.exit_status == 2
+    assert text.isprintable(), repr(text)  # one line, no control characters
+    assert len(text) < 1000
+    assert "Traceback" not in text
+    assert "pydantic" not in text
+    return text
+
+
+# (override, words that the sentence must hold: entry, value or rule, remedy)
+BAD = [
+    # unknown keys
+    ("bogus=1", ["bogus", "unknown", "correct its name or remove it"]),
+    ("links.GF.colour=1", ["links.GF.colour", "unknown"]),
+    ("parts.tube.colour=1", ["parts.tube.colour:", "unknown"]),
+    ("checks.strength.colour=1", ["checks.strength.colour:", "unknown"]),
+    ("materials.m={}", ["materials.m.title", "missing", "add it"]),
+    # missing units
+    ("pose.angle=228", ["pose.angle", "228", "unit", "30 deg"]),
+    ('links.GF.points.F=["50", "0 mm"]', ["links.GF.points.F.0", "'50'", "unit", "125 mm"]),
+    ("links.GF.points.F=[50, 0]", ["links.GF.points.F.0", "(it is 50)", "unit as text"]),
+    ('checks.x={type="displacement",maximum=2}', ["checks.x.maximum", "(it is 2)", "unit"]),
+    # wrong dimensions
+    ("pose.angle=5 mm", ["pose.angle", "5 mm", "not a unit of angle", "30 deg"]),
+    ("parts.tube.outer_diameter=5 s", ["parts.tube.outer_diameter", "'5 s'", "not a unit of length"]),
+    ('load_cases.weight.forces.0.force=["0 N", "1 mm"]', ["load_cases.weight.forces.0.force.1", "'1 mm'", "0.25 N"]),
+    ("parts.tube.material=5 mm", ["parts.tube.material", "5 mm", "unknown", "choose one of", "pvc-u"]),
+    # unknown names
+    ("pose.coordinate=XX", ["pose.coordinate", "'XX'", "not a moving link", "GF, AE"]),
+    ("pose.near.XX=3 deg", ["pose.near", "'XX'", "not a moving link"]),
+    ("drive.link=AG", ["drive.link", "'AG'", "not a moving link", "choose one of"]),
+    ("drive.joint=C", ["drive.joint", "'C'", "choose one of A, B, E"]),
+    ("links.GF.part=rod", ["links.GF.part", "'rod'", "unknown", "the parts are tube"]),
+    ('joints.A.links=["AG", "XX"]', ["joints.A", "'XX'", "the links are"]),
+    ("load_cases.weight.forces.0.link=XX", ["load_cases.weight.forces.0.link", "'XX'", "the links are"]),
+    ("load_cases.weight.forces.0.at=XX", ["load_cases.weight.forces.0", "'XX'", "its points are C, D, H"]),
+    ('checks.strength.links=["AG"]', ["checks.strength.links", "'AG'", "choose among"]),
+    ("hand_calculations.whole-wing.part=x", ["hand_calculations.whole-wing.part", "'x'", "the parts are tube"]),
+    ('published_statics.links=["XX"]', ["published_statics.links", "'XX'", "name moving links"]),
+    ("joints.A.type=weld", ["joints.A.type", "'weld'", "'revolute', 'pin-in-slot' or 'slider'"]),
+    ("parts.tube.shape=cone", ["parts.tube.shape", "'cone'", "'tube', 'bar'", "choose"]),
+    ("checks.strength.type=x", ["checks.strength.type", "'x'", "'safety-factor', 'displacement'", "choose"]),
+    ("drive.transfer=glue", ["drive.transfer", "'glue'", "'eye-faces' or 'bore-shear'"]),
+    # links, joints, mobility
+    ('links.GF.points={G=["0 mm","0 mm"]}', ["links.GF.points", "has 1", "at least 2", "add"]),
+    (
+        'links.X={points={A=["0 mm","0 mm"],B=["9 mm","0 mm"]}}',
+        ["links.X", "0 joint(s)", "at least two", "add a joint"],
+    ),
+    ("links.GF.ground=true", ["2 links have ground = true (AG, GF)", "exactly one"]),
+    ("links.AG.ground=false", ["0 links have ground", "exactly one"]),
+    ('joints.A.links=["AG"]', ["joints.A.links", "['AG']", "too few values", "add"]),
+    ('joints.A.links=["AG","AG"]', ["joints.A", "to itself", "two different links"]),
+    ('joints.Z={links=["AG","CH"], points=["A","H"]}', ["mobility -1", "1 drive", "equal", "add or remove"]),
+    ('joints.D.type="pin-in-slot"', ["mobility 2", "1 drive", "equal"]),
+    # sizes
+    ("parts.tube.outer_diameter=0 mm", ["parts.tube.outer_diameter", "'0 mm'", "greater than zero", "larger"]),
+    ("parts.tube.inner_diameter=-1 mm", ["parts.tube.inner_diameter", "'-1 mm'", "must not be negative"]),
+    ("joints.A.pin_diameter=0 mm", ["joints.A.pin_diameter", "'0 mm'", "greater than zero"]),
+    ("joints.A.pin_diameter=8 mm", ["links.AE", "pin hole at A", "8 mm", "eye_diameter", "wall", "smaller"]),
+    ("parts.tube.inner_diameter=5 mm", ["parts.tube", "inner_diameter 5 mm", "no wall", "bore smaller"]),
+    ("parts.tube.eye_diameter=5 mm", ["parts.tube", "eye_diameter 5 mm", "greater than", "widen"]),
+    ("parts.tube.eye_thickness=5 mm", ["parts.tube", "eye_thickness 5 mm", "at least", "6.6 mm"]),
+    ("links.CF.holes.0.diameter=5 mm", ["links.CF", "5 mm", "smaller"]),
+    ("links.CF.holes.0.first=-30 mm", ["links.CF", "-30 mm", "within the link", "inwards"]),
+    ("links.CF.holes.0.last=60 mm", ["links.CF", "60 mm", "eye", "move"]),
+    ("links.CF.holes.0.count=0", ["links.CF.holes.0.count", "(it is 0)", "greater than 0", "larger"]),
+    ("links.CF.holes.0.count=2.5", ["links.CF.holes.0.count", "2.5", "whole number"]),
+    ("links.CF.holes.0.count=201", ["links.CF.holes.0.count", "201", "at most 200", "smaller"]),
+    ("links.CH.end_patch=60 mm", ["links.CH", "patch of H", "64 to 124 mm", "shorten"]),
+    ("solid.mesh_size=0", ["solid.mesh_size", "(it is 0)", "at least 0.1", "larger"]),
+    ("load_cases.weight.gravity=-1 m/s^2", ["load_cases.weight.gravity", "must not be negative"]),
+    ("load_cases={}", ["load_cases", "has 0", "at least 1", "add"]),
+    ("links={}", ["links", "has 0", "at least 2", "add"]),
+    # not a number
+    ("checks.strength.minimum=nan", ["checks.strength.minimum", "nan", "finite"]),
+    ("checks.strength.minimum=inf", ["checks.strength.minimum", "inf", "finite"]),
+    ("pose.angle=nan deg", ["pose.angle", "nan deg", "finite"]),
+    ("pose.angle=1e999 deg", ["pose.angle", "1e999", "finite"]),
+    ("joints.A.pin_diameter=inf", ["joints.A.pin_diameter", "inf", "unit"]),
+    ("parts.tube.outer_diameter=1e308 km", ["parts.tube.outer_diameter", "1e308 km", "too large"]),
+    ("published_statics.reactions=[nan]", ["published_statics.reactions.0", "nan", "finite"]),
+    # wrong kinds of values
+    ("title=5", ["title", "(it is 5)", "text", "quotes"]),
+    ("links.GF=1", ["links.GF", "(it is 1)", "table", "[links.GF]"]),
+    ("links=[]", ["links", "(it is [])", "table"]),
+    ("parts.tube=3", ["parts.tube", "(it is 3)", "table"]),
+    ('parts.tube={material="pvc-u"}', ["parts.tube.shape", "missing", "add it"]),
+    ("drive=", ["drive", "(it is '')", "table"]),
+    ("pose.near=3 deg", ["pose.near", "'3 deg'", "table"]),
+    ("links.GF.points.F=50 mm", ["links.GF.points.F", "'50 mm'", "list", '["50 mm", ...]']),
+    ('links.GF.points.F=["50 mm"]', ["links.GF.points.F", "['50 mm']", "too few"]),
+    ('load_cases.weight.forces.0.force=["0 N"]', ["load_cases.weight.forces.0.force", "has 1", "at least 2"]),
+    ("load_cases.weight.forces.0.force=1 N", ["load_cases.weight.forces.0.force", "'1 N'", "list"]),
+    ("load_cases.weight.own_weight=maybe", ["load_cases.weight.own_weight", "'maybe'", "true or false"]),
+    ('published_statics.reactions=["a"]', ["published_statics.reactions.0", "'a'", "number without unit"]),
+    ("title=1979-05-27", ["title", "text"]),
+    # the schema's version
+    ("schema_version=2", ["schema_version", "2", "reads 1", "write schema_version = 1"]),
+    ("schema_version=true", ["schema_version", "True", "write schema_version = 1"]),
+    ("schema_version=1.0", ["schema_version", "1.0", "write schema_version = 1"]),
+    ("schema_version=[]", ["schema_version", "[]"]),
+    # names
+    ("links.GF.part=../../etc/passwd", ["links.GF.part", "../../etc/passwd", "letters, digits", "rename"]),
+    ("links.GF.part=<script>alert(1)</script>", ["links.GF.part", "<script>", "letters, digits"]),
+    ('links.GF.part="a\'b"', ["links.GF.part", "letters, digits"]),
+    ('links.GF.part="a\\nb"', ["links.GF.part", "letters, digits"]),
+    ('links.GF.part="a\\u0000b"', ["links.GF.part", "letters, digits"]),
+    ('links.GF.part="tube "', ["links.GF.part", "ends without a space"]),
+    ("links.GF.part=" + "x" * 65, ["links.GF.part", "64 characters"]),
+    ('links.GF.part=""', ["links.GF.part", "letters, digits"]),
+    ('links.<b>={points={A=["0 mm","0 mm"],B=["1 mm","0 mm"]}}', ["links.<b>", "letters, digits", "rename"]),
+    ('title="\\u001b[2J"', ["title", "control characters", "remove"]),
+    ('title="\\u0007"', ["title", "control characters"]),
+    ('links.GF.points.F=["5 \\u001b[2J", "0 mm"]', ["links.GF.points.F.0", "finite number and its unit"]),
+    # materials
+    (
+        'materials.m={title="m",density="1 g/cm^3",youngs_modulus="2 GPa",poissons_ratio=0.3,yield_strength="60 MPa",'
+        'ultimate_strength="50 MPa",strength="yield",sources={},status={}}',
+        ["materials.m", "yield_strength 60 MPa", "above ultimate_strength 50 MPa", "check the units"],
+    ),
+]
+
+
+@pytest.mark.parametrize(("override", "words"), BAD, ids=[override[:50] for override, _ in BAD])
+def test_bad_input_ends_in_one_sentence(override: str, words: list[str]) -> None:
+    text = sentence(OWL, [override])
+    for word in words:
+        assert word in text, text
+    # A remedy: the sentence goes on after a semicolon.
+    assert ";" in text, text
+
+
+def test_disconnected_links() -> None:
+    text = sentence(
+        OWL,
+        [
+            'links.x={points={P=["0 mm","0 mm"],Q=["9 mm","0 mm"]}}',
+            'links.y={points={P=["0 mm","0 mm"],Q=["9 mm","0 mm"]}}',
+            'joints.P={links=["x","y"]}',
+            'joints.Q={links=["x","y"]}',
+        ],
+    )
+    assert "links.x: no chain of joints connects it to the ground link 'AG'; add the missing joint" in text
+
+
+def test_two_diameters_in_one_hole() -> None:
+    text = sentence(
+        OWL,
+        [
+            'links.X={points={P=["0 mm","0 mm"],Q=["50 mm","0 mm"]}}',
+            'links.Y={points={Q=["0 mm","0 mm"],R=["50 mm","0 mm"]}}',
+            'joints.P={links=["CH","X"],points=["D","P"],pin_diameter="2 mm"}',
+            'joints.Q={links=["X","Y"]}',
+            'joints.R={links=["AG","Y"],points=["A","R"]}',
+        ],
+    )
+    assert "joints.P.pin_diameter: it differs from that of joint 'D'" in text
+    assert "link 'CH'; give both the same diameter" in text
+
+
+# ---- overrides ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("override", "found"),
+    [
+        ("pose.angle=180 deg", lambda case: case.pose.angle == pytest.approx(3.141592653589793)),
+        ('pose.angle="180 deg"', lambda case: case.pose.angle == pytest.approx(3.141592653589793)),
+        (" pose . angle =  180 deg ", lambda case: case.pose.angle == pytest.approx(3.141592653589793)),
+        ("title=A wing = a wing", lambda case: case.title == "A wing = a wing"),
+        ('title="with # sign"', lambda case: case.title == "with # sign"),
+        ("solid.curved=false", lambda case: case.solid.curved is False),
+        ("solid.mesh_size=2", lambda case: case.solid.mesh_size == 2.0),
+        ("links.CF.holes.1.count=3", lambda case: case.links["CF"].holes[1].count == 3),
+        ("load_cases.weight.forces.0.at=D", lambda case: case.load_cases["weight"].forces[0].at == "D"),
+        ("load_cases.more.title=new", lambda case: case.load_cases["more"].title == "new"),
+        ('checks.slim={type="displacement", maximum="1 mm"}', lambda case: case.checks["slim"].maximum == 1.0),
+        ('joints."A".pin_diameter=2 mm', lambda case: case.joints["A"].pin_diameter == 2.0),
+        ("joints.'A'.pin_diameter=2 mm", lambda case: case.joints["A"].pin_diameter == 2.0),
+        ("published_statics.rhs.14=0.5", lambda case: case.published_statics.rhs["14"] == 0.5),
+    ],
+)
+def test_overrides_reach_their_entry(override: str, found: object) -> None:
+    case = read_case(OWL, [override])
+    assert found(case)  # type: ignore[operator]
+
+
+def test_the_last_override_wins_and_the_built_in_case_stays() -> None:
+    assert read_case(OWL, ["title=one", "title=two"]).title == "two"
+    assert read_case(OWL).title.startswith("Owl-wing prosthesis")
+
+
+@pytest.mark.parametrize("override", ["", "=", "pose", "=5", "a..b=1", ".=1", " =1", "pose.=1", ".angle=1"])
+def test_overrides_that_are_none(override: str) -> None:
+    text = sentence(OWL, [override])
+    assert text.startswith("--set")
+    assert "write it as path=value" in text
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("title.x=1", ["--set title.x", "'title' is a value", "correct the path"]),
+        ("links.CF.holes.7.count=1", ["--set links.CF.holes.7.count", "'7'", "2 entries", "from 0"]),
+        ("links.CF.holes.-1.count=1", ["'-1'", "2 entries"]),
+        ("links.CF.holes.x.count=1", ["'x'", "2 entries"]),
+        ("links.CF.holes.²=1", ["2 entries"]),
+        ("links.CF.holes." + "9" * 5000 + "=1", ["2 entries"]),
+        ("x=" + "1" * 5000, ["x: this key is unknown"]),
+        ("x=" + "[" * 3000, ["x: this key is unknown"]),
+        ("x\x1b[2J=1", ["this key is unknown"]),
+        ("\n=1", ["write it as path=value"]),
+        (".".join("a" * 3000) + "=1", ["this key is unknown"]),
+    ],
+)
+def test_overrides_that_lead_nowhere(override: str, words: list[str]) -> None:
+    text = sentence(OWL, [override])
+    for word in words:
+        assert word in text
+
+
+@given(st.text(max_size=40))
+def test_any_override_is_taken_or_explained(override: str) -> None:
+    said = "taken"
+    try:
+        read_case(OWL, [override])
+    except CaseError as error:
+        said = str(error)
+    assert said.isprintable()
+
+
+# ---- files -------------------------------------------------------------------------------------------------
+
+
+def _file(folder: Path, content: bytes, name: str = "case.toml") -> str:
+    path = folder / name
+    path.write_bytes(content)
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", ["empty", "alula new"]),
+        (b" \n\t\n", ["empty"]),
+        (bytes(range(256)), ["not UTF-8", "save it as UTF-8"]),
+        (b"\xff\xfet\x00i\x00t\x00", ["not UTF-8"]),
+        (b"a" * (LARGEST_FILE + 1), ["larger than 1 MiB"]),
+        (b"title = = 1\n", ["not valid TOML", "line 1", "correct that line"]),
+        (b"a = 1\nb = 2\na = 2\n", ["not valid TOML", "line 3"]),
+        (b"a = " + b"1" * 5000, ["not valid TOML"]),
+        (b"a = " + b"[" * 100_000, ["nested too deeply"]),
+        (b"title = 'no version'", ["schema_version: it is missing", "write schema_version = 1"]),
+        (b"schema_version = 1", ["title: this entry is missing"]),
+        (b"\x00", ["not valid TOML"]),
+    ],
+    ids=lambda x: repr(x[:12]) if isinstance(x, bytes) else "",
+)
+def test_files_that_are_no_case(tmp_path: Path, content: bytes, words: list[str]) -> None:
+    text = sentence(_file(tmp_path, content))
+    for word in words:
+        assert word in text, text
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "nowhere.toml", "a\0b", "x" * 5000, "\x1b[2J", "owl-wing-static.toml"])
+def test_names_of_no_file(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = sentence(name)
+    assert text.startswith("case '")
+    assert OWL in text  # what can be named instead
+
+
+def test_a_folder_says_so(tmp_path: Path) -> None:
+    assert "it is a folder; give a path to a case file" in sentence(str(tmp_path))
+
+
+def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name = _file(tmp_path, b"title = 'x'")
+
+    def refuse(self: Path) -> bytes:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+    text = sentence(name)
+    assert "it cannot be read (Permission denied); check its permissions" in text
+
+
+def test_a_device_or_pipe_is_no_case_and_is_not_waited_for(tmp_path: Path) -> None:
+    pipe = str(tmp_path / "pipe")
+    os.mkfifo(pipe)
+    assert "there is no such file" in sentence(pipe)
+    assert "there is no such file" in sentence(os.devnull)
+
+
+def test_odd_file_names_are_shown_cleaned(tmp_path: Path) -> None:
+    text = sentence(_file(tmp_path, b"x = = 1", "a\n\x1b[2Jb.toml"))
+    assert text.startswith("a??[2Jb.toml: this is not valid TOML")
+
+
+def test_a_case_on_disk_equals_the_built_in_one(tmp_path: Path) -> None:
+    text, where = read_text(OWL)
+    assert where == OWL
+    from_disk = read_case(_file(tmp_path, text.encode()))
+    assert from_disk == read_case(OWL)
+    assert isinstance(from_disk, Case)
+
+
+def test_byte_order_mark(tmp_path: Path) -> None:
+    """Windows editors put one; the case is read nevertheless."""
+    text, _ = read_text(OWL)
+    assert read_case(_file(tmp_path, b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode())).title.startswith("Owl")
+
+
+def test_built_in_cases_are_all_valid() -> None:
+    assert OWL in built_in_cases()
+    for name in built_in_cases():
+        read_case(name).solve_pose()
+
+
+def test_validate_leaves_its_tables_unchanged() -> None:
+    data = {"schema_version": 1, "title": "x", "links": {"a": {"points": {}}}}
+    with pytest.raises(CaseError):
+        validate(data)  # type: ignore[arg-type]
+    assert data == {"schema_version": 1, "title": "x", "links": {"a": {"points": {}}}}
+
+
+# ---- companions --------------------------------------------------------------------------------------------
+
+
+def test_companions_of_built_in_and_own_cases(tmp_path: Path) -> None:
+    assert read_companion(OWL, "owl-wing-statics-exact.csv").startswith("RAx,RAy")
+    case = _file(tmp_path, b"")
+    _file(tmp_path, "RAx é".encode(), "m.csv")
+    assert read_companion(case, "m.csv") == "RAx é"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *["", ".", "..", "../secret.csv", "/etc/passwd", "sub/m.csv", ".hidden", "a\0b", "x" * 5000, "nowhere.csv"],
+        *["binary.csv", "huge.csv", "folder", "\x1b[2J"],
+    ],
+)
+@pytest.mark.parametrize("built_in", [True, False])
+def test_companions_that_are_none(tmp_path: Path, name: str, built_in: bool) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "secret.csv").write_text("1")
+    inner = tmp_path / "cases"
+    inner.mkdir()
+    _file(inner, b"\xff\xfe", "binary.csv")
+    _file(inner, b"1" * (LARGEST_FILE + 1), "huge.csv")
+    (inner / "folder").mkdir()
+    case = OWL if built_in else _file(inner, b"")
+    with pytest.raises(CaseError, match="beside the case file") as caught:
+        read_companion(case, name)
+    assert str(caught.value).isprintable()
