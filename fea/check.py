@@ -5,7 +5,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from geometry.mesh import MeshSettings, mass_properties, mesh_bodies
 
 from fea.band import Band
 from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
@@ -18,12 +17,15 @@ from fea.stress import StressField, stress_field
 from fea.verdict import CheckOutcome, Verdict, at_least, at_most, overall
 from geometry.errors import CaseError
 from geometry.material import Material
+from geometry.mesh import MeshSettings, mesh_bodies
 from geometry.pose import Pose
 from geometry.tagged_mesh import TaggedMesh
-from loads.actions import PartMass, actions, needs_masses
+from loads.actions import PartMass, needs_masses
 from loads.applied import Load
 from loads.case import Case, SafetyFactorCheck
 from loads.case_file import read_companion
+from loads.inertia import acting_loads
+from loads.masses import part_mass
 from loads.published import StaticsAudit, audit
 from loads.statics import Reactions, solve_statics
 
@@ -70,11 +72,8 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     masses = {}
     if needs_masses(case):
         for link in case.checked_links:
-            volume = mass_properties(case.body(link))
-            masses[link] = PartMass(
-                mass=volume.volume * case.material_of(link).density, centroid=np.asarray(volume.centroid)[:2]
-            )
-    loads = {title: actions(case, load_case, pose, masses) for title, load_case in case.load_cases.items()}
+            masses[link] = part_mass(case, link)
+    loads = {title: acting_loads(case, load_case, pose, masses) for title, load_case in case.load_cases.items()}
     reactions = {title: solve_statics(pose, case.pinned_drive, loads[title]) for title in loads}
     found = None
     if case.published_statics is not None:

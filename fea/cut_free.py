@@ -45,7 +45,12 @@ def link_loads(name: str, link: str, body: Body, reactions: Reactions, loads: Se
             lines.append(LineLoad(first=load.start, last=load.end, intensity=intensity))
         else:
             bodies.append(
-                BodyLoad(specific_force=_to_link(pose, link, load.acceleration), about=np.array([*load.centroid, 0.0]))
+                BodyLoad(
+                    specific_force=_to_link(pose, link, load.acceleration),
+                    about=np.array([*load.centroid, 0.0]),
+                    angular_acceleration=load.angular_acceleration,
+                    angular_speed=load.angular_speed,
+                )
             )
     torque = reactions.torque_on(link)
     drive = reactions.drive
@@ -73,6 +78,13 @@ def link_loads(name: str, link: str, body: Body, reactions: Reactions, loads: Se
     )
 
 
+def _per_mass(load: BodyLoad, x: float) -> Real:
+    """Force per mass (3,) of a body load at the station x of the axis, the centroid's height taken as the axis."""
+    along = x - load.about[0]
+    turning = np.array([load.angular_speed**2 * along, -load.angular_acceleration * along, 0.0])
+    return np.asarray(load.specific_force + turning)
+
+
 def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | None) -> beam.BeamLoads:
     """The same loads on the link's axis.
 
@@ -98,13 +110,17 @@ def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | No
         moment = mass.mass * mass.centroid[0] - per_length * (last**2 - first**2) / 2.0
         at_last = (moment - excess * first) / (last - first)
         for load in loads.bodies:
-            intensity = per_length * load.specific_force
-            lines.append(beam.LineLoad(start=first, end=last, first=intensity, last=intensity))
-            for x, lump in ((first, excess - at_last), (last, at_last)):
-                wrench = np.concatenate([lump * load.specific_force, np.zeros(3)])
+            ends = [_per_mass(load, x) for x in (first, last)]
+            lines.append(beam.LineLoad(start=first, end=last, first=per_length * ends[0], last=per_length * ends[1]))
+            for x, lump, force in ((first, excess - at_last, ends[0]), (last, at_last, ends[1])):
+                wrench = np.concatenate([lump * force, np.zeros(3)])
                 points.append(beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=wrench))
-            # The centroid's distance from the axis is felt as a moment.
+            # The centroid's distance from the axis is felt as a moment, and so is the width of eyes and tube.
             off_axis = np.cross([0.0, mass.centroid[1], 0.0], mass.mass * load.specific_force)
+            spread = per_length * (last - first) ** 3 / 12.0
+            on_line = spread + per_length * (last - first) * ((first + last) / 2.0 - mass.centroid[0]) ** 2
+            on_line += (excess - at_last) * (first - mass.centroid[0]) ** 2 + at_last * (last - mass.centroid[0]) ** 2
+            off_axis[2] -= (mass.inertia - on_line) * load.angular_acceleration
             points.append(
                 beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=np.concatenate([np.zeros(3), off_axis]))
             )

@@ -1,6 +1,5 @@
 """From the load case that a user states to the loads that act on the links."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -8,7 +7,7 @@ import numpy as np
 
 from geometry.pose import Pose
 from loads.applied import BodyForce, LineLoad, Load, PointLoad
-from loads.case import Axes, Case, LoadCase, vector3
+from loads.case import Axes, Case, LoadCase, gravity, vector3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,8 +45,8 @@ class StatedLoad:
 
 
 def needs_masses(case: Case) -> bool:
-    """Return True where a load case lets the parts weigh what they weigh."""
-    return any(load_case.own_weight for load_case in case.load_cases.values())
+    """Return True where a load case lets the parts weigh what they weigh, or moves them."""
+    return any(load_case.own_weight or load_case.speed != 0.0 for load_case in case.load_cases.values())
 
 
 def actions(case: Case, load_case: LoadCase, pose: Pose, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
@@ -71,10 +70,9 @@ def stated_loads(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass]
         line = LineLoad(link=spread.link, start=start, end=end, at_start=density, at_end=density)
         loads.append(StatedLoad(load=line, axes=spread.axes))
     if load_case.own_weight:
-        direction = load_case.gravity_direction
-        gravity = load_case.gravity * np.array([math.cos(direction), math.sin(direction), 0.0])
+        pull = gravity(load_case)
         loads += [
-            StatedLoad(load=BodyForce(link=link, mass=own.mass, centroid=own.centroid, acceleration=gravity))
+            StatedLoad(load=BodyForce(link=link, mass=own.mass, centroid=own.centroid, acceleration=pull))
             for link, own in masses.items()
         ]
     return tuple(loads)

@@ -58,17 +58,24 @@ class BodyForce:
 
     mass          [tonne]
     centroid      (2,) in the link's frame [mm]
-    acceleration  (3,) force per mass in global axes [mm/s²]: g itself for weight
+    acceleration  (3,) force per mass at the centroid in global axes [mm/s²]: g itself for weight
+    angular_speed, angular_acceleration  of the link [rad/s, rad/s²]; where stated, the force per mass varies
+                  as - alpha z x r + omega^2 r with r from the centroid
+    inertia       moment of inertia about the centroid and z [tonne mm²]
     """
 
     link: str
     mass: float
     centroid: Real
     acceleration: Real
+    angular_speed: float = 0.0
+    angular_acceleration: float = 0.0
+    inertia: float = 0.0
 
     def resultant(self, pose: Pose) -> Real:
         """Wrench (6,) about the origin of the link's frame, in global axes."""
-        force = np.concatenate([self.mass * self.acceleration, np.zeros(3)])
+        moment = np.array([0.0, 0.0, -self.inertia * self.angular_acceleration])
+        force = np.concatenate([self.mass * self.acceleration, moment])
         arm = pose.rotation(self.link) @ self.centroid
         return shifted(force, np.array([*arm, 0.0]))
 

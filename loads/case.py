@@ -24,8 +24,8 @@ from geometry.units import (
     Length,
     Moment,
 )
-from loads.claim import Claim
 from loads.carried import CarriedBody, CarriedSpread
+from loads.claim import Claim
 from loads.motion_spec import MotionSpec
 from loads.statics import Drive, check_drive
 

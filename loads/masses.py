@@ -5,6 +5,7 @@ import numpy as np
 from geometry.mesh import mass_properties
 from loads.actions import PartMass
 from loads.case import Case
+from loads.inertia import with_carried
 
 
 def part_mass(case: Case, link: str) -> PartMass:
@@ -22,7 +23,7 @@ def part_mass(case: Case, link: str) -> PartMass:
 
 
 def moving_masses(case: Case) -> dict[str, PartMass]:
-    """Return the masses of a motion: stated, else of the part; massless links are left out."""
+    """Return the masses of a motion: stated, else of the part, and what links carry; massless links are left out."""
     stated = case.motion.masses if case.motion is not None else {}
     found = {}
     for link in case.linkage.moving:
@@ -33,4 +34,7 @@ def moving_masses(case: Case) -> dict[str, PartMass]:
             )
         elif link in case.checked_links:
             found[link] = part_mass(case, link)
+        carried = tuple(mass for mass in case.carried if mass.link == link)
+        if carried:
+            found[link] = with_carried(found.get(link), carried, case.links[link].points)
     return found

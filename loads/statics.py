@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from geometry.errors import CaseError
 from geometry.linkage import Linkage
 from geometry.pose import Pose
-from loads.applied import Load
+from loads.applied import Load, shifted
 
 Real = NDArray[np.float64]
 
@@ -123,7 +123,13 @@ class Reactions:
         for name, reaction in self.joints.items():
             if link in (reaction.on, reaction.by):
                 sign = 1.0 if reaction.on == link else -1.0
-                found.append((self.pose.linkage.point_of(name, link), sign * reaction.wrench))
+                point = self.pose.linkage.point_of(name, link)
+                wrench = sign * reaction.wrench
+                if link == reaction.by and self.pose.linkage.joints[name].type != "revolute":
+                    # A pin has travelled in its slot: its force acts off the point from which the slot is measured.
+                    pin = self.pose.position(reaction.on, self.pose.linkage.point_of(name, reaction.on))
+                    wrench = shifted(wrench, np.array([*(pin - self.pose.position(link, point)), 0.0]))
+                found.append((point, wrench))
         return tuple(found)
 
     def torque_on(self, link: str) -> float:
