@@ -1,0 +1,117 @@
+import tomllib
+from importlib.resources import files
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from geometry.material import Fatigue, Material, library
+
+CARD: dict[str, Any] = {
+    "title": "a plastic",
+    "density": "1450 kg/m^3",
+    "youngs_modulus": "2.4 GPa",
+    "poissons_ratio": 0.38,
+    "yield_strength": "41.4 MPa",
+    "ultimate_strength": "52 MPa",
+    "strength": "yield",
+    "sources": {"density": "a book"},
+    "status": {"density": "handbook"},
+}
+
+
+def test_a_card_in_alulas_units() -> None:
+    card = Material.model_validate(CARD)
+    assert card.density == pytest.approx(1.45e-9)
+    assert card.youngs_modulus == 2400.0
+    assert card.allowable == 41.4
+    assert not card.brittle
+    assert card.shear_modulus == pytest.approx(2400 / 2.76)
+
+
+def test_a_brittle_card_uses_the_ultimate_strength() -> None:
+    card = Material.model_validate({k: v for k, v in CARD.items() if k != "yield_strength"} | {"strength": "ultimate"})
+    assert card.allowable == 52.0
+    assert card.brittle
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"yield_strength": "60 MPa"}, "yield_strength 60 MPa is above ultimate_strength 52 MPa.*check the units"),
+        ({"yield_strength": "414 MPa"}, "above ultimate_strength"),  # the source's slip: ten times too high
+        ({"yield_strength": None}, "yield_strength is not given; state it"),
+        ({"strength": "ultimate", "ultimate_strength": None}, "ultimate_strength is not given"),
+        ({"poissons_ratio": 0.5}, "less than 0.5"),
+        ({"poissons_ratio": -1.0}, "greater than -1"),
+        ({"poissons_ratio": float("nan")}, "finite"),
+        ({"density": "0 kg/m^3"}, "greater than zero"),
+        ({"density": "1450"}, "needs its unit"),
+        ({"density": "1450 MPa"}, "not a unit of density"),
+        ({"youngs_modulus": "-1 GPa"}, "greater than zero"),
+        ({"youngs_modulus_range": ["3 GPa", "2 GPa"]}, "must not exceed the second; swap"),
+        ({"strength_range": ["0 MPa", "2 MPa"]}, "greater than zero"),
+        ({"strength_range": ["1 MPa"]}, "Field required"),
+        ({"temperature_factors": [[23, 1.0]]}, "needs its unit"),
+        ({"temperature_factors": [["30 degC", 0.9], ["23 degC", 1.0]]}, "rise in temperature; sort"),
+        ({"temperature_factors": [["30 degC", 0.9], ["30 degC", 1.0]]}, "rise in temperature"),
+        ({"temperature_factors": [["30 degC", 0.0]]}, "greater than 0"),
+        ({"sources": {"densty": "a book"}}, "'densty'.*no such entry; correct"),
+        ({"status": {"densty": "handbook"}}, "'densty'.*no such entry"),
+        ({"status": {"density": "guessed"}}, "'measured', 'datasheet', 'handbook' or 'assumed'"),
+        ({"minimum_safety_factor": 0.0}, "greater than 0"),
+        ({"colour": "red"}, "Extra inputs"),
+        ({"title": "\x1b[2J"}, "control characters"),
+    ],
+)
+def test_cards_that_cannot_be(change: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValidationError, match=words):
+        Material.model_validate(CARD | change)
+
+
+def test_yield_at_the_ultimate_strength_is_allowed() -> None:
+    assert Material.model_validate(CARD | {"yield_strength": "52 MPa"}).allowable == 52.0
+
+
+def test_temperatures_with_their_unit() -> None:
+    card = Material.model_validate(CARD | {"temperature_factors": [["23 degC", 1.0], ["313.15 K", 0.7]]})
+    assert card.temperature_factors[1] == (pytest.approx(40.0), 0.7)
+
+
+def test_fatigue() -> None:
+    point = Fatigue.model_validate({"stress": "10.9 MPa", "cycles": 1e6, "source": "x"})
+    assert (point.stress, point.stress_ratio, point.exponent) == (10.9, 0.0, None)
+    for change in ({"cycles": 0}, {"stress": "0 MPa"}, {"stress_ratio": 1.0}, {"exponent": -1.0}):
+        with pytest.raises(ValidationError):
+            Fatigue.model_validate({"stress": "10.9 MPa", "cycles": 1e6, "source": "x"} | change)
+
+
+def test_the_pvc_of_the_owl_wing() -> None:
+    """Paredes (2018), table 1: 1450 kg/m³, 2.4 GPa, 52 MPa, 4.14e7 Pa; ν is assumed."""
+    card = library()["pvc-paredes-2018"]
+    assert card.density == pytest.approx(1.45e-9, rel=1e-12)
+    assert (card.youngs_modulus, card.yield_strength, card.ultimate_strength) == (2400.0, 41.4, 52.0)
+    assert card.status["poissons_ratio"] == "assumed"
+
+
+def test_every_value_of_the_library_has_a_source_and_a_status() -> None:
+    cards = tomllib.loads(files("geometry").joinpath("materials.toml").read_text(encoding="utf-8"))
+    assert cards.keys() == library().keys()
+    assert len(cards) >= 5
+    own = {"title", "strength", "sources", "status", "fatigue"}
+    for name, card in cards.items():
+        for entry in card.keys() - own:
+            # A range stands beside its value, and a limit is a choice: both carry a source, not always a status.
+            where = entry.removesuffix("_range")
+            assert {entry, where} & card["sources"].keys() or entry.endswith(("_range", "_tested")), (name, entry)
+        for entry in ("density", "youngs_modulus", "poissons_ratio"):
+            assert entry in card["status"], (name, entry)
+        low, high = library()[name].youngs_modulus_range or (0.0, 1e9)
+        assert low <= library()[name].youngs_modulus <= high
+        low, high = library()[name].strength_range or (0.0, 1e9)
+        assert low <= library()[name].allowable <= high
+
+
+def test_cards_are_frozen() -> None:
+    with pytest.raises(ValidationError, match="frozen"):
+        Material.model_validate(CARD).density = 1.0

@@ -1,0 +1,179 @@
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from geometry.body_rules import check_body
+from geometry.errors import CaseError
+from geometry.part import Bar, Body, HoleRow, Part, Pin, PlainEnd, Section, Tube
+
+TUBE: dict[str, Any] = {
+    "shape": "tube",
+    "material": "pvc-u",
+    "outer_diameter": "5 mm",
+    "inner_diameter": "2.5 mm",
+    "eye_diameter": "8 mm",
+    "eye_thickness": "7 mm",
+    "fillet_radius": "0.8 mm",
+}
+BAR: dict[str, Any] = {
+    "shape": "bar",
+    "material": "pvc-u",
+    "width": "6 mm",
+    "thickness": "4 mm",
+    "eye_diameter": "9 mm",
+    "eye_thickness": "5 mm",
+    "fillet_radius": "1 mm",
+}
+HOLES: dict[str, Any] = {"count": 5, "diameter": "1 mm", "first": "20 mm", "last": "40 mm", "along": "y"}
+
+
+def _second_moments(inside: Any, reach: float, cells: int = 1200) -> tuple[float, float, float]:
+    """Area and second moments of a region by counting small cells."""
+    at = (np.arange(cells) + 0.5) / cells * 2 * reach - reach
+    y, z = np.meshgrid(at, at)
+    cell = (2 * reach / cells) ** 2
+    mask = inside(y, z)
+    return float(mask.sum() * cell), float((z**2 * mask).sum() * cell), float((y**2 * mask).sum() * cell)
+
+
+def test_section_of_the_tube_by_counting_cells() -> None:
+    section = Tube.model_validate(TUBE).section
+    area, i_y, i_z = _second_moments(lambda y, z: (y**2 + z**2 <= 2.5**2) & (y**2 + z**2 >= 1.25**2), 2.6)
+    assert section.area == pytest.approx(area, rel=2e-3)
+    assert section.i_y == pytest.approx(i_y, rel=2e-3)
+    assert section.i_z == pytest.approx(i_z, rel=2e-3)
+    assert section.torsion == section.i_y + section.i_z
+    assert (section.half_y, section.half_z, section.radius_ratio) == (2.5, 2.5, 0.5)
+
+
+def test_section_of_the_source() -> None:
+    """Paredes (2018): I = π/4 (Ro⁴ - Ri⁴) with 2.5 and 1.25 mm; M 33.75 N mm over it gives 2.934 MPa."""
+    section = Tube.model_validate(TUBE).section
+    assert section.i_z == pytest.approx(28.7621, abs=1e-4)
+    assert 33.75 * section.half_y / section.i_z == pytest.approx(2.934, abs=5e-4)
+
+
+def test_section_of_the_bar_bends_most_easily_out_of_the_plane() -> None:
+    section = Bar.model_validate(BAR).section
+    area, i_y, i_z = _second_moments(lambda y, z: (abs(y) <= 3.0) & (abs(z) <= 2.0), 3.0)
+    assert section.area == pytest.approx(area, rel=1e-3) == 24.0
+    assert section.i_y == pytest.approx(i_y, rel=2e-3) == 32.0
+    assert section.i_z == pytest.approx(i_z, rel=2e-3) == 72.0
+    assert (section.half_y, section.half_z) == (3.0, 2.0)
+
+
+@pytest.mark.parametrize(("width", "thickness"), [(6.0, 4.0), (4.0, 6.0), (5.0, 5.0), (20.0, 2.0)])
+def test_torsion_of_the_bar_against_the_series(width: float, thickness: float) -> None:
+    """Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 109: Saint-Venant's series for a rectangle."""
+    bar = BAR | {
+        "width": f"{width} mm",
+        "thickness": f"{thickness} mm",
+        "eye_diameter": "30 mm",
+        "eye_thickness": "9 mm",
+    }
+    long, short = max(width, thickness), min(width, thickness)
+    odd = np.arange(1, 60, 2)
+    series = float(np.sum(np.tanh(odd * math.pi * long / (2 * short)) / odd**5))
+    exact = long * short**3 / 3 * (1 - 192 * short / (math.pi**5 * long) * series)
+    assert Bar.model_validate(bar).section.torsion == pytest.approx(exact, rel=5e-3)
+
+
+def test_shear_coefficients_of_cowper() -> None:
+    """Cowper (1966), table 1: solid circle 6(1+ν)/(7+6ν), thin tube 2(1+ν)/(4+3ν), rectangle 10(1+ν)/(12+11ν)."""
+
+    def tube(inner: str, nu: float) -> float:
+        return Tube.model_validate(TUBE | {"inner_diameter": inner}).section.shear_coefficient(nu)
+
+    assert tube("0 mm", 0.3) == pytest.approx(6 * 1.3 / (7 + 1.8))
+    assert tube("4.9999999 mm", 0.3) == pytest.approx(2 * 1.3 / (4 + 0.9), rel=1e-7)
+    assert tube("2.5 mm", 0.38) == pytest.approx(0.626817, abs=5e-7)
+    assert Bar.model_validate(BAR).section.shear_coefficient(0.3) == pytest.approx(13 / 15.3)
+
+
+@pytest.mark.parametrize(
+    ("part", "change", "words"),
+    [
+        (TUBE, {"inner_diameter": "5 mm"}, "inner_diameter 5 mm leaves no wall in outer_diameter 5 mm; make the bore"),
+        (TUBE, {"inner_diameter": "6 mm"}, "leaves no wall"),
+        (TUBE, {"outer_diameter": "0 mm"}, "greater than zero"),
+        (TUBE, {"eye_diameter": "5 mm"}, "eye_diameter 5 mm must be greater than outer_diameter 5 mm; widen"),
+        (TUBE, {"eye_thickness": "6.5 mm"}, "eye_thickness 6.5 mm must be at least .* = 6.6 mm"),
+        (TUBE, {"fillet_radius": "-1 mm"}, "must not be negative"),
+        (TUBE, {"width": "1 mm"}, "Extra inputs"),
+        (BAR, {"eye_diameter": "6 mm"}, "eye_diameter 6 mm must be greater than width 6 mm; widen"),
+        (BAR, {"eye_thickness": "3.9 mm"}, "eye_thickness 3.9 mm must be at least the bar's thickness 4 mm"),
+        (BAR, {"thickness": "0 mm"}, "greater than zero"),
+        (BAR, {"shape": "cone"}, "does not match any of the expected tags"),
+    ],
+)
+def test_sizes_that_cannot_be(part: dict[str, Any], change: dict[str, str], words: str) -> None:
+    with pytest.raises(ValidationError, match=words):
+        TypeAdapter(Part).validate_python(part | change)
+
+
+def test_sizes_at_the_limit_are_allowed() -> None:
+    assert Tube.model_validate(TUBE | {"inner_diameter": "0 mm", "eye_thickness": "6.6 mm"}).section.radius_ratio == 0.0
+    assert Bar.model_validate(BAR | {"eye_thickness": "4 mm", "fillet_radius": "0 mm"}).eye_thickness == 4.0
+
+
+def test_holes_are_evenly_spaced() -> None:
+    assert HoleRow.model_validate(HOLES).positions == (20.0, 25.0, 30.0, 35.0, 40.0)
+    assert HoleRow.model_validate(HOLES | {"count": 1}).positions == (20.0,)
+    assert HoleRow.model_validate(HOLES | {"first": "40 mm", "last": "20 mm"}).positions[0] == 40.0
+
+
+def _body(part: dict[str, Any] = TUBE, **change: Any) -> Body:
+    entries: dict[str, Any] = {
+        "part": TypeAdapter(Part).validate_python(part),
+        "pins": (Pin(name="A", x=0.0, y=0.0, diameter=1.5), Pin(name="B", x=60.0, y=0.0, diameter=1.5)),
+        "ends": (),
+        "holes": (HoleRow.model_validate(HOLES),),
+    }
+    return Body(**(entries | change))
+
+
+def _pin(name: str, x: float, y: float = 0.0, diameter: float = 1.5) -> Pin:
+    return Pin(name=name, x=x, y=y, diameter=diameter)
+
+
+def _row(**change: Any) -> tuple[HoleRow, ...]:
+    return (HoleRow.model_validate(HOLES | change),)
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        (_body(pins=(_pin("A", 0, diameter=8.0), _pin("B", 60))), "pin hole at A .* 8 mm.*eye_diameter 8 mm.*smaller"),
+        (_body(pins=(_pin("A", 0), _pin("B", 1.0))), "pin holes at A and B run into each other; move"),
+        (_body(pins=(_pin("A", 0), _pin("B", 0))), "all lie at x = 0 mm.*move them apart"),
+        (_body(pins=(_pin("A", 0), _pin("B", 30, 9.0), _pin("C", 60))), "pin B lies 9 mm off .*move the pin"),
+        (_body(holes=_row(diameter="5 mm", count=1)), "5 holes|1 holes of 5 mm.*smaller"),
+        (_body(holes=_row(first="-5 mm")), "x = -5 mm.*within the link.*inwards"),
+        (_body(holes=_row(last="70 mm")), "x = .* mm.*(within the link|eye)"),
+        (_body(holes=_row(last="57 mm")), "runs into the eye or fillet at B.*move or shorten"),
+        (_body(holes=_row(last="24 mm")), "1 mm apart and overlap; use fewer or smaller"),
+        (_body(holes=(*_row(), *_row(first="40.5 mm", last="45 mm"))), "runs into one of holes.2.*shift"),
+        (_body(part=BAR, holes=_row(diameter="6 mm", along="z", count=1)), "section is 6 mm across; make the holes"),
+        (_body(part=BAR, holes=_row(diameter="4 mm", along="y", count=1)), "section is 4 mm across; make the holes"),
+        (_body(ends=(PlainEnd(name="H", x=90.0, patch=40.0),)), "patch of H.*runs into the eye at B; shorten"),
+        (_body(ends=(PlainEnd(name="H", x=90.0, patch=0.0),)), "patch of H is 0 mm long.*shorten"),
+    ],
+)
+def test_bodies_that_cannot_be_built(body: Body, words: str) -> None:
+    with pytest.raises(CaseError, match=words):
+        check_body(body)
+
+
+def test_bodies_that_can() -> None:
+    check_body(_body())
+    check_body(_body(part=BAR, holes=_row(diameter="5 mm", along="z", count=1)))
+    check_body(_body(pins=(_pin("A", 0, diameter=7.9), _pin("B", 60)), holes=()))
+    check_body(_body(ends=(PlainEnd(name="H", x=90.0, patch=5.0),)))
+
+
+def test_a_section_takes_names_alone() -> None:
+    with pytest.raises(TypeError):
+        Section(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, True)  # type: ignore[misc]
