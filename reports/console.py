@@ -45,7 +45,7 @@ def print_result(result: CheckResult, console: "Console") -> None:
         found = (
             f"equations {joined(wrong)} are no equilibrium equations" if wrong else "every equation is an equilibrium"
         )
-        console.print(Text(f"Published statics ({result.audit.source}): {found} of this linkage; see report.html."))
+        console.print(Text(f"Published statics ({result.audit.source}): {found} of this linkage."))
     for warning in result.warnings:
         console.print(Text(f"Warning: {warning}", style="yellow"))
 

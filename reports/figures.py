@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.result import LinkResult
-from reports.drawings import DPI, GROUND, INK, STYLE, WIDTH, as_png
+from reports.drawings import DPI, INK, STYLE, WIDTH, as_png
 from reports.wording import fixed, number, plain
 
 Real = NDArray[np.float64]
@@ -393,6 +393,8 @@ def _name_points(axes: Any, scene: Scene, points: Mapping[str, float]) -> None:
 
 
 def _scale_bar(axes: Any, view: View, wide: float, *, below_image: bool) -> None:
+    from matplotlib.patheffects import withStroke
+
     length = round_scale(0.45 * view.half_width)
     share = length / (2.0 * view.half_width)
     y = 0.04 if not below_image else -0.08 / (wide * view.half_height / view.half_width)
@@ -400,5 +402,5 @@ def _scale_bar(axes: Any, view: View, wide: float, *, below_image: bool) -> None
     axes.plot([left, left + share], [y, y], color=INK, linewidth=2.0, clip_on=False, solid_capstyle="butt")
     axes.annotate(
         f"{plain(length)} mm", (left + share, y), xytext=(4, 0), textcoords="offset points", va="center", fontsize=8.5,
-        color=INK if below_image else GROUND, annotation_clip=False,
+        annotation_clip=False, path_effects=[withStroke(linewidth=2.0, foreground="white")],
     )  # fmt: skip

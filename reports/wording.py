@@ -87,17 +87,17 @@ def headline(result: CheckResult) -> str:
     worst = tightest(result)
     if worst is None:
         return "Undecided: the case asks for no check, so nothing was decided."
-    total = "The one check" if len(checks) == 1 else f"All {len(checks)} checks"
+    total = "the one check" if len(checks) == 1 else f"all {len(checks)} checks"
     if result.verdict is Verdict.PASS:
         kept = "is" if len(checks) == 1 else "are"
-        return f"Pass: {total[0].lower()}{total[1:]} {kept} met over the whole of every error band. {_nearest(worst)}"
+        return f"Pass: {total} {kept} met over the whole of every error band. {_nearest(worst, 'Nearest to its limit')}"
     broken = [c for c in checks if c.verdict is result.verdict]
     names = joined(list(dict.fromkeys(f"{c.quantity} of {c.link}" for c in broken)))
     if result.verdict is Verdict.FAIL:
         missed = (
             "is missed over its whole error band" if len(broken) == 1 else "are missed over their whole error bands"
         )
-        return f"Fail: {len(broken)} of {len(checks)} checks {missed}: {names}. {_nearest(worst)}"
+        return f"Fail: {len(broken)} of {len(checks)} checks {missed}: {names}. {_nearest(worst, 'Worst')}"
     verb = "is" if len(broken) == 1 else "are"
     return (
         f"Undecided: {len(broken)} of {len(checks)} checks {verb} left open: {names}. "
@@ -105,10 +105,10 @@ def headline(result: CheckResult) -> str:
     )
 
 
-def _nearest(check: CheckOutcome) -> str:
+def _nearest(check: CheckOutcome, lead: str) -> str:
     unit = f" {check.unit}" if check.unit else ""
     asked = "at least" if check.quantity == "safety factor" else "at most"
     return (
-        f"Nearest to its limit: the {check.quantity} of link {check.link} is {band(check.value)}{unit}, "
+        f"{lead}: the {check.quantity} of link {check.link} is {band(check.value)}{unit}, "
         f"where {asked} {plain(check.limit)}{unit} is asked for."
     )

@@ -1,0 +1,45 @@
+import io
+
+import pytest
+from rich.console import Console
+
+from reports.console import print_result
+
+
+def printed(result, width=80):
+    stream = io.StringIO()
+    print_result(result, Console(file=stream, width=width, color_system=None))
+    return stream.getvalue()
+
+
+def test_the_verdict_comes_first(result):
+    assert printed(result).splitlines()[0].split()[0] == "PASS"
+
+
+def test_nothing_is_wider_than_80_columns_or_shortened(result):
+    text = printed(result)
+    assert max(len(line.rstrip()) for line in text.splitlines()) <= 80
+    assert "…" not in text
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        "A 0.9520",
+        "Drive torque on AE: −130.6 N·mm (clockwise)",
+        "more than 3 % apart on GF",
+        "(+7.1 %)",
+        "M 33.75 N·mm",
+        "equations 6, 9 and 13",
+        "Warning: the pose is close to a dead point",
+        "Load case idle",
+    ],
+)
+def test_what_a_reader_needs_is_there(result, part):
+    assert part in " ".join(printed(result).split())
+
+
+def test_every_link_has_its_safety_factor(result):
+    lines = printed(result).splitlines()
+    for name, link in result.load_cases["weight"].links.items():
+        assert any(line.split()[:2] == [name, link.fidelity] for line in lines)

@@ -1,0 +1,50 @@
+import json
+
+import pytest
+
+from geometry.errors import CaseError
+from reports import figures
+from reports.folder import write_report
+
+
+@pytest.fixture
+def without_renderer(monkeypatch):
+    monkeypatch.setattr(figures, "_run_worker", lambda folder, choice, time_limit: "rendering crashed (signal 11)")
+
+
+def test_the_folder_is_complete(result, tmp_path):
+    said = []
+    write_report(result, tmp_path / "out", progress=said.append)
+    found = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*") if path.is_file()}
+    diagrams = {f"pictures/diagram-{link}.png" for link in result.case.checked_links}
+    pictures = {"pictures/linkage-weight.png", "pictures/stress-GF.png", *diagrams}
+    assert found == {"report.html", "result.json", "vtu/GF.vtu", *pictures}
+    for name in pictures:
+        assert (tmp_path / "out" / name).read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "out" / "report.html").read_text(encoding="utf-8").count("<img") == len(pictures)
+    assert json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))["case"] == "owl-wing-static"
+    assert len(said) == 3
+
+
+@pytest.mark.usefixtures("without_renderer")
+def test_without_a_renderer_all_but_the_stress_plots_stands(result, tmp_path):
+    write_report(result, tmp_path / "out")
+    record = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))
+    [warning] = [w for w in record["warnings"] if "stress plot" in w]
+    assert warning == "no stress plot of GF: rendering crashed (signal 11)"
+    assert warning in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert not list((tmp_path / "out" / "pictures").glob("stress-*"))
+    assert (tmp_path / "out" / "vtu" / "GF.vtu").exists()
+
+
+@pytest.mark.usefixtures("without_renderer")
+def test_an_earlier_result_is_replaced_and_other_files_are_not(result, tmp_path):
+    write_report(result, tmp_path / "out")
+    (tmp_path / "out" / "old.txt").write_text("of the earlier result")
+    write_report(result, tmp_path / "out")
+    assert not (tmp_path / "out" / "old.txt").exists()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "mine.txt").write_text("mine")
+    with pytest.raises(CaseError, match="holds other files"):
+        write_report(result, tmp_path / "other")
+    assert [path.name for path in (tmp_path / "other").iterdir()] == ["mine.txt"]

@@ -1,0 +1,152 @@
+import base64
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+
+from fea.verdict import Verdict
+from reports.html import NOT_COVERED, render
+from reports.pictures import diagram_name, linkage_name, stress_name
+
+PICTURES = {linkage_name("weight"): b"linkage", diagram_name("AE"): b"diagram", stress_name("GF"): b"stress"}
+VOID = {"meta", "img", "br", "hr", "link", "input"}
+
+
+class Page(HTMLParser):
+    """Checks that tags are closed in order, and collects text, attributes and images."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.text, self.attributes = [], [], []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.attributes += [(tag, name, value) for name, value in attrs]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if "style" not in self.open:
+            self.text.append(data)
+
+    @property
+    def words(self):
+        return " ".join(" ".join(self.text).split())
+
+
+@pytest.fixture(scope="module")
+def source(result):
+    return render(result, PICTURES)
+
+
+@pytest.fixture(scope="module")
+def page(source):
+    return Page(source)
+
+
+def test_it_loads_nothing_from_elsewhere(source, page):
+    for tag, name, value in page.attributes:
+        assert tag not in ("script", "link", "iframe", "object")
+        if name in ("src", "href", "srcset", "style"):
+            assert value.startswith(("data:image/png;base64,", "#")), (tag, name, value)
+    assert "url(" not in source
+    assert "@import" not in source
+
+
+def test_links_within_the_page_lead_somewhere(page):
+    ids = {value for _, name, value in page.attributes if name == "id"}
+    assert {value[1:] for _, name, value in page.attributes if name == "href"} <= ids
+
+
+def test_pictures_are_embedded_and_described(page):
+    embedded = {
+        base64.b64decode(value.removeprefix("data:image/png;base64,"))
+        for tag, name, value in page.attributes
+        if (tag, name) == ("img", "src")
+    }
+    assert embedded == set(PICTURES.values())
+    assert sum((tag, name) == ("img", "alt") for tag, name, _ in page.attributes) == len(PICTURES)
+
+
+def test_it_stands_without_pictures(result):
+    assert "<img" not in render(result, {})
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "Pass: all 20 checks are met",
+        "safety factor of link AE is 3.65",
+        "AG pushes AE 0.5011 0.8095 0.9520",
+        "Drive torque on AE about A: −130.6 N·mm (clockwise",
+        "condition number",
+        "driven link AE 0.0374",
+        "228.150°",
+        "33.75 N·mm",
+        "2.934 MPa",
+        "14.11",
+        "3 of the equations are not equilibrium equations",
+        "CH 0.7327 0.0000 −56.03",
+        "More than 3 % apart at x = 35.0 mm",
+        "Young's modulus E 2.4 GPa handbook Paredes (2018), table 1, after Shigley",
+        "density 1450 kg/m³",
+        "Poisson's ratio ν 0.38 assumed",
+        "The bands here hold: pin pressure over 180° and over 90°",
+        "2 elements were straightened",
+        "the pose is close to a dead point",
+        "The load at H enters over the last 5 mm of the tube.",
+        "solid models 1.5 s",
+    ],
+)
+def test_what_a_reader_needs_is_there(page, words):
+    assert words in re.sub(r"\s+([.,;:)])", r"\1", page.words)
+
+
+def test_what_is_not_covered_is_said(page):
+    for title, text in NOT_COVERED:
+        assert title in page.words
+        assert text in page.words
+
+
+def test_every_link_has_a_section(page, result):
+    for link in result.case.checked_links:
+        assert f"Link {link}" in page.words
+
+
+@pytest.mark.parametrize("verdict", list(Verdict))
+def test_the_verdict_is_stamped(changed, verdict):
+    text = render(changed(lambda check: replace(check, verdict=verdict)), {})
+    assert f'<div class="verdict {verdict.value}">' in text
+    assert f'<p class="stamp">{verdict.value}</p>' in text
+
+
+def test_a_check_that_is_not_passed_gives_its_reason(changed):
+    text = render(changed(lambda check: replace(check, verdict=Verdict.UNDECIDED, reason="it straddles the limit")), {})
+    assert "it straddles the limit" in text
+
+
+def test_text_of_the_case_is_escaped(result):
+    hostile = "<script>alert(1)</script>"
+    case = result.case.model_copy(update={"title": hostile, "assumptions": (hostile,), "description": hostile})
+    text = render(replace(result, case=case, warnings=(hostile,), name=hostile), {})
+    assert "<script" not in text
+    assert text.count("&lt;script&gt;") >= 5
+
+
+def test_a_case_without_the_optional_parts_renders(result):
+    case = result.case.model_copy(update={"assumptions": (), "description": "", "source": ""})
+    only = {"weight": result.load_cases["weight"]}
+    page = Page(render(replace(result, case=case, load_cases=only, hand={}, audit=None, warnings=()), {}))
+    assert "published statics" not in page.words
+    assert "The case states none." in page.words
+    assert "Load case idle" not in page.words
+
+
+def test_no_zero_has_a_sign(page):
+    assert not re.search(r"−0(\.0+)?(?![.\d])", page.words)

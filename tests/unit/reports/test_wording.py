@@ -1,0 +1,87 @@
+from dataclasses import replace
+
+import pytest
+
+from fea.band import Band
+from fea.verdict import Verdict
+from reports import wording
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (0.952, 4, "0.9520"),
+        (130.584, 4, "130.6"),
+        (-130.584, 4, "−130.6"),
+        (9.9996, 4, "10.00"),
+        (0.0, 4, "0"),
+        (-0.0, 4, "0"),
+        (1.5e-16, 2, "1.5·10⁻¹⁶"),
+        (123456.0, 3, "1.23·10⁵"),
+        (float("inf"), 4, "∞"),
+        (float("-inf"), 4, "−∞"),
+        (float("nan"), 4, "not known"),
+    ],
+)
+def test_a_number_has_its_significant_digits(value, digits, text):
+    assert wording.number(value, digits) == text
+
+
+def test_what_rounding_leaves_of_a_sum_is_zero_beside_its_parts():
+    assert wording.number(8e-16, 3, beside=0.05) == "0"
+    assert wording.number(8e-10, 3, beside=0.05) == "8.00·10⁻¹⁰"
+
+
+@pytest.mark.parametrize(("value", "text"), [(-0.0004, "0.00"), (-1.0, "−1.00"), (2.345, "2.35")])
+def test_a_fixed_number_has_no_negative_zero(value, text):
+    assert wording.fixed(value, 2) == text
+
+
+def test_a_band_is_spelled_out_where_it_shows():
+    assert wording.band(Band(value=3.21, low=2.44, high=3.21, holds=())) == "3.21 (2.44 to 3.21)"
+    assert wording.band(Band(value=3.2101, low=3.2100, high=3.2102, holds=())) == "3.21"
+
+
+@pytest.mark.parametrize(
+    ("words", "text"), [([], ""), (["a"], "a"), (["a", "b"], "a and b"), (["a", "b", "c"], "a, b and c")]
+)
+def test_words_are_joined(words, text):
+    assert wording.joined(words) == text
+
+
+@pytest.mark.parametrize(("torque", "sense"), [(-1.0, "clockwise"), (1.0, "counter-clockwise"), (0.0, "none")])
+def test_positive_torque_is_counter_clockwise(torque, sense):
+    assert wording.turning(torque) == sense
+
+
+def test_the_headline_of_a_pass_names_the_check_nearest_to_its_limit(result):
+    beams = result.load_cases["weight"].links["AE"]
+    assert wording.headline(result) == (
+        "Pass: all 20 checks are met over the whole of every error band. Nearest to its limit: the safety factor of "
+        f"link AE is {beams.safety_factor.value:.2f}, where at least 3 is asked for."
+    )
+
+
+def test_the_headline_of_a_fail_names_what_is_missed(result, changed):
+    def change(check):
+        missed = check.link == "CH" and check.quantity == "displacement" and check.load_case == "weight"
+        return replace(check, value=Band.exact(2.5), verdict=Verdict.FAIL) if missed else check
+
+    text = wording.headline(changed(change))
+    assert text.startswith("Fail: 1 of 20 checks is missed over its whole error band: displacement of CH.")
+    assert "Worst: the displacement of link CH is 2.50 mm, where at most 2 mm is asked for" in text
+
+
+def test_the_headline_of_an_open_answer_gives_the_reason(result, changed):
+    def change(check):
+        return replace(check, verdict=Verdict.UNDECIDED, reason="its band straddles the limit")
+
+    text = wording.headline(changed(change))
+    assert text.startswith("Undecided: 20 of 20 checks are left open")
+    assert text.endswith("Safety factor of GF: its band straddles the limit.")
+
+
+def test_nothing_checked_is_undecided(result):
+    empty = {name: replace(case, checks=()) for name, case in result.load_cases.items()}
+    text = wording.headline(replace(result, load_cases=empty, verdict=Verdict.UNDECIDED))
+    assert text == "Undecided: the case asks for no check, so nothing was decided."
