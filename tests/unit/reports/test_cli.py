@@ -1,0 +1,125 @@
+"""The command as a user meets it: output, exit status, one sentence per mistake."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ALULA = [sys.executable, "-c", "from reports.cli import main; main()"]
+
+
+def alula(*arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    root = str(Path(__file__).parents[3])
+    return subprocess.run(
+        [*ALULA, *arguments],
+        cwd=cwd,
+        env={**os.environ, "PYTHONPATH": root, "OMP_NUM_THREADS": "1", **environment},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+def test_cases_lists_the_owl_wing() -> None:
+    done = alula("cases")
+    assert done.returncode == 0
+    assert "owl-wing-static" in done.stdout
+
+
+def test_schema_is_a_json_schema() -> None:
+    import jsonschema
+
+    schema = json.loads(alula("schema").stdout)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    assert {"schema_version", "links", "joints", "load_cases"} <= set(schema["required"])
+    assert schema["additionalProperties"] is False
+
+
+def test_statics_prints_the_published_system(tmp_path: Path) -> None:
+    done = alula("statics", "owl-wing-static", "--matrix", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "15×15" in done.stdout
+    assert "-130.58 N·mm" in done.stdout
+    assert "AE Mz" in done.stdout
+    record = json.loads(alula("statics", "owl-wing-static", "--matrix", "--json").stdout)
+    system = record["load_cases"]["weight"]["system"]
+    assert len(system["matrix"]) == len(system["rows"]) == len(system["columns"]) == 15
+
+
+def test_the_beam_check_as_json() -> None:
+    done = alula("check", "owl-wing-static", "--fidelity", "beam", "--json")
+    record = json.loads(done.stdout)
+    assert done.returncode == {"pass": 0, "fail": 1, "undecided": 3}[record["verdict"]]
+    assert record["drive_torque"] == pytest.approx(-130.58, abs=5e-3)
+    assert record["links"]["AE"]["elements"] is None
+
+
+def test_new_writes_a_case_that_checks_and_overwrites_nothing(tmp_path: Path) -> None:
+    assert alula("new", "four-bar.toml", cwd=tmp_path).returncode == 0
+    assert alula("statics", "four-bar.toml", cwd=tmp_path).returncode == 0
+    again = alula("new", "four-bar.toml", cwd=tmp_path)
+    assert again.returncode == 2
+    assert "exists" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["check", "no-such-case"], ["no-such-case", "owl-wing-static"]),
+        (["check", "owl-wing-static", "--set", "pose.angle=20"], ["pose.angle", "20", "unit", '"30 deg"']),
+        (["check", "owl-wing-static", "--set", "nonsense"], ["nonsense", "path=value"]),
+        (["check", "owl-wing-static", "--fidelity", "magic"], ["magic", "beam"]),
+        (["statics", "owl-wing-static", "--set", 'links.ED.points.D=["8 mm", "0 mm"]'], ["stays open by", "mm"]),
+        (["export", "owl-wing-static"], ["--step"]),
+        (["frobnicate"], ["frobnicate"]),
+    ],
+)
+def test_a_mistake_ends_with_status_2_and_says_why(arguments: list[str], words: list[str]) -> None:
+    done = alula(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr
+    for word in words:
+        assert word in done.stderr
+
+
+def test_a_fault_of_the_program_is_status_4_without_traceback(tmp_path: Path) -> None:
+    (tmp_path / "sitecustomize.py").write_text(
+        "import loads.case_file\n"
+        "def read_case(*args):\n    raise ZeroDivisionError('made up')\n"
+        "loads.case_file.read_case = read_case\n"
+    )
+    root = str(Path(__file__).parents[3])
+    code = "import sitecustomize; from reports.cli import main; main()"
+    for more, shown in (({}, False), ({"ALULA_TRACEBACK": "1"}, True)):
+        done = subprocess.run(
+            [sys.executable, "-c", code, "statics", "owl-wing-static"],
+            env={**os.environ, "PYTHONPATH": f"{tmp_path}:{root}", **more},
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert ("Traceback" in done.stderr) is shown
+        if not shown:
+            assert done.returncode == 4
+            assert "ZeroDivisionError: made up" in done.stderr
+
+
+def test_a_closed_pipe_is_no_traceback() -> None:
+    root = str(Path(__file__).parents[3])
+    code = "from reports.cli import main; main()"
+    command = f"{sys.executable} -c '{code}' schema | head -c 10"
+    done = subprocess.run(
+        ["bash", "-c", command],
+        env={**os.environ, "PYTHONPATH": root},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert "Traceback" not in done.stderr
