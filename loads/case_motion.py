@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from geometry.errors import CaseError
 from geometry.motion import Motion, solve_motion
 from geometry.pose import Pose
 from loads.actions import PartMass, needs_masses, stated_loads
-from loads.case import Case
+from loads.case import Case, LoadCase
 from loads.kinetostatics import Kinetostatics, is_determinate, solve_kinetostatics, torque_by_virtual_work
 from loads.masses import moving_masses
 from loads.statics import Drive
@@ -41,6 +41,9 @@ class CaseMotion:
 def solve_case_motion(case: Case) -> CaseMotion:
     """Move the case's linkage as its table [motion] says and solve every load case at every pose.
 
+    A load case that states its own speed moves over the same poses at that speed, with inertia; its speed is
+    the one of the pose's coordinate.
+
     Raises ``CaseError`` where the motion meets a dead point or the case states no motion, drive or masses.
     """
     coordinate = case.motion_coordinate
@@ -57,14 +60,21 @@ def solve_case_motion(case: Case) -> CaseMotion:
         raise CaseError(
             "motion.inertia: no moving link has a mass; give a link a part, or state a mass under [motion.masses]"
         )
-    inert = masses if spec.inertia else {}
+    for name, load_case in case.load_cases.items():
+        if load_case.speed != 0.0 and coordinate != case.pose.coordinate:
+            raise CaseError(
+                f"load_cases.{name}.speed: it is the speed of the pose's coordinate '{case.pose.coordinate}', but the "
+                f"motion prescribes '{coordinate}'; use one link for both, or leave this speed out"
+            )
     loads = {name: stated_loads(case, load_case, masses) for name, load_case in case.load_cases.items()}
+    moved = {name: _at_speed_of(motion, load_case) for name, load_case in case.load_cases.items()}
+    inert = {name: masses if with_inertia(case, name) else {} for name in loads}
     forces: dict[str, Kinetostatics] = {}
     if is_determinate(case.linkage):
-        forces = {name: solve_kinetostatics(motion, drive, acting, inert) for name, acting in loads.items()}
+        forces = {n: solve_kinetostatics(moved[n], drive, acting, inert[n]) for n, acting in loads.items()}
     torque = {
-        name: forces[name].torque if forces else torque_by_virtual_work(motion, drive, acting, inert)
-        for name, acting in loads.items()
+        n: forces[n].torque if forces else torque_by_virtual_work(moved[n], drive, acting, inert[n])
+        for n, acting in loads.items()
     }
     first, second = case.linkage.joints[drive.joint].links
     return CaseMotion(
@@ -76,6 +86,20 @@ def solve_case_motion(case: Case) -> CaseMotion:
         torque=torque,
         dead_points=motion.turning_points(drive.link, second if first == drive.link else first),
     )
+
+
+def with_inertia(case: Case, load_case: str) -> bool:
+    """Whether inertia acts in a load case of a motion: where the motion asks for it or the case states a speed."""
+    asked = case.motion is not None and case.motion.inertia
+    return asked or case.load_cases[load_case].speed != 0.0
+
+
+def _at_speed_of(motion: Motion, load_case: LoadCase) -> Motion:
+    """Return the motion at the load case's own constant speed, where it states one."""
+    if load_case.speed == 0.0:
+        return motion
+    still = np.zeros_like(motion.acceleration)
+    return replace(motion, speed=np.full_like(motion.speed, load_case.speed), acceleration=still)
 
 
 def drive_angles(case: Case, pose: Pose) -> Real:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.motion import Motion
-from loads.case_motion import CaseMotion
+from loads.case_motion import CaseMotion, with_inertia
 
 Real = NDArray[np.float64]
 
@@ -80,7 +80,10 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
 
 
 def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
-    found: dict[str, Any] = {"drive_torque": _extremes(result, result.torque[load_case])}
+    own = result.case.load_cases[load_case].speed
+    speed = own if own != 0.0 else float(result.motion.speed[0])
+    found: dict[str, Any] = {"inertia": with_inertia(result.case, load_case), "speed_rad_per_s": speed}
+    found |= {"drive_torque": _extremes(result, result.torque[load_case])}
     if not result.forces:
         return found | {"joints": None}
     solved = result.forces[load_case]
@@ -133,7 +136,12 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
             "link. There it cannot drive the linkage; torque and joint forces grow without bound."
         )
     for load_case, row in found["load_cases"].items():
-        print(f"\nLoad case {load_case}{'' if motion['inertia'] else ' (without inertia)'}")
+        how = (
+            f"with inertia at {row['speed_rad_per_s'] * 30.0 / math.pi:.4g} rpm"
+            if row["inertia"]
+            else "without inertia"
+        )
+        print(f"\nLoad case {load_case} ({how})")
         print(f"  drive torque on {drive['link']} at {drive['joint']}: {_line(row['drive_torque'], 'N mm')}")
         if row["joints"] is None:
             print("  joint forces do not follow from equilibrium, since the linkage is redundant")
