@@ -43,7 +43,7 @@ from loads.published import read_matrix
 
 
 class Tree(Mapping[str, Any]):
-    """Named branches, each computed once, when it is first looked at."""
+    """Named branches, each computed once, when it is first looked at (not when its name is asked for)."""
 
     def __init__(self, **branches: Callable[[], Any]) -> None:
         self._branches = branches
@@ -53,6 +53,9 @@ class Tree(Mapping[str, Any]):
         if name not in self._known:
             self._known[name] = self._branches[name]()
         return self._known[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._branches
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._branches)
@@ -235,7 +238,7 @@ def flapping_tree(wing: FlappingWing) -> Tree:
         collides=lambda: _yes(wing.rocker > wing.width),
         published=lambda: _leaves(wing.published_metrics(), dict.fromkeys(rad, "rad")),
         metrics=lambda: _leaves(wing.metrics(), dict.fromkeys((*names, *more), "rad")),
-        scaled=lambda: _leaves(wing, dict.fromkeys(("crank", "coupler", "rocker", "width", "height"), "mm")),
+        lengths=lambda: _leaves(wing, dict.fromkeys(("crank", "coupler", "rocker", "width", "height"), "mm")),
     )
 
 

@@ -7,9 +7,9 @@
     path       = name {"." (name | number | quoted text)}
 
 A unit stands behind its number and holds no spaces (``2 kg/m^3``), so that ``4 N / 2 N`` is a quotient of two
-quantities. ``^`` is read as ``**``; ``below(a, b)`` is the word "yes" or "no". Nothing is ever handed to Python to
-evaluate; length, depth, powers and size of the numbers are bounded. Angles are a dimension of their own: the
-functions of an angle ask for one.
+quantities; a name before a dot or a bracket is never a unit. ``^`` is read as ``**``; ``below(a, b)`` is the word
+"yes" or "no". Nothing is ever handed to Python to evaluate; length, depth, powers and size of the numbers are
+bounded. Angles are a dimension of their own: the functions of an angle ask for one.
 """
 
 import math
@@ -44,7 +44,7 @@ _TYPOGRAPHY = str.maketrans(
         "\u202f": " ",
     }
 )
-_UNIT_NAME = r"[A-Za-zµμ°Ω%]+(?:(?:\^|\*\*)-?[1-4](?!\d))?"
+_UNIT_NAME = r"[A-Za-zµμ°Ω%]+(?![\w.(])(?:(?:\^|\*\*)-?[1-4](?![\d.]))?"
 _UNIT = re.compile(rf"{_UNIT_NAME}(?:[*/]{_UNIT_NAME})*")
 _NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _PATH = re.compile(r"[^\W\d]\w*(?:\.(?:\w+|\"[^\"\n]*\"))*")
@@ -299,7 +299,7 @@ class _WrongDimensionError(Exception):
     pass
 
 
-_ANGLE: Dimensions = (("radian", Fraction(1)),)
+ANGLE: Dimensions = (("radian", Fraction(1)),)
 
 
 def _combine(left: Dimensions, right: Dimensions, sign: int) -> Dimensions:
@@ -317,7 +317,7 @@ def _alike(values: list[Value]) -> Dimensions:
 
 def _of_angle(function: Callable[[float], float]) -> Callable[[list[Value]], Value]:
     def apply(values: list[Value]) -> Value:
-        if values[0].dimensions != _ANGLE:
+        if values[0].dimensions != ANGLE:
             raise _WrongDimensionError("an angle with its unit, such as 30 deg")
         return Value(magnitude=function(values[0].magnitude))
 
@@ -328,14 +328,14 @@ def _to_angle(function: Callable[[float], float]) -> Callable[[list[Value]], Val
     def apply(values: list[Value]) -> Value:
         if values[0].dimensions:
             raise _WrongDimensionError("a pure number")
-        return Value(magnitude=function(values[0].magnitude), dimensions=_ANGLE)
+        return Value(magnitude=function(values[0].magnitude), dimensions=ANGLE)
 
     return apply
 
 
 def _atan2(values: list[Value]) -> Value:
     _alike(values)
-    return Value(magnitude=math.atan2(values[0].magnitude, values[1].magnitude), dimensions=_ANGLE)
+    return Value(magnitude=math.atan2(values[0].magnitude, values[1].magnitude), dimensions=ANGLE)
 
 
 def _same(function: Callable[..., float]) -> Callable[[list[Value]], Value]:

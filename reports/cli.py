@@ -156,6 +156,77 @@ def motion(
 
 
 @app.command()
+def claims(
+    case: Annotated[
+        str | None,
+        typer.Argument(
+            help="Path to a case file, or the name of a built-in case or source document; all sources when left out.",
+            show_default=False,
+        ),
+    ] = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="End with exit status 1 if a claim does not hold or does not follow.")
+    ] = False,
+    json: JsonOption = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Print a page of Markdown.")] = False,
+    overrides: SetOption = None,
+    fidelity: Annotated[str, typer.Option(help="Model for claims on stress: solid or beam.")] = "solid",
+    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
+) -> None:
+    """Re-derive published figures and say which of them hold."""
+    from fea.claims import check_all, check_claims
+    from geometry.errors import CaseError
+    from loads.claim import read_source, sources
+    from reports.claims import as_json, as_markdown, as_text
+
+    if case is None:
+        if overrides:
+            raise CaseError("--set: no case is named whose entries could be set anew; name one")
+        found = check_all(fidelity=fidelity, threads=threads)
+    else:
+        found = {case: check_claims(case, overrides=overrides or (), fidelity=fidelity, threads=threads)}
+    results = [result for group in found.values() for result in group]
+    if json:
+        print(as_json(results))
+    elif markdown:
+        titles = {name: read_source(name).title if name in sources() else name for name in found}
+        print(as_markdown(found, titles), end="")
+    else:
+        print(as_text(results))
+    if strict and any(result.finding.refutes for result in results):
+        raise SystemExit(1)
+
+
+@app.command()
+def synth(
+    points: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--point",
+            help='A precision point "theta, psi"; give three. Left out: those of Arango and Hurtado, '
+            '"0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg".',
+        ),
+    ] = None,
+    ground: Annotated[str, typer.Option("--ground", help="Length d of the ground link.")] = "10 m",
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for result.json and the drawing.")
+    ] = None,
+    json: JsonOption = False,
+) -> None:
+    """Synthesise a four-bar through three precision points, and name its defects."""
+    from reports.synthesis import PUBLISHED_POINTS, print_synthesis, read_synthesis, write_synthesis
+
+    found = read_synthesis(points or PUBLISHED_POINTS, ground)
+    if output is not None:
+        from reports.output import write_folder
+
+        write_folder(output, lambda folder: write_synthesis(found, folder))
+    print_synthesis(found, json=json)
+    if output is not None and not json:
+        print(f"\nRecord and drawing: {output}")
+
+
+@app.command()
 def cases() -> None:
     """List the built-in cases."""
     from loads.case_file import built_in_cases, read_case
