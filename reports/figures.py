@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,8 +30,10 @@ Int = NDArray[np.int64]
 TIME_LIMIT = 180.0
 """Seconds for the renderings of one check."""
 COLOURS = "YlOrRd"
-_STRIP_WIDTH = 2880
-_CLOSE_SIZE = 1160
+_STRIP_WIDTH = 2200
+_CLOSE_SIZE = 880
+_WORKERS = 2
+"""Children that render at the same time."""
 _TOWARD = np.array([0.0, -0.42, 0.91]) / np.hypot(0.42, 0.91)
 """From where a link is looked at: pins point at the viewer, tilted so that its side shows."""
 _VISIBLE_SHIFT = 0.08
@@ -235,8 +238,6 @@ def _limits(scene: Scene) -> tuple[float, float]:
 
 def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str, tuple[Real, Real]], str]:
     """Render both views of every scene; returns the images that came out, and what went wrong with the others."""
-    from matplotlib.image import imread
-
     trouble = ""
     with tempfile.TemporaryDirectory(prefix="alula-") as name:
         folder = Path(name)
@@ -268,16 +269,22 @@ def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str,
         # Software rendering first: it gives the same picture with and without a display.
         choices: tuple[dict[str, str], ...] = ({"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}, {})
         for choice in choices:
-            left = {key: view for key, view in views.items() if not (folder / f"{key}.png").exists()}
-            (folder / "views.json").write_text(json.dumps(left), encoding="utf-8")
-            trouble = _run_worker(folder, choice, time_limit)
+            left = {key: view for key, view in views.items() if not (folder / f"{key}.npy").exists()}
+            shares = [dict(list(left.items())[i::_WORKERS]) for i in range(_WORKERS)]
+
+            def run(share: dict[str, Any], choice: dict[str, str] = choice) -> str:
+                return _run_worker(folder, share, choice, time_limit)
+
+            with ThreadPoolExecutor(max_workers=_WORKERS) as pool:
+                troubles = list(pool.map(run, filter(None, shares)))
+            trouble = next(filter(None, troubles), "")
             if not trouble:
                 break
         found = {}
         for i, scene_name in enumerate(scenes):
-            pair = [folder / f"{kind}{i}.png" for kind in ("strip", "close")]
+            pair = [folder / f"{kind}{i}.npy" for kind in ("strip", "close")]
             if all(path.exists() for path in pair):
-                found[scene_name] = (imread(pair[0]), imread(pair[1]))
+                found[scene_name] = (np.load(pair[0]), np.load(pair[1]))
     return found, trouble
 
 
@@ -286,13 +293,13 @@ def _command(folder: Path) -> list[str]:
     return [sys.executable, "-P", str(Path(__file__).with_name("figures_worker.py")), str(folder)]
 
 
-def _run_worker(folder: Path, choice: dict[str, str], time_limit: float) -> str:
-    """Run the child; returns what went wrong, or nothing."""
+def _run_worker(folder: Path, views: dict[str, Any], choice: dict[str, str], time_limit: float) -> str:
+    """Run a child on some of the views; returns what went wrong, or nothing."""
     try:
         done = subprocess.run(
             _command(folder),
             env=os.environ | {"PYVISTA_OFF_SCREEN": "true"} | choice,
-            stdin=subprocess.DEVNULL,
+            input=json.dumps(views).encode(),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             timeout=time_limit,

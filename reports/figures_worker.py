@@ -1,7 +1,8 @@
 """The child process that renders views with pyvista: ``python figures_worker.py FOLDER``.
 
-Reads ``views.json`` and the arrays in the ``.npz`` file that each view names, and writes ``<view>.png``.
-It imports nothing of alula, so that it can be started by its path.
+Reads from standard input a JSON object name -> view, and from the folder the arrays in the ``.npz`` file that
+each view names; writes the image of each as ``<view>.npy``. It imports nothing of alula, so that it can be
+started by its path.
 """
 
 import json
@@ -66,17 +67,17 @@ def render(view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) ->
     plotter.close()
     if np.ptp(image) == 0:
         raise RuntimeError("the picture came out blank")
-    from matplotlib.image import imsave
-
-    imsave(path, image)
+    # By renaming, so that a crash leaves no half of an image.
+    draft = path.with_suffix(".part.npy")
+    np.save(draft, image)
+    draft.rename(path)
 
 
 def main(folder: Path) -> None:
-    """Render every view that ``views.json`` lists."""
-    views = json.loads((folder / "views.json").read_text(encoding="utf-8"))
-    for name, view in views.items():
+    """Render every view that standard input lists."""
+    for name, view in json.load(sys.stdin).items():
         with np.load(folder / view["arrays"]) as stored:
-            render(view, dict(stored), folder / f"{name}.png")
+            render(view, dict(stored), folder / f"{name}.npy")
 
 
 if __name__ == "__main__":

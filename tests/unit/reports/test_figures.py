@@ -55,13 +55,14 @@ def test_a_renderer_that_fails_costs_one_warning(solid, monkeypatch, program, tr
 def test_a_missing_library_is_tried_again_with_another_renderer(solid, monkeypatch):
     tried = []
 
-    def run(folder, choice, time_limit):
+    def run(folder, views, choice, time_limit):
         tried.append(choice)
         return "rendering crashed"
 
     monkeypatch.setattr(figures, "_run_worker", run)
     figures.stress_plots(solid, POINTS)
-    assert tried == [{"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}, {}]
+    software = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}
+    assert tried == [software, software, {}, {}]
 
 
 def test_the_scene_states_a_round_scale_that_shows(solid):

@@ -9,7 +9,9 @@ from reports.folder import write_report
 
 @pytest.fixture
 def without_renderer(monkeypatch):
-    monkeypatch.setattr(figures, "_run_worker", lambda folder, choice, time_limit: "rendering crashed (signal 11)")
+    monkeypatch.setattr(
+        figures, "_run_worker", lambda folder, views, choice, time_limit: "rendering crashed (signal 11)"
+    )
 
 
 def test_the_folder_is_complete(result, tmp_path):
