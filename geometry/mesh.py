@@ -10,11 +10,11 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,22 @@ from geometry.body_rules import check_body
 from geometry.errors import AlulaError, CannotRunError, CaseError
 from geometry.mesh_settings import COARSE, MeshSettings
 from geometry.part import Body
+from geometry.reentrant import ReentrantEdge
 from geometry.tagged_mesh import TaggedMesh
 
-__all__ = ["COARSE", "MassProperties", "MeshSettings", "export_step", "mass_properties", "mesh_bodies", "mesh_body"]
+__all__ = [
+    "COARSE",
+    "MassProperties",
+    "MeshSettings",
+    "ReentrantEdge",
+    "export_step",
+    "mass_properties",
+    "mesh_bodies",
+    "mesh_body",
+    "reentrant_edges",
+]
+
+_T = TypeVar("_T")
 
 KERNEL_TIME_LIMIT = 120.0
 """Seconds for tasks of the geometry kernel that mesh nothing."""
@@ -83,6 +96,16 @@ def mass_properties(body: Body) -> MassProperties:
     return MassProperties(volume=volume, centroid=centroid, inertia=inertia)
 
 
+def reentrant_edges(body: Body) -> list[ReentrantEdge]:
+    """Return the sharp edges at which the material's angle exceeds 180°, where linear elastic stress is infinite.
+
+    Found on the kernel's own edges. Raises ``CaseError`` and ``CannotRunError`` as ``mesh_body`` does.
+    """
+    check_body(body)
+    edges: list[ReentrantEdge] = _run("reentrant", body, time_limit=KERNEL_TIME_LIMIT)
+    return edges
+
+
 def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:
     """Write each body as ``<name>.step`` (in mm) into an existing folder and return the paths.
 
@@ -110,7 +133,7 @@ def _step(body: Body, path: Path) -> None:
     _run("step", body, str(path.resolve()), time_limit=KERNEL_TIME_LIMIT)
 
 
-def _naming(name: str, task: Any, *arguments: Any) -> Any:
+def _naming(name: str, task: Callable[..., _T], *arguments: Any) -> _T:
     try:
         return task(*arguments)
     except AlulaError as error:

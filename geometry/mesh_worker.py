@@ -40,7 +40,15 @@ def step(gmsh: Any, body: Body, path: str) -> object:
     return None
 
 
-TASKS: dict[str, Callable[..., object]] = {"mesh": mesh, "mass": mass, "step": step}
+def reentrant(gmsh: Any, body: Body) -> object:
+    """Return the ``ReentrantEdge`` list of a body."""
+    from geometry.reentrant import find_reentrant_edges
+    from geometry.solid_model import build
+
+    return find_reentrant_edges(gmsh, build(gmsh, body))
+
+
+TASKS: dict[str, Callable[..., object]] = {"mesh": mesh, "mass": mass, "step": step, "reentrant": reentrant}
 
 
 def answer(task: str, arguments: tuple[Any, ...]) -> tuple[str, object]:
