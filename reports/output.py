@@ -59,7 +59,8 @@ def is_result(folder: Path) -> bool:
         record = json.loads((folder / MARK).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return isinstance(record, dict) and "schema_version" in record and ("verdict" in record or "motion" in record)
+    known = {"verdict", "motion", "coefficients"}  # of a check, a motion, a synthesis
+    return isinstance(record, dict) and "schema_version" in record and not known.isdisjoint(record)
 
 
 def _flush(path: Path) -> None:
