@@ -100,18 +100,36 @@ def subdivide(model: FrameModel, parts: int) -> tuple[FrameModel, NDArray[np.int
     return divided, np.array(origin)
 
 
-def solve_large_displacement(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> CorotationalSolution:
+class NoEquilibriumError(CannotRunError):
+    """The path of equilibrium ends before the whole load acts; ``reached`` is the share of it that was held."""
+
+    def __init__(self, reached: float) -> None:
+        super().__init__(
+            f"the frame finds no equilibrium in large displacement beyond {reached:.3g} of its load "
+            f"(a limit load or a snap-through); reduce the load or stiffen the frame"
+        )
+        self.reached = reached
+
+
+def solve_large_displacement(
+    model: FrameModel,
+    subdivisions: int = SUBDIVISIONS,
+    *,
+    least_step: float = _LEAST_STEP,
+    most_iterations: int = _MOST_ITERATIONS,
+) -> CorotationalSolution:
     """Find the equilibrium of a frame on its deformed shape, following it from the unloaded state.
 
-    The step in load is halved where Newton's method fails and grows where it is quick. Raises ``CannotRunError`` for
-    mechanisms, and where the step falls below 1/4096 of the load: a limit load, a snap-through or a divergent shape
-    (naming the share of the load that was reached); no unconverged shape is ever returned.
+    The step in load is halved where Newton's method fails (within ``most_iterations``) and grows where it is quick.
+    Raises ``CannotRunError`` for mechanisms, and ``NoEquilibriumError`` where the step falls below ``least_step`` of the
+    load: a limit load, a snap-through or a divergent shape (naming the share of the load that was reached); no
+    unconverged shape is ever returned.
     """
     divided, origin = subdivide(model, subdivisions)
     system = FrameSystem(divided)
     refuse_mechanism(system, system.equations()[0])
     path = _Path(divided)
-    path.follow()
+    path.follow(least_step, most_iterations)
     return path.record(origin)
 
 
@@ -146,18 +164,15 @@ class _Path:
     def respond(self, state: _State, factor: float) -> ElementResponse:
         return self.elements.respond(state.displacements[self.pairs], state.attachments, factor)
 
-    def follow(self) -> None:
+    def follow(self, least_step: float, most_iterations: int) -> None:
         step = 0.25
         while self.reached < 1.0:
             target = min(1.0, self.reached + step)
-            found = self._newton(target)
+            found = self._newton(target, most_iterations)
             if found is None:
                 step /= 2.0
-                if step < _LEAST_STEP:
-                    raise CannotRunError(
-                        f"the frame finds no equilibrium in large displacement beyond {self.reached:.3g} of its load "
-                        f"(a limit load or a snap-through); reduce the load or stiffen the frame"
-                    )
+                if step < least_step:
+                    raise NoEquilibriumError(self.reached)
                 continue
             self.state, iterations = found
             self.reached = target
@@ -165,10 +180,10 @@ class _Path:
             if iterations <= 6:
                 step *= 2.0
 
-    def _newton(self, factor: float) -> tuple[_State, int] | None:
+    def _newton(self, factor: float, most_iterations: int) -> tuple[_State, int] | None:
         """Equilibrium at a load factor from the present state, with the iterations it took; None where it fails."""
         state, predicted = self.state, 0.0
-        for iteration in range(_MOST_ITERATIONS):
+        for iteration in range(most_iterations):
             try:
                 residual, tangent = self.balance(state, factor)
                 if self.measure(residual) <= max(_TOLERANCE * factor, self.rounding(state)) and iteration > 0:

@@ -5,6 +5,7 @@ which the parent carries along; a released end likewise follows its node. Virtua
 the spins of its chain of steps, each about its present axis.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -133,10 +134,18 @@ def present_axes(steps: list[Step], rotations: Floats) -> Floats:
     return np.array([s.axis if s.carrier is None else rotations[s.carrier] @ s.axis for s in steps]).reshape(-1, 3)
 
 
+def rotation_matrix(spin: Floats) -> Floats:
+    """Rotation (3, 3) about a vector by its length [rad], after Rodrigues: 1 + sin θ/θ S + (1 - cos θ)/θ² S²."""
+    x, y, z = map(float, spin)
+    angle = math.sqrt(x * x + y * y + z * z)
+    half = math.sin(angle / 2.0) / angle if angle > 1e-8 else 0.5
+    sine = math.sin(angle) / angle if angle > 1e-8 else 1.0
+    S = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.asarray(np.eye(3) + sine * S + 2.0 * half**2 * (S @ S))
+
+
 def turned(steps: list[Step], axes: Floats, increments: Floats, rotation: Floats) -> Floats:
     """Rotation (3, 3) at the end of a chain after its steps' increments [rad]; free turns first, then the pins."""
-    from scipy.spatial.transform import Rotation
-
     spins: list[Floats] = []
     for step, axis in zip(steps, axes, strict=True):
         spin = axis * increments[step.number]
@@ -145,5 +154,5 @@ def turned(steps: list[Step], axes: Floats, increments: Floats, rotation: Floats
         else:
             spins.append(spin)
     for spin in reversed(spins):
-        rotation = Rotation.from_rotvec(spin).as_matrix() @ rotation
+        rotation = rotation_matrix(spin) @ rotation
     return rotation
