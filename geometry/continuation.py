@@ -285,4 +285,4 @@ def _error(driven: DrivenClosure, angle: float, end: float, what: str) -> DeadPo
 
 
 def _deg(angle: float) -> str:
-    return f"{math.degrees(angle):.6f}".rstrip("0").rstrip(".")
+    return f"{round(math.degrees(angle), 6) + 0.0:.6f}".rstrip("0").rstrip(".")

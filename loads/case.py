@@ -199,7 +199,8 @@ class Case(CaseModel):
                 f"drive: the linkage has mobility {self.linkage.mobility}, but nothing drives it; "
                 "add a [drive] with its link and joint"
             )
-        if self.linkage.mobility != (1 if self.drive else 0):
+        drives = 1 if self.drive else 0
+        if self.linkage.mobility > drives or (self.linkage.mobility < drives and not self._moves):
             raise CaseError(
                 f"drive: the linkage has mobility {self.linkage.mobility} (Gruebler) but {1 if self.drive else 0} "
                 "drive; they must be equal, so add or remove joints or links"
@@ -325,6 +326,14 @@ class Case(CaseModel):
             )
         return name
 
+    @property
+    def _moves(self) -> bool:
+        """True where the stated pose moves by the rank of its Jacobian, such as a parallelogram with a further link."""
+        try:
+            return self.pose.coordinate is not None and self.solve_pose() is not None
+        except CaseError:
+            return False
+
     def solve_pose(self) -> Pose:
         """Assemble the linkage in the stated pose."""
         return solve_pose(self.linkage, coordinate=self.pose.coordinate, angle=self.pose.angle, near=self.pose.near)
@@ -338,7 +347,7 @@ def _check_pose(case: Case) -> None:
                 raise CaseError(f"{entry}: '{name}' is not a moving link; choose among {', '.join(moving)}")
     if case.linkage.mobility == 1 and case.pose.coordinate is None:
         raise CaseError("pose.coordinate: the linkage can move, but no link fixes its pose; name one and its angle")
-    if case.linkage.mobility == 0 and case.pose.coordinate is not None:
+    if case.drive is None and case.linkage.mobility == 0 and case.pose.coordinate is not None:
         raise CaseError(
             f"pose.coordinate: it is '{case.pose.coordinate}', but the linkage cannot move (mobility 0); remove it"
         )
