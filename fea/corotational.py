@@ -121,8 +121,8 @@ def solve_large_displacement(
     """Find the equilibrium of a frame on its deformed shape, following it from the unloaded state.
 
     The step in load is halved where Newton's method fails (within ``most_iterations``) and grows where it is quick.
-    Raises ``CannotRunError`` for mechanisms, and ``NoEquilibriumError`` where the step falls below ``least_step`` of the
-    load: a limit load, a snap-through or a divergent shape (naming the share of the load that was reached); no
+    Raises ``CannotRunError`` for mechanisms, and ``NoEquilibriumError`` where the step falls below ``least_step`` of
+    the load: a limit load, a snap-through or a divergent shape (naming the share of the load that was reached); no
     unconverged shape is ever returned.
     """
     divided, origin = subdivide(model, subdivisions)
