@@ -22,8 +22,9 @@ from geometry.pose import Pose
 from geometry.tagged_mesh import TaggedMesh
 from loads.actions import PartMass, needs_masses
 from loads.applied import Load
-from loads.case import Case, SafetyFactorCheck
+from loads.case import Case
 from loads.case_file import read_companion
+from loads.check_spec import SafetyFactorCheck
 from loads.inertia import acting_loads
 from loads.masses import part_mass
 from loads.published import StaticsAudit, audit

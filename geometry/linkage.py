@@ -11,7 +11,7 @@ from pydantic import Field
 from geometry.errors import CaseError
 from geometry.model import CaseModel, Name
 from geometry.part import HoleRow
-from geometry.units import POSITIVE, Angle, Length
+from geometry.units import NOT_NEGATIVE, POSITIVE, Angle, Length
 
 
 class Link(CaseModel):
@@ -45,6 +45,10 @@ class Joint(CaseModel):
     """The point on each link; the joint's own name on both when left out."""
     pin_diameter: Annotated[Length, POSITIVE] | None = None
     """Diameter of the pin (and of the holes that hold it)."""
+    pin_material: Name = "steel-wire"
+    """Material of the pin, for the check of pins."""
+    pin_gap: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Free length of the pin between the two eyes that it joins, for the check of pins."""
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0

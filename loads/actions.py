@@ -61,7 +61,7 @@ def stated_loads(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass]
         wrench = np.concatenate([vector3(force.force), np.zeros(3)])
         loads.append(StatedLoad(load=PointLoad(link=force.link, point=force.at, wrench=wrench), axes=force.axes))
     for moment in load_case.moments:
-        wrench = np.array([0.0, 0.0, 0.0, 0.0, 0.0, moment.moment])
+        wrench = np.array([0.0, 0.0, 0.0, *moment.moment])
         loads.append(StatedLoad(load=PointLoad(link=moment.link, point=moment.at, wrench=wrench)))
     for spread in load_case.spread:
         points = case.links[spread.link].points

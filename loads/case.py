@@ -5,7 +5,8 @@ from functools import cached_property
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, PlainValidator, WithJsonSchema
+from pydantic_core import PydanticCustomError
 
 from geometry.body_rules import check_body
 from geometry.errors import CaseError
@@ -22,15 +23,42 @@ from geometry.units import (
     AngularSpeed,
     Force,
     Length,
-    Moment,
+    parse,
 )
 from loads.carried import CarriedBody, CarriedSpread
+from loads.check_spec import Check, PinCheck, SafetyFactorCheck, SustainedCheck
 from loads.claim import Claim
+from loads.conditions import Conditions, under
 from loads.motion_spec import MotionSpec
 from loads.statics import Drive, check_drive
 
 Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
 Axes = Literal["global", "link"]
+
+
+def _moment(stated: object) -> tuple[float, float, float]:
+    if not isinstance(stated, list | tuple):
+        return 0.0, 0.0, parse(stated, "moment")
+    if len(stated) != 3:
+        raise PydanticCustomError(
+            "not_a_moment", 'it must be one moment about z or three about x, y and z; write for example "130 N*mm"'
+        )
+    x, y, z = (parse(component, "moment") for component in stated)
+    return x, y, z
+
+
+MomentVector = Annotated[
+    tuple[float, float, float],
+    PlainValidator(_moment),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "description": "moment about z with its unit", "examples": ["130 N*mm"]},
+                {"type": "array", "items": {"type": "string"}, "minItems": 3, "maxItems": 3},
+            ]
+        }
+    ),
+]
 SCHEMA_VERSION = 1
 
 
@@ -67,11 +95,11 @@ class PointForce(CaseModel):
 
 
 class PointMoment(CaseModel):
-    """A moment about z at a point of a link, counter-clockwise positive."""
+    """A moment at a point of a link, in global axes: about z, counter-clockwise positive, or about x, y and z."""
 
     link: Name
     at: Name
-    moment: Moment
+    moment: MomentVector
 
 
 class SpreadForce(CaseModel):
@@ -101,27 +129,6 @@ class LoadCase(CaseModel):
     forces: tuple[PointForce, ...] = ()
     moments: tuple[PointMoment, ...] = ()
     spread: tuple[SpreadForce, ...] = ()
-
-
-class SafetyFactorCheck(CaseModel):
-    """The safety factor of each link must be at least the minimum."""
-
-    type: Literal["safety-factor"]
-    minimum: Annotated[float, Field(gt=0)] | None = None
-    """The limit; the material's own when left out."""
-    links: tuple[Name, ...] = ()
-    """The links to check; all that have a part when left out."""
-
-
-class DisplacementCheck(CaseModel):
-    """The largest displacement of each link, relative to the line through its pins, must be small enough."""
-
-    type: Literal["displacement"]
-    maximum: Annotated[Length, POSITIVE]
-    links: tuple[Name, ...] = ()
-
-
-Check = Annotated[SafetyFactorCheck | DisplacementCheck, Field(discriminator="type")]
 
 
 class CantileverCalculation(CaseModel):
@@ -155,6 +162,16 @@ class PublishedStatics(CaseModel):
     source's angles differ from the assembled pose's."""
 
 
+class WaysToHold(CaseModel):
+    """How far a point moves, by the frame, depending on which link the drive holds and on whether pins turn."""
+
+    link: Name
+    at: Name
+    published: Annotated[Length, POSITIVE] | None = None
+    """A published displacement, to stand beside them."""
+    source: Text = ""
+
+
 class SolidSettings(CaseModel):
     """The solid finite-element model."""
 
@@ -181,6 +198,12 @@ class Case(CaseModel):
     materials: dict[Name, Material] = {}
     """Material cards of the case's own; the library's are there by name without being listed."""
     parts: dict[Name, Part] = {}
+    joint_model: Literal["pinned", "bonded"] = "pinned"
+    """Whether pins turn freely, or are bonded and carry moments about their own axis as well."""
+    large_displacement: Literal["auto", "off"] = "auto"
+    """auto: where the linkage moves by more than 5 % of its span, equilibrium is sought on the deformed shape."""
+    conditions: Conditions = Conditions()
+    ways_to_hold: WaysToHold | None = None
     carried: tuple[CarriedSpread | CarriedBody, ...] = ()
     """Masses that links carry besides their parts; they weigh where the parts weigh, and have inertia."""
     load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=100)]
@@ -194,13 +217,14 @@ class Case(CaseModel):
     def model_post_init(self, context: object) -> None:
         """Check that all names fit together; raises ``CaseError``."""
         check_drive(self.linkage, self.pinned_drive)
-        if self.linkage.mobility > 0 and self.drive is None:
+        if self.linkage.mobility > 0 and self.drive is None and self.joint_model == "pinned":
             raise CaseError(
                 f"drive: the linkage has mobility {self.linkage.mobility}, but nothing drives it; "
                 "add a [drive] with its link and joint"
             )
         drives = 1 if self.drive else 0
-        if self.linkage.mobility > drives or (self.linkage.mobility < drives and not self._moves):
+        fits = self.linkage.mobility == drives or (self.linkage.mobility < drives and self._moves)
+        if not fits and self.joint_model == "pinned":
             raise CaseError(
                 f"drive: the linkage has mobility {self.linkage.mobility} (Gruebler) but {1 if self.drive else 0} "
                 "drive; they must be equal, so add or remove joints or links"
@@ -210,6 +234,12 @@ class Case(CaseModel):
             if part.material not in self.all_materials:
                 raise CaseError(
                     f"parts.{name}.material: '{part.material}' is unknown; choose one of "
+                    f"{', '.join(self.all_materials)} or add a card under [materials]"
+                )
+        for name, joint in self.joints.items():
+            if joint.pin_material not in self.all_materials:
+                raise CaseError(
+                    f"joints.{name}.pin_material: '{joint.pin_material}' is unknown; choose one of "
                     f"{', '.join(self.all_materials)} or add a card under [materials]"
                 )
         for name, link in self.links.items():
@@ -224,6 +254,14 @@ class Case(CaseModel):
         for name, load_case in self.load_cases.items():
             _check_loads(self, f"load_cases.{name}", load_case)
         for name, check in self.checks.items():
+            if isinstance(check, PinCheck):
+                _check_pins(self, name, check)
+                continue
+            if isinstance(check, SustainedCheck) and self.conditions.duration is None:
+                raise CaseError(
+                    f"checks.{name}: a sustained load needs to be known for how long; "
+                    'add [conditions] with its duration, for example "10 year"'
+                )
             for checked in check.links:
                 if checked not in self.checked_links:
                     raise CaseError(
@@ -231,12 +269,17 @@ class Case(CaseModel):
                         f"choose among {', '.join(self.checked_links) or 'none'}"
                     )
             for checked in check.links or self.checked_links:
-                stated = check.type != "safety-factor" or check.minimum is not None
+                stated = not isinstance(check, SafetyFactorCheck) or check.minimum is not None
                 if not stated and self.material_of(checked).minimum_safety_factor is None:
                     raise CaseError(
                         f"checks.{name}.minimum: it is missing, and '{self.part_of(checked).material}', the material "
                         f"of link '{checked}', states no minimum_safety_factor; add one of the two"
                     )
+        if self.conditions != Conditions():
+            for checked in self.checked_links:
+                self.material_of(checked)
+        if self.ways_to_hold is not None:
+            _check_point(self, "ways_to_hold", self.ways_to_hold.link, self.ways_to_hold.at)
         for name, hand in self.hand_calculations.items():
             if hand.part not in self.parts:
                 raise CaseError(
@@ -273,8 +316,32 @@ class Case(CaseModel):
         return tuple(name for name in self.linkage.moving if self.links[name].part is not None)
 
     def material_of(self, link: str) -> Material:
-        """The material of a link that has a part."""
-        return self.all_materials[self.part_of(link).material]
+        """The material of a link that has a part, as it is under the case's conditions.
+
+        Raises ``CaseError`` where its card lacks what the conditions ask for.
+        """
+        return under(self.all_materials[self.part_of(link).material], self.conditions)
+
+    @property
+    def all_checks(self) -> dict[str, Check]:
+        """The stated checks, or the safety factor of every link where none is; and, where loads stay, that they may."""
+        checks = dict(self.checks) or {"safety factor": SafetyFactorCheck(type="safety-factor")}
+        if self.conditions.duration is not None and not any(isinstance(c, SustainedCheck) for c in checks.values()):
+            checks["sustained load"] = SustainedCheck(type="sustained")
+        return checks
+
+    def pin_material(self, joint: str) -> Material:
+        """The material of a joint's pin; the case's conditions, which are those of the links, leave it alone."""
+        return self.all_materials[self.joints[joint].pin_material]
+
+    @property
+    def pinned_joints(self) -> tuple[str, ...]:
+        """The revolute joints whose pin sits in a link with a part."""
+        return tuple(
+            name
+            for name, joint in self.joints.items()
+            if joint.type == "revolute" and set(joint.links) & set(self.checked_links)
+        )
 
     def part_of(self, link: str) -> Part:
         """The part of a link; raises ``CaseError`` where it has none."""
@@ -378,6 +445,30 @@ def _check_loads(case: Case, where: str, load_case: LoadCase) -> None:
         raise CaseError(f"{where}.own_weight: no moving link has a part, so nothing has a weight; add a part")
     if load_case.speed != 0.0 and case.pose.coordinate is None:
         raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
+
+
+def _check_pins(case: Case, name: str, check: PinCheck) -> None:
+    for joint in check.joints:
+        if joint not in case.pinned_joints:
+            raise CaseError(
+                f"checks.{name}.joints: '{joint}' is no revolute joint of a link with a part; "
+                f"choose among {', '.join(case.pinned_joints) or 'none'}"
+            )
+    for joint in check.joints or case.pinned_joints:
+        if check.minimum is None and case.pin_material(joint).minimum_safety_factor is None:
+            raise CaseError(
+                f"checks.{name}.minimum: it is missing, and '{case.joints[joint].pin_material}', the material of the "
+                f"pin at joint '{joint}', states no minimum_safety_factor; add one of the two"
+            )
+
+
+def _check_point(case: Case, entry: str, link: str, point: str) -> None:
+    if link not in case.linkage.moving:
+        raise CaseError(f"{entry}.link: '{link}' is not a moving link; choose among {', '.join(case.linkage.moving)}")
+    if point not in case.links[link].points:
+        raise CaseError(
+            f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(case.links[link].points)}"
+        )
 
 
 def _check_carried(case: Case, entry: str, mass: CarriedSpread | CarriedBody) -> None:

@@ -1,0 +1,49 @@
+"""The checks that a case file may ask for."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from geometry.model import CaseModel, Name
+from geometry.units import POSITIVE, Length
+
+
+class SafetyFactorCheck(CaseModel):
+    """The safety factor of each link must be at least the minimum."""
+
+    type: Literal["safety-factor"]
+    minimum: Annotated[float, Field(gt=0)] | None = None
+    """The limit; the material's own when left out."""
+    links: tuple[Name, ...] = ()
+    """The links to check; all that have a part when left out."""
+
+
+class DisplacementCheck(CaseModel):
+    """The largest displacement of each link, relative to the line through its pins, must be small enough."""
+
+    type: Literal["displacement"]
+    maximum: Annotated[Length, POSITIVE]
+    links: tuple[Name, ...] = ()
+
+
+class SustainedCheck(CaseModel):
+    """The stress of each link must stay below what its material bears for as long and as warm as [conditions] say."""
+
+    type: Literal["sustained"]
+    links: tuple[Name, ...] = ()
+
+
+class PinCheck(CaseModel):
+    """The safety factor of each pin, in shear and bending under its joint force, must be at least the minimum."""
+
+    type: Literal["pins"]
+    minimum: Annotated[float, Field(gt=0)] | None = None
+    """The limit; that of the pin's material when left out."""
+    joints: tuple[Name, ...] = ()
+    """The joints to check; all whose pin joins a link with a part when left out."""
+
+
+Check = Annotated[
+    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck,
+    Field(discriminator="type"),
+]
