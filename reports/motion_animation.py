@@ -4,11 +4,14 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from numpy.typing import NDArray
 from PIL import Image
 
 from geometry.motion import Motion
 from reports.motion import moving_points
 from reports.motion_figures import COLOURS, chains, ground, plane, quiet_glyphs
+
+Real = NDArray[np.float64]
 
 FRAMES = 60
 SECONDS = 3.0
@@ -27,19 +30,21 @@ def draw_animation(motion: Motion, path: Path) -> None:
     for i, chain in enumerate(chains(motion.linkage)):
         colour = COLOURS[i % len(COLOURS)]
         [line] = axes.plot([], [], color=colour, linewidth=3.0, marker="o", markersize=5, markerfacecolor="white")
-        drawn.append((line, np.stack([motion.position(link, point) for link, point in chain])))
+        drawn.append((line, [motion.column(link, point) for link, point in chain]))
     title = axes.set_title("", parse_math=False, loc="left", fontsize=10)
     figure.set_dpi(_DPI)
     canvas = FigureCanvasAgg(figure)
+    angles = _angles(motion)
+    points = motion.closure.positions(motion.track.at(angles))
     frames = []
     with quiet_glyphs():
         title.set_text(motion.coordinate)
         canvas.draw()
         figure.set_layout_engine("none")  # laid out once: a layout of its own per frame would shake
-        for index in _indices(motion):
-            for line, points in drawn:
-                line.set_data(points[:, index, 0], points[:, index, 1])
-            title.set_text(f"{motion.coordinate} at {np.degrees(motion.angles[index]):.1f} deg")
+        for angle, here in zip(angles, points, strict=True):
+            for line, columns in drawn:
+                line.set_data(here[columns].real, here[columns].imag)
+            title.set_text(f"{motion.coordinate} at {np.degrees(angle):.1f} deg")
             canvas.draw()
             frames.append(np.array(canvas.buffer_rgba())[..., :3])
     # Colours are chosen for all frames together, or they would flicker.
@@ -56,8 +61,8 @@ def draw_animation(motion: Motion, path: Path) -> None:
     )
 
 
-def _indices(motion: Motion) -> list[int]:
-    """Poses of the frames: evenly spread in time (in the angle where there is none)."""
+def _angles(motion: Motion) -> Real:
+    """Angles of the coordinate at the frames: evenly spread in time (in the angle where there is none)."""
     clock = motion.times if motion.times is not None else np.abs(motion.angles - motion.angles[0])
     last = float(clock[-1])
     if motion.returns:
@@ -65,4 +70,4 @@ def _indices(motion: Motion) -> list[int]:
     else:
         there = np.linspace(0.0, last, FRAMES // 2 + 1)
         wanted = np.concatenate([there, there[-2:0:-1]])
-    return [int(np.argmin(np.abs(clock - t))) for t in wanted]
+    return np.interp(wanted, clock, motion.angles)
