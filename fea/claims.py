@@ -238,13 +238,13 @@ def _number(value: Value, claim: Claim, printed: Printed) -> float:
 
 
 def _shown(value: Value | str | None, claim: Claim, printed: Printed | None) -> str | None:
-    """Return a value in the unit of the published figure, two digits beyond the printed ones."""
+    """Return a value in the unit of the published figure, with some two digits more than that has."""
     if value is None or isinstance(value, str):
         return value
     if printed is None:
         return None
     number = _number(value, claim, printed)
-    size = max(abs(number), abs(printed.number))
+    size = abs(printed.number)
     digits = 6 if size == 0.0 else math.ceil(math.log10(size / printed.half)) + 2
     return f"{number:.{min(max(digits, 4), 15)}g} {printed.unit}".strip()
 

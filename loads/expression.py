@@ -25,7 +25,8 @@ from geometry.units import registry
 from loads.explain import printable
 
 LONGEST = 500
-DEEPEST = 30
+DEEPEST = 60
+"""Levels of brackets and signs, two per bracket."""
 LARGEST_EXPONENT = 16
 Dimensions = tuple[tuple[str, Fraction], ...]
 Path = tuple[str, ...]
@@ -178,7 +179,7 @@ class _Parser:
     def _sum(self) -> Value | str:
         self.depth += 1
         if self.depth > DEEPEST:
-            self._refuse(f"it is nested more than {DEEPEST} deep", "use fewer brackets")
+            self._refuse("it is nested too deeply", "use fewer brackets")
         value = self._product()
         while sign := self._take("+", "-"):
             left, right = self._number(value), self._number(self._product())
@@ -205,7 +206,7 @@ class _Parser:
     def _factor(self) -> Value | str:
         self.depth += 1
         if self.depth > DEEPEST:
-            self._refuse(f"it is nested more than {DEEPEST} deep", "use fewer brackets and signs")
+            self._refuse("it is nested too deeply", "use fewer brackets and signs")
         if sign := self._take("+", "-"):
             signed = self._number(self._factor())
             value: Value | str = (

@@ -1,0 +1,307 @@
+import importlib.resources
+import json
+
+import pytest
+from pydantic import ValidationError
+
+import fea.claim_data
+from fea.claims import Finding, _Names, check_all, check_claim, check_claims
+from geometry.errors import CaseError
+from loads.claim import Claim, read_printed, read_source, sources
+from loads.expression import Value
+from reports.claims import as_json, as_markdown, as_text
+
+TREE = {
+    "pose": {
+        "x": Value.of(12.34, "mm"),
+        "zero": Value.of(0.0, "mm"),
+        "angle": Value.of(30.004, "deg"),
+        "branch": "open",
+    },
+    "beam": {"stress": Value.of(3.64, "MPa")},
+}
+
+
+def claim(published: str, **entries: object) -> Claim:
+    return Claim.model_validate({"name": "a.claim", "published": published, "source": "Someone (2000)", **entries})
+
+
+def judge(published: str, given=None, **entries):
+    stated = claim(published, **entries)
+    return check_claim(stated, _Names(TREE, given or {}, stated.not_stated))
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "unit", "half"),
+    [
+        ("0.9520 N", 0.952, "N", 5e-5),
+        ("-0.0372", -0.0372, "", 5e-5),
+        ("45", 45, "", 0.5),
+        ("5.027e-5 N", 5.027e-5, "N", 5e-9),
+        ("4.14e7 Pa", 4.14e7, "Pa", 5e4),
+        ("24 %", 24, "%", 0.5),
+        ("1450 kg/m^3", 1450, "kg/m^3", 0.5),
+        ("−3.5°", -3.5, "°", 0.05),
+    ],
+)
+def test_printed_digits(text, number, unit, half):
+    printed = read_printed(text)
+    assert printed is not None
+    assert (printed.number, printed.unit) == (number, unit)
+    assert printed.half == pytest.approx(half)
+
+
+def test_words_are_no_number():
+    assert read_printed("open") is None
+    assert read_printed("s + l > p + q") is None
+    with pytest.raises(CaseError, match="'furlong_s' is no unit"):
+        read_printed("3 furlong_s")
+
+
+@pytest.mark.parametrize(
+    ("published", "finding"),
+    [
+        ("12.34 mm", Finding.HOLDS),
+        ("12.3 mm", Finding.HOLDS),
+        ("1.234 cm", Finding.HOLDS),
+        ("12 mm", Finding.HOLDS),
+        ("12.35 mm", Finding.DOES_NOT_HOLD),
+        ("12.4 mm", Finding.DOES_NOT_HOLD),
+        ("13 mm", Finding.DOES_NOT_HOLD),
+        ("12.340 mm", Finding.HOLDS),
+        ("12.341 mm", Finding.DOES_NOT_HOLD),
+    ],
+)
+def test_a_figure_holds_within_its_printed_digits(published, finding):
+    assert judge(published, quantity="pose.x").finding is finding
+
+
+def test_half_a_unit_of_the_last_digit_still_holds():
+    assert judge("0.5", stated="0.55").finding is Finding.HOLDS
+    assert judge("0.5", stated="0.5500001").finding is Finding.DOES_NOT_FOLLOW
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "finding"),
+    [("0.1 mm", Finding.HOLDS), ("0.01 cm", Finding.HOLDS), ("1 %", Finding.HOLDS), ("0.1 %", Finding.DOES_NOT_HOLD)],
+)
+def test_tolerance(tolerance, finding):
+    assert judge("12.40 mm", quantity="pose.x", tolerance=tolerance).finding is finding
+
+
+def test_a_stated_quotient_is_evaluated_with_its_units():
+    found = judge("36.42", stated="41.4 MPa / 11.37 MPa", quantity="")
+    assert found.finding is Finding.DOES_NOT_FOLLOW
+    assert found.ours == "3.64116"
+    assert found.note == "By the source's own figures it is 3.64116: the printed figure is 10 times too large."
+
+
+def test_following_from_the_source_is_not_enough():
+    found = judge("2.00 mm", stated="1 mm + 1 mm", quantity="pose.x")
+    assert found.finding is Finding.DOES_NOT_HOLD
+    assert found.note.endswith("6.17 times too small. The printed figure does follow from the source's own relation.")
+    right = judge("12.34 mm", stated="1 mm + 1 mm", quantity="pose.x")
+    assert right.finding is Finding.DOES_NOT_FOLLOW
+    assert right.note.endswith("The printed figure itself is right.")
+
+
+def test_a_figure_that_is_not_what_its_name_says_is_told_as_both():
+    found = judge("12.34 mm", quantity="pose.x", means="2 * pose.x")
+    assert found.finding is Finding.HOLDS
+    assert found.note == "It follows from the source's own definition; what its name says is 24.68 mm."
+    assert "definition" not in judge("12.34 mm", quantity="pose.x", means="pose.x + 0.006 mm").note
+
+
+@pytest.mark.parametrize(
+    ("published", "how"),
+    [
+        ("-12.34 mm", "so only the sign is wrong"),
+        ("-3.00 mm", "of the other sign"),
+        ("0.00 mm", "where the source prints zero"),
+        ("123.4 mm", "10 times too large"),
+        ("0.1234 mm", "100 times too small"),
+        ("13.00 mm", "5.3 % too large"),
+    ],
+)
+def test_how_far_off(published, how):
+    assert how in judge(published, quantity="pose.x").note
+
+
+def test_angles_are_off_by_degrees():
+    assert judge("29 deg", quantity="pose.angle").note.endswith("the printed figure is 1 deg too small.")
+    assert ", and so zero." in judge("2 mm", quantity="pose.zero").note
+
+
+def test_what_is_not_stated_is_named_and_not_called_wrong():
+    missing = {"S": "the reference area S"}
+    found = judge("0.87", quantity="1 m^2 / not_stated.S", not_stated=missing)
+    assert found.finding is Finding.CANNOT_BE_REDERIVED
+    assert not found.finding.refutes
+    assert found.ours is None
+    assert found.note == "The source does not state the reference area S."
+    # What the source shows of its arithmetic is checked all the same.
+    assert judge("0.87", quantity="not_stated.S", not_stated=missing, stated="0.87").finding is Finding.HOLDS
+    assert judge("0.87", quantity="not_stated.S", not_stated=missing, stated="1").finding is Finding.DOES_NOT_FOLLOW
+
+
+def test_words_are_compared_as_words():
+    assert judge("Open", quantity="pose.branch").finding is Finding.HOLDS
+    found = judge("crossed", quantity="pose.branch")
+    assert (found.finding, found.ours, found.note) == (Finding.DOES_NOT_HOLD, "open", "Re-derived it is open.")
+
+
+def test_given_figures_may_build_on_each_other():
+    figures = {"a": "2 mm", "b": "given.a * 3", "c": "given.c"}
+    assert judge("6 mm", given=figures, stated="given.b").finding is Finding.HOLDS
+    with pytest.raises(CaseError, match=r"given\.c: it refers to itself"):
+        judge("6 mm", given=figures, stated="given.c")
+
+
+@pytest.mark.parametrize(
+    ("published", "entries", "sentence"),
+    [
+        ("1 mm", {"quantity": "pose.y"}, "claims.a.claim: path 'pose.y': pose has no 'y'; choose one of x, zero"),
+        ("1 mm", {"quantity": "pose"}, "it is no quantity; go on with one of x"),
+        ("1 mm", {"quantity": "pose.x.y"}, "it holds nothing further"),
+        ("1 mm", {"quantity": "not_stated.S"}, "'not_stated.S' is unknown"),
+        ("1 N", {"quantity": "pose.x"}, "cannot be given in N"),
+        ("open", {"quantity": "pose.x"}, "not of one kind"),
+        ("1 mm", {"quantity": "pose.branch"}, "not of one kind"),
+        ("1 mm", {"stated": "1 +"}, "claims.a.claim: expression '1 +': it ends too early"),
+    ],
+)
+def test_claims_that_cannot_be_read(published, entries, sentence):
+    with pytest.raises(CaseError) as error:
+        judge(published, **entries)
+    assert sentence in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "entries",
+    [
+        {"published": "1 mm"},
+        {"published": "1 mm", "stated": "1 mm", "tolerance": "1 N"},
+        {"published": "1 mm", "stated": "1 mm", "tolerance": "-1 mm"},
+        {"published": "open", "quantity": "pose.branch", "tolerance": "1 %"},
+    ],
+)
+def test_claims_that_say_too_little_or_too_much(entries):
+    with pytest.raises(CaseError, match=r"^claims\.a\.claim"):
+        claim(**entries)
+
+
+@pytest.mark.parametrize("entries", [{"published": "1 furlong_s"}, {"published": "1", "name": "a b"}])
+def test_names_and_figures_are_validated(entries):
+    with pytest.raises(ValidationError):
+        claim(**{"stated": "1", **entries})
+
+
+# ---- cases and sources
+
+
+CLAIMS = """
+[[claims]]
+name = "mobility"
+quantity = "pose.mobility"
+published = "1"
+source = "Someone (2000)"
+
+[[claims]]
+name = "torque"
+quantity = "abs(statics.weight.drive_torque)"
+published = "0.13 N*m"
+source = "Someone (2000)"
+"""
+SOLID = """
+[[claims]]
+name = "stress"
+quantity = "solid.weight.links.AE.von_mises"
+published = "11.36 MPa"
+source = "Someone (2000)"
+"""
+
+
+@pytest.fixture
+def case_file(tmp_path):
+    folder = importlib.resources.files("loads.cases")
+    for name in ("owl-wing-static.toml", "owl-wing-statics-exact.csv", "owl-wing-statics-printed.csv"):
+        (tmp_path / name).write_text(folder.joinpath(name).read_text(encoding="utf-8"), encoding="utf-8")
+    return tmp_path / "owl-wing-static.toml"
+
+
+def test_claims_of_a_case_file(case_file):
+    case_file.write_text(case_file.read_text(encoding="utf-8") + CLAIMS, encoding="utf-8")
+    assert [result.finding for result in check_claims(str(case_file))] == [Finding.HOLDS, Finding.HOLDS]
+    heavier = check_claims(str(case_file), overrides=['load_cases.weight.forces.0.force=["0 N", "-0.5 N"]'])
+    assert [result.finding for result in heavier] == [Finding.HOLDS, Finding.DOES_NOT_HOLD]
+
+
+def test_only_what_a_claim_asks_for_is_computed(case_file, monkeypatch):
+    asked = []
+    original = fea.claim_data.check_case
+
+    def check(case, *, fidelity, **options):
+        asked.append(fidelity)
+        return original(case, fidelity="beam", **options)
+
+    monkeypatch.setattr(fea.claim_data, "check_case", check)
+    text = case_file.read_text(encoding="utf-8")
+    case_file.write_text(text + CLAIMS, encoding="utf-8")
+    check_claims(str(case_file))
+    assert asked == []
+    case_file.write_text(text + CLAIMS + SOLID, encoding="utf-8")
+    left_out = check_claims(str(case_file), fidelity="beam")[-1]
+    assert asked == []
+    assert left_out.finding is Finding.CANNOT_BE_REDERIVED
+    assert left_out.note == "This run leaves out the solid model, which runs with --fidelity solid."
+    assert check_claims(str(case_file))[-1].finding is Finding.HOLDS
+    assert asked == ["solid"]
+
+
+def test_a_source_and_its_cases():
+    whole, part = check_claims("owl-wing"), check_claims("owl-wing-static")
+    of_the_case = [result.claim.name for result in whole if result.claim.case == "owl-wing-static"]
+    assert [result.claim.name for result in part] == of_the_case
+    assert 100 < len(part) < len(whole)
+
+
+def test_unknown_names_are_refused():
+    with pytest.raises(CaseError, match="no such file or built-in case"):
+        check_claims("nobody")
+    with pytest.raises(CaseError, match="is a source document, not a case"):
+        check_claims("owl-wing", overrides=["pose.angle=1"])
+    with pytest.raises(CaseError, match="fidelity: 'cheap' is unknown"):
+        check_claims("owl-wing", fidelity="cheap")
+    with pytest.raises(CaseError, match="source 'nobody' is unknown"):
+        read_source("nobody")
+
+
+def test_an_override_reaches_the_claims_of_a_built_in_case():
+    named = {
+        result.claim.name: result for result in check_claims("owl-wing-static", overrides=['pose.angle="230 deg"'])
+    }
+    assert named["table8.open.GAB"].finding is Finding.DOES_NOT_HOLD
+
+
+def test_every_source_has_its_claims_under_names_of_their_own():
+    found = check_all()
+    assert tuple(found) == sources()
+    assert set(found) == {"owl-wing", "flapping-wing", "flapping-wing-tables", "ornithopter", "four-bar-synthesis"}
+    for results in found.values():
+        names = [result.claim.name for result in results]
+        assert len(set(names)) == len(names)
+        assert all(result.claim.source and result.note.endswith(".") for result in results)
+
+
+def test_reports_of_findings():
+    results = check_claims("four-bar-synthesis")
+    records = json.loads(as_json(results))
+    assert list(records[0]) == ["name", "quantity", "published", "ours", "finding", "source", "note"]
+    assert {record["finding"] for record in records} == {"holds", "does-not-hold", "does-not-follow"}
+    text = as_text(results)
+    assert "does not hold        grashof.condition: published s + l > p + q, ours s + l <= p + q" in text
+    assert text.splitlines()[-1].startswith(f"{len(results)} claims: ")
+    page = as_markdown({"four-bar-synthesis": results}, {"four-bar-synthesis": "A source"})
+    assert page.count("| does not hold |") == sum(result.finding is Finding.DOES_NOT_HOLD for result in results) + 1
+    assert "s + l &lt;= p + q" in page
+    assert as_text(()) == "0 claims: 0 hold, 0 do not hold, 0 do not follow, 0 cannot be re-derived."

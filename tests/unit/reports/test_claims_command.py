@@ -1,0 +1,77 @@
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from geometry.errors import CaseError
+from reports.cli import app
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(app, ["claims", *arguments])
+
+
+def test_findings_do_not_change_the_exit_status_unless_asked():
+    found = run("four-bar-synthesis")
+    assert found.exit_code == 0
+    assert "do not hold" in found.stdout.splitlines()[-1]
+    assert run("four-bar-synthesis", "--strict").exit_code == 1
+
+
+def test_strict_passes_where_nothing_is_refuted(tmp_path):
+    claims = """
+        [[claims]]
+        name = "mobility"
+        quantity = "pose.mobility"
+        published = "1"
+        source = "Someone (2000)"
+        [[claims]]
+        name = "mass"
+        quantity = "not_stated.mass"
+        not_stated = { mass = "the mass" }
+        published = "1 g"
+        source = "Someone (2000)"
+    """
+    path = tmp_path / "case.toml"
+    from importlib.resources import files
+
+    starter = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
+    path.write_text(starter + claims, encoding="utf-8")
+    found = run(str(path), "--strict")
+    assert found.exit_code == 0, found.output
+    assert found.stdout.splitlines()[-1] == (
+        "2 claims: 1 holds, 0 do not hold, 0 do not follow, 1 cannot be re-derived."
+    )
+
+
+def test_json_is_a_list_of_findings():
+    found = json.loads(run("flapping-wing-tables", "--json").stdout)
+    assert len(found) == 444
+    assert found[0] == {
+        "name": "1.1.ground_d_mm",
+        "quantity": "tables.1.1.ground",
+        "published": "22.36 mm",
+        "ours": "22.3607 mm",
+        "finding": "holds",
+        "source": "Freitas (2022), table 1, row 1",
+        "note": "It follows within its printed digits.",
+    }
+
+
+def test_the_page_in_the_documentation_is_the_one_that_the_command_prints(request):
+    page = (request.config.rootpath / "docs" / "claims.md").read_text(encoding="utf-8")
+    assert run("--markdown").stdout == page, "make it anew: alula claims --markdown > docs/claims.md"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("nobody",), "no such file or built-in case"),
+        (("--set", "a=1"), "no case is named"),
+        (("owl-wing", "--fidelity", "x"), "fidelity: 'x' is unknown"),
+    ],
+)
+def test_mistakes_are_explained(arguments, sentence):
+    found = run(*arguments)
+    assert isinstance(found.exception, CaseError)
+    assert sentence in str(found.exception)

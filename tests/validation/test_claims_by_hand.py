@@ -1,0 +1,273 @@
+"""Findings on published figures, each against a calculation by hand that shares no code with alula."""
+
+import math
+from collections import Counter
+
+import pytest
+
+from fea.claims import Finding, check_all
+
+HOLDS, NOT_HOLD, NOT_FOLLOW = Finding.HOLDS, Finding.DOES_NOT_HOLD, Finding.DOES_NOT_FOLLOW
+MISSING = Finding.CANNOT_BE_REDERIVED
+
+
+@pytest.fixture(scope="module")
+def findings():
+    return {source: {result.claim.name: result for result in results} for source, results in check_all().items()}
+
+
+# ---- by hand: the owl wing ---------------------------------------------------------------------
+
+SECOND_MOMENT = math.pi / 4 * (2.5**4 - 1.25**4)  # mm^4
+
+
+def meet(first, r1, second, r2, left):
+    """The point at two distances from two points, to the left or right of the line between them."""
+    (x1, y1), (x2, y2) = first, second
+    span = math.hypot(x2 - x1, y2 - y1)
+    along = (r1 * r1 - r2 * r2 + span * span) / (2 * span)
+    across = math.sqrt(r1 * r1 - along * along) * (1 if left else -1)
+    ux, uy = (x2 - x1) / span, (y2 - y1) / span
+    return x1 + along * ux - across * uy, y1 + along * uy + across * ux
+
+
+def wing_open():
+    """Joints in mm from two circles at a time: B from A and F, then D from C and E."""
+    f = (50 * math.cos(math.radians(228.15)), 125 + 50 * math.sin(math.radians(228.15)))
+    b = meet((0, 0), 112, f, 60, left=True)
+    e = (b[0] * 190 / 112, b[1] * 190 / 112)
+    c = (f[0] + (b[0] - f[0]) * 150 / 60, f[1] + (b[1] - f[1]) * 150 / 60)
+    d = meet(c, 77, e, 88, left=True)
+    h = (c[0] + (d[0] - c[0]) * 124 / 77, c[1] + (d[1] - c[1]) * 124 / 77)
+    return {"A": (0, 0), "B": b, "C": c, "D": d, "E": e, "F": f, "G": (0, 125), "H": h}
+
+
+def direction(p, q):
+    return math.degrees(math.atan2(q[1] - p[1], q[0] - p[0])) % 360
+
+
+def drive_torque(points):
+    """ED and GF carry forces along themselves: three moment balances give the torque on AE [N mm]."""
+
+    def moment(about, at, force):
+        return (at[0] - about[0]) * force[1] - (at[1] - about[1]) * force[0]
+
+    def unit(p, q):
+        span = math.hypot(q[0] - p[0], q[1] - p[1])
+        return (q[0] - p[0]) / span, (q[1] - p[1]) / span
+
+    weight = (0.0, -0.25)
+    ed = unit(points["E"], points["D"])
+    on_d = -moment(points["C"], points["H"], weight) / moment(points["C"], points["D"], ed)
+    on_c = (-on_d * ed[0], -on_d * ed[1] + 0.25)  # force on CH at C
+    gf = unit(points["G"], points["F"])
+    load = (-on_c[0], -on_c[1])  # on CF at C
+    on_f = -moment(points["B"], points["C"], load) / moment(points["B"], points["F"], gf)
+    # The whole linkage about A: weight at H, the ground's pull at G, the torque.
+    ground = (on_f * gf[0], on_f * gf[1])
+    return -moment(points["A"], points["H"], weight) - moment(points["A"], points["G"], ground), abs(on_d)
+
+
+def test_pose_and_statics_of_the_owl_wing(findings):
+    owl, points = findings["owl-wing"], wing_open()
+    torque, on_d = drive_torque(points)
+    span = math.dist(points["G"], points["H"]) / 10
+    by_hand = {
+        "pose.AB": (direction(points["A"], points["B"]), 143.1, 0.05),
+        "pose.CD-text": (direction(points["C"], points["D"]), 142, 0.5),
+        "pose.FB-hand": (direction(points["F"], points["B"]), 199, 0.5),
+        "pose.GH": (span, 27.2, 0.05),
+        "chace.EC": (math.dist(points["E"], points["C"]) / 10, 8.6, 0.05),
+    }
+    for name, (ours, published, half) in by_hand.items():
+        assert float(owl[name].ours.split()[0]) == pytest.approx(ours, rel=1e-3)
+        assert (owl[name].finding is HOLDS) == (abs(ours - published) <= half)
+    assert float(owl["reaction.T"].ours.split()[0]) == pytest.approx(torque / 1000, rel=1e-4)
+    assert torque == pytest.approx(-130.58, abs=0.01)
+    assert owl["reaction.T"].finding is NOT_HOLD
+    assert float(owl["hand.DE.force"].ours.split()[0]) == pytest.approx(on_d, rel=1e-4)
+    assert owl["hand.DE.force"].finding is NOT_HOLD
+
+
+def test_hand_calculations_of_the_owl_wing(findings):
+    owl = findings["owl-wing"]
+    stress = 37.15 * 2.5 / SECOND_MOMENT
+    assert stress == pytest.approx(3.229, abs=1e-3)  # printed 1.2916 MPa
+    assert owl["hand.DE.stress"].finding is NOT_FOLLOW
+    assert float(owl["hand.DE.stress"].note.split(" it is ")[1].split()[0]) == pytest.approx(stress * 1e6, rel=1e-5)
+    assert pytest.approx(1.2916, abs=5e-5) == 37.15 * 1.0 / SECOND_MOMENT  # with 1 mm for 2.5 mm
+    assert owl["hand.DE.safety-factor"].finding is NOT_HOLD
+    assert pytest.approx(32.05, abs=0.005) == 4.14e7 / 1.2916e6
+    assert pytest.approx(0.03715, abs=5e-6) == 0.088 * 0.4222
+    assert owl["hand.DE.moment"].finding is NOT_HOLD
+    assert float(owl["hand.DE.moment"].ours.split()[0]) == pytest.approx(0.0, abs=1e-9)
+    wing = 33.75 * 2.5 / SECOND_MOMENT
+    assert float(owl["hand.wing.stress"].ours.split()[0]) == pytest.approx(wing * 1e6, rel=1e-5)
+    assert wing == pytest.approx(2.9335, abs=1e-4)  # printed 1.9356 MPa
+    assert owl["hand.wing.safety-factor"].finding is NOT_FOLLOW
+    assert "21.4508" in owl["hand.wing.safety-factor"].note  # 41.4 / 1.93, printed 69.2
+    assert owl["hand.wing.moment"].finding is HOLDS
+
+
+def test_safety_factors_of_the_finite_elements(findings):
+    owl = findings["owl-wing"]
+    for name, stress, printed in (("flight", 11.37, 36.42), ("braking", 23.08, 15.91), ("static", 10.55, 45.0)):
+        result = owl[f"fe.{name}.safety-factor"]
+        assert result.finding is NOT_FOLLOW
+        assert float(result.ours) == pytest.approx(41.4 / stress, rel=1e-3)
+        assert printed > 8 * 41.4 / stress
+    # With ten times the yield strength the first follows within its rounded stress, the second from Table 14 alone.
+    assert pytest.approx(36.41, abs=0.01) == 414 / 11.37
+    assert pytest.approx(15.92, abs=0.01) == 414 / 26
+    assert "10 times too large" in owl["fe.flight.safety-factor"].note
+    assert owl["fe.limit"].finding is NOT_FOLLOW
+    assert "10 times too large" in owl["fe.limit"].note
+    assert owl["fe.static.stress"].finding is MISSING
+
+
+def test_three_published_equations_are_no_equilibrium(findings):
+    rows = {number: findings["owl-wing"][f"equation.{number}"].finding for number in range(1, 16)}
+    assert [number for number, finding in rows.items() if finding is not HOLDS] == [6, 9, 13]
+    coefficients = [result for name, result in findings["owl-wing"].items() if name.startswith("matrix.")]
+    assert len(coefficients) == 16
+    assert all(result.finding is HOLDS for result in coefficients)
+
+
+def test_published_reactions_follow_from_the_published_equations_and_do_not_hold(findings):
+    reactions = [result for name, result in findings["owl-wing"].items() if name.startswith("reaction.")]
+    assert len(reactions) == 15
+    for result in reactions:
+        assert result.finding is NOT_HOLD
+        assert "does follow from the source's own relation" in result.note
+
+
+def test_weight_of_the_owl_wing(findings):
+    owl = findings["owl-wing"]
+    assert owl["weight.wing"].finding is NOT_HOLD
+    assert float(owl["weight.wing"].ours.split()[0]) == pytest.approx(0.2548 * 9.81, rel=1e-3)
+    humerus = math.pi / 4 * 0.005**2 * 0.150 * 1.74 * 9.81
+    assert humerus == pytest.approx(5.027e-5, abs=5e-9)
+    assert owl["weight.humerus"].finding is HOLDS
+    assert "what its name says is 0.05027" in owl["weight.humerus"].note
+    assert owl["weight.prosthesis"].finding is NOT_FOLLOW
+    assert float(owl["weight.prosthesis"].ours.split()[0]) == pytest.approx(0.25 / 9.81, rel=1e-3)
+
+
+def test_aerodynamic_coefficients(findings):
+    owl = findings["owl-wing"]
+    assert float(owl["air.0deg.22.Cd"].ours) == pytest.approx(0.093 * 0.270 / 0.523, rel=1e-4)
+    assert owl["air.0deg.22.Cd"].finding is NOT_FOLLOW
+    assert owl["air.0deg.22.Cl"].finding is MISSING
+    assert "the reference area S" in owl["air.0deg.22.Cl"].note
+    assert owl["air.60deg.7.drag"].finding is NOT_FOLLOW
+    assert float(owl["air.60deg.7.drag"].ours.split()[0]) == pytest.approx(0.9515 * (7 / 22) ** 2, rel=1e-4)
+    pressure = 101325 + 0.5 * 1.225 * 22**2
+    assert float(owl["air.60deg.22.pressure"].ours.split()[0]) == pytest.approx(pressure, abs=0.01)
+    assert owl["air.60deg.22.pressure"].finding is NOT_HOLD
+
+
+# ---- by hand: the other sources ----------------------------------------------------------------
+
+
+def rocker(crank, coupler, arm, x, y, angle):
+    """Angle β of the rocker [degrees] of the right side, from two circles."""
+    pin = (crank * math.cos(angle), crank * math.sin(angle))
+    bx, by = meet(pin, coupler, (x, y), arm, left=True)
+    return math.degrees(math.atan((y - by) / (x - bx)))
+
+
+def test_phase_lag_and_oscillation_of_the_reference_design(findings):
+    design = (3, 20, 9, 10, 20)
+    turn = [rocker(*design, math.radians(i)) for i in range(361)]
+    mirrored = [rocker(*design, math.pi - math.radians(i)) for i in range(361)]
+    cells = findings["flapping-wing-tables"]
+    lag = cells["1.9.phase_lag_deg"]
+    assert abs(sum(mirrored) - sum(turn)) == pytest.approx(1.9474, abs=5e-5)
+    assert lag.finding is HOLDS
+    assert float(lag.ours.split()[0]) == pytest.approx(abs(mirrored[0] - turn[0]), abs=1e-6)
+    assert "what its name says is 10.393" in lag.note
+    assert max(turn) + abs(min(turn)) == pytest.approx(39.085, abs=5e-4)
+    assert cells["1.9.oscillation_deg"].finding is HOLDS
+    assert cells["1.9.oscillation_deg"].note == "It follows within its printed digits."
+
+
+def test_oscillation_of_a_rocker_that_stays_above_the_horizontal(findings):
+    """max β + |min β| counts the least angle twice where it is positive."""
+    turn = [rocker(3, 17, 9, 10, 20, math.radians(i)) for i in range(361)]
+    assert min(turn) > 0
+    result = findings["flapping-wing-tables"]["2.2.oscillation_deg"]
+    assert result.finding is HOLDS
+    assert "what its name says is 46.32" in result.note
+    assert max(turn) - min(turn) == pytest.approx(46.32, abs=0.01)
+
+
+def test_cells_of_the_flapping_wing_tables(findings):
+    cells = findings["flapping-wing-tables"]
+    columns = Counter(name.split(".")[2] for name in cells)
+    assert columns == {
+        "ground_d_mm": 100,
+        "grashof_satisfied": 100,
+        "phase_lag_deg": 94,
+        "oscillation_deg": 94,
+        "asymmetry_deg": 56,
+    }
+    wrong = [name for name, result in cells.items() if result.finding is not HOLDS]
+    assert wrong == [
+        "5.10.ground_d_mm",
+        "5.13.oscillation_deg",
+        "5.16.phase_lag_deg",
+        "5.16.oscillation_deg",
+        "5.16.asymmetry_deg",
+    ]
+    assert math.hypot(13, 20.5) == pytest.approx(24.27, abs=5e-3)  # printed 24.7
+    for name in wrong[2:]:
+        assert "The same figure stands in row 4.16, where it holds." in cells[name].note
+    assert "row 5.20" in cells["5.10.ground_d_mm"].note
+
+
+def test_the_ornithopter(findings):
+    bird = findings["ornithopter"]
+    assert 3 / math.tan(math.radians(23)) == pytest.approx(7.06756, abs=5e-6)
+    assert bird["rule.X"].finding is HOLDS
+    # Wing angle from the pin's height over its middle, differenced twice by hand.
+    offset, omega = 3 / math.tan(math.radians(23)), 150 * 2 * math.pi / 60
+
+    def wing(t):
+        height = 3 * math.cos(omega * t) + math.sqrt(100 - (3 * math.sin(omega * t)) ** 2) - 10
+        return math.degrees(math.atan(height / offset))
+
+    times, step = [i * 0.4 / 2000 for i in range(2000)], 1e-5
+    speed = max((wing(t + step) - wing(t - step)) / (2 * step) for t in times)
+    assert float(bird["motion.angular-speed"].ours.split()[0]) == pytest.approx(speed, rel=1e-4)
+    assert bird["motion.angular-speed"].finding is NOT_HOLD
+    assert bird["film.rpm"].finding is HOLDS
+    assert bird["film.cycle"].finding is NOT_FOLLOW
+    assert bird["motion.angular-momentum"].finding is MISSING
+
+
+def test_the_synthesised_four_bar(findings):
+    bar = findings["four-bar-synthesis"]
+    a, b, c, d = 1.708728038, 10.34391129, 1.997889664, 10.0
+    assert a + b == pytest.approx(12.05263933, abs=1e-8)
+    assert c + d == pytest.approx(11.99788966, abs=1e-8)
+    assert bar["grashof.s+l"].finding is HOLDS
+    assert bar["grashof.satisfied"].finding is NOT_FOLLOW
+    assert bar["grashof.condition"].finding is NOT_HOLD
+    # Link b at the published lock-up: its end and the pivot of c leave the loop open by more than rounding.
+    theta, psi = math.radians(20.715), math.radians(102.878)
+    crank = math.hypot(d + c * math.cos(psi) - b * math.cos(theta), c * math.sin(psi) - b * math.sin(theta))
+    assert abs(crank - a) > 5e-3
+    assert bar["lock.on-the-linkage"].finding is NOT_FOLLOW
+    assert bar["simulation.1"].finding is NOT_FOLLOW
+    assert bar["simulation.2"].finding is HOLDS
+
+
+def test_counts(findings):
+    """How many figures of each source hold, do not hold, do not follow, cannot be re-derived."""
+    counts = {
+        source: tuple(sum(r.finding is kind for r in results.values()) for kind in Finding)
+        for source, results in findings.items()
+    }
+    assert counts["flapping-wing-tables"] == (439, 5, 0, 0)
+    assert counts["four-bar-synthesis"] == (12, 4, 3, 0)
+    assert all(sum(count) == len(findings[source]) for source, count in counts.items())
