@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.body_rules import section_width
-from geometry.element_geometry import flatten, scaled_jacobians, triangle_areas, volumes_and_moments
+from geometry.element_geometry import element_volumes, flatten, scaled_jacobians, triangle_areas
 from geometry.errors import CannotRunError
 from geometry.mesh_settings import MeshSettings
 from geometry.part import Body
@@ -84,7 +84,8 @@ def _checked(
     numbers: NDArray[np.int64],
     notes: tuple[str, ...],
 ) -> TaggedMesh:
-    if (least := scaled_jacobians(points, cells).min()) <= 0.0 or (volumes_and_moments(points, cells)[0] <= 0.0).any():
+    filled = element_volumes(points, cells)
+    if (least := scaled_jacobians(points, cells).min()) <= 0.0 or (filled <= 0.0).any():
         raise CannotRunError(f"the mesh holds an inverted element (scaled Jacobian {least:.3g}); change the size")
     surfaces: dict[str, NDArray[np.int64]] = {}
     areas: dict[str, float] = {}
@@ -102,7 +103,7 @@ def _checked(
         surfaces[name] = np.ascontiguousarray(triangles[:, :3])
         areas[name] = area * solid.unit**2
     volume = gmsh.model.occ.getMass(3, solid.volume)
-    meshed = volumes_and_moments(points, cells)[0].sum()
+    meshed = filled.sum()
     if abs(meshed - volume) > settings.chord_error * volume:
         raise CannotRunError(
             f"the mesh has {meshed * solid.unit**3:.6g} mm³, but the geometry {volume * solid.unit**3:.6g} mm³; "
