@@ -126,6 +126,8 @@ class LoadCase(CaseModel):
     speed: AngularSpeed = 0.0
     """Constant angular speed of the pose's coordinate, counter-clockwise positive; where stated, the
     inertia of the parts and of what they carry acts as well."""
+    carried: bool = True
+    """False: without the masses that the links carry."""
     forces: tuple[PointForce, ...] = ()
     moments: tuple[PointMoment, ...] = ()
     spread: tuple[SpreadForce, ...] = ()

@@ -13,7 +13,7 @@ from geometry.pose import Pose
 from loads.actions import PartMass, needs_masses, stated_loads
 from loads.case import Case, LoadCase
 from loads.kinetostatics import Kinetostatics, is_determinate, solve_kinetostatics, torque_by_virtual_work
-from loads.masses import moving_masses
+from loads.masses import laden_masses, moving_masses
 from loads.statics import Drive
 
 Real = NDArray[np.float64]
@@ -56,7 +56,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
     speed, acceleration = drive_speeds(case, angles)
     motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate)
     masses = moving_masses(case) if spec.inertia or needs_masses(case) else {}
-    if spec.inertia and not masses:
+    if spec.inertia and not (masses or case.carried):
         raise CaseError(
             "motion.inertia: no moving link has a mass; give a link a part, or state a mass under [motion.masses]"
         )
@@ -66,9 +66,11 @@ def solve_case_motion(case: Case) -> CaseMotion:
                 f"load_cases.{name}.speed: it is the speed of the pose's coordinate '{case.pose.coordinate}', but the "
                 f"motion prescribes '{coordinate}'; use one link for both, or leave this speed out"
             )
-    loads = {name: stated_loads(case, load_case, masses) for name, load_case in case.load_cases.items()}
+    laden = laden_masses(case, masses) if masses or case.carried else {}
+    held = {name: laden if load_case.carried else masses for name, load_case in case.load_cases.items()}
+    loads = {name: stated_loads(case, load_case, held[name]) for name, load_case in case.load_cases.items()}
     moved = {name: _at_speed_of(motion, load_case) for name, load_case in case.load_cases.items()}
-    inert = {name: masses if with_inertia(case, name) else {} for name in loads}
+    inert = {name: held[name] if with_inertia(case, name) else {} for name in loads}
     forces: dict[str, Kinetostatics] = {}
     if is_determinate(case.linkage):
         forces = {n: solve_kinetostatics(moved[n], drive, acting, inert[n]) for n, acting in loads.items()}

@@ -68,7 +68,7 @@ def acting_loads(case: Case, load_case: LoadCase, pose: Pose, masses: Mapping[st
     masses  of the parts alone; what links carry comes from the case
     """
     loads = list(actions(case, load_case, pose, masses))
-    if load_case.own_weight or load_case.speed != 0.0:
+    if load_case.carried and (load_case.own_weight or load_case.speed != 0.0):
         pull = gravity(load_case) if load_case.own_weight else np.zeros(3)
         loads += carried_loads(pose, case.carried, pull, load_case.speed)
     if load_case.speed != 0.0:

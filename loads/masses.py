@@ -1,5 +1,7 @@
 """What each link weighs: from its part's volume and density, or as stated."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from geometry.mesh import mass_properties
@@ -23,7 +25,7 @@ def part_mass(case: Case, link: str) -> PartMass:
 
 
 def moving_masses(case: Case) -> dict[str, PartMass]:
-    """Return the masses of a motion: stated, else of the part, and what links carry; massless links are left out."""
+    """Return the masses of a motion: stated, else of the part; massless links are left out."""
     stated = case.motion.masses if case.motion is not None else {}
     found = {}
     for link in case.linkage.moving:
@@ -34,6 +36,13 @@ def moving_masses(case: Case) -> dict[str, PartMass]:
             )
         elif link in case.checked_links:
             found[link] = part_mass(case, link)
+    return found
+
+
+def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMass]:
+    """Return the masses together with what the case's links carry."""
+    found = dict(masses)
+    for link in case.linkage.moving:
         carried = tuple(mass for mass in case.carried if mass.link == link)
         if carried:
             found[link] = with_carried(found.get(link), carried, case.links[link].points)
