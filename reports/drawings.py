@@ -135,6 +135,8 @@ class _Sheet:
         for link, record in self.linkage.links.items():
             places = [self.points[link, point] for point in record.points]
             for a, b in itertools.pairwise(places):
+                if np.linalg.norm(b - a) <= 1e-9 * self.size:
+                    continue
                 if link == self.linkage.ground:
                     axes.plot(*np.array([a, b]).T, color=GROUND, linewidth=0.8, linestyle=(0, (6, 4)), zorder=1)
                 else:
@@ -144,28 +146,29 @@ class _Sheet:
                 obstacles += [along(a + side * thickness * normal, b + side * thickness * normal) for side in sides]
         for name, joint in self.linkage.joints.items():
             at = self._joint(name)
-            if self.linkage.ground in joint.links:
+            if joint.type != "revolute":
+                obstacles.append(self._guide(axes, name, at))
+            elif self.linkage.ground in joint.links:
                 obstacles.append(self._support(axes, name, at))
             axes.plot(*at, marker="o", markersize=5.5, markerfacecolor="white", markeredgecolor=INK, zorder=6)
             obstacles.append(at[None])
-        labels: list[tuple[tuple[float, float], str, str]] = []
+        labels: list[tuple[Real, str, str]] = []
         arrows = [(*entry, JOINT_FORCE) for entry in self._joint_forces()]
         arrows += [(*entry, LOAD) for entry in self._loads()]
         for text, at, force, colour in arrows:
             tip = at + force * self.per_newton
             self._arrow(axes, at, tip, colour)
             obstacles.append(along(at, tip))
-            labels.append(((float(tip[0]), float(tip[1])), text, colour))
+            labels.append((tip[None], text, colour))
         torque = self._torque(axes)
         if torque is not None:
             labels.append(torque[0])
             obstacles.append(torque[1])
-        names = [((float(at[0]), float(at[1])), name, INK) for name, at in self.pose.points.items()]
+        names = [(at[None], name, INK) for name, at in self.pose.points.items()]
         for link in self.linkage.moving:
             places = [self.points[link, point] for point in self.linkage.links[link].points]
             a, b = max(itertools.pairwise(places), key=lambda ab: float(np.linalg.norm(ab[1] - ab[0])))
-            middle = (a + b) / 2.0
-            names.append(((float(middle[0]), float(middle[1])), f"link {link}", GROUND))
+            names.append((np.array([0.5 * a + 0.5 * b, 0.7 * a + 0.3 * b, 0.3 * a + 0.7 * b]), f"link {link}", GROUND))
         place_labels(axes, [*names, *labels], np.vstack(obstacles), fontsize=8.5)
 
     @staticmethod
@@ -211,6 +214,18 @@ class _Sheet:
             axes.plot(*np.array([start, start + (side * 0.6 - across * 0.4) * half]).T, color=GROUND, linewidth=0.7)
         return np.vstack([along(at, base + side * half), along(base - across * 1.6 * half, base + across * 1.6 * half)])
 
+    def _guide(self, axes: Any, name: str, at: Real) -> Real:
+        """Draw the two sides of the slot or guide that a pin or slider runs in; returns their points."""
+        joint = self.linkage.joints[name]
+        along_angle = self.pose.angles[joint.links[0]] + joint.direction
+        way = np.array([math.cos(along_angle), math.sin(along_angle)])
+        side = 0.016 * self.size * np.array([-way[1], way[0]])
+        reach = 0.09 * self.size * way
+        edges = [along(at - reach + s, at + reach + s) for s in (-side, side)]
+        for edge in edges:
+            axes.plot(*edge.T, color=GROUND, linewidth=1.1, zorder=5)
+        return np.vstack(edges)
+
     @staticmethod
     def _arrow(axes: Any, start: Real, end: Real, colour: str) -> None:
         axes.annotate(
@@ -222,7 +237,7 @@ class _Sheet:
             zorder=7,
         )  # fmt: skip
 
-    def _torque(self, axes: Any) -> tuple[tuple[tuple[float, float], str, str], Real] | None:
+    def _torque(self, axes: Any) -> tuple[tuple[Real, str, str], Real] | None:
         """Draw the drive torque as an arc about its joint, clear of the driven link; its label and points."""
         drive, torque = self.reactions.drive, self.reactions.drive_torque
         if drive is None or torque == 0.0:
@@ -234,7 +249,7 @@ class _Sheet:
         axes.plot(*arc[:-3].T, color=TORQUE, linewidth=1.5, zorder=7)
         self._arrow(axes, arc[-5], arc[-1], TORQUE)
         text = f"{number(abs(torque))} N·mm\n{turning(torque)} on {drive.link}"
-        return ((float(arc[0][0]), float(arc[0][1])), text, TORQUE), arc
+        return (arc[::6], text, TORQUE), arc
 
     def legend(self) -> list[Any]:
         """Proxies for the legend, with the scale of the arrows."""

@@ -85,6 +85,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         ],
         dead_points=_dead_points(result),
         turning=turning,
+        guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
         links=[_link(result, link, figures) for link in first.links],
         agreement=AGREEMENT,
         materials=_materials(result),

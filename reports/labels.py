@@ -11,16 +11,18 @@ from numpy.typing import NDArray
 _DIRECTIONS = 24
 _REACHES = (0.6, 1.2, 2.0, 3.0, 4.2)
 """Distances that are tried, in heights of the label's text."""
+_LEADER = 2.5
+"""Distance beyond which a label gets a line to its anchor."""
 
 
 def place_labels(
     axes: Any,
-    labels: Sequence[tuple[tuple[float, float], str, str]],
+    labels: Sequence[tuple[NDArray[np.float64], str, str]],
     obstacles: NDArray[np.float64],
     *,
     fontsize: float,
 ) -> None:
-    """Write labels (anchor, text, colour) beside their anchors, each where least is in its way.
+    """Write labels (anchors, text, colour) beside one of their anchors (k, 2), each where least is in its way.
 
     axes        a matplotlib Axes whose limits and size no longer change
     obstacles   (n, 2) points of what is drawn, in data coordinates
@@ -34,15 +36,14 @@ def place_labels(
     inside = axes.get_window_extent(renderer)
     drawn = axes.transData.transform(obstacles)
     taken: list[tuple[float, float, float, float]] = []
-    for anchor, content, colour in labels:
-        text = axes.text(*anchor, content, fontsize=fontsize, color=colour, ha="center", va="center", zorder=10)
+    for anchors, content, colour in labels:
+        text = axes.text(*anchors[0], content, fontsize=fontsize, color=colour, ha="center", va="center", zorder=10)
         text.set_path_effects([withStroke(linewidth=2.0, foreground="white")])
         box = text.get_window_extent(renderer)
         half = np.array([box.width, box.height]) / 2.0 + 2.0
         line = fontsize * figure.dpi / 72.0
-        at = axes.transData.transform(anchor)
-        best: tuple[float, NDArray[np.float64], float] | None = None
-        for reach, k in itertools.product(_REACHES, range(_DIRECTIONS)):
+        best: tuple[float, NDArray[np.float64], float, NDArray[np.float64]] | None = None
+        for at, reach, k in itertools.product(axes.transData.transform(anchors), _REACHES, range(_DIRECTIONS)):
             angle = 2.0 * math.pi * k / _DIRECTIONS
             way = np.array([math.cos(angle), math.sin(angle)])
             centre = at + way * (reach * line + float(np.abs(way) @ half))
@@ -55,16 +56,15 @@ def place_labels(
             outside = float(np.maximum(0.0, [*(inside.min - low), *(high - inside.max)]).sum())
             cost = reach + 1.5 * covered + clash + 10.0 * outside
             if best is None or cost < best[0]:
-                best = (cost, centre, reach)
+                best = (cost, centre, reach, at)
         assert best is not None
-        centre = best[1]
-        text.set_position(axes.transData.inverted().transform(centre))
+        _, centre, reach, at = best
         taken.append((*(centre - half), *(centre + half)))
-        if best[2] > 2.5:
-            edge = axes.transData.inverted().transform(
-                centre + (at - centre) * min(1.0, half[1] / abs(at - centre).max())
-            )
-            axes.plot([anchor[0], edge[0]], [anchor[1], edge[1]], color=colour, linewidth=0.5, alpha=0.6, zorder=4)
+        back = axes.transData.inverted()
+        text.set_position(back.transform(centre))
+        if reach > _LEADER:
+            ends = back.transform([at, centre + (at - centre) * min(1.0, half[1] / abs(at - centre).max())])
+            axes.plot(*ends.T, color=colour, linewidth=0.5, alpha=0.6, zorder=4)
 
 
 def along(start: NDArray[np.float64], end: NDArray[np.float64], count: int = 60) -> NDArray[np.float64]:

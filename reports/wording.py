@@ -90,14 +90,15 @@ def headline(result: CheckResult) -> str:
     total = "the one check" if len(checks) == 1 else f"all {len(checks)} checks"
     if result.verdict is Verdict.PASS:
         kept = "is" if len(checks) == 1 else "are"
-        return f"Pass: {total} {kept} met over the whole of every error band. {_nearest(worst, 'Nearest to its limit')}"
+        nearest = _nearest(result, worst, "Nearest to its limit")
+        return f"Pass: {total} {kept} met over the whole of every error band. {nearest}"
     broken = [c for c in checks if c.verdict is result.verdict]
     names = joined(list(dict.fromkeys(f"{c.quantity} of {c.link}" for c in broken)))
     if result.verdict is Verdict.FAIL:
         missed = (
             "is missed over its whole error band" if len(broken) == 1 else "are missed over their whole error bands"
         )
-        return f"Fail: {len(broken)} of {len(checks)} checks {missed}: {names}. {_nearest(worst, 'Worst')}"
+        return f"Fail: {len(broken)} of {len(checks)} checks {missed}: {names}. {_nearest(result, worst, 'Worst')}"
     verb = "is" if len(broken) == 1 else "are"
     return (
         f"Undecided: {len(broken)} of {len(checks)} checks {verb} left open: {names}. "
@@ -105,10 +106,11 @@ def headline(result: CheckResult) -> str:
     )
 
 
-def _nearest(check: CheckOutcome, lead: str) -> str:
+def _nearest(result: CheckResult, check: CheckOutcome, lead: str) -> str:
     unit = f" {check.unit}" if check.unit else ""
     asked = "at least" if check.quantity == "safety factor" else "at most"
+    under = f" under load case {check.load_case}" if len(result.load_cases) > 1 else ""
     return (
-        f"{lead}: the {check.quantity} of link {check.link} is {band(check.value)}{unit}, "
+        f"{lead}: the {check.quantity} of link {check.link}{under} is {band(check.value)}{unit}, "
         f"where {asked} {plain(check.limit)}{unit} is asked for."
     )

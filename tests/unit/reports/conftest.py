@@ -1,5 +1,6 @@
 """A checked case that needs no mesher: the owl wing, one of its links as a solid bar, the others as beams."""
 
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from fea.stress import stress_field
 from fea.verdict import CheckOutcome, at_least, at_most, overall
 from loads.actions import actions
 from loads.case import LoadCase
-from loads.case_file import read_case, read_companion
+from loads.case_file import read_case, read_companion, validate
 from loads.published import audit
 from loads.statics import solve_statics
 
@@ -172,6 +173,39 @@ def result():
         timings={"pose and statics": 0.01, "solid models": 1.5},
         warnings=("the pose is close to a dead point",),
     )
+
+
+SLIDER = """
+schema_version = 1
+title = "Slider-crank under a piston force"
+[links]
+frame = { ground = true, points = { O = ["0 mm", "0 mm"], S = ["0 mm", "0 mm"] } }
+crank = { points = { O = ["0 mm", "0 mm"], P = ["30 mm", "0 mm"] } }
+rod = { points = { P = ["0 mm", "0 mm"], Q = ["80 mm", "0 mm"] } }
+piston = { points = { Q = ["0 mm", "0 mm"], S = ["10 mm", "0 mm"] } }
+[joints]
+O = { links = ["frame", "crank"] }
+P = { links = ["crank", "rod"] }
+Q = { links = ["rod", "piston"] }
+S = { links = ["frame", "piston"], type = "slider" }
+[pose]
+coordinate = "crank"
+angle = "60 deg"
+near = { rod = "-20 deg", piston = "0 deg" }
+[drive]
+link = "crank"
+joint = "O"
+[load_cases.push]
+forces = [{ link = "piston", at = "Q", force = ["-20 N", "5 N"] }]
+"""
+
+
+@pytest.fixture
+def slider():
+    """A slider-crank, its pose and its reactions."""
+    case = validate(tomllib.loads(SLIDER))
+    pose = case.solve_pose()
+    return case, pose, solve_statics(pose, case.pinned_drive, actions(case, case.load_cases["push"], pose, {}))
 
 
 @pytest.fixture

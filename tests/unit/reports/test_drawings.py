@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from fea.beam import BeamLoads, PointLoad, check_beam
+from fea.result import LoadCaseResult
 from reports import diagrams, drawings
 from reports.labels import along, place_labels
 
@@ -103,7 +104,7 @@ def test_labels_of_one_anchor_stand_apart_and_off_the_lines():
     axes.set_xlim(0.0, 100.0)
     axes.set_ylim(0.0, 80.0)
     line = along(np.array([0.0, 40.0]), np.array([100.0, 40.0]), 400)
-    place_labels(axes, [((50.0, 40.0), f"label {i}", "black") for i in range(6)], line, fontsize=10.0)
+    place_labels(axes, [(np.array([[50.0, 40.0]]), f"label {i}", "black") for i in range(6)], line, fontsize=10.0)
     assert_legible(figure)
     drawn = axes.transData.transform(line)
     for _, box in boxes(figure):
@@ -114,7 +115,7 @@ def test_a_label_at_the_edge_stays_on_the_sheet():
     figure = Figure(figsize=(3.0, 3.0), dpi=100)
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    place_labels(axes, [((1.0, 1.0), "a rather long label", "black")], np.zeros((0, 2)), fontsize=10.0)
+    place_labels(axes, [(np.array([[1.0, 1.0]]), "a rather long label", "black")], np.zeros((0, 2)), fontsize=10.0)
     assert_legible(figure)
 
 
@@ -155,3 +156,30 @@ def test_the_worst_load_case_is_drawn(result):
     assert governing_load_cases(result) == ("weight",)
     turned = {name: result.load_cases[name] for name in ("idle", "weight")}
     assert governing_load_cases(replace(result, load_cases=turned)) == ("idle", "weight")
+
+
+def test_a_label_takes_the_anchor_that_has_room():
+    figure = Figure(figsize=(4.0, 2.0), dpi=100)
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    crowd = np.stack(np.meshgrid(np.linspace(0.0, 0.6, 100), np.linspace(0.0, 1.0, 100)), axis=-1).reshape(-1, 2)
+    place_labels(axes, [(np.array([[0.2, 0.5], [0.7, 0.5]]), "here", "black")], crowd, fontsize=10.0)
+    [(_, box)] = boxes(figure)
+    assert box.x0 > 0.6 * figure.bbox.width
+
+
+def test_a_slider_runs_in_its_guide(result, slider, sheets):
+    case, pose, reactions = slider
+    loaded = LoadCaseResult(name="push", reactions=reactions, links={}, checks=())
+    drawings.linkage_drawing(replace(result, case=case, pose=pose, load_cases={"push": loaded}), "push")
+    [figure] = sheets
+    texts = {text for text, _ in boxes(figure)}
+    assert {"piston.S", "frame.S", "20.6 N\non piston", "622.6 N·mm\nclockwise on crank"} <= texts
+    assert_legible(figure)
+    x, y = pose.position("piston", "S")
+    sides = [
+        line.get_ydata()[0]
+        for line in figure.axes[0].lines
+        if len(line.get_xdata()) > 50 and np.allclose(line.get_ydata(), line.get_ydata()[0]) and line.get_xdata()[0] < x
+    ]
+    assert min(sides) < y < max(sides)

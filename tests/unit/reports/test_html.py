@@ -82,7 +82,7 @@ def test_it_stands_without_pictures(result):
     "words",
     [
         "Pass: all 20 checks are met",
-        "safety factor of link AE is 3.65",
+        "safety factor of link AE under load case weight is 3.65",
         "AG pushes AE 0.5011 0.8095 0.9520",
         "Drive torque on AE about A: −130.6 N·mm (clockwise",
         "condition number",

@@ -58,7 +58,7 @@ def test_the_headline_of_a_pass_names_the_check_nearest_to_its_limit(result):
     beams = result.load_cases["weight"].links["AE"]
     assert wording.headline(result) == (
         "Pass: all 20 checks are met over the whole of every error band. Nearest to its limit: the safety factor of "
-        f"link AE is {beams.safety_factor.value:.2f}, where at least 3 is asked for."
+        f"link AE under load case weight is {beams.safety_factor.value:.2f}, where at least 3 is asked for."
     )
 
 
@@ -69,7 +69,9 @@ def test_the_headline_of_a_fail_names_what_is_missed(result, changed):
 
     text = wording.headline(changed(change))
     assert text.startswith("Fail: 1 of 20 checks is missed over its whole error band: displacement of CH.")
-    assert "Worst: the displacement of link CH is 2.50 mm, where at most 2 mm is asked for" in text
+    assert (
+        "Worst: the displacement of link CH under load case weight is 2.50 mm, where at most 2 mm is asked for" in text
+    )
 
 
 def test_the_headline_of_an_open_answer_gives_the_reason(result, changed):
