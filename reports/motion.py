@@ -90,7 +90,7 @@ def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
     found["joints"] = {
         joint: _extremes(result, np.linalg.norm(force, axis=1)) for joint, force in solved.forces.items()
     }
-    if result.motion.times is not None:
+    if np.any(solved.motion.speed):
         found["drive_power"] = _extremes(result, solved.drive_power / 1000.0)
         scale = max(float(np.nanmax(np.abs(solved.drive_power), initial=0.0)), math.ulp(0.0))
         found["energy_imbalance"] = float(np.nanmax(np.abs(solved.imbalance), initial=0.0)) / scale
@@ -153,17 +153,20 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
 
 
 def _line(row: Mapping[str, Any], unit: str) -> str:
-    ends = f"{_text(row['first'])} -> {_text(row['last'])} {unit}"
+    keys = ("first", "last", "smallest", "largest")
+    scale = max((abs(row[key]) for key in keys if row[key] is not None), default=0.0)
+    first, last, smallest, largest = (_text(row[key], scale) for key in keys)
+    ends = f"{first} -> {last} {unit}"
     if row["unbounded"]:
         return ends
-    return (
-        f"{ends}, least {_text(row['smallest'])} at {row['smallest_at']:.1f} deg, "
-        f"most {_text(row['largest'])} at {row['largest_at']:.1f} deg"
-    )
+    return f"{ends}, least {smallest} at {row['smallest_at']:.1f} deg, most {largest} at {row['largest_at']:.1f} deg"
 
 
-def _text(value: float | None) -> str:
-    return "unbounded" if value is None else f"{value:.4g}"
+def _text(value: float | None, scale: float) -> str:
+    """Four digits; what is rounding beside ``scale`` is zero."""
+    if value is None:
+        return "unbounded"
+    return f"{value:.4g}" if abs(value) > 1e-12 * scale else "0"
 
 
 def moving_points(motion: Motion) -> dict[str, Real]:
@@ -221,7 +224,7 @@ def _point_columns(motion: Motion) -> dict[str, Real]:
 
 def _torque_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
     columns = {f"torque on {result.drive.link} [N mm]": result.torque[load_case]}
-    if result.forces and result.motion.times is not None:
+    if any(np.any(solved.motion.speed) for solved in result.forces.values()):
         solved = result.forces[load_case]
         columns["drive power [N mm/s]"] = solved.drive_power
         columns["kinetic energy [N mm]"] = solved.power.kinetic

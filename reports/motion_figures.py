@@ -151,12 +151,20 @@ def chains(linkage: Linkage) -> list[list[tuple[str, str]]]:
 
 
 def ground(axes: Any, motion: Motion) -> None:
-    """Mark and name the points of the ground that carry joints."""
+    """Mark and name the joints of the ground: pivots as triangles, its slots as bars of the length of the travel."""
     base = motion.linkage.ground
-    for joint in motion.linkage.joints_of(base):
-        x, y = motion.linkage.links[base].points[motion.linkage.point_of(joint, base)]
-        axes.plot(x, y, marker="^", markersize=10, color="0.35", zorder=1)
-        axes.annotate(joint, (x, y), xytext=(7, -11), textcoords="offset points", fontsize=9, parse_math=False)
+    for name in motion.linkage.joints_of(base):
+        joint = motion.linkage.joints[name]
+        x, y = motion.linkage.links[base].points[motion.linkage.point_of(name, base)]
+        if joint.type != "revolute" and joint.links[0] == base:
+            travel = motion.travel(name)
+            reach = np.array([travel.min(), travel.max()])
+            bar = complex(x, y) + np.exp(1j * joint.direction) * reach
+            axes.plot(bar.real, bar.imag, color="0.82", linewidth=8.0, solid_capstyle="round", zorder=0.5)
+            x, y = bar[0].real, bar[0].imag
+        else:
+            axes.plot(x, y, marker="^", markersize=10, color="0.35", zorder=1)
+        axes.annotate(name, (x, y), xytext=(7, -13), textcoords="offset points", fontsize=10, parse_math=False)
 
 
 def _over_angle(motion: Motion, label: str) -> tuple[Figure, Any]:

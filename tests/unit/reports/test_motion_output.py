@@ -12,7 +12,7 @@ from PIL import Image
 from geometry.errors import CaseError
 from loads.case_file import read_case
 from loads.case_motion import solve_case_motion
-from reports.motion import print_motion, record, write_motion
+from reports.motion import print_motion, record, write_motion, write_tables
 from reports.output import write_folder
 
 CASE = """
@@ -181,6 +181,25 @@ def test_a_dead_point_of_the_drive_is_told(wing, capsys):
     assert found["load_cases"]["weight"]["drive_torque"]["largest"] is None
     assert found["drive"]["dead_points"] == pytest.approx([213.50682849])
     json.dumps(found, allow_nan=False)
+
+
+def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
+    """Beside a standing motion: power and energies are there for every load case, in one table."""
+    overrides = ["motion.inertia=false", 'motion.speed="0 rpm"', 'load_cases.idle.speed="600 rpm"', "motion.poses=25"]
+    result = solve_case_motion(read_case(str(folder.parent / "crank.toml"), overrides))
+    print_motion(result, "crank", json=False)
+    standing, moving = capsys.readouterr().out.split("Load case idle")
+    assert "Load case push (without inertia)" in standing
+    assert "drive power" not in standing
+    assert "with inertia at 600 rpm" in moving
+    assert "drive power" in moving
+    again = solve_case_motion(read_case(str(folder.parent / "crank.toml"), ["motion.poses=25"]))
+    np.testing.assert_allclose(result.torque["idle"], again.torque["idle"], atol=1e-9)
+    write_tables(result, folder.parent)
+    torque = columns(folder.parent / "torque.csv")
+    power = np.array(torque["drive power [N mm/s]"], dtype=float)
+    assert np.all(power[:25] == 0.0)
+    assert np.max(power[25:]) > 0.0
 
 
 def test_a_range_is_shown_there_and_back(wing, tmp_path):
