@@ -28,6 +28,8 @@ from loads.expression import ANGLE, Path, Value, evaluate
 
 FIDELITIES = ("solid", "beam")
 SOLID_LEFT_OUT = "the solid model, which runs with --fidelity solid"
+ZERO = 1e-9
+"""Share of the printed figure below which ours is rounding error."""
 SAMPLING = 1e-3
 """Share of a figure below which what its name says is taken for the figure itself."""
 _CELLS = {
@@ -187,12 +189,13 @@ def check_claim(claim: Claim, names: Callable[[Path], Value | str]) -> ClaimResu
     shown = _shown(ours if ours is not None else stated, claim, printed)
     if stated is not None and not _agrees(stated, claim, printed, allowed):
         finding = Finding.DOES_NOT_FOLLOW
-        note = f"By the source's own figures it is {_shown(stated, claim, printed)}{_off(stated, printed)}."
+        subject = "it" if printed else "the answer"
+        note = f"By the source's own figures {subject} is {_shown(stated, claim, printed)}{_off(stated, printed)}."
         if ours is not None and _agrees(ours, claim, printed, allowed):
             note += " The printed figure itself is right."
     elif ours is not None and not _agrees(ours, claim, printed, allowed):
         finding = Finding.DOES_NOT_HOLD
-        note = f"Re-derived it is {shown}{_off(ours, printed)}."
+        note = f"Re-derived, {'it' if printed else 'the answer'} is {shown}{_off(ours, printed)}."
         if stated is not None:
             note += " The printed figure does follow from the source's own relation."
     elif ours is None and stated is None:
@@ -245,6 +248,8 @@ def _shown(value: Value | str | None, claim: Claim, printed: Printed | None) -> 
         return None
     number = _number(value, claim, printed)
     size = abs(printed.number)
+    if abs(number) < ZERO * size:
+        number = 0.0
     digits = 6 if size == 0.0 else math.ceil(math.log10(size / printed.half)) + 2
     return f"{number:.{min(max(digits, 4), 15)}g} {printed.unit}".strip()
 
@@ -254,8 +259,8 @@ def _off(value: Value | str, printed: Printed | None) -> str:
     if printed is None or isinstance(value, str):
         return ""
     ours = value.to(printed.unit)
-    if printed.number == 0.0 or abs(ours) < 1e-9 * abs(printed.number):
-        return ", where the source prints zero" if printed.number == 0.0 else ", and so zero"
+    if printed.number == 0.0 or abs(ours) < ZERO * abs(printed.number):
+        return ", where the source prints zero" if printed.number == 0.0 else ""
     if value.dimensions == ANGLE:
         apart = printed.number - ours
         return f": the printed figure is {abs(apart):.2g} {printed.unit} too {'large' if apart > 0.0 else 'small'}"

@@ -128,6 +128,22 @@ def test_safety_factors_of_the_finite_elements(findings):
 def test_three_published_equations_are_no_equilibrium(findings):
     rows = {number: findings["owl-wing"][f"equation.{number}"].finding for number in range(1, 16)}
     assert [number for number, finding in rows.items() if finding is not HOLDS] == [6, 9, 13]
+    # Row 6 as moments about F, and what it prints for RBx and RCy instead.
+    sine, cosine = math.sin(math.radians(20.13)), math.cos(math.radians(20.13))
+    about_f = [round(x, 4) for x in (-0.06 * sine, 0.06 * cosine, -0.15 * sine, 0.15 * cosine)]
+    printed = [
+        float(findings["owl-wing"][f"matrix.6.{column}"].claim.published) for column in ("RBx", "RBy", "RCx", "RCy")
+    ]
+    assert [a == b for a, b in zip(about_f, printed, strict=True)] == [False, True, True, False]
+    assert printed == [-about_f[0], about_f[1], about_f[2], round(0.15 * sine, 4)]
+    # Row 9 as moments about E: right with AE at 164°, which it has not.
+    sine, cosine = math.sin(math.radians(16)), math.cos(math.radians(16))
+    printed = [
+        float(findings["owl-wing"][f"matrix.9.{column}"].claim.published) for column in ("RAx", "RAy", "RBx", "RBy")
+    ]
+    assert printed == [round(x, 4) for x in (0.19 * sine, 0.19 * cosine, 0.078 * sine, 0.078 * cosine)]
+    points = wing_open()
+    assert 180 - direction(points["A"], points["E"]) == pytest.approx(36.8, abs=0.05)
     coefficients = [result for name, result in findings["owl-wing"].items() if name.startswith("matrix.")]
     assert len(coefficients) == 16
     assert all(result.finding is HOLDS for result in coefficients)

@@ -129,7 +129,7 @@ def test_how_far_off(published, how):
 
 def test_angles_are_off_by_degrees():
     assert judge("29 deg", quantity="pose.angle").note.endswith("the printed figure is 1 deg too small.")
-    assert ", and so zero." in judge("2 mm", quantity="pose.zero").note
+    assert judge("2 mm", quantity="pose.zero").note == "Re-derived, it is 0 mm."
 
 
 def test_what_is_not_stated_is_named_and_not_called_wrong():
@@ -147,7 +147,7 @@ def test_what_is_not_stated_is_named_and_not_called_wrong():
 def test_words_are_compared_as_words():
     assert judge("Open", quantity="pose.branch").finding is Finding.HOLDS
     found = judge("crossed", quantity="pose.branch")
-    assert (found.finding, found.ours, found.note) == (Finding.DOES_NOT_HOLD, "open", "Re-derived it is open.")
+    assert (found.finding, found.ours, found.note) == (Finding.DOES_NOT_HOLD, "open", "Re-derived, the answer is open.")
 
 
 def test_given_figures_may_build_on_each_other():
