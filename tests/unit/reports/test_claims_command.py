@@ -1,9 +1,11 @@
 import json
+from importlib.resources import files
 
 import pytest
 from typer.testing import CliRunner
 
 from geometry.errors import CaseError
+from loads.expression import _FUNCTIONS
 from reports.cli import app
 
 
@@ -33,8 +35,6 @@ def test_strict_passes_where_nothing_is_refuted(tmp_path):
         source = "Someone (2000)"
     """
     path = tmp_path / "case.toml"
-    from importlib.resources import files
-
     starter = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
     path.write_text(starter + claims, encoding="utf-8")
     found = run(str(path), "--strict")
@@ -75,3 +75,22 @@ def test_mistakes_are_explained(arguments, sentence):
     found = run(*arguments)
     assert isinstance(found.exception, CaseError)
     assert sentence in str(found.exception)
+
+
+def test_the_documented_claims_run(request, tmp_path):
+    page = (request.config.rootpath / "docs" / "claims-format.md").read_text(encoding="utf-8")
+    claims = page.split("```toml\n")[1].split("```")[0]
+    folder = files("loads.cases")
+    for name in ("owl-wing-static.toml", "owl-wing-statics-exact.csv", "owl-wing-statics-printed.csv"):
+        (tmp_path / name).write_text(folder.joinpath(name).read_text(encoding="utf-8"), encoding="utf-8")
+    path = tmp_path / "owl-wing-static.toml"
+    path.write_text(path.read_text(encoding="utf-8") + claims, encoding="utf-8")
+    found = run(str(path), "--json")
+    assert [claim["finding"] for claim in json.loads(found.stdout)] == [
+        "does-not-follow",
+        "does-not-hold",
+        "does-not-hold",
+        "cannot-be-rederived",
+    ]
+    listed = page.split("functions `")[1].split("`")[0].split()
+    assert set(listed) == set(_FUNCTIONS)
