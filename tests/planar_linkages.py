@@ -90,6 +90,27 @@ def quick_return(a: float, d: float) -> Linkage:
     )
 
 
+def oscillating_cylinder(a: float, d: float, bent: float = 0.0) -> Linkage:
+    """Crank a whose pin B carries a rod; the rod slides in a cylinder about O, at d from the crank's pin A.
+
+    ``bent`` is the fixed angle of the rod to the cylinder [rad]: a slider between two moving links.
+    """
+    return Linkage(
+        {
+            "ground": link(ground=True, A=(0.0, 0.0), O=(d, 0.0)),
+            "crank": link(A=(0.0, 0.0), B=(a, 0.0)),
+            "cylinder": link(O=(0.0, 0.0), M=(20.0, 3.0)),
+            "rod": link(B=(0.0, 0.0), N=(15.0, -4.0)),
+        },
+        {
+            "A": joint("ground", "crank"),
+            "O": joint("ground", "cylinder"),
+            "B": joint("crank", "rod"),
+            "S": joint("cylinder", "rod", type="slider", points=("O", "B"), angle=deg(math.degrees(bent))),
+        },
+    )
+
+
 def six_bar(scale: float = 1.0, ground_turn: float = 0.0, mirror: float = 1.0, shift: complex = 0.0) -> Linkage:
     """The owl wing (Paredes 2018, table 7); its ground may be scaled, mirrored, turned and moved."""
 

@@ -3,7 +3,18 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, scotch_yoke, six_bar, slider_crank
+from planar_linkages import (
+    OPEN_WING,
+    deg,
+    four_bar,
+    joint,
+    link,
+    oscillating_cylinder,
+    quick_return,
+    scotch_yoke,
+    six_bar,
+    slider_crank,
+)
 
 from geometry.errors import CaseError
 from geometry.linkage import Linkage
@@ -62,6 +73,28 @@ def test_quick_return_points_at_the_pin() -> None:
         assert _turned(_degrees(pose, "lever"), math.degrees(lever)) < 1e-9
         travel = math.hypot(80 + 30 * math.sin(angle), 30 * math.cos(angle))
         assert pose.q[-1] == pytest.approx(travel, abs=1e-9)
+
+
+@pytest.mark.parametrize("bent", [0.0, 0.4])
+def test_a_slider_between_two_moving_links_keeps_its_angle(bent: float) -> None:
+    for angle in (0.5, 2.0, 4.0):
+        pose = solve_pose(
+            oscillating_cylinder(30, 80, bent), coordinate="crank", angle=angle, near={"cylinder": math.pi}
+        )
+        pin = 30 * np.exp(1j * angle) - 80
+        assert _turned(_degrees(pose, "cylinder"), math.degrees(np.angle(pin))) < 1e-9
+        assert _turned(_degrees(pose, "rod"), math.degrees(np.angle(pin) + bent)) < 1e-9
+        assert pose.q[-1] == pytest.approx(abs(pin), abs=1e-9)
+
+
+def test_a_slider_whose_second_link_is_the_ground() -> None:
+    """The second link keeps the angle to the first: the ground stands 30° on from the block."""
+    links = slider_crank(40, 120, -20).links
+    joints = dict(slider_crank(40, 120, -20).joints)
+    joints["S"] = joint("block", "ground", type="slider", points=("C", "S"), angle=deg(30.0), direction=deg(30.0))
+    pose = solve_pose(Linkage(links, joints), coordinate="crank", angle=math.pi / 3, near={"coupler": -0.47})
+    assert _degrees(pose, "block") == pytest.approx(-30.0)
+    np.testing.assert_allclose(pose.position("block", "C"), [126.838, -20.0], atol=6e-4)
 
 
 def test_a_structure_has_a_pose_without_coordinate() -> None:
@@ -207,6 +240,7 @@ def test_the_constraint_jacobian_is_the_derivative_of_the_constraints() -> None:
         (slider_crank(40, 120, -20), {"coupler": -0.45}),
         (quick_return(30, 80), {"lever": 1.5}),
         (scotch_yoke(30), {}),
+        (oscillating_cylinder(30, 80, 0.4), {"cylinder": 3.0}),
     ):
         pose = solve_pose(linkage, coordinate=linkage.moving[0], angle=4.0, near=near)
         matrix, scale, h = constraint_jacobian(pose), linkage.longest, 1e-6

@@ -3,7 +3,17 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, scotch_yoke, six_bar, slider_crank
+from planar_linkages import (
+    OPEN_WING,
+    four_bar,
+    joint,
+    link,
+    oscillating_cylinder,
+    quick_return,
+    scotch_yoke,
+    six_bar,
+    slider_crank,
+)
 
 from geometry.errors import CaseError
 from geometry.linkage import Linkage
@@ -41,6 +51,10 @@ POSES = {
     "quick return": (
         solve_pose(quick_return(30, 80), coordinate="crank", angle=0.7, near={"lever": 1.5}),
         Drive(link="lever", joint="O"),
+    ),
+    "cylinder": (
+        solve_pose(oscillating_cylinder(30, 80, 0.4), coordinate="crank", angle=0.7, near={"cylinder": 3.0}),
+        Drive(link="cylinder", joint="O"),
     ),
     "drive between moving links": (
         solve_pose(four_bar(40, 120, 80, 100), coordinate="crank", angle=0.7, near={"rocker": 1.0}),
