@@ -26,9 +26,10 @@ from geometry.units import (
     parse,
 )
 from loads.carried import CarriedBody, CarriedSpread
-from loads.check_spec import Check, PinCheck, SafetyFactorCheck, SustainedCheck
+from loads.check_spec import Check, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
 from loads.claim import Claim
 from loads.conditions import Conditions, under
+from loads.mechanism import FlappingWingSpec
 from loads.motion_spec import MotionSpec
 from loads.statics import Drive, check_drive
 
@@ -212,6 +213,8 @@ class Case(CaseModel):
     checks: dict[Name, Check] = {}
     hand_calculations: dict[Name, CantileverCalculation] = {}
     published_statics: PublishedStatics | None = None
+    flapping_wing: FlappingWingSpec | None = None
+    """The joints of a flapping wing with one crank and two rockers, whose design figures are to be shown."""
     claims: Annotated[tuple[Claim, ...], Field(max_length=1000)] = ()
     """Published figures about the case, for ``alula claims`` to re-derive."""
     solid: SolidSettings = SolidSettings()
@@ -259,6 +262,9 @@ class Case(CaseModel):
             if isinstance(check, PinCheck):
                 _check_pins(self, name, check)
                 continue
+            if isinstance(check, MotorCheck):
+                _check_motor(self, name)
+                continue
             if isinstance(check, SustainedCheck) and self.conditions.duration is None:
                 raise CaseError(
                     f"checks.{name}: a sustained load needs to be known for how long; "
@@ -287,6 +293,8 @@ class Case(CaseModel):
                 raise CaseError(
                     f"hand_calculations.{name}.part: '{hand.part}' is unknown; the parts are {', '.join(self.parts)}"
                 )
+        if self.flapping_wing is not None:
+            self.flapping_wing.wing(self.linkage)
         if self.motion is not None:
             for moved in (self.motion_coordinate, *self.motion.masses):
                 if moved not in self.linkage.moving:
@@ -470,6 +478,16 @@ def _check_point(case: Case, entry: str, link: str, point: str) -> None:
     if point not in case.links[link].points:
         raise CaseError(
             f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(case.links[link].points)}"
+        )
+
+
+def _check_motor(case: Case, name: str) -> None:
+    if case.motion is None or case.drive is None:
+        raise CaseError(f"checks.{name}: a motor needs a motion to drive; add [motion] and [drive]")
+    if not any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
+        raise CaseError(
+            f"checks.{name}: no load case states the speed at which the motor runs; "
+            'add one, for example speed = "150 rpm"'
         )
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from geometry.model import CaseModel, Name
-from geometry.units import POSITIVE, Length
+from geometry.units import POSITIVE, Current, Length, Voltage
 
 
 class SafetyFactorCheck(CaseModel):
@@ -43,7 +43,22 @@ class PinCheck(CaseModel):
     """The joints to check; all whose pin joins a link with a part when left out."""
 
 
+class MotorCheck(CaseModel):
+    """The motor must cover the drive power over the [motion], in every load case with a speed."""
+
+    type: Literal["motor"]
+    voltage: Annotated[Voltage, POSITIVE]
+    current: Annotated[Current, POSITIVE]
+    efficiency: Annotated[float, Field(gt=0, le=1)]
+    """Share of the electrical power that reaches the crank."""
+
+    @property
+    def output_power(self) -> float:
+        """Mechanical power at the crank [W]."""
+        return self.voltage * self.current * self.efficiency
+
+
 Check = Annotated[
-    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck,
+    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck | MotorCheck,
     Field(discriminator="type"),
 ]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from geometry.motion import Motion
 from loads.case_motion import CaseMotion, with_inertia
+from reports.mechanism import design_lines, design_record
 
 Real = NDArray[np.float64]
 
@@ -75,6 +76,7 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
             "joint": result.drive.joint,
             "dead_points": [_degrees(a) for a in result.dead_points],
         },
+        "design": design_record(result.case),
         "load_cases": {load_case: _case_record(result, load_case) for load_case in result.torque},
     }
 
@@ -135,6 +137,8 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
             f"\n{drive['link']} turns back at {motion['coordinate']} = {angle:.4f} deg: a dead point of the driven "
             "link. There it cannot drive the linkage; torque and joint forces grow without bound."
         )
+    if design := design_lines(result.case):
+        print("\n" + "\n".join(design))
     for load_case, row in found["load_cases"].items():
         how = (
             f"with inertia at {row['speed_rad_per_s'] * 30.0 / math.pi:.4g} rpm"

@@ -49,7 +49,7 @@ def _check(target: Path) -> None:
         raise CaseError(f"output: '{target}' exists and is not a folder; choose another name")
     if target.is_dir() and any(target.iterdir()) and not is_result(target):
         raise CaseError(
-            f"output: '{target}' holds other files and no earlier result; choose another folder, so that nothing is lost"
+            f"output: '{target}' holds other files and no earlier result; choose another folder, lest something be lost"
         )
 
 
