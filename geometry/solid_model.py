@@ -349,10 +349,23 @@ def _on_outside(part: Tube | Bar, points: NDArray[np.float64]) -> bool:
 
 
 def write_step(gmsh: Any, solid: Solid, path: Path) -> None:
-    """Write the solid as STEP in mm."""
-    gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
-    gmsh.model.occ.dilate([(3, solid.volume)], 0, 0, 0, solid.unit, solid.unit, solid.unit)
+    """Write the solid as STEP in mm.
+
+    The solid passes through a file to be scaled as it is read: the kernel's own scaling of a solid
+    (``occ.dilate``) redraws every face as a spline and moves a filleted one.
+    """
+    volume = gmsh.model.occ.getMass(3, solid.volume) * solid.unit**3
+    unscaled = path.with_suffix(".brep")
+    gmsh.write(str(unscaled))
+    gmsh.model.add("scaled")
+    gmsh.option.setNumber("Geometry.OCCScaling", solid.unit)
+    [imported] = gmsh.model.occ.importShapes(str(unscaled))
     gmsh.model.occ.synchronize()
+    unscaled.unlink()
+    written = gmsh.model.occ.getMass(*imported)
+    if abs(written - volume) > 1e-5 * volume:
+        raise CannotRunError(f"the STEP file would hold {written:.6g} mm³, but the part has {volume:.6g} mm³")
+    gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
     gmsh.write(str(path))
 
 

@@ -1,0 +1,235 @@
+"""Meshing of bodies: what comes back, and what a mesher's failure turns into."""
+
+import dataclasses
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import geometry.mesh
+from geometry.element_geometry import TETRA_EDGES, scaled_jacobians, shape_quality, volumes_and_moments
+from geometry.errors import CannotRunError, CaseError
+from geometry.mesh import COARSE, export_step, mass_properties, mesh_bodies, mesh_body, reentrant_edges
+from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from geometry.tagged_mesh import TaggedMesh
+
+
+def tube_body(unit: float = 1.0, **changes: str) -> Body:
+    """Return a tube with an eye, two feather holes and a plain end; lengths in multiples of a unit [mm]."""
+    sizes = {
+        "outer_diameter": 5.0,
+        "inner_diameter": 2.5,
+        "eye_diameter": 8.0,
+        "eye_thickness": 7.0,
+        "fillet_radius": 0.8,
+    }
+    part = Tube.model_validate(
+        {"shape": "tube", "material": "pvc"} | {k: f"{v * unit!r} mm" for k, v in sizes.items()} | changes
+    )
+    holes = HoleRow.model_validate(
+        {"count": 2, "diameter": f"{unit!r} mm", "first": f"{7 * unit!r} mm", "last": f"{9 * unit!r} mm", "along": "y"}
+    )
+    return Body(
+        part=part,
+        pins=(Pin(name="A", x=0.0, y=0.0, diameter=1.5 * unit),),
+        ends=(PlainEnd(name="H", x=15.0 * unit, patch=4.0 * unit),),
+        holes=(holes,),
+    )
+
+
+def bar_body(fillet: str = "1 mm", eye_thickness: str = "3 mm") -> Body:
+    part = Bar.model_validate(
+        {
+            "shape": "bar",
+            "material": "resin",
+            "width": "5 mm",
+            "thickness": "3 mm",
+            "eye_diameter": "9 mm",
+            "eye_thickness": eye_thickness,
+            "fillet_radius": fillet,
+        }
+    )
+    pins = (Pin(name="A", x=0.0, y=0.0, diameter=1.5), Pin(name="B", x=15.0, y=0.5, diameter=1.5))
+    return Body(part=part, pins=pins, ends=(), holes=())
+
+
+@pytest.fixture(scope="module")
+def mesh() -> TaggedMesh:
+    return mesh_body(tube_body(), COARSE)
+
+
+def test_elements_are_valid_and_in_vtk_order(mesh: TaggedMesh) -> None:
+    assert mesh.curved
+    assert (volumes_and_moments(mesh.points, mesh.cells)[0] > 0.0).all()
+    assert scaled_jacobians(mesh.points, mesh.cells).min() >= 0.1
+    assert shape_quality(mesh.points, mesh.cells).min() > 0.05
+    corners = mesh.points[mesh.cells[:, :4]]
+    middles = corners[:, TETRA_EDGES].mean(axis=2)
+    lengths = np.linalg.norm(corners[:, TETRA_EDGES[:, 0]] - corners[:, TETRA_EDGES[:, 1]], axis=2)
+    off = np.linalg.norm(mesh.points[mesh.cells[:, 4:]] - middles, axis=2)
+    assert (off / lengths).max() < 0.4  # a mid-node of another edge would lie at least half an edge away
+    assert np.unique(mesh.cells).size == len(mesh.points)
+
+
+def test_surfaces_lie_where_their_names_say(mesh: TaggedMesh) -> None:
+    def at(name: str) -> np.ndarray:
+        return mesh.points[np.unique(mesh.surfaces[name])]
+
+    assert set(mesh.surfaces) == {"bore:A", "top:A", "bottom:A", "end:H"}
+    assert np.hypot(at("bore:A")[:, 0], at("bore:A")[:, 1]) == pytest.approx(0.75, abs=1e-6)
+    assert at("top:A")[:, 2] == pytest.approx(3.5)
+    assert at("bottom:A")[:, 2] == pytest.approx(-3.5)
+    assert np.hypot(at("end:H")[:, 1], at("end:H")[:, 2]) == pytest.approx(2.5, abs=1e-6)
+    assert at("end:H")[:, 0].min() == pytest.approx(11.0)
+    assert at("end:H")[:, 0].max() == pytest.approx(15.0)
+
+
+def test_surfaces_are_boundary_triangles(mesh: TaggedMesh) -> None:
+    faces = np.sort(mesh.cells[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]].reshape(-1, 3), axis=1)
+    unique, counts = np.unique(faces, axis=0, return_counts=True)
+    boundary = set(map(tuple, unique[counts == 1]))
+    assert counts.max() == 2
+    for triangles in mesh.surfaces.values():
+        assert set(map(tuple, np.sort(triangles, axis=1))) <= boundary
+
+
+def test_bore_has_the_elements_asked_for(mesh: TaggedMesh) -> None:
+    at = mesh.points[np.unique(mesh.surfaces["bore:A"])]
+    rim = at[np.abs(at[:, 2] - 3.5) < 1e-9]
+    assert COARSE.bore_elements <= len(rim) <= COARSE.bore_elements + 1
+
+
+def test_same_input_gives_the_same_mesh(mesh: TaggedMesh) -> None:
+    again = mesh_body(tube_body(), COARSE)
+    assert (again.points == mesh.points).all()
+    assert (again.cells == mesh.cells).all()
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3, 1.0 / 7.0])
+def test_a_scaled_part_gets_the_scaled_mesh(mesh: TaggedMesh, unit: float) -> None:
+    other = mesh_body(tube_body(unit), COARSE)
+    assert (other.cells == mesh.cells).all()
+    assert np.abs(other.points / unit - mesh.points).max() < 1e-9
+    assert other.volume / unit**3 == pytest.approx(mesh.volume, rel=1e-12)
+
+
+def test_straight_elements() -> None:
+    mesh = mesh_body(tube_body(), dataclasses.replace(COARSE, curved=False))
+    assert mesh.cells.shape[1] == 4
+    assert volumes_and_moments(mesh.points, mesh.cells)[0].sum() < 0.995 * mesh.volume
+    assert mesh.notes == ()
+
+
+def test_background_sizes_refine_where_they_are_small() -> None:
+    plain = mesh_body(bar_body(), COARSE)
+    grid = np.array([[x, y, z] for x in (-10.0, 7.5, 25.0) for y in (-9.0, 9.0) for z in (-9.0, 9.0)])
+    sizes = np.interp(grid[:, 0], [-10.0, 7.5, 25.0], [2.0, 0.5, 2.0])
+    fine = mesh_body(bar_body(), dataclasses.replace(COARSE, size_points=grid, size_values=sizes))
+
+    def within(mesh: TaggedMesh, low: float, high: float) -> int:
+        x = mesh.points[mesh.cells[:, :4]].mean(axis=1)[:, 0]
+        return int(((low < x) & (x < high)).sum())
+
+    assert within(fine, 6.5, 8.5) > 4 * within(plain, 6.5, 8.5)
+    assert within(fine, -5.0, 0.0) < within(plain, -5.0, 0.0)
+
+
+def test_too_many_elements_are_refused() -> None:
+    with pytest.raises(CannotRunError, match="more than max_elements 100; use a coarser size"):
+        mesh_body(bar_body(), dataclasses.replace(COARSE, max_elements=100))
+
+
+def test_fillet_that_the_kernel_cannot_make() -> None:
+    with pytest.raises(CaseError, match=r"fillet_radius 1 mm does not fit .* make the fillet smaller"):
+        mesh_body(tube_body(fillet_radius="1 mm"), COARSE)
+
+
+def test_several_bodies_at_once_name_the_one_that_fails() -> None:
+    meshes = mesh_bodies({"one": bar_body(), "two": bar_body("0 mm")}, COARSE)
+    assert list(meshes) == ["one", "two"]
+    assert meshes["one"].volume > meshes["two"].volume
+    with pytest.raises(CaseError, match=r"^odd: fillet_radius"):
+        mesh_bodies({"good": bar_body(), "odd": tube_body(fillet_radius="1 mm")}, COARSE)
+
+
+def test_reentrant_edges_are_those_without_fillet() -> None:
+    assert reentrant_edges(bar_body()) == []
+    edges = reentrant_edges(bar_body("0 mm"))
+    assert len(edges) == 4
+    # A line at height h meets a circle of radius R about (0, c) at 180° + asin((h - c) / R)'s complement.
+    found = sorted(edge.angle for edge in edges)
+    expected = sorted(np.pi + np.arccos(h / 4.5) for h in (2.5, 2.5, 2.0, 3.0))
+    assert found == pytest.approx(expected, abs=1e-6)
+    for edge in edges:
+        assert np.abs(edge.points[:, 1]) == pytest.approx(2.5)
+        assert np.ptp(edge.points[:, 2]) == pytest.approx(3.0)
+
+
+def test_step_in_an_eye_without_room_for_a_fillet_stays_reentrant() -> None:
+    edges = reentrant_edges(bar_body("1 mm", "4 mm"))
+    assert edges
+    assert all(edge.angle == pytest.approx(1.5 * np.pi) for edge in edges)
+
+
+def test_step_files_hold_millimetres(tmp_path: Path) -> None:
+    folder = tmp_path / "parts ü"
+    folder.mkdir()
+    paths = export_step({"AE": tube_body()}, folder)
+    assert sorted(folder.iterdir()) == paths == [folder / "AE.step"]
+    assert "SI_UNIT(.MILLI.,.METRE.)" in paths[0].read_text()
+    assert _step_volume(paths[0]) == pytest.approx(mass_properties(tube_body()).volume, rel=1e-5)
+
+
+def _step_volume(path: Path) -> float:
+    import subprocess
+
+    script = (
+        "import gmsh, sys; gmsh.initialize(); gmsh.option.setNumber('General.Terminal', 0);"
+        "gmsh.option.setString('Geometry.OCCTargetUnit', 'MM');"
+        "s = gmsh.model.occ.importShapes(sys.argv[1]); print(gmsh.model.occ.getMass(*s[0]))"
+    )
+    done = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, check=True, text=True)
+    return float(done.stdout.split()[-1])
+
+
+def test_step_into_a_folder_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(CannotRunError, match="choose a folder that can be written"):
+        export_step({"AE": tube_body()}, tmp_path / "none")
+
+
+def _instead(script: str) -> Callable[[Path], list[str]]:
+    return lambda folder: [sys.executable, "-c", script, str(folder)]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are POSIX")
+@pytest.mark.parametrize(
+    ("script", "message"),
+    [
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", r"the mesher crashed \(SIGSEGV\)"),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", r"the mesher crashed \(SIGKILL\)"),
+        ("raise SystemExit('no more disk')", "ended with status 1 and no answer: no more disk"),
+        ("import sys, pathlib; (pathlib.Path(sys.argv[1]) / 'answer').write_bytes(b'')", "status 0 and no answer"),
+    ],
+)
+def test_a_crash_of_the_mesher_is_contained(monkeypatch: pytest.MonkeyPatch, script: str, message: str) -> None:
+    monkeypatch.setattr(geometry.mesh, "_command", _instead(script))
+    with pytest.raises(CannotRunError, match=message):
+        mesh_body(bar_body(), COARSE)
+
+
+def test_an_endless_mesher_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(geometry.mesh, "_command", _instead("while True: pass"))
+    with pytest.raises(CannotRunError, match=r"stopped after its time limit of 0\.5 s"):
+        mesh_body(bar_body(), dataclasses.replace(COARSE, time_limit=0.5))
+
+
+def test_a_folder_of_the_same_name_is_not_taken_for_this_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "geometry").mkdir()
+    (tmp_path / "geometry" / "__init__.py").write_text("raise SystemExit(9)")
+    monkeypatch.chdir(tmp_path)
+    assert mass_properties(bar_body("0 mm")).volume > 0.0
