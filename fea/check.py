@@ -10,11 +10,16 @@ from fea.band import Band
 from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
 from fea.compare import compare_sections
 from fea.cut_free import beam_loads, link_loads
+from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
+from fea.large_displacement import LargeDisplacement, examine
 from fea.link_loads import LinkLoads
+from fea.motor_check import motor_outcomes
+from fea.outcomes import outcomes
+from fea.pins import PinStress, stress_at
 from fea.result import CheckResult, LinkResult, LoadCaseResult, VariantPeak
 from fea.solid import SolidCase, SolidSolution, solve_solid
 from fea.stress import StressField, stress_field
-from fea.verdict import CheckOutcome, Verdict, at_least, at_most, overall
+from fea.verdict import overall
 from geometry.errors import CaseError
 from geometry.material import Material
 from geometry.mesh import MeshSettings, mesh_bodies
@@ -24,11 +29,11 @@ from loads.actions import PartMass, needs_masses
 from loads.applied import Load
 from loads.case import Case
 from loads.case_file import read_companion
-from loads.check_spec import SafetyFactorCheck
+from loads.check_spec import MotorCheck, PinCheck
 from loads.inertia import acting_loads
 from loads.masses import part_mass
 from loads.published import StaticsAudit, audit
-from loads.statics import Reactions, solve_statics
+from loads.statics import Reactions
 
 Progress = Callable[[str], None]
 FIDELITIES = ("solid", "beam")
@@ -46,9 +51,14 @@ class CaseStatics:
     case: Case
     pose: Pose
     loads: Mapping[str, tuple[Load, ...]]
-    reactions: Mapping[str, Reactions]
+    forces: Mapping[str, JointForces]
     masses: Mapping[str, PartMass]
     audit: StaticsAudit | None
+
+    @property
+    def reactions(self) -> Mapping[str, Reactions]:
+        """Joint reactions of every load case, in the undeformed pose."""
+        return {title: forces.reactions for title, forces in self.forces.items()}
 
 
 @dataclass
@@ -75,7 +85,7 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
         for link in case.checked_links:
             masses[link] = part_mass(case, link)
     loads = {title: acting_loads(case, load_case, pose, masses) for title, load_case in case.load_cases.items()}
-    reactions = {title: solve_statics(pose, case.pinned_drive, loads[title]) for title in loads}
+    forces = {title: joint_forces(case, pose, loads[title]) for title in loads}
     found = None
     if case.published_statics is not None:
         published = case.published_statics
@@ -86,7 +96,7 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
             pose,
             next(iter(loads.values())),
         )
-    return CaseStatics(case=case, pose=pose, loads=loads, reactions=reactions, masses=masses, audit=found)
+    return CaseStatics(case=case, pose=pose, loads=loads, forces=forces, masses=masses, audit=found)
 
 
 def check_case(
@@ -110,9 +120,14 @@ def check_case(
     clock = _Clock()
     statics = solve_case_statics(case, name)
     clock("pose and statics")
+    moved = {
+        title: examine(case, title, forces, statics.loads[title], statics.masses)
+        for title, forces in statics.forces.items()
+    }
+    clock("frames")
     cut = {
         link: tuple(
-            link_loads(title, link, case.body(link), reactions, statics.loads[title])
+            moved[title].links.get(link) or link_loads(title, link, case.body(link), reactions, statics.loads[title])
             for title, reactions in statics.reactions.items()
         )
         for link in case.checked_links
@@ -131,11 +146,22 @@ def check_case(
             progress(f"Solving {link}: {len(meshes[link].cells)} elements ...")
             solids[link] = _solid(case, link, meshes[link], loads, threads)
         clock("solid models")
+    motors = [motor_outcomes(case, n, check) for n, check in case.checks.items() if isinstance(check, MotorCheck)]
     load_cases = {}
-    for i, (title, reactions) in enumerate(statics.reactions.items()):
+    for i, (title, forces) in enumerate(statics.forces.items()):
         links = {link: _link_result(case, link, title, beams[link][i], solids[link]) for link in cut}
+        pins = _pins(case, moved[title].reactions or forces.reactions)
         load_cases[title] = LoadCaseResult(
-            name=title, reactions=reactions, links=links, checks=_checks(case, title, links)
+            name=title,
+            forces=forces,
+            large_displacement=moved[title],
+            links=links,
+            pins=pins,
+            ways_to_hold=ways_to_hold(case, statics.pose, statics.loads[title]),
+            checks=(
+                *outcomes(case, title, links, pins, moved[title]),
+                *(found[title] for found in motors if title in found),
+            ),
         )
     clock("stress")
     return CheckResult(
@@ -147,7 +173,7 @@ def check_case(
         audit=statics.audit,
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
-        warnings=tuple(_warnings(case, statics, solids)),
+        warnings=tuple(_warnings(case, statics, moved)),
     )
 
 
@@ -273,49 +299,11 @@ def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> Li
     )
 
 
-def _checks(case: Case, title: str, links: Mapping[str, LinkResult]) -> tuple[CheckOutcome, ...]:
-    checks = case.checks or {"safety factor": SafetyFactorCheck(type="safety-factor")}
-    outcomes = []
-    for name, check in checks.items():
-        for link in check.links or case.checked_links:
-            result = links[link]
-            if isinstance(check, SafetyFactorCheck):
-                limit = check.minimum or case.material_of(link).minimum_safety_factor
-                if limit is None:
-                    raise CaseError(f"checks.{name}.minimum: the material of '{link}' has no default; state the limit")
-                value, verdict = result.safety_factor, at_least(result.safety_factor, limit)
-                quantity, unit = "safety factor", ""
-            else:
-                limit = check.maximum
-                value, verdict = result.displacement_max, at_most(result.displacement_max, limit)
-                quantity, unit = "displacement", "mm"
-            if result.fidelity == "beam" and verdict is Verdict.PASS and result.beam.worst.equivalent > 0.0:
-                verdict = Verdict.UNDECIDED
-                reason = "beam theory leaves stress concentration out, so it cannot pass a link; run the solid model"
-            else:
-                reason = _reason(value, limit, verdict)
-            outcomes.append(
-                CheckOutcome(
-                    name=name,
-                    link=link,
-                    load_case=title,
-                    quantity=quantity,
-                    unit=unit,
-                    value=value,
-                    limit=limit,
-                    verdict=verdict,
-                    reason=reason,
-                )
-            )
-    return tuple(outcomes)
-
-
-def _reason(value: Band, limit: float, verdict: Verdict) -> str:
-    band = f"its band {value.low:.3g} to {value.high:.3g}"
-    if verdict is Verdict.UNDECIDED:
-        return f"{band} straddles the limit {limit:g}"
-    side = "on the safe side" if verdict is Verdict.PASS else "on the wrong side"
-    return f"{band} lies wholly {side} of the limit {limit:g}"
+def _pins(case: Case, reactions: Reactions) -> dict[str, PinStress]:
+    """Stresses of the pins that a check asks for."""
+    checks = [check for check in case.all_checks.values() if isinstance(check, PinCheck)]
+    asked = dict.fromkeys(joint for check in checks for joint in check.joints or case.pinned_joints)
+    return {joint: stress_at(case, joint, reactions.joints[joint]) for joint in asked}
 
 
 def _cantilever(case: Case, title: str) -> CantileverCheck:
@@ -325,8 +313,13 @@ def _cantilever(case: Case, title: str) -> CantileverCheck:
     return uniform_cantilever(hand.load, hand.length, part.section, strength)
 
 
-def _warnings(case: Case, statics: CaseStatics, solids: Mapping[str, SolidSolution | None]) -> list[str]:
-    found = []
+def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
+    found = [
+        f"load case {title}: {forces.reason}, so the joint forces are those of a {forces.model}"
+        for title, forces in statics.forces.items()
+        if forces.model != PINNED_STATICS
+    ]
+    found += [f"load case {title}: {what.sentence}" for title, what in moved.items() if what.state != "small"]
     held = {"the pose coordinate": case.pose.coordinate, "the driven link": case.drive.link if case.drive else None}
     for what, link in held.items():
         if link is None:

@@ -1,6 +1,7 @@
 """Cutting a link free: all that acts on it, in its own frame, for the beam and for the solid."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,37 +17,67 @@ from loads.statics import Reactions
 Real = NDArray[np.float64]
 
 
-def _to_link(pose: Pose, link: str, vector: Real) -> Real:
-    """Turn a vector (3,) or wrench (6,) from global axes into the link's frame."""
-    turn = np.eye(3)
-    turn[:2, :2] = pose.rotation(link).T
-    return np.concatenate([turn @ part for part in vector.reshape(-1, 3)])
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinkView:
+    """The frame in which a link's loads are seen.
+
+    axes   (3, 3) columns: its x, y, z in global axes
+    moved  point -> (3,) by which it has left its place in the link's undeformed frame [mm]; none where rigid
+    """
+
+    axes: Real
+    moved: Mapping[str, Real]
+
+    @classmethod
+    def undeformed(cls, pose: Pose, link: str) -> "LinkView":
+        """Return the link's own frame in a pose."""
+        axes = np.eye(3)
+        axes[:2, :2] = pose.rotation(link)
+        return cls(axes=axes, moved={})
+
+    def local(self, vector: Real) -> Real:
+        """Turn a vector (3,) or wrench (6,) from global axes into the frame."""
+        return np.concatenate([self.axes.T @ part for part in vector.reshape(-1, 3)])
+
+    def at_point(self, point: str, wrench: Real) -> Real:
+        """Turn a wrench (6,) at a point into the frame and move it to the point's place in the undeformed link."""
+        local = self.local(wrench)
+        return applied.shifted(local, self.moved[point]) if point in self.moved else local
 
 
-def link_loads(name: str, link: str, body: Body, reactions: Reactions, loads: Sequence[applied.Load]) -> LinkLoads:
+def link_loads(
+    name: str,
+    link: str,
+    body: Body,
+    reactions: Reactions,
+    loads: Sequence[applied.Load],
+    view: LinkView | None = None,
+) -> LinkLoads:
     """Everything that acts on a link in a load case called ``name``: a balanced set.
 
     Forces at a pin are taken together as one wrench of the pin; the drive torque stays apart,
-    since it enters the part in a way of its own.
+    since it enters the part in a way of its own. ``view`` is the link's own frame in the pose when left out.
     """
     pose = reactions.pose
+    view = view or LinkView.undeformed(pose, link)
     wrenches: dict[str, Real] = {}
     for point, wrench in reactions.on_link(link):
-        wrenches[point] = wrenches.get(point, np.zeros(6)) + _to_link(pose, link, wrench)
+        wrenches[point] = wrenches.get(point, np.zeros(6)) + view.at_point(point, wrench)
     lines: list[LineLoad] = []
     bodies: list[BodyLoad] = []
     for load in loads:
         if load.link != link:
             continue
         if isinstance(load, applied.PointLoad):
-            wrenches[load.point] = wrenches.get(load.point, np.zeros(6)) + _to_link(pose, link, load.wrench)
+            here = view.at_point(load.point, load.wrench)
+            wrenches[load.point] = wrenches.get(load.point, np.zeros(6)) + here
         elif isinstance(load, applied.LineLoad):
-            intensity = np.array([_to_link(pose, link, load.at_start), _to_link(pose, link, load.at_end)])
+            intensity = np.array([view.local(load.at_start), view.local(load.at_end)])
             lines.append(LineLoad(first=load.start, last=load.end, intensity=intensity))
         else:
             bodies.append(
                 BodyLoad(
-                    specific_force=_to_link(pose, link, load.acceleration),
+                    specific_force=view.local(load.acceleration),
                     about=np.array([*load.centroid, 0.0]),
                     angular_acceleration=load.angular_acceleration,
                     angular_speed=load.angular_speed,

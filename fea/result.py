@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 from fea.band import Band
 from fea.beam import BeamCheck, CantileverCheck
+from fea.joint_forces import Held, JointForces
+from fea.large_displacement import LargeDisplacement
+from fea.pins import PinStress
 from fea.solid import SolidCase, SolidSolution
 from fea.stress import StressField
 from fea.verdict import CheckOutcome, Verdict
@@ -96,12 +99,26 @@ class LinkResult:
 
 @dataclass(frozen=True, kw_only=True)
 class LoadCaseResult:
-    """One load case: reactions, links, checks."""
+    """One load case.
+
+    forces              joint forces in the undeformed pose, and which model gave them
+    large_displacement  whether the undeformed pose is good enough, and what holds on the deformed shape if not
+    pins                joint -> stresses of its pin, where a check asks for them
+    ways_to_hold        displacement of the point that the case names, for every way to hold the linkage
+    """
 
     name: str
-    reactions: Reactions
+    forces: JointForces
+    large_displacement: LargeDisplacement
     links: Mapping[str, LinkResult]
+    pins: Mapping[str, PinStress]
+    ways_to_hold: tuple[Held, ...]
     checks: tuple[CheckOutcome, ...]
+
+    @property
+    def reactions(self) -> Reactions:
+        """Joint reactions in the undeformed pose."""
+        return self.forces.reactions
 
 
 @dataclass(frozen=True, kw_only=True)

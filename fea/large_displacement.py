@@ -1,0 +1,240 @@
+"""Large displacement of a linkage: whether the pose as it stands is good enough, and what holds on the deformed shape.
+
+Where the linear frame moves by more than 5 % of the linkage's span, equilibrium on the undeformed pose is no longer
+a good answer: joint forces then come from the co-rotational frame (``fea.corotational``), and each link is loaded by
+what acts on it on the deformed shape, seen from the chord through its first and last station.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.corotational import CorotationalSolution, NoEquilibriumError, solve_large_displacement
+from fea.cut_free import LinkView, link_loads
+from fea.frame import FrameSolution, solve_frame
+from fea.joint_forces import JointForces
+from fea.link_loads import LinkLoads
+from fea.linkage_frame import LinkageFrame, build_frame
+from geometry.errors import CannotRunError, CaseError
+from geometry.pose import Pose
+from loads.actions import PartMass
+from loads.applied import Load, shifted
+from loads.case import Case
+from loads.statics import Reactions
+
+Real = NDArray[np.float64]
+
+LARGE = 0.05
+"""Share of the span above which a displacement is large."""
+SUBDIVISIONS = 2
+LEAST_STEP = 1.0 / 512.0
+MOST_ITERATIONS = 15
+_ALONG = (0.25, 0.5, 0.75)
+LARGEST_SHIFT = 0.05
+"""Moment or force that bending of a link under spread loads may leave unbalanced, as a share of the load."""
+
+State = Literal["small", "deformed", "unstable", "no equilibrium", "off", "unknown"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LargeDisplacement:
+    """What became of one load case in large displacement.
+
+    state       small: the linear answer is valid. deformed: equilibrium was found on the deformed shape. unstable: it
+                was found, but the linkage buckles on its way there. no equilibrium: it ends below the whole load.
+                off: the case says not to look. unknown: there is no frame of this linkage
+    span        largest distance between two points of the pose [mm]
+    linear      largest displacement by the linear frame [mm], at ``where``; 0 where there is no frame
+    held        share of the load up to which equilibrium was found; 1 for all of it
+    points      (link, point) -> displacement (3,) on the deformed shape [mm]; the linear one where small
+    reactions   on the deformed shape, in global axes; None unless deformed
+    links       loads of each link on the deformed shape, in its chord's frame; empty unless deformed
+    sentence    for people
+    """
+
+    state: State
+    span: float
+    linear: float = 0.0
+    where: str = ""
+    held: float = 1.0
+    points: Mapping[tuple[str, str], Real]
+    reactions: Reactions | None = None
+    links: Mapping[str, LinkLoads]
+    sentence: str
+
+    @property
+    def share(self) -> float:
+        """Largest linear displacement over the span."""
+        return self.linear / self.span
+
+
+def span(pose: Pose) -> float:
+    """Return the largest distance between two points of the pose [mm]."""
+    xy = np.array(list(pose.points.values()))
+    return float(np.linalg.norm(xy[:, None] - xy[None], axis=-1).max())
+
+
+def examine(
+    case: Case,
+    title: str,
+    forces: JointForces,
+    loads: Sequence[Load],
+    masses: Mapping[str, PartMass],
+) -> LargeDisplacement:
+    """Solve the linear frame of a load case and, where it moves far, its equilibrium on the deformed shape."""
+    pose = forces.reactions.pose
+    size = span(pose)
+
+    def left(state: State, sentence: str) -> LargeDisplacement:
+        return LargeDisplacement(state=state, span=size, points={}, links={}, sentence=sentence)
+
+    if case.large_displacement == "off":
+        return left("off", "large displacement was not looked into, as the case says (large_displacement = off)")
+    frame, solution = forces.frame, forces.solution
+    try:
+        if frame is None or solution is None:
+            frame = build_frame(case, pose, loads, held=case.pinned_drive)
+            solution = solve_frame(frame.model)
+    except (CaseError, CannotRunError) as error:
+        return left("unknown", f"large displacement was not looked into, since the linkage has no frame: {error}")
+    linear, where = _largest(frame, solution)
+    small = LargeDisplacement(
+        state="small",
+        span=size,
+        linear=linear,
+        where=where,
+        points=frame.at_points(solution.displacements),
+        links={},
+        sentence=(
+            f"the linear frame moves by at most {linear:.3g} mm ({where}), {linear / size:.1%} of the span of "
+            f"{size:.4g} mm: the undeformed pose is good enough (limit {LARGE:.0%})"
+        ),
+    )
+    if linear <= LARGE * size:
+        return small
+    return _deformed(case, title, frame, small, loads, masses)
+
+
+def _deformed(
+    case: Case,
+    title: str,
+    frame: LinkageFrame,
+    small: LargeDisplacement,
+    loads: Sequence[Load],
+    masses: Mapping[str, PartMass],
+) -> LargeDisplacement:
+    lead = (
+        f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {small.share:.1%} of the span of "
+        f"{small.span:.4g} mm, above {LARGE:.0%}: the linear answer is not valid; in large displacement "
+    )
+    try:
+        found = solve_large_displacement(
+            frame.model, SUBDIVISIONS, least_step=LEAST_STEP, most_iterations=MOST_ITERATIONS
+        )
+    except NoEquilibriumError as error:
+        sentence = (
+            f"{lead}the linkage does not hold the load: its equilibrium ends at {error.reached:.3g} of it, where it "
+            "gives way (a limit load or a snap-through)"
+        )
+        return replace(small, state="no equilibrium", held=error.reached, points={}, sentence=sentence)
+    points = frame.at_points(found.displacements)
+    if not found.stable:
+        sentence = f"{lead}the linkage has buckled before the whole load acts, so it does not hold it"
+        return replace(small, state="unstable", points=points, sentence=sentence)
+    reactions = frame.reactions(found.joint_wrenches[: len(frame.model.nodes)], found.residual)
+    moved = max((float(np.linalg.norm(d)) for d in points.values()), default=0.0)
+    return replace(
+        small,
+        state="deformed",
+        points=points,
+        reactions=reactions,
+        links={
+            link: balanced(
+                link_loads(title, link, case.body(link), reactions, loads, _seen_from_chord(frame, found, link)),
+                masses.get(link),
+            )
+            for link in case.checked_links
+        },
+        sentence=f"{lead}its points move by up to {moved:.3g} mm, and joint forces and verdict come from there",
+    )
+
+
+def _largest(frame: LinkageFrame, solution: FrameSolution) -> tuple[float, str]:
+    """Largest displacement of nodes and of stations between them [mm], and where."""
+    sizes = np.linalg.norm(solution.displacements[:, :3], axis=1)
+    node = int(np.argmax(sizes))
+    largest, where = float(sizes[node]), frame.model.name(node)
+    for i in range(len(frame.model.elements)):
+        length = frame.model.length(i)
+        between = np.linalg.norm(solution.axis_displacements(i, length * np.array(_ALONG)), axis=1).max()
+        if between > largest:
+            a, b = frame.model.elements[i].nodes
+            largest, where = float(between), f"between {frame.model.name(a)} and {frame.model.name(b)}"
+    return largest, where
+
+
+def _seen_from_chord(frame: LinkageFrame, found: CorotationalSolution, link: str) -> LinkView:
+    """The chord's frame: x from the first to the last station, z that of the first node, turned normal to the chord.
+
+    A pin that has left its place in the undeformed link by e takes the moment e x F with it: what normal forces do
+    on a bent link is in these moments.
+    """
+    nodes, stations = frame.model.nodes + found.displacements[: len(frame.model.nodes)], frame.stations[link]
+    (x, first), (_, last) = stations[0], stations[-1]
+    start, end = (nodes[n] + found.rotations[n] @ frame.arms.get(n, np.zeros(3)) for n in (first, last))
+    along = (end - start) / np.linalg.norm(end - start)
+    across = np.cross(found.rotations[first][:, 2], along)
+    across /= np.linalg.norm(across)
+    axes = np.column_stack([along, across, np.cross(along, across)])
+    return LinkView(
+        axes=axes,
+        moved={
+            point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
+            for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
+        },
+    )
+
+
+def balanced(loads: LinkLoads, mass: PartMass | None) -> LinkLoads:
+    """Return the loads of a link with what they leave unbalanced taken by the pin with the largest force.
+
+    Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Raises
+    ``CannotRunError`` where that is more than ``LARGEST_SHIFT`` of the load.
+    """
+    total = np.zeros(6)
+    reach = max((float(np.linalg.norm(p.centre - loads.pins[0].centre)) for p in loads.pins), default=0.0)
+    size = 0.0
+    for place, wrench in [(p.centre, p.wrench) for p in loads.pins] + [(e.point, e.wrench) for e in loads.ends]:
+        total += shifted(wrench, place)
+        size += float(np.linalg.norm(wrench[:3]))
+    for couple in loads.couples:
+        total[5] += couple.torque
+    for line in loads.lines:
+        length = line.last - line.first
+        force = line.intensity.mean(axis=0) * length
+        first, last = line.intensity
+        moment = length * (line.first * (first + last) / 2.0 + length * (first + 2.0 * last) / 6.0)
+        total[:3] += force
+        total[3:] += np.cross([1.0, 0.0, 0.0], moment)
+        size += float(np.linalg.norm(force))
+    for body in loads.bodies:
+        if mass is not None:
+            force = np.concatenate([mass.mass * body.specific_force, np.zeros(3)])
+            force[5] = -mass.inertia * body.angular_acceleration
+            total += shifted(force, body.about)
+            size += float(np.linalg.norm(force[:3]))
+    left = max(float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:])) / reach if reach else 0.0)
+    if left > LARGEST_SHIFT * size:
+        raise CannotRunError(
+            f"on the deformed shape the loads of a link in case '{loads.name}' leave {left / size:.1%} of them "
+            f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
+            "stiffen the link"
+        )
+    strongest = max(range(len(loads.pins)), key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
+    pins = list(loads.pins)
+    taken = shifted(-total, -pins[strongest].centre)
+    pins[strongest] = replace(pins[strongest], wrench=pins[strongest].wrench + taken)
+    return replace(loads, pins=tuple(pins))

@@ -1,0 +1,124 @@
+"""From results to verdicts: every check that the case asks for, decided on its band."""
+
+from collections.abc import Iterator, Mapping
+
+from fea.band import Band
+from fea.large_displacement import LargeDisplacement
+from fea.pins import PinStress
+from fea.result import LinkResult
+from fea.verdict import CheckOutcome, Verdict, at_least, at_most
+from geometry.errors import CaseError
+from geometry.material import Material
+from loads.case import Case
+from loads.check_spec import DisplacementCheck, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
+
+LARGE_DISPLACEMENT = "large displacement"
+LINKAGE = "linkage"
+"""Stands in the place of a link where a check is about all of them."""
+
+
+def outcomes(
+    case: Case,
+    title: str,
+    links: Mapping[str, LinkResult],
+    pins: Mapping[str, PinStress],
+    moved: LargeDisplacement,
+) -> tuple[CheckOutcome, ...]:
+    """Return the outcome of every check of a load case called ``title``, but for motors (``fea.motor_check``).
+
+    Raises ``CaseError`` where neither check nor material states a limit.
+    """
+    found: list[CheckOutcome] = []
+    for name, check in case.all_checks.items():
+        if isinstance(check, PinCheck):
+            found += _pins(case, name, check, title, pins)
+        elif not isinstance(check, MotorCheck):
+            found += [_link(case, name, check, title, links[link]) for link in check.links or case.checked_links]
+    found += _large_displacement(title, moved)
+    return tuple(found)
+
+
+def _link(
+    case: Case, name: str, check: SafetyFactorCheck | DisplacementCheck | SustainedCheck, title: str, result: LinkResult
+) -> CheckOutcome:
+    material = case.material_of(result.link)
+    if isinstance(check, SafetyFactorCheck):
+        limit = _least(name, check.minimum, material, result.link)
+        quantity, unit, value = "safety factor", "", result.safety_factor
+        verdict = at_least(value, limit)
+    elif isinstance(check, SustainedCheck):
+        assert material.sustained_stress is not None
+        limit = material.sustained_stress
+        quantity, unit = "sustained stress", "MPa"
+        value = result.principal_max if material.brittle else result.von_mises_max
+        verdict = at_most(value, limit)
+    else:
+        limit = check.maximum
+        quantity, unit, value = "displacement", "mm", result.displacement_max
+        verdict = at_most(value, limit)
+    if result.fidelity == "beam" and verdict is Verdict.PASS and result.beam.worst.equivalent > 0.0:
+        verdict = Verdict.UNDECIDED
+        reason = "beam theory leaves stress concentration out, so it cannot pass a link; run the solid model"
+    else:
+        reason = _reason(value, limit, verdict)
+    return CheckOutcome(
+        name=name,
+        link=result.link,
+        load_case=title,
+        quantity=quantity,
+        unit=unit,
+        value=value,
+        limit=limit,
+        verdict=verdict,
+        reason=reason,
+    )
+
+
+def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str, PinStress]) -> Iterator[CheckOutcome]:
+    for joint in check.joints or case.pinned_joints:
+        material = case.pin_material(joint)
+        limit = _least(name, check.minimum, material, f"pin {joint}")
+        value = pins[joint].equivalent.inverse(material.allowable)
+        verdict = at_least(value, limit)
+        yield CheckOutcome(
+            name=name,
+            link=f"pin {joint}",
+            load_case=title,
+            quantity="safety factor",
+            unit="",
+            value=value,
+            limit=limit,
+            verdict=verdict,
+            reason=_reason(value, limit, verdict),
+        )
+
+
+def _large_displacement(title: str, moved: LargeDisplacement) -> Iterator[CheckOutcome]:
+    if moved.state not in ("deformed", "unstable", "no equilibrium"):
+        return
+    yield CheckOutcome(
+        name=LARGE_DISPLACEMENT,
+        link=LINKAGE,
+        load_case=title,
+        quantity="share of the load that is held",
+        unit="",
+        value=Band.exact(moved.held, "equilibrium on the deformed shape, followed from no load"),
+        limit=1.0,
+        verdict=Verdict.PASS if moved.state == "deformed" else Verdict.FAIL,
+        reason=moved.sentence,
+    )
+
+
+def _least(name: str, stated: float | None, material: Material, what: str) -> float:
+    limit = stated or material.minimum_safety_factor
+    if limit is None:
+        raise CaseError(f"checks.{name}.minimum: the material of '{what}' has no default; state the limit")
+    return limit
+
+
+def _reason(value: Band, limit: float, verdict: Verdict) -> str:
+    band = f"its band {value.low:.3g} to {value.high:.3g}"
+    if verdict is Verdict.UNDECIDED:
+        return f"{band} straddles the limit {limit:g}"
+    side = "on the safe side" if verdict is Verdict.PASS else "on the wrong side"
+    return f"{band} lies wholly {side} of the limit {limit:g}"
