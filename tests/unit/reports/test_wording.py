@@ -65,12 +65,12 @@ def test_the_headline_of_a_pass_names_the_check_nearest_to_its_limit(result):
 def test_the_headline_of_a_fail_names_what_is_missed(result, changed):
     def change(check):
         missed = check.link == "CH" and check.quantity == "displacement" and check.load_case == "weight"
-        return replace(check, value=Band.exact(2.5), verdict=Verdict.FAIL) if missed else check
+        return replace(check, value=Band.exact(12.5), verdict=Verdict.FAIL) if missed else check
 
     text = wording.headline(changed(change))
     assert text.startswith("Fail: 1 of 20 checks is missed over its whole error band: displacement of CH.")
     assert (
-        "Worst: the displacement of link CH under load case weight is 2.50 mm, where at most 2 mm is asked for" in text
+        "Worst: the displacement of link CH under load case weight is 12.5 mm, where at most 10 mm is asked for" in text
     )
 
 
