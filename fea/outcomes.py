@@ -6,15 +6,13 @@ from fea.band import Band
 from fea.large_displacement import LargeDisplacement
 from fea.pins import PinStress
 from fea.result import LinkResult
-from fea.verdict import CheckOutcome, Verdict, at_least, at_most
+from fea.verdict import LINKAGE, LOAD_SHARE, PIN, SAFETY_FACTOR, CheckOutcome, Verdict, at_least, at_most
 from geometry.errors import CaseError
 from geometry.material import Material
 from loads.case import Case
 from loads.check_spec import DisplacementCheck, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
 
 LARGE_DISPLACEMENT = "large displacement"
-LINKAGE = "linkage"
-"""Stands in the place of a link where a check is about all of them."""
 
 
 def outcomes(
@@ -44,7 +42,7 @@ def _link(
     material = case.material_of(result.link)
     if isinstance(check, SafetyFactorCheck):
         limit = _least(name, check.minimum, material, result.link)
-        quantity, unit, value = "safety factor", "", result.safety_factor
+        quantity, unit, value = SAFETY_FACTOR, "", result.safety_factor
         verdict = at_least(value, limit)
     elif isinstance(check, SustainedCheck):
         assert material.sustained_stress is not None
@@ -77,14 +75,14 @@ def _link(
 def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str, PinStress]) -> Iterator[CheckOutcome]:
     for joint in check.joints or case.pinned_joints:
         material = case.pin_material(joint)
-        limit = _least(name, check.minimum, material, f"pin {joint}")
+        limit = _least(name, check.minimum, material, f"{PIN}{joint}")
         value = pins[joint].equivalent.inverse(material.allowable)
         verdict = at_least(value, limit)
         yield CheckOutcome(
             name=name,
-            link=f"pin {joint}",
+            link=f"{PIN}{joint}",
             load_case=title,
-            quantity="safety factor",
+            quantity=SAFETY_FACTOR,
             unit="",
             value=value,
             limit=limit,
@@ -100,7 +98,7 @@ def _large_displacement(title: str, moved: LargeDisplacement) -> Iterator[CheckO
         name=LARGE_DISPLACEMENT,
         link=LINKAGE,
         load_case=title,
-        quantity="share of the load that is held",
+        quantity=LOAD_SHARE,
         unit="",
         value=Band.exact(moved.held, "equilibrium on the deformed shape, followed from no load"),
         limit=1.0,

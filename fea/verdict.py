@@ -7,6 +7,14 @@ from enum import StrEnum
 from fea.band import Band
 
 
+SAFETY_FACTOR = "safety factor"
+LOAD_SHARE = "share of the load that is held"
+LINKAGE = "the linkage"
+"""Stands in the place of a link where a check is about all of them."""
+PIN = "pin "
+"""Begins what stands in the place of a link where a check is about the pin of a joint."""
+
+
 class Verdict(StrEnum):
     """The answer of a check."""
 
@@ -24,6 +32,7 @@ class Verdict(StrEnum):
 class CheckOutcome:
     """One check of one link under one load case.
 
+    link       its name; "pin " and the joint's name for a pin, "the linkage" for all together
     quantity   what was checked: "safety factor", "displacement"
     unit       of value and limit; "" for a pure number
     reason     one sentence that says why the verdict is what it is
@@ -38,6 +47,16 @@ class CheckOutcome:
     limit: float
     verdict: Verdict
     reason: str
+
+    @property
+    def at_least(self) -> bool:
+        """True where the quantity must be at least its limit, False where it must be at most that."""
+        return self.quantity in (SAFETY_FACTOR, LOAD_SHARE)
+
+    @property
+    def what(self) -> str:
+        """What was checked, for people: a link of that name, a pin or the whole linkage."""
+        return self.link if self.link == LINKAGE or self.link.startswith(PIN) else f"link {self.link}"
 
 
 def at_least(value: Band, limit: float) -> Verdict:

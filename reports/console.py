@@ -95,7 +95,7 @@ def _checks(case: LoadCaseResult) -> "Table":
     table = _table(("check", False), ("link", False), ("value (band)", True), ("limit", True), ("verdict", False))
     for check in case.checks:
         unit = f" {check.unit}" if check.unit else ""
-        sign = "≥" if check.quantity == "safety factor" else "≤"
+        sign = "≥" if check.at_least else "≤"
         table.add_row(
             check.name,
             check.link,

@@ -72,7 +72,7 @@ def checks_of(result: CheckResult) -> tuple[CheckOutcome, ...]:
 
 def tightness(check: CheckOutcome) -> float:
     """How far the unfavourable end of a check's band is inside its limit, as a share of the limit."""
-    margin = check.value.low - check.limit if check.quantity == "safety factor" else check.limit - check.value.high
+    margin = check.value.low - check.limit if check.at_least else check.limit - check.value.high
     return margin / check.limit
 
 
@@ -108,9 +108,9 @@ def headline(result: CheckResult) -> str:
 
 def _nearest(result: CheckResult, check: CheckOutcome, lead: str) -> str:
     unit = f" {check.unit}" if check.unit else ""
-    asked = "at least" if check.quantity == "safety factor" else "at most"
+    asked = "at least" if check.at_least else "at most"
     under = f" under load case {check.load_case}" if len(result.load_cases) > 1 else ""
     return (
-        f"{lead}: the {check.quantity} of link {check.link}{under} is {band(check.value)}{unit}, "
+        f"{lead}: the {check.quantity} of {check.what}{under} is {band(check.value)}{unit}, "
         f"where {asked} {plain(check.limit)}{unit} is asked for."
     )
