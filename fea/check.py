@@ -139,7 +139,7 @@ def check_case(
         loaded = {link: tuple(x for x in loads if _acts(x)) for link, loads in cut.items()}
         loaded = {link: loads for link, loads in loaded.items() if loads}
         progress(f"Meshing {len(loaded)} links ...")
-        settings = MeshSettings(size=case.solid.mesh_size, curved=case.solid.curved)
+        settings = MeshSettings(curved=case.solid.curved).scaled(case.solid.mesh_size)
         meshes = mesh_bodies({link: case.body(link) for link in loaded}, settings)
         clock("meshing")
         for link, loads in loaded.items():

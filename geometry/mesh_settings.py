@@ -1,7 +1,7 @@
 """How fine a mesh is to be, and what it may cost."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,17 @@ class MeshSettings:
     size_values: NDArray[np.float64] | None = None
     time_limit: float = 300.0
     max_elements: int = 1_500_000
+
+    def scaled(self, factor: float) -> "MeshSettings":
+        """Return the same settings with every element edge longer by ``factor`` (a turn keeps at least six)."""
+        return replace(
+            self,
+            size=self.size * factor,
+            bore_elements=max(6, round(self.bore_elements / factor)),
+            hole_elements=max(6, round(self.hole_elements / factor)),
+            turn_elements=max(6, round(self.turn_elements / factor)),
+            fillet_size=self.fillet_size * factor,
+        )
 
     @property
     def chord_error(self) -> float:
