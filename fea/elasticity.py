@@ -1,7 +1,5 @@
 """Isotropic linear elasticity: the constitutive law and the stiffness matrix of a link."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +8,7 @@ from fea.space import DisplacementSpace
 from geometry.errors import CannotRunError
 
 CURVED_DEGREE = 5  # 14 points with positive weights
+_LINEAR = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # gradients
 _CHUNK = 4096  # elements at a time: some 40 MB of working memory
 
 
@@ -72,22 +71,28 @@ def jacobians(
     return cofactor, determinant
 
 
-def assemble_stiffness(space: DisplacementSpace, *, E: float, nu: float) -> SymmetricBlockMatrix:
+def assemble_stiffness(
+    space: DisplacementSpace, *, E: float, nu: float, order: int | None = None
+) -> SymmetricBlockMatrix:
     """Assemble the stiffness matrix [N/mm] of an isotropic body with E [MPa] and Poisson's ratio nu.
 
     Equal to scikit-fem's ``linear_elasticity`` form on the same basis. Straight-sided elements: the
     reference tensor ∫ ∂φa/∂Xk ∂φb/∂Xl dX contracted with the inverse Jacobian, exact. Curved ones:
     products of the gradients' matrices at the points of the rule of degree ``CURVED_DEGREE``.
     Elements are taken in chunks, so the working memory does not grow with the mesh.
+
+    order   1 for the linear displacements within a quadratic space, at its corner nodes (curved
+            elements stay curved); by default the order of the space
+
+    Raises ``CannotRunError`` for a material that is not stable or a folded element.
     """
     if not (E > 0.0 and 0.0 <= nu < 0.5):
         raise CannotRunError(f"E = {E} MPa with ν = {nu} is no stable compressible material (E > 0, 0 ≤ ν < 0.5)")
-    b = space.cells.shape[1]
-    first, second = np.triu_indices(b)
-    indptr, indices, place, swapped = _pattern(space, first, second)
-    entries = np.zeros((3, 3, len(indices)))
-    straight = _StraightElements(space, first, second, E, nu)
-    curved = _CurvedElements(space, first, second, E, nu)
+    order = space.order if order is None else order
+    cells, count = (space.cells[:, :4], space.corners) if order == 1 else (space.cells, len(space.nodes))
+    indptr, indices, place, swapped = _pattern(cells, count)
+    blocks = np.zeros((len(indices), 3, 3))
+    straight, curved = (Kernel(space, order, E, nu) for Kernel in (_StraightElements, _CurvedElements))
     for kernel, members in ((straight, np.flatnonzero(~space.curved)), (curved, np.flatnonzero(space.curved))):
         for start in range(0, len(members), _CHUNK):
             chunk = members[start : start + _CHUNK]
@@ -97,62 +102,63 @@ def assemble_stiffness(space: DisplacementSpace, *, E: float, nu: float) -> Symm
                 for j in range(3):
                     # The block of a pair whose nodes stand in descending order belongs below the diagonal.
                     value = values[i, j] if i == j else np.where(mirror, values[j, i], values[i, j])
-                    np.add.at(entries[i, j], target, value.ravel())
-    return SymmetricBlockMatrix(indptr=indptr, indices=indices, blocks=np.ascontiguousarray(entries.transpose(2, 0, 1)))
+                    np.add.at(blocks[:, i, j], target, value.ravel())
+    return SymmetricBlockMatrix(indptr=indptr, indices=indices, blocks=blocks)
 
 
 def _pattern(
-    space: DisplacementSpace, first: NDArray[np.int64], second: NDArray[np.int64]
+    cells: NDArray[np.int64], count: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], NDArray[np.bool_]]:
     """Block rows and columns, the place of every element's node pairs, and whether a pair is in descending order."""
-    row, column = space.cells[:, first], space.cells[:, second]
+    first, second = np.triu_indices(cells.shape[1])
+    row, column = cells[:, first], cells[:, second]
     swapped = row > column
-    count = len(space.nodes)
-    keys, place = np.unique(np.minimum(row, column) * count + np.maximum(row, column), return_inverse=True)
+    keys = np.minimum(row, column)
+    keys *= count
+    keys += np.maximum(row, column, out=row)
+    del row, column
+    keys, place = np.unique(keys, return_inverse=True)
     rows = keys // count
     indptr = np.zeros(count + 1, dtype=np.int32)
     np.cumsum(np.bincount(rows, minlength=count), out=indptr[1:])
-    return indptr, (keys - rows * count).astype(np.int32), place.reshape(row.shape), swapped
+    return indptr, (keys - rows * count).astype(np.int32), place.reshape(swapped.shape), swapped
 
 
 class _StraightElements:
     """Stiffness blocks (3, 3, k, pairs) of straight-sided elements."""
 
-    def __init__(
-        self, space: DisplacementSpace, first: NDArray[np.int64], second: NDArray[np.int64], E: float, nu: float
-    ) -> None:
-        _, W, _, gradient = reference_basis(space, 2)
+    def __init__(self, space: DisplacementSpace, order: int, E: float, nu: float) -> None:
+        W, _, gradient = _gradients(space, order, 2)
+        first, second = np.triu_indices(gradient.shape[1])
         reference = np.einsum("q,qpk,qpl->klp", W, gradient[:, first], gradient[:, second])
         self.reference = np.ascontiguousarray(reference.reshape(9, -1))
-        self.corner = np.array([[[-1.0] * 3, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]])
         self.lam, self.mu = lame_constants(E, nu)
 
-    def __call__(self, nodes: NDArray[np.float64]) -> Any:
-        inverse, determinant = jacobians(nodes[:, :4], self.corner)
+    def __call__(self, nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+        inverse, determinant = jacobians(nodes[:, :4], _LINEAR[None])
         G = inverse[:, 0]
         outer = np.einsum("k,kip,kjq->ijkpq", determinant[:, 0], G, G)
         laplace = self.mu * (outer[0, 0] + outer[1, 1] + outer[2, 2])
         S = self.lam * outer + self.mu * outer.transpose(1, 0, 2, 3, 4)
         for i in range(3):
             S[i, i] += laplace
-        return (S.reshape(-1, 9) @ self.reference).reshape(3, 3, len(nodes), -1)
+        return np.asarray((S.reshape(-1, 9) @ self.reference).reshape(3, 3, len(nodes), -1))
 
 
 class _CurvedElements:
     """Stiffness blocks (3, 3, k, pairs) of curved elements."""
 
-    def __init__(
-        self, space: DisplacementSpace, first: NDArray[np.int64], second: NDArray[np.int64], E: float, nu: float
-    ) -> None:
-        _, self.W, _, self.gradient = reference_basis(space, CURVED_DEGREE)
-        self.first, self.second = first, second
+    def __init__(self, space: DisplacementSpace, order: int, E: float, nu: float) -> None:
+        self.W, self.geometry, gradient = _gradients(space, order, CURVED_DEGREE)
+        self.gradient = np.ascontiguousarray(gradient.transpose(0, 2, 1))
+        self.first, self.second = np.triu_indices(gradient.shape[1])
         self.lam, self.mu = lame_constants(E, nu)
 
-    def __call__(self, nodes: NDArray[np.float64]) -> Any:
-        k, b, _ = nodes.shape
-        inverse, determinant = jacobians(nodes, self.gradient)
+    def __call__(self, nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+        k, b = len(nodes), self.gradient.shape[2]
+        inverse, determinant = jacobians(nodes, self.geometry)
         # G[k, q, i, a] = ∂φa/∂x_i, weighted by the root of the integration weight
-        G = inverse @ self.gradient.transpose(0, 2, 1)
+        G = inverse @ self.gradient
         G *= np.sqrt(determinant * self.W)[:, :, None, None]
         G = G.reshape(k, len(self.W), 3 * b)
         M = (G.transpose(0, 2, 1) @ G).reshape(k, 3, b, 3, b)[:, :, self.first, :, self.second]
@@ -161,4 +167,14 @@ class _CurvedElements:
         K = self.lam * M + self.mu * M.transpose(1, 0, 2, 3)
         for i in range(3):
             K[i, i] += laplace
-        return K
+        return np.asarray(K)
+
+
+def _gradients(
+    space: DisplacementSpace, order: int, degree: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Weights (q,), gradients of the geometry's basis (q, B, 3) and of the displacements' (q, b, 3)."""
+    _, W, _, gradient = reference_basis(space, degree)
+    if order == space.order:
+        return W, gradient, gradient
+    return W, gradient, np.broadcast_to(_LINEAR, (len(W), *_LINEAR.shape))

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from geometry.errors import CannotRunError
 from geometry.tagged_mesh import TaggedMesh
 
-_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+"""Corner pairs of the mid-nodes 4 to 9 of a quadratic element."""
 # Faces seen from outside a positive tetrahedron: three corners, then the mid-nodes of edges ab, bc, ac.
 _FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
 _MIRROR = [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]
@@ -102,7 +103,7 @@ def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace
             nodes[cells[:, 4:]] = mesh.points[mesh.cells[:, 4:]]
             from_point[mesh.cells[:, 4:]] = cells[:, 4:]
         else:
-            for local, (a, b) in enumerate(_EDGES):
+            for local, (a, b) in enumerate(EDGES):
                 nodes[cells[:, 4 + local]] = (points[corner[:, a]] + points[corner[:, b]]) / 2.0
 
     spans = nodes[cells[:, 1:4]] - nodes[cells[:, :1]]
@@ -113,7 +114,7 @@ def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace
     cells[volume < 0.0] = cells[volume < 0.0][:, _MIRROR[: cells.shape[1]]]
     curved = np.zeros(len(cells), dtype=np.bool_)
     if order == 2:
-        for local, (a, b) in enumerate(_EDGES):
+        for local, (a, b) in enumerate(EDGES):
             middle = (nodes[cells[:, a]] + nodes[cells[:, b]]) / 2.0
             curved |= np.abs(nodes[cells[:, 4 + local]] - middle).max(axis=1) > _STRAIGHT * size
     boundary = _boundary(cells)

@@ -1,12 +1,13 @@
-import importlib.util
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import solid_meshes
 
-from fea import solve
+from fea import direct, mkl
+from fea.direct import PardisoFactor
 from fea.elasticity import assemble_stiffness
-from fea.solve import PardisoFactor, available_methods, factorise
+from fea.solve import available_methods, factorise
 from fea.space import displacement_space
 from fea.supports import isostatic_supports
 from geometry.errors import CannotRunError
@@ -34,7 +35,7 @@ def test_solution_satisfies_the_system(system, method):
     np.testing.assert_allclose(factor.solve(rhs[:, 1]), x[:, 1], atol=1e-9 * np.abs(x).max())
 
 
-@pytest.mark.skipif(len(METHODS) < 2, reason="pypardiso is not installed")
+@pytest.mark.skipif(len(METHODS) < 2, reason="MKL is not installed")
 def test_solvers_agree(system):
     _, K, rhs, _ = system
     one, other = (factorise(K, method=m, threads=1).solve(rhs) for m in METHODS)
@@ -54,38 +55,42 @@ def test_unsupported_body_is_refused(system, method):
 def test_wrong_solution_is_noticed(system, method, monkeypatch):
     _, K, rhs, _ = system
     factor = factorise(K, method=method, threads=1)
-    monkeypatch.setattr(solve, "RESIDUAL_LIMIT", 1e-30)
+    monkeypatch.setattr(direct, "RESIDUAL_LIMIT", 1e-30)
     with pytest.raises(CannotRunError, match=r"residual"):
         factor.solve(rhs)
 
 
-def test_fallback_without_pypardiso(system, monkeypatch):
+def test_fallback_where_mkl_is_not_installed(system, monkeypatch):
     _, K, rhs, _ = system
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(mkl, "_candidates", lambda: iter(()))
+    monkeypatch.setattr(mkl, "library", mkl.library.__wrapped__)
     assert available_methods() == ("superlu",)
-    factor = factorise(K)
+    bare = replace(K)  # its product is not made yet
+    factor = factorise(bare)
     assert factor.name == "SuperLU"
-    factor.solve(rhs)
-
-
-@pytest.mark.skipif("pardiso" not in METHODS, reason="pypardiso is not installed")
-def test_fallback_where_the_library_of_pypardiso_is_missing(system, monkeypatch):
-    _, K, _, _ = system
-
-    def missing(*_args, **_kwargs):
-        raise ImportError("Shared library mkl_rt not found.")
-
-    monkeypatch.setattr("pypardiso.PyPardisoSolver", missing)
-    monkeypatch.setattr(solve, "_mkl", solve._mkl.__wrapped__)
-    assert factorise(K).name == "SuperLU"
-    with pytest.raises(ImportError):
+    x = factor.solve(rhs)
+    assert not isinstance(bare.product, mkl.SymmetricProduct)
+    assert np.abs(K.full() @ x - rhs).max() < 1e-8 * np.abs(rhs).max()
+    with pytest.raises(ImportError, match=r"not installed"):
         factorise(K, method="pardiso")
 
 
-@pytest.mark.skipif("pardiso" not in METHODS, reason="pypardiso is not installed")
+@pytest.mark.skipif("pardiso" not in METHODS, reason="MKL is not installed")
+def test_fallback_where_mkl_cannot_be_loaded(system, monkeypatch, tmp_path):
+    _, K, _, _ = system
+    broken = tmp_path / "libmkl_rt.so"
+    broken.write_text("no library")
+    monkeypatch.setattr(mkl, "_candidates", lambda: iter([broken]))
+    monkeypatch.setattr(mkl, "library", mkl.library.__wrapped__)
+    assert factorise(K).name == "SuperLU"
+    with pytest.raises(ImportError, match=r"cannot be loaded"):
+        factorise(K, method="pardiso")
+
+
+@pytest.mark.skipif("pardiso" not in METHODS, reason="MKL is not installed")
 def test_pardiso_gives_its_memory_back(system):
     _, K, _, _ = system
-    factor = PardisoFactor(K, threads=1)
+    factor = PardisoFactor(K)
     handle = factor._handle
     assert handle.any()
     finalizer = factor._finalizer
