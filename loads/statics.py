@@ -29,6 +29,10 @@ NEARLY_SINGULAR = 1e-6
 """Smallest singular value of the scaled matrix below which a pose is refused."""
 
 
+ROUNDING = 1e-13
+"""Share of the largest force below which a value is rounding."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Drive:
     """The drive: it turns ``link`` about ``joint`` against the other link there (often the ground)."""
@@ -253,9 +257,16 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
         system=system,
         unknowns=unknowns,
         joints={name: _reaction(pose, name, system, unknowns) for name in linkage.joints},
-        drive_torque=float(unknowns[system.columns.index("T")]) if drive else 0.0,
+        drive_torque=_drive_torque(system, unknowns) if drive else 0.0,
         residual=float(np.max(np.abs(leftover / row_scale))) / load_size,
     )
+
+
+def _drive_torque(system: System, unknowns: Real) -> float:
+    """The drive torque [N mm]; zero where it is but the rounding of the largest joint force on the longest link."""
+    torque = float(unknowns[system.columns.index("T")])
+    forces = [abs(x) for name, x in zip(system.columns, unknowns, strict=True) if not system._is_moment(name)]
+    return torque if abs(torque) > ROUNDING * system.scale * max(forces, default=0.0) else 0.0
 
 
 def _scaled_rhs(system: System) -> Real:

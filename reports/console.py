@@ -51,7 +51,10 @@ def print_result(result: CheckResult, console: "Console") -> None:
 
 
 def _statics(case: LoadCaseResult) -> str:
-    forces = "  ".join(f"{name} {number(joint.magnitude)}" for name, joint in case.reactions.joints.items())
+    largest = max((joint.magnitude for joint in case.reactions.joints.values()), default=0.0)
+    forces = "  ".join(
+        f"{name} {number(joint.magnitude, beside=largest)}" for name, joint in case.reactions.joints.items()
+    )
     torque = case.reactions.drive_torque
     drive = case.reactions.drive
     driven = "" if drive is None else f"\nDrive torque on {drive.link}: {number(torque)} N·mm ({turning(torque)})"
