@@ -149,15 +149,17 @@ def _tetra_rule() -> tuple[_Array, _Array]:
 def flatten(points: _Array, cells: _Ints, least: float) -> tuple[_Array, int]:
     """Return points with elements of less than ``least`` scaled Jacobian flattened, and the number of those.
 
-    The mid-nodes of such an element move half-way to the middle of their edges, and all the way from the
-    fifth time on. Moving a mid-node bends the neighbours too, so this repeats until every element is
-    valid; it ends, since elements with straight edges have scaled Jacobians of one.
+    The mid-nodes of such an element move a quarter of the way to the middle of their edges, and all the
+    way from the eighth time on. Moving a mid-node bends the neighbours too, so this repeats until every
+    element is valid; it ends, since elements with straight edges have scaled Jacobians of one.
     """
     points = points.copy()
     times = np.zeros(len(cells), dtype=int)
-    while (bad := np.flatnonzero((scaled_jacobians(points, cells) < least) & (times < 5))).size:
+    while (bad := np.flatnonzero((scaled_jacobians(points, cells) < least) & (times < 8))).size:
         times[bad] += 1
-        for share, chosen in ((0.5, cells[bad[times[bad] < 5]]), (1.0, cells[bad[times[bad] == 5]])):
-            middles = points[chosen[:, :4]][:, TETRA_EDGES].mean(axis=2)
-            points[chosen[:, 4:]] = (1.0 - share) * points[chosen[:, 4:]] + share * middles
+        for share, chosen in ((0.25, bad[times[bad] < 8]), (1.0, bad[times[bad] == 8])):
+            # A mid-node that several bad elements share moves once.
+            nodes, first = np.unique(cells[chosen, 4:], return_index=True)
+            middles = points[cells[chosen, :4]][:, TETRA_EDGES].mean(axis=2).reshape(-1, 3)[first]
+            points[nodes] = (1.0 - share) * points[nodes] + share * middles
     return points, int((times > 0).sum())

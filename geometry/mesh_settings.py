@@ -53,12 +53,12 @@ class MeshSettings:
     def chord_error(self) -> float:
         """Largest relative difference of area or volume between mesh and geometry that is accepted.
 
-        An inscribed polygon of n sides has 1 - sin(2π/n)/(2π/n) less area than its circle, about
-        (2π/n)²/6; quadratic sides that touch the circle in three points miss less than (2π/n)⁴/100.
-        Half as much again is allowed for unequal edges.
+        With sides that span the angle θ of a circle, an inscribed polygon has θ²/6 less area than it; parabolas
+        through the sides' ends and middles have about θ⁴/480 less. Half as much again is allowed for unequal
+        straight sides, three times as much for curved ones, of which some are flattened.
         """
         turn = 2.0 * math.pi / min(self.bore_elements, self.hole_elements, self.turn_elements)
-        return 1e-3 + 1.5 * (turn**4 / 500.0 if self.curved else turn**2 / 6.0)
+        return 1e-3 + (3.0 * turn**4 / 480.0 if self.curved else 1.5 * turn**2 / 6.0)
 
 
 COARSE = MeshSettings(size=0.4, bore_elements=8, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)

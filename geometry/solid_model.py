@@ -284,7 +284,7 @@ def _fillet(gmsh: Any, solid: Entity, curves: list[int], radius: float, named: B
         raise CaseError(
             f"fillet_radius {part.fillet_radius:g} mm does not fit where the {part.shape} meets its eyes of "
             f"{part.eye_diameter:g} mm by {part.eye_thickness:g} mm; "
-            "make the fillet smaller or the eyes thicker or wider"
+            "make the fillet smaller, the eyes thicker or wider, or the distance between pins longer"
         ) from error
     return _only(solids)
 

@@ -2,6 +2,7 @@
 
 import dataclasses
 import os
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -140,6 +141,18 @@ def test_background_sizes_refine_where_they_are_small() -> None:
 def test_too_many_elements_are_refused() -> None:
     with pytest.raises(CannotRunError, match="more than max_elements 100; use a coarser size"):
         mesh_body(bar_body(), dataclasses.replace(COARSE, max_elements=100))
+
+
+def test_thin_walls_are_meshed_finely_enough() -> None:
+    thin = dataclasses.replace(tube_body(inner_diameter="4.7 mm"), holes=())
+    mesh = mesh_body(thin, COARSE)
+    assert volumes_and_moments(mesh.points, mesh.cells)[0].sum() == pytest.approx(mesh.volume, rel=3e-3)
+
+
+def test_flattened_elements_are_told() -> None:
+    coarse = dataclasses.replace(COARSE, turn_elements=4, fillet_size=3.0)
+    [note] = mesh_body(tube_body(), coarse).notes
+    assert re.fullmatch(r"\d+ of \d+ curved elements were flattened, by up to 0\.\d+ mm", note)
 
 
 def test_fillet_that_the_kernel_cannot_make() -> None:

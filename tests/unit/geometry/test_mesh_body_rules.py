@@ -1,0 +1,112 @@
+"""What a body must obey before the geometry kernel sees it."""
+
+import math
+
+import pytest
+
+from geometry.body_rules import check_body, extent, eye_reach, patch_span
+from geometry.errors import CaseError
+from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+
+TUBE = Tube(
+    shape="tube",
+    material="pvc",
+    outer_diameter="5 mm",
+    inner_diameter="2.5 mm",
+    eye_diameter="8 mm",
+    eye_thickness="7 mm",
+    fillet_radius="0.8 mm",
+)
+BAR = Bar(
+    shape="bar",
+    material="resin",
+    width="5 mm",
+    thickness="3 mm",
+    eye_diameter="9 mm",
+    eye_thickness="3 mm",
+    fillet_radius="1 mm",
+)
+
+
+def pin(name: str, x: float, y: float = 0.0, diameter: float = 1.5) -> Pin:
+    return Pin(name=name, x=x, y=y, diameter=diameter)
+
+
+def row(first: float, last: float, count: int = 2, diameter: float = 1.0, along: str = "y") -> HoleRow:
+    return HoleRow.model_validate(
+        {
+            "count": count,
+            "diameter": f"{diameter} mm",
+            "first": f"{first} mm",
+            "last": f"{last} mm",
+            "along": along,
+        }
+    )
+
+
+def body(
+    pins: tuple[Pin, ...] = (pin("A", 0.0), pin("B", 40.0)),
+    ends: tuple[PlainEnd, ...] = (),
+    holes: tuple[HoleRow, ...] = (),
+    part: Tube | Bar = TUBE,
+) -> Body:
+    return Body(part=part, pins=pins, ends=ends, holes=holes)
+
+
+H = PlainEnd(name="H", x=60.0, patch=5.0)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (body(pins=(), ends=(H,)), "0 pins, but a part needs at least 1"),
+        (body(pins=(pin("A", 3.0),)), "all lie at x = 3 mm"),
+        (
+            body(pins=(pin("A", 0.0, diameter=8.0), pin("B", 40.0))),
+            "hole at A has a diameter of 8 mm.*eye_diameter 8 mm",
+        ),
+        (body(pins=(pin("A", 0.0, y=1.5), pin("B", 40.0))), "pin A lies 1.5 mm off.*less than 1.5 mm"),
+        (body(pins=(pin("A", 0.0), pin("B", 20.0, y=-4.0), pin("C", 40.0))), "pin B lies -4 mm off.*less than 4 mm"),
+        (body(pins=(pin("A", 0.0), pin("C", 40.0), pin("B", 1.5))), "pin holes at A and B run into each other"),
+        (body(ends=(PlainEnd(name="H", x=60.0, patch=20.0),)), "patch of H, x = 40 to 60 mm, runs into the eye at B"),
+        (body(ends=(PlainEnd(name="H", x=60.0, patch=80.0),)), "patch of H is 80 mm long.*x = -20 to 60"),
+        (body(ends=(H, PlainEnd(name="I", x=54.0, patch=4.0))), "patches of H and I overlap"),
+        (body(holes=(row(4.0, 20.0),)), r"holes\[1\].*at x = 4 mm that runs into the eye or fillet at A"),
+        (body(holes=(row(10.0, 38.0),)), "at x = 38 mm that runs into the eye or fillet at B"),
+        (body(holes=(row(10.0, 20.0, count=11),)), "are 1 mm apart and overlap"),
+        (body(holes=(row(10.0, 20.0, diameter=5.0, along="z"),)), "cut the link through, because its section is 5 mm"),
+        (body(holes=(row(10.0, 20.0, diameter=3.0),), part=BAR), "section is 3 mm across"),
+        (body(ends=(H,), holes=(row(50.0, 59.8),)), "at x = 59.8 mm, but holes must lie within the link"),
+        (body(holes=(row(10.0, 20.0), row(15.0, 20.5, along="z"))), r"at x = 20 mm that runs into one of holes\[2\]"),
+    ],
+)
+def test_what_is_wrong_is_named(wrong: Body, message: str) -> None:
+    with pytest.raises(CaseError, match=message):
+        check_body(wrong)
+
+
+@pytest.mark.parametrize(
+    "right",
+    [
+        body(),
+        body(part=BAR),
+        body(pins=(pin("A", 0.0, y=1.4), pin("B", 20.0, y=-3.9), pin("C", 40.0))),
+        body(ends=(H,), holes=(row(10.0, 20.0), row(50.0, 52.0, along="z"))),
+        body(ends=(H, PlainEnd(name="I", x=52.0, patch=4.0))),
+        body(holes=(row(30.0, 10.0, count=3),)),
+        body(holes=(row(10.0, 10.0, count=1),)),
+        body(holes=(row(10.0, 20.0, diameter=4.5),), part=TUBE),
+        body(pins=(pin("A", 0.0), pin("B", 5.0), pin("C", 40.0))),
+    ],
+)
+def test_what_is_right_passes(right: Body) -> None:
+    check_body(right)
+
+
+def test_places_along_the_link() -> None:
+    link = body(ends=(H, PlainEnd(name="I", x=52.0, patch=4.0), PlainEnd(name="K", x=-20.0, patch=3.0)))
+    assert extent(link) == (-20.0, 60.0)
+    assert [patch_span(link, end) for end in link.ends] == [(55.0, 60.0), (50.0, 54.0), (-20.0, -17.0)]
+    # The fillet's centre is 4.8 mm from an axis on the tube; off it by 4.5 mm, 2 mm of that lie across.
+    assert eye_reach(link, link.pins[0]) == pytest.approx(4.8)
+    assert eye_reach(link, pin("X", 10.0, y=-4.5)) == pytest.approx(math.sqrt(4.8**2 - 2.0**2))
