@@ -31,6 +31,9 @@ def print_result(result: CheckResult, console: "Console") -> None:
         console.print(_links(case))
         if case.checks:
             console.print(_checks(case))
+        for check in case.checks:
+            if check.quantity == "drive power":
+                console.print(Text(f"Motor: {check.reason}."))
         for line in _hand(case):
             console.print(Text(line))
     for name, hand in result.hand.items():

@@ -8,6 +8,7 @@ from typing import Any
 from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.verdict import Verdict
 from geometry.material import Material
+from reports.mechanism import design_of
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
 from reports.record import alula_version, worst_load_case
 from reports.wording import AGREEMENT, band, checks_of, fixed, headline, joined, number, percent, plain, turning
@@ -90,6 +91,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         agreement=AGREEMENT,
         materials=_materials(result),
         not_covered=NOT_COVERED,
+        design=design_of(result.case),
         version=alula_version(),
         data_uri=data_uri,
     )

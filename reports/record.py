@@ -11,6 +11,7 @@ from fea.result import CheckResult, LinkResult, LoadCaseResult
 from geometry.material import Material
 from loads.published import StaticsAudit
 from loads.statics import Reactions
+from reports.mechanism import design_record
 
 RESULT_SCHEMA_VERSION = 1
 
@@ -119,6 +120,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
             for name in dict.fromkeys(result.case.part_of(link).material for link in result.case.checked_links)
         },
         "published_statics": None if result.audit is None else _audit(result.audit),
+        "design": design_record(result.case),
         "assumptions": list(result.case.assumptions),
         "warnings": list(result.warnings),
         "timings": dict(result.timings),
