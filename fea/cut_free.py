@@ -1,7 +1,6 @@
 """Cutting a link free: all that acts on it, in its own frame, for the beam and for the solid."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,32 +16,11 @@ from loads.statics import Reactions
 Real = NDArray[np.float64]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LinkView:
-    """The frame in which a link's loads are seen.
-
-    axes   (3, 3) columns: its x, y, z in global axes
-    moved  point -> (3,) by which it has left its place in the link's undeformed frame [mm]; none where rigid
-    """
-
-    axes: Real
-    moved: Mapping[str, Real]
-
-    @classmethod
-    def undeformed(cls, pose: Pose, link: str) -> "LinkView":
-        """Return the link's own frame in a pose."""
-        axes = np.eye(3)
-        axes[:2, :2] = pose.rotation(link)
-        return cls(axes=axes, moved={})
-
-    def local(self, vector: Real) -> Real:
-        """Turn a vector (3,) or wrench (6,) from global axes into the frame."""
-        return np.concatenate([self.axes.T @ part for part in vector.reshape(-1, 3)])
-
-    def at_point(self, point: str, wrench: Real) -> Real:
-        """Turn a wrench (6,) at a point into the frame and move it to the point's place in the undeformed link."""
-        local = self.local(wrench)
-        return applied.shifted(local, self.moved[point]) if point in self.moved else local
+def link_axes(pose: Pose, link: str) -> Real:
+    """Return the link's x, y, z in global axes, as columns (3, 3)."""
+    axes = np.eye(3)
+    axes[:2, :2] = pose.rotation(link)
+    return axes
 
 
 def link_loads(
@@ -51,33 +29,37 @@ def link_loads(
     body: Body,
     reactions: Reactions,
     loads: Sequence[applied.Load],
-    view: LinkView | None = None,
+    axes: Real | None = None,
 ) -> LinkLoads:
     """Everything that acts on a link in a load case called ``name``: a balanced set.
 
     Forces at a pin are taken together as one wrench of the pin; the drive torque stays apart,
-    since it enters the part in a way of its own. ``view`` is the link's own frame in the pose when left out.
+    since it enters the part in a way of its own. ``axes`` (3, 3), as columns in global ones, are those in
+    which all is given: the link's own in the pose when left out.
     """
     pose = reactions.pose
-    view = view or LinkView.undeformed(pose, link)
+    turn = (link_axes(pose, link) if axes is None else axes).T
+
+    def local(vector: Real) -> Real:
+        return np.concatenate([turn @ part for part in vector.reshape(-1, 3)])
+
     wrenches: dict[str, Real] = {}
     for point, wrench in reactions.on_link(link):
-        wrenches[point] = wrenches.get(point, np.zeros(6)) + view.at_point(point, wrench)
+        wrenches[point] = wrenches.get(point, np.zeros(6)) + local(wrench)
     lines: list[LineLoad] = []
     bodies: list[BodyLoad] = []
     for load in loads:
         if load.link != link:
             continue
         if isinstance(load, applied.PointLoad):
-            here = view.at_point(load.point, load.wrench)
-            wrenches[load.point] = wrenches.get(load.point, np.zeros(6)) + here
+            wrenches[load.point] = wrenches.get(load.point, np.zeros(6)) + local(load.wrench)
         elif isinstance(load, applied.LineLoad):
-            intensity = np.array([view.local(load.at_start), view.local(load.at_end)])
+            intensity = np.array([local(load.at_start), local(load.at_end)])
             lines.append(LineLoad(first=load.start, last=load.end, intensity=intensity))
         else:
             bodies.append(
                 BodyLoad(
-                    specific_force=view.local(load.acceleration),
+                    specific_force=local(load.acceleration),
                     about=np.array([*load.centroid, 0.0]),
                     angular_acceleration=load.angular_acceleration,
                     angular_speed=load.angular_speed,

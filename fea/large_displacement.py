@@ -2,9 +2,10 @@
 
 Where the linear frame moves by more than 5 % of the linkage's span, equilibrium on the undeformed pose is no longer
 a good answer: joint forces then come from the co-rotational frame (``fea.corotational``), and each link is loaded by
-what acts on it on the deformed shape, seen from the chord through its first and last station.
+what acts on it on the deformed shape, along the chord through its first and last station.
 """
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -13,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.corotational import CorotationalSolution, NoEquilibriumError, solve_large_displacement
-from fea.cut_free import LinkView, link_loads
+from fea.cut_free import link_loads
 from fea.frame import FrameSolution, solve_frame
 from fea.joint_forces import JointForces
 from fea.link_loads import LinkLoads
 from fea.linkage_frame import LinkageFrame, build_frame
 from geometry.errors import CannotRunError, CaseError
+from geometry.part import Body
 from geometry.pose import Pose
 from loads.actions import PartMass
 from loads.applied import Load, shifted
@@ -153,7 +155,7 @@ def _deformed(
         reactions=reactions,
         links={
             link: balanced(
-                link_loads(title, link, case.body(link), reactions, loads, _seen_from_chord(frame, found, link)),
+                _on_deformed_shape(frame, found, reactions, link, title, case.body(link), loads),
                 masses.get(link),
             )
             for link in case.checked_links
@@ -176,11 +178,18 @@ def _largest(frame: LinkageFrame, solution: FrameSolution) -> tuple[float, str]:
     return largest, where
 
 
-def _seen_from_chord(frame: LinkageFrame, found: CorotationalSolution, link: str) -> LinkView:
-    """The chord's frame: x from the first to the last station, z that of the first node, turned normal to the chord.
+def _on_deformed_shape(
+    frame: LinkageFrame,
+    found: CorotationalSolution,
+    reactions: Reactions,
+    link: str,
+    title: str,
+    body: Body,
+    loads: Sequence[Load],
+) -> LinkLoads:
+    """What acts on a link on the deformed shape, for its straight shape along the chord.
 
-    A pin that has left its place in the undeformed link by e takes the moment e x F with it: what normal forces do
-    on a bent link is in these moments.
+    The chord runs from the first to the last station; z is that of the first node, turned normal to it.
     """
     nodes, stations = frame.model.nodes + found.displacements[: len(frame.model.nodes)], frame.stations[link]
     (x, first), (_, last) = stations[0], stations[-1]
@@ -189,12 +198,37 @@ def _seen_from_chord(frame: LinkageFrame, found: CorotationalSolution, link: str
     across = np.cross(found.rotations[first][:, 2], along)
     across /= np.linalg.norm(across)
     axes = np.column_stack([along, across, np.cross(along, across)])
-    return LinkView(
-        axes=axes,
-        moved={
-            point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
-            for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
-        },
+    moved = {
+        point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
+        for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
+    }
+    return bent(link_loads(title, link, body, reactions, loads, axes), moved)
+
+
+def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
+    """Return the loads of a straight link with pairs of transverse forces that stand for its being bent.
+
+    Between two loaded stations that have left the chord by d1 and d2, a normal force N (tension positive) has the
+    moment of the transverse forces N (d2 - d1)/L, one at each station: bending moments at the stations so are those of
+    the bent link (the fictitious lateral loads of the P-Δ method: Wilson & Habibullah, Engineering Journal AISC 24
+    (1987) 172-175).
+
+    moved   point -> (3,) by which it has left its place in the straight link [mm]
+    """
+    stations = [(float(pin.centre[0]), pin.name, pin.wrench) for pin in loads.pins]
+    stations += [(float(end.point[0]), end.name, end.wrench) for end in loads.ends]
+    stations.sort(key=lambda station: station[0])
+    normal, extra = 0.0, {name: np.zeros(6) for _, name, _ in stations}
+    for (x0, first, wrench), (x1, last, _) in itertools.pairwise(stations):
+        normal -= float(wrench[0])
+        if x1 - x0 > 0.0:
+            shear = normal * (moved[last] - moved[first]) / (x1 - x0)
+            extra[first][1:3] += shear[1:]
+            extra[last][1:3] -= shear[1:]
+    return replace(
+        loads,
+        pins=tuple(replace(pin, wrench=pin.wrench + extra[pin.name]) for pin in loads.pins),
+        ends=tuple(replace(end, wrench=end.wrench + extra[end.name]) for end in loads.ends),
     )
 
 
@@ -205,9 +239,10 @@ def balanced(loads: LinkLoads, mass: PartMass | None) -> LinkLoads:
     ``CannotRunError`` where that is more than ``LARGEST_SHIFT`` of the load.
     """
     total = np.zeros(6)
-    reach = max((float(np.linalg.norm(p.centre - loads.pins[0].centre)) for p in loads.pins), default=0.0)
+    acting = [(p.centre, p.wrench) for p in loads.pins] + [(e.point, e.wrench) for e in loads.ends]
+    reach = max(float(np.linalg.norm(place - acting[0][0])) for place, _ in acting)
     size = 0.0
-    for place, wrench in [(p.centre, p.wrench) for p in loads.pins] + [(e.point, e.wrench) for e in loads.ends]:
+    for place, wrench in acting:
         total += shifted(wrench, place)
         size += float(np.linalg.norm(wrench[:3]))
     for couple in loads.couples:

@@ -1,0 +1,159 @@
+"""When a displacement is large, and what acts on each link on the deformed shape."""
+
+import numpy as np
+import pytest
+
+from fea.beam import internal_forces
+from fea.check import check_case
+from fea.corotational import solve_large_displacement
+from fea.cut_free import beam_loads
+from fea.joint_forces import joint_forces
+from fea.large_displacement import LARGE, SUBDIVISIONS, balanced, bent, examine, span
+from fea.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
+from fea.linkage_frame import build_frame
+from fea.verdict import Verdict
+from geometry.errors import CannotRunError
+from loads.actions import actions
+from loads.case_file import read_case
+
+HELD_AT_GF = ('drive.link="GF"', 'drive.joint="G"')
+
+
+def under(load, *overrides):
+    """The wing's case with its one load replaced, as [x, y] or [x, y, z] in N."""
+    components = ", ".join(f'"{x} N"' for x in load)
+    return read_case(
+        "owl-wing-static", [f'load_cases.weight.forces=[{{link="CH", at="H", force=[{components}]}}]', *overrides]
+    )
+
+
+def examined(case):
+    pose = case.solve_pose()
+    loads = actions(case, case.load_cases["weight"], pose, {})
+    return examine(case, "weight", joint_forces(case, pose, loads), loads, {}), loads
+
+
+def test_the_span_is_the_largest_distance_of_two_points():
+    pose = read_case("owl-wing-static").solve_pose()
+    assert span(pose) == pytest.approx(np.linalg.norm(pose.points["A"] - pose.points["H"]))
+    assert span(pose) == pytest.approx(294.2, abs=0.05)
+
+
+def test_small_displacements_leave_the_undeformed_pose_alone():
+    found, _ = examined(under([0, -0.25], *HELD_AT_GF))
+    assert (found.state, found.held, found.reactions, dict(found.links)) == ("small", 1.0, None, {})
+    assert found.points["CH", "H"][1] == pytest.approx(-4.75, abs=0.01)
+    assert "good enough" in found.sentence
+
+
+def test_the_limit_is_five_percent_of_the_span():
+    one, _ = examined(under([0, -0.25], *HELD_AT_GF))
+    for factor, state in ((0.99, "small"), (1.01, "deformed")):
+        load = factor * LARGE * one.span / one.linear * 0.25
+        assert examined(under([0, -load], *HELD_AT_GF))[0].state == state
+
+
+def test_the_wing_held_at_ae_does_not_hold_its_weight():
+    found, _ = examined(under([0, -0.25]))
+    assert (found.state, found.reactions) == ("no equilibrium", None)
+    assert found.held == pytest.approx(0.203, abs=5e-4)
+    assert found.linear == pytest.approx(47.9, abs=0.05)
+    assert "its equilibrium ends at 0.203 of it" in found.sentence
+
+
+def test_its_verdict_is_fail_and_the_undeformed_figures_stay():
+    case = under([0, -0.25])
+    result = check_case(case, name="owl-wing-static", fidelity="beam")
+    assert result.verdict is Verdict.FAIL
+    (check,) = [c for c in result.load_cases["weight"].checks if c.name == "large displacement"]
+    assert (check.verdict, check.limit, check.at_least) == (Verdict.FAIL, 1.0, True)
+    assert result.load_cases["weight"].reactions.joints["A"].magnitude == pytest.approx(0.9520, abs=5e-5)
+    assert any("does not hold the load" in warning for warning in result.warnings)
+    off = check_case(under([0, -0.25], 'large_displacement="off"'), name="owl-wing-static", fidelity="beam")
+    assert off.verdict is not Verdict.FAIL
+    assert not any(c.name == "large displacement" for c in off.load_cases["weight"].checks)
+    assert any("large_displacement = off" in warning for warning in off.warnings)
+
+
+@pytest.mark.parametrize("load", [[0, -1.5], [0, -1.2, 0.4]])
+def test_links_carry_what_the_deformed_frame_says(load):
+    """Bending moments at every pin, from the link's own loads and from the co-rotational elements beside it."""
+    case = under(load, *HELD_AT_GF)
+    found, loads = examined(case)
+    assert found.state == "deformed"
+    frame = build_frame(case, case.solve_pose(), loads, held=case.pinned_drive)
+    solution = solve_large_displacement(frame.model, SUBDIVISIONS, least_step=1 / 512)
+    assert found.reactions.drive_torque == pytest.approx(solution.reactions[frame.points["GF", "G"], 5], rel=1e-6)
+    checked = 0
+    for link, acting in found.links.items():
+        on_axis = beam_loads(acting, case.body(link), 0.0, None)
+        assert on_axis.imbalance < 1e-12
+        forces = internal_forces(on_axis)
+        own = [i for i, e in enumerate(frame.model.elements) if e.nodes[0] in [n for _, n in frame.stations[link]]]
+        for (x, _), element in zip(frame.stations[link][:-1], own, strict=True):
+            first = int(np.flatnonzero(solution.origin == element)[0])
+            expected = solution.section_forces(first)[0]
+            got = forces.at(x, "after")
+            # The chord is turned against the element, and twisted: lengths of vectors are compared.
+            assert np.linalg.norm(got[3:]) == pytest.approx(np.linalg.norm(expected[3:]), abs=0.2), (link, x)
+            assert got[0] == pytest.approx(expected[0], rel=0.05, abs=0.05), (link, x)
+            checked += 1
+    assert checked == 8
+    result = check_case(case, name="owl-wing-static", fidelity="beam")
+    assert result.load_cases["weight"].large_displacement.state == "deformed"
+    undeformed = check_case(under(load, *HELD_AT_GF, 'large_displacement="off"'), name="owl", fidelity="beam")
+    stresses = [r.load_cases["weight"].links["CF"].von_mises_max.value for r in (result, undeformed)]
+    assert abs(stresses[0] / stresses[1] - 1.0) > 0.005
+
+
+def bar(*wrenches, lines=()):
+    pins = tuple(
+        PinLoad(name=name, centre=np.array([x, 0.0, 0.0]), diameter=1.0, wrench=np.array(wrench, dtype=float))
+        for name, x, wrench in wrenches
+    )
+    return LinkLoads(name="one", pins=pins, lines=lines)
+
+
+def test_a_bent_strut_has_the_moment_of_its_axial_force():
+    """P = 10 N compression, middle 2 mm above and 1 mm beside the chord: M = P e in the middle, about both axes."""
+    straight = bar(("a", 0, [10, 0, 0, 0, 0, 0]), ("b", 40, [0] * 6), ("c", 100, [-10, 0, 0, 0, 0, 0]))
+    moved = {"a": np.zeros(3), "b": np.array([0.0, 2.0, 1.0]), "c": np.zeros(3)}
+    on_axis = beam_loads(bent(straight, moved), type("Body", (), {"pins": (), "ends": ()})(), 0.0, None)
+    found = internal_forces(on_axis).at(40.0)
+    # Cut at the middle: the force at a, 2 mm below the cut, has the moment 2 x 10 about z on the part before it.
+    assert found[5] == pytest.approx(-20.0)
+    assert found[4] == pytest.approx(10.0)
+    assert on_axis.imbalance < 1e-15
+
+
+def test_what_spread_loads_leave_goes_to_the_strongest_pin():
+    line = LineLoad(first=0.0, last=100.0, intensity=np.array([[0, -0.1, 0], [0, -0.3, 0]]))
+    loads = bar(("a", 0, [0, 10.0, 0, 0, 0, 0]), ("c", 100, [0.1, 10.2, 0, 0, 0, 0]), lines=(line,))
+    fixed = balanced(loads, None)
+    assert fixed.pins[0].wrench == pytest.approx(loads.pins[0].wrench)
+    # 20 N down with its centroid at 58.3 mm.
+    assert fixed.pins[1].wrench == pytest.approx([0, 10.0, 0, 0, 0, 20 * 175 / 3 - 1000])
+    with pytest.raises(CannotRunError, match=r"leave .* unbalanced .*stiffen the link"):
+        balanced(bar(("a", 0, [0, 10, 0, 0, 0, 0]), ("c", 100, [0, 10, 0, 0, 0, 0]), lines=(line,) * 2), None)
+
+
+def test_plain_ends_take_part():
+    loads = LinkLoads(
+        name="one",
+        pins=bar(("a", 0, [0, 1.0, 0, 0, 0, -50.0])).pins,
+        ends=(EndLoad(name="h", point=np.array([50.0, 0, 0]), wrench=np.array([0, -1.0, 0, 0, 0, 0])),),
+    )
+    # 50 N mm of the end's force about a, taken by 100 at a: half too little.
+    with pytest.raises(CannotRunError, match="unbalanced"):
+        balanced(loads, None)
+
+
+def test_a_linkage_with_a_slot_is_not_looked_into():
+    case = read_case("owl-wing-static")
+    pose = case.solve_pose()
+    loads = actions(case, case.load_cases["weight"], pose, {})
+    forces = joint_forces(case, pose, loads)
+    slot = case.joints["B"].model_copy(update={"type": "pin-in-slot"})
+    found = examine(case.model_copy(update={"joints": case.joints | {"B": slot}}), "weight", forces, loads, {})
+    assert (found.state, found.held) == ("unknown", 1.0)
+    assert "pin-in-slot" in found.sentence
