@@ -211,7 +211,7 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
     Between two loaded stations that have left the chord by d1 and d2, a normal force N (tension positive) has the
     moment of the transverse forces N (d2 - d1)/L, one at each station: bending moments at the stations so are those of
     the bent link (the fictitious lateral loads of the P-Δ method: Wilson & Habibullah, Engineering Journal AISC 24
-    (1987) 172-175).
+    (1987) 172-175). Transverse forces take the moment of having left their places along.
 
     moved   point -> (3,) by which it has left its place in the straight link [mm]
     """
@@ -219,6 +219,8 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
     stations += [(float(end.point[0]), end.name, end.wrench) for end in loads.ends]
     stations.sort(key=lambda station: station[0])
     normal, extra = 0.0, {name: np.zeros(6) for _, name, _ in stations}
+    for _, name, wrench in stations:
+        extra[name][3:] += np.cross(moved[name], [0.0, wrench[1], wrench[2]])
     for (x0, first, wrench), (x1, last, _) in itertools.pairwise(stations):
         normal -= float(wrench[0])
         if x1 - x0 > 0.0:
