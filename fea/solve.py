@@ -2,7 +2,7 @@
 
 Work in seconds of one core and memory are estimated from figures measured on cubes cut into tetrahedra,
 whose factors are among the fullest; slender bodies take down to half as much. At n unknowns of quadratic
-elements, one core of a 2.9-GHz-class x86-64 server:
+elements, one core of an AMD EPYC server, threads set to one:
 
     MKL PARDISO    47,000 unknowns: 2.3 s and 0.26 GB; 152,000: 1.35 GB; 499,000: 7.2 GB
     SuperLU        15,000 unknowns: 1.4 s; 47,000: 36 s and 1.4 GB
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from fea import memory, mkl
 from fea.block_matrix import SymmetricBlockMatrix
 from fea.direct import PardisoFactor, SuperLUFactor
+from fea.solved import Solved
 from fea.threads import bounded
 from fea.two_level import LinearLevel, TwoLevelFactor
 from geometry.errors import CannotRunError
@@ -36,7 +37,7 @@ class Solver(Protocol):
 
     name: str
 
-    def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+    def solve(self, rhs: NDArray[np.float64]) -> Solved:
         """Solve for (n,) or (n, k)."""
         ...
 
@@ -57,7 +58,11 @@ class Factor:
     solver: Solver
 
     def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve for (n,) or (n, k); raises ``CannotRunError`` where residual or error is not small."""
+        """Solve for (n,) or (n, k); raises ``CannotRunError`` where the error is not small."""
+        return self.solved(rhs).x
+
+    def solved(self, rhs: NDArray[np.float64]) -> Solved:
+        """The same, with the error and the number of iterations."""
         with bounded(self.threads):
             return self.solver.solve(rhs)
 
@@ -112,20 +117,20 @@ def factorise(
             raise CannotRunError("the two-level solver needs quadratic elements; choose a direct solver")
     with bounded(threads):
         if method == "two-level" and level is not None:
-            coarse = _direct(level.stiffness(), direct[0], memory_limit, refinements=0)
+            needed = two_level_estimate(K, level, right_hand_sides, direct[0]).memory
+            memory.require(needed, _task(method, K.size), memory_limit)
+            coarse = _direct(level.stiffness(), direct[0], memory_limit)
             solver: Solver = TwoLevelFactor(K, level, coarse)
         else:
-            solver = _direct(K, "superlu" if method == "superlu" else "pardiso", memory_limit, refinements=2)
+            solver = _direct(K, "superlu" if method == "superlu" else "pardiso", memory_limit)
     return Factor(name=solver.name, reason=reason, threads=threads, solver=solver)
 
 
-def _direct(
-    K: SymmetricBlockMatrix, method: DirectMethod, limit: float | None, *, refinements: int
-) -> PardisoFactor | SuperLUFactor:
+def _direct(K: SymmetricBlockMatrix, method: DirectMethod, limit: float | None) -> PardisoFactor | SuperLUFactor:
     if method == "superlu":
         memory.require(direct_estimate("superlu", K.size, 1).memory, _task("superlu", K.size), limit)
         return SuperLUFactor(K)
-    return PardisoFactor(K, refinements=refinements, memory_limit=limit)
+    return PardisoFactor(K, memory_limit=limit)
 
 
 def _task(method: Method, unknowns: int) -> str:

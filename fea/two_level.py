@@ -18,15 +18,13 @@ from numpy.typing import NDArray
 
 from fea.block_matrix import Product, SymmetricBlockMatrix
 from fea.elasticity import assemble_stiffness
+from fea.solved import ENERGY_TARGET, REFINEMENTS, Solved, accept, energy_error
 from fea.space import EDGES, DisplacementSpace
 from geometry.errors import CannotRunError
 
 TOLERANCE = 1e-9
 """Energy norm of the error, by the preconditioner, relative to that of the solution, at which iterations end."""
-ACCEPTED = 1e-8
-"""The same of the residual computed anew: rounding must not have spoilt what the iteration believes."""
 MOST_ITERATIONS = 400
-_REFINEMENTS = 3
 _BATCH = 8  # columns iterated together: bounds the working memory
 _DEGREE = 2
 _RATIO = 10.0  # of the largest to the smallest eigenvalue that the smoother treats
@@ -83,38 +81,33 @@ class TwoLevelFactor:
         self._transfer = _Transfer(level.space)
         self._smoother = _ChebyshevSmoother(K)
 
-    def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+    def solve(self, rhs: NDArray[np.float64]) -> Solved:
         """Solve for (n,) or (n, k); raises ``CannotRunError`` where the iteration does not converge."""
-        return self.solve_counted(rhs)[0]
-
-    def solve_counted(self, rhs: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
-        """Solve for (n,) or (n, k); also return the largest number of iterations of a column."""
         columns = np.ascontiguousarray(rhs.reshape(self._K.size, -1).T, dtype=np.float64)
         solution = np.zeros_like(columns)
-        iterations = 0
+        iterations, error = 0, 0.0
         loaded = np.flatnonzero(columns.any(axis=1))
         for start in range(0, len(loaded), _BATCH):
             batch = loaded[start : start + _BATCH]
-            solution[batch], count = self._solved(columns[batch])
-            iterations = max(iterations, count)
-        return solution.T.reshape(rhs.shape), iterations
+            solution[batch], left, count = self._solved(columns[batch])
+            iterations, error = max(iterations, count), max(error, left)
+        return Solved(x=solution.T.reshape(rhs.shape), error=error, iterations=iterations)
 
-    def _solved(self, b: Vectors) -> tuple[Vectors, int]:
-        energy = _dot(b, self._cycle(b))
-        x, iterations = np.zeros_like(b), 0
-        residual = b
-        for _ in range(_REFINEMENTS):
-            step, count = self._conjugate_gradients(residual, TOLERANCE**2 * energy)
+    def _solved(self, b: Vectors) -> tuple[Vectors, float, int]:
+        """Iterate, and again on the residual computed anew if rounding has spoilt what the iteration believes."""
+        target = TOLERANCE**2 * _dot(b, self._cycle(b))
+        x, iterations = self._conjugate_gradients(b, target)
+        error = np.inf
+        for _ in range(REFINEMENTS):
+            residual = b - self._product(x)
+            previous, error = error, energy_error(residual.T, self._cycle(residual).T, b.T, x.T)
+            if not (error > ENERGY_TARGET and error < 0.5 * previous):
+                break
+            step, count = self._conjugate_gradients(residual, target)
             x += step
             iterations += count
-            residual = b - self._product(x)
-            error = np.sqrt(np.maximum(_dot(residual, self._cycle(residual)), 0.0) / energy)
-            if (error <= ACCEPTED).all():
-                return x, iterations
-        raise CannotRunError(
-            f"{self.name}: rounding leaves an error of {error.max():.1e} of the solution in the energy norm (limit "
-            f"{ACCEPTED:g}): the stiffness matrix is nearly singular; check supports, mesh quality and Poisson's ratio"
-        )
+        accept(error, self.name)
+        return x, error, iterations
 
     def _conjugate_gradients(self, b: Vectors, target: NDArray[np.float64]) -> tuple[Vectors, int]:
         """Iterate until the squared energy of each column's error is below its target; columns that are leave."""

@@ -1,0 +1,173 @@
+"""Which solver is chosen, and that the estimates behind the choice fit what was measured."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import solid_meshes
+
+from fea import memory, mkl, solve
+from fea.elasticity import assemble_stiffness
+from fea.solve import available_methods, direct_estimate, factorise, iterations_estimate, two_level_estimate
+from fea.space import displacement_space
+from fea.supports import isostatic_supports
+from fea.two_level import LinearLevel
+from geometry.errors import CannotRunError
+
+
+@pytest.fixture(scope="module")
+def small():
+    space = displacement_space(solid_meshes.box())
+    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    K = assemble_stiffness(space, E=2900.0, nu=0.38).with_fixed(fixed)
+    return K, LinearLevel(space=space, E=2900.0, nu=0.38, fixed=fixed)
+
+
+def _choice(unknowns, *, nu=0.38, right_hand_sides=1, direct="pardiso", room=16e9, monkeypatch):
+    """What the chooser says about a system of that size, which is not made."""
+    K = SimpleNamespace(size=unknowns, blocks=SimpleNamespace(nbytes=int(72 * 4.8 * unknowns)))
+    level = SimpleNamespace(space=SimpleNamespace(corners=unknowns // 23), nu=nu)
+    monkeypatch.setattr(memory, "available", lambda: room)
+    return solve._chosen(K, level, right_hand_sides, direct, None)
+
+
+@pytest.mark.parametrize(
+    ("unknowns", "options", "method", "reason"),
+    [
+        (20_000, {}, "pardiso", "small enough"),
+        (160_000, {}, "two-level", "of the work of MKL PARDISO"),
+        (160_000, {"right_hand_sides": 60}, "pardiso", "60 right-hand sides"),
+        (160_000, {"nu": 0.495}, "pardiso", "ν = 0.495 is above 0.49"),
+        (550_000, {"right_hand_sides": 60}, "two-level", "of the work"),
+        (550_000, {"right_hand_sides": 200, "room": 4e9}, "two-level", "a factorisation needs about"),
+        (1_500_000, {}, "two-level", "GB left"),
+        (20_000, {"direct": "superlu"}, "two-level", "of the work of SuperLU"),
+        (5_000, {"direct": "superlu"}, "superlu", "small enough"),
+    ],
+)
+def test_choice_and_reason(unknowns, options, method, reason, monkeypatch):
+    chosen, why = _choice(unknowns, **options, monkeypatch=monkeypatch)
+    assert chosen == method
+    assert reason in why
+
+
+def test_what_fits_nowhere_is_refused_with_the_estimate(monkeypatch):
+    with pytest.raises(
+        CannotRunError, match=r"1,500,000 unknowns by conjugate gradients.* needs about .* GB .*0\.5 GB"
+    ):
+        _choice(1_500_000, room=0.5e9, monkeypatch=monkeypatch)
+    with pytest.raises(CannotRunError, match=r"500,000 unknowns by MKL PARDISO needs about 7\.\d GB .* 4 GB are left"):
+        _choice(500_000, nu=0.499, room=4e9, monkeypatch=monkeypatch)
+
+
+@pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")
+def test_factor_tells_its_name_and_reason(small):
+    K, level = small
+    factor = factorise(K, level=level, right_hand_sides=2)
+    assert factor.name == "MKL PARDISO"
+    assert factor.reason == f"{K.size} unknowns, 2 right-hand sides: small enough for a factorisation"
+    forced = factorise(K, level=level, method="two-level")
+    assert forced.name == "conjugate gradients over linear elements by MKL PARDISO"
+    assert forced.reason == "chosen by the user"
+    assert factorise(K).reason.endswith("factorisation alone suits this system")
+
+
+def test_two_levels_need_quadratic_elements(small):
+    K, _ = small
+    with pytest.raises(CannotRunError, match=r"needs quadratic elements"):
+        factorise(K, method="two-level")
+
+
+@pytest.mark.parametrize(
+    ("method", "unknowns", "work", "space"),
+    [
+        ("pardiso", 47_000, 2.3, 0.26e9),
+        ("pardiso", 152_000, None, 1.35e9),
+        ("pardiso", 499_000, None, 7.2e9),
+        ("superlu", 14_700, 1.4, 0.17e9),
+        ("superlu", 47_000, 36.0, 1.4e9),
+    ],
+)
+def test_estimates_of_factorisations_fit_the_measurements(method, unknowns, work, space):
+    estimate = direct_estimate(method, unknowns, 1)
+    assert estimate.memory == pytest.approx(space, rel=0.25)
+    if work is not None:
+        assert estimate.work == pytest.approx(work, rel=0.4)
+
+
+def test_estimated_iterations_fit_the_measurements():
+    measured = {0.0: 15, 0.38: 18, 0.45: 23, 0.48: 34, 0.49: 46, 0.495: 63}
+    for nu, iterations in measured.items():
+        assert iterations_estimate(nu) == pytest.approx(iterations * 9.0 / 8.0, rel=0.08)
+
+
+@pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")
+def test_estimated_memory_of_a_factor_bounds_what_its_analysis_finds(small):
+    space = displacement_space(solid_meshes.box(counts=(8, 8, 8), upper=(1.0, 1.0, 1.0)))
+    K = assemble_stiffness(space, E=2900.0, nu=0.3)
+    K = K.with_fixed(isostatic_supports(space.nodes, space.corners).unknowns)
+    found = factorise(K, method="pardiso").solver.memory
+    assert 0.5 * found < direct_estimate("pardiso", K.size, 1).memory < 1.5 * found
+
+
+def test_two_levels_take_less_memory_than_a_factorisation():
+    large = SimpleNamespace(size=550_000, blocks=SimpleNamespace(nbytes=190e6))
+    level = SimpleNamespace(space=SimpleNamespace(corners=25_000), nu=0.38)
+    assert two_level_estimate(large, level, 1, "pardiso").memory < 0.2 * direct_estimate("pardiso", 550_000, 1).memory
+
+
+@pytest.mark.parametrize("method", [*available_methods(), "two-level", None])
+def test_small_limit_is_refused_before_the_factorisation(small, method):
+    K, level = small
+    limit = memory.resident() + 1e4
+    with pytest.raises(CannotRunError, match=r"needs about .* GB of memory and .* of the limit of .* coarser mesh"):
+        factorise(K, level=level, method=method, memory_limit=limit)
+    factorise(K, level=level, method=method, memory_limit=limit + 1e9)
+
+
+@pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")
+@pytest.mark.parametrize("threads", [1, 2])
+def test_repeated_solutions_are_equal(threads):
+    space = displacement_space(solid_meshes.ring(3.0, 5.0, 2.0, around=16))
+    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    rhs = np.random.default_rng(2).normal(size=(space.unknowns, 2))
+    rhs[fixed] = 0.0
+
+    def run(method):
+        K = assemble_stiffness(space, E=2900.0, nu=0.38).with_fixed(fixed)
+        level = LinearLevel(space=space, E=2900.0, nu=0.38, fixed=fixed)
+        return factorise(K, level=level, method=method, threads=threads).solve(rhs)
+
+    for method in ("pardiso", "two-level"):
+        first, kept, second = run(method), np.empty(12345, dtype=np.int8), run(method)  # other addresses
+        assert len(kept)
+        if threads == 1:
+            np.testing.assert_array_equal(first, second)
+        else:
+            np.testing.assert_allclose(first, second, rtol=0.0, atol=1e-9 * np.abs(first).max())
+
+
+@pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")
+def test_threads_are_bounded_while_solving_and_given_back(small, monkeypatch):
+    from threadpoolctl import threadpool_info
+
+    K, level = small
+    seen = []
+    factor = factorise(K, level=level, threads=1)
+    exact = factor.solver.apply
+    monkeypatch.setattr(
+        factor.solver, "apply", lambda b: (seen.append([p["num_threads"] for p in threadpool_info()]), exact(b))[1]
+    )
+    before = [p["num_threads"] for p in threadpool_info()]
+    rhs = np.zeros(K.size)
+    rhs[-1] = 1.0
+    factor.solve(rhs)
+    assert seen
+    assert set(seen[0]) == {1}
+    assert [p["num_threads"] for p in threadpool_info()] == before
+
+
+def test_installed_library_is_found():
+    assert mkl.installed() == ("pardiso" in available_methods())
+    assert replace(direct_estimate("superlu", 1000, 1), method="pardiso").method == "pardiso"

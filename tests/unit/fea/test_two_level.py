@@ -1,0 +1,177 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import solid_meshes
+from scipy.sparse import csr_array
+
+from fea import two_level
+from fea.elasticity import assemble_stiffness
+from fea.solve import factorise
+from fea.space import EDGES, displacement_space
+from fea.supports import isostatic_supports, rigid_motions
+from fea.two_level import LinearLevel
+from geometry.errors import CannotRunError
+
+E = 2900.0
+
+
+def _system(mesh, nu=0.38, columns=1):
+    """Free body on six supports under smooth loads that balance: matrix, level below, right-hand sides."""
+    space = displacement_space(mesh)
+    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    K = assemble_stiffness(space, E=E, nu=nu).with_fixed(fixed)
+    motions = rigid_motions(space.nodes, space.nodes.mean(axis=0)).reshape(6, -1)
+    x = space.nodes / np.ptp(space.nodes, axis=0)
+    loads = []
+    for i in range(columns):
+        load = np.column_stack([np.sin(2.0 * x[:, 1] + i), np.cos((i + 2.0) * np.pi * x[:, 0]), np.sin(5.0 * x[:, 0])])
+        load = load.ravel()
+        loads.append(load - motions.T @ np.linalg.solve(motions @ motions.T, motions @ load))
+    rhs = np.array(loads).T
+    rhs[fixed] = 0.0
+    return K, LinearLevel(space=space, E=E, nu=nu, fixed=fixed), rhs
+
+
+def _iterated(K, level, rhs):
+    solved = factorise(K, level=level, method="two-level", threads=1).solved(rhs)
+    np.testing.assert_array_equal(solved.x[level.fixed], 0.0)
+    return solved
+
+
+def _agrees_with_factorisation(K, rhs, solved, tolerance=3e-8):
+    direct = factorise(K, threads=1).solve(rhs)
+    np.testing.assert_allclose(solved.x, direct, rtol=0.0, atol=tolerance * np.abs(direct).max())
+
+
+BODIES = {
+    "straight box": (solid_meshes.box(counts=(8, 3, 3)), 25),
+    "distorted curved box": (solid_meshes.box(counts=(8, 3, 3), amount=0.05, curved=True), 45),
+    "curved ring": (solid_meshes.ring(3.0, 5.0, 2.0, around=16), 45),
+    "curved bar with holes": (solid_meshes.bar(), 60),
+    "slender box, 100 to 1": (solid_meshes.box(upper=(100.0, 1.0, 1.0), counts=(100, 1, 1)), 30),
+    "stretched elements, 5 to 1": (solid_meshes.box(upper=(40.0, 3.0, 3.0), counts=(8, 3, 3)), 90),
+}
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_equals_the_direct_solution(body):
+    mesh, most = BODIES[body]
+    K, level, rhs = _system(mesh, columns=2)
+    solved = _iterated(K, level, rhs)
+    assert 5 < solved.iterations <= most
+    assert solved.error < 1e-8
+    _agrees_with_factorisation(K, rhs, solved)
+
+
+@pytest.mark.parametrize(("nu", "most"), [(0.0, 20), (0.3, 22), (0.45, 30), (0.49, 60)])
+def test_poissons_ratio_costs_iterations_but_not_accuracy(nu, most):
+    K, level, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), nu)
+    solved = _iterated(K, level, rhs)
+    assert solved.iterations <= most
+    _agrees_with_factorisation(K, rhs, solved)
+
+
+def test_iterations_do_not_grow_with_the_mesh():
+    counts = [
+        _iterated(*_system(solid_meshes.box(counts=(3 * n, n, n), upper=(3.0, 1.0, 1.0)))).iterations for n in (2, 4, 8)
+    ]
+    assert counts[0] <= 27
+    assert counts[2] <= counts[1] <= counts[0]
+
+
+def test_very_slender_body_is_solved_to_what_rounding_allows():
+    K, level, rhs = _system(solid_meshes.box(upper=(500.0, 1.0, 1.0), counts=(500, 1, 1)))
+    solved = _iterated(K, level, rhs)
+    assert 1e-9 < solved.error < 1e-5
+    _agrees_with_factorisation(K, rhs, solved, 20.0 * solved.error)
+
+
+def test_linear_level_is_the_quadratic_matrix_on_its_subspace():
+    mesh = solid_meshes.ring(3.0, 5.0, 2.0, around=12)
+    space = displacement_space(mesh)
+    assert 0 < np.count_nonzero(space.curved) < len(space.cells)
+    ends = np.empty((len(space.nodes), 2), dtype=int)
+    ends[: space.corners] = np.arange(space.corners)[:, None]
+    for local, edge in enumerate(EDGES):
+        ends[space.cells[:, 4 + local]] = space.cells[:, edge]
+    rows = np.repeat(np.arange(len(ends)), 2)
+    interpolation = csr_array((np.full(2 * len(ends), 0.5), (rows, ends.ravel())), shape=(len(ends), space.corners))
+    P = np.kron(interpolation.toarray(), np.eye(3))
+    expected = P.T @ assemble_stiffness(space, E=E, nu=0.38).full() @ P
+    linear = assemble_stiffness(space, E=E, nu=0.38, order=1).full().toarray()
+    np.testing.assert_allclose(linear, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_columns_have_their_own_coefficients():
+    K, level, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), columns=11)
+    rhs[:, 3] *= 1e9
+    rhs[:, 4] *= 1e-9
+    rhs[:, 5] = 0.0
+    solved = _iterated(K, level, rhs)
+    direct = factorise(K, threads=1).solve(rhs)
+    np.testing.assert_array_equal(solved.x[:, 5], 0.0)
+    size = np.abs(direct).max(axis=0) + (np.arange(11) == 5)
+    assert (np.abs(solved.x - direct).max(axis=0) < 1e-8 * size).all()
+
+
+def test_nonzero_value_at_a_fixed_unknown_is_kept():
+    K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)))
+    rhs[level.fixed[0]] = 2.0 * K.full().diagonal()[level.fixed[0]]
+    solved = factorise(K, level=level, method="two-level", threads=1).solved(rhs)
+    assert solved.x[level.fixed[0], 0] == pytest.approx(2.0, rel=1e-6)
+
+
+def test_iteration_without_convergence_is_an_error(monkeypatch):
+    K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)))
+    monkeypatch.setattr(two_level, "MOST_ITERATIONS", 5)
+    with pytest.raises(CannotRunError, match=r"did not converge in 5 iterations.*choose a direct solver"):
+        _iterated(K, level, rhs)
+
+
+def test_nearly_incompressible_body_is_refused():
+    K, level, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), nu=0.49999)
+    with pytest.raises(CannotRunError, match=r"did not converge.*Poisson's ratio"):
+        _iterated(K, level, rhs)
+
+
+def test_unsupported_body_is_refused():
+    space = displacement_space(solid_meshes.box(counts=(4, 2, 2)))
+    free = assemble_stiffness(space, E=E, nu=0.38)
+    level = LinearLevel(space=space, E=E, nu=0.38, fixed=np.array([], dtype=np.int64))
+    load = np.zeros(free.size)
+    load[0] = 1.0
+    with pytest.raises(CannotRunError, match=r"could not solve|converge|energy norm"):
+        factorise(free, level=level, method="two-level", threads=1).solve(load)
+
+
+def test_matrix_that_is_not_positive_definite_is_refused():
+    K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)))
+    blocks = K.blocks.copy()
+    blocks[K.indptr[-2]] *= -1.0  # a mid-node, which the linear elements do not know
+    with pytest.raises(CannotRunError, match=r"converge|energy norm"):
+        factorise(replace(K, blocks=blocks), level=level, method="two-level", threads=1).solve(rhs)
+
+
+def test_largest_eigenvalue_is_found_from_below():
+    K, _, _ = _system(solid_meshes.box(counts=(4, 2, 2), amount=0.05, curved=True))
+    full = K.full().toarray()
+    inverse = np.linalg.inv(K.diagonal)
+    D = np.zeros_like(full)
+    for i, block in enumerate(inverse):
+        D[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = block
+    exact = np.linalg.eigvals(D @ full).real.max()
+    found = two_level._largest_eigenvalue(K.product, lambda x: D @ x, K.size)
+    assert 0.95 * exact < found <= exact * (1.0 + 1e-12)
+
+
+def test_works_without_mkl(monkeypatch):
+    from fea import mkl
+
+    K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)), columns=2)
+    expected = _iterated(K, level, rhs)
+    monkeypatch.setattr(mkl, "_candidates", lambda: iter(()))
+    monkeypatch.setattr(mkl, "library", mkl.library.__wrapped__)
+    factor = factorise(replace(K), level=level, method="two-level")
+    assert factor.name == "conjugate gradients over linear elements by SuperLU"
+    np.testing.assert_allclose(factor.solve(rhs), expected.x, rtol=0.0, atol=1e-8 * np.abs(expected.x).max())
