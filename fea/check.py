@@ -37,8 +37,8 @@ from loads.statics import Reactions
 
 Progress = Callable[[str], None]
 FIDELITIES = ("solid", "beam")
-NEAR_DEAD_POINT = 0.01
-"""Smallest singular value of the scaled Jacobian below which the run warns."""
+NEAR_DEAD_POINT = 0.02
+"""Smallest singular value of the scaled Jacobian below which the run warns: on the owl wing, 2° off a dead point."""
 PINNED_HOLDS = ("pin pressure over 180° and over 90°",)
 DRIVEN_HOLDS = (*PINNED_HOLDS, "drive torque by eye-faces and by bore-shear")
 BEAM_HOLDS = ("nothing: beam theory without stress concentration",)
@@ -320,6 +320,12 @@ def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplac
         if forces.model != PINNED_STATICS
     ]
     found += [f"load case {title}: {what.sentence}" for title, what in moved.items() if what.state != "small"]
+    found += [
+        f"load case {title}: {sentence}"
+        for title in case.load_cases
+        for air in case.air_forces(title)
+        for sentence in air.warnings
+    ]
     held = {"the pose coordinate": case.pose.coordinate, "the driven link": case.drive.link if case.drive else None}
     for what, link in held.items():
         if link is None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.pose import Pose
+from loads.aero import air_loads
 from loads.applied import BodyForce, LineLoad, Load, PointLoad
 from loads.case import Axes, Case, LoadCase, gravity, vector3
 
@@ -69,6 +70,8 @@ def stated_loads(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass]
         density = vector3(spread.total) / (end - start)
         line = LineLoad(link=spread.link, start=start, end=end, at_start=density, at_end=density)
         loads.append(StatedLoad(load=line, axes=spread.axes))
+    for i, air in enumerate(load_case.air):
+        loads += [StatedLoad(load=load) for load in air_loads(air, f"air.{i}", case.link_points)]
     if load_case.own_weight:
         pull = gravity(load_case)
         loads += [

@@ -25,6 +25,7 @@ from geometry.units import (
     Length,
     parse,
 )
+from loads.aero import AirForces, AirLoad, air_forces, check_air
 from loads.carried import CarriedBody, CarriedSpread
 from loads.check_spec import Check, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
 from loads.claim import Claim
@@ -132,6 +133,7 @@ class LoadCase(CaseModel):
     forces: tuple[PointForce, ...] = ()
     moments: tuple[PointMoment, ...] = ()
     spread: tuple[SpreadForce, ...] = ()
+    air: tuple[AirLoad, ...] = ()
 
 
 class CantileverCalculation(CaseModel):
@@ -411,6 +413,17 @@ class Case(CaseModel):
         except CaseError:
             return False
 
+    @property
+    def link_points(self) -> dict[str, dict[str, tuple[float, float]]]:
+        """Link -> point -> (x, y) in the link's frame [mm]."""
+        return {name: link.points for name, link in self.links.items()}
+
+    def air_forces(self, load_case: str) -> tuple[AirForces, ...]:
+        """Lift and drag of every air load of a load case."""
+        return tuple(
+            air_forces(air, f"load_cases.{load_case}.air.{i}") for i, air in enumerate(self.load_cases[load_case].air)
+        )
+
     def solve_pose(self) -> Pose:
         """Assemble the linkage in the stated pose."""
         return solve_pose(self.linkage, coordinate=self.pose.coordinate, angle=self.pose.angle, near=self.pose.near)
@@ -451,6 +464,8 @@ def _check_loads(case: Case, where: str, load_case: LoadCase) -> None:
                     )
             if kind == "spread" and np.isclose(points[load.start][0], points[load.end][0]):
                 raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
+    for i, air in enumerate(load_case.air):
+        check_air(air, f"{where}.air.{i}", case.link_points)
     if load_case.own_weight and not (case.checked_links or case.carried):
         raise CaseError(f"{where}.own_weight: no moving link has a part, so nothing has a weight; add a part")
     if load_case.speed != 0.0 and case.pose.coordinate is None:

@@ -2,8 +2,12 @@
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from fea.anchor import anchor_loads
 from fea.result import CheckResult, LoadCaseResult
 from fea.verdict import Verdict
+from loads.aero import AirForces
 from reports.wording import AGREEMENT, band, fixed, headline, joined, number, percent, plain, turning
 
 if TYPE_CHECKING:
@@ -27,7 +31,10 @@ def print_result(result: CheckResult, console: "Console") -> None:
         console.print()
         if several:
             console.print(Text(f"Load case {case.name}", style="bold"))
+        for air in result.case.air_forces(case.name):
+            console.print(Text(_air(air)))
         console.print(Text(_statics(case)))
+        console.print(Text(_anchor(case)))
         console.print(_links(case))
         if case.checks:
             console.print(_checks(case))
@@ -62,6 +69,25 @@ def _statics(case: LoadCaseResult) -> str:
     drive = case.reactions.drive
     driven = "" if drive is None else f"\nDrive torque on {drive.link}: {number(torque)} N·mm ({turning(torque)})"
     return f"Joint forces [N]: {forces}{driven}"
+
+
+def _air(air: AirForces) -> str:
+    lift, drag = (f" (C {number(c, 3)})" for c in air.coefficients) if air.coefficients else ("", "")
+    pressure = "" if air.pressure is None else f", q {number(air.pressure * 1e6, 3)} Pa"
+    return f"Air: lift {number(air.lift)} N{lift}, drag {number(air.drag)} N{drag}{pressure}"
+
+
+def _anchor(case: LoadCaseResult) -> str:
+    anchor = anchor_loads(case)
+    rows = {**anchor.joints, f"all, about {anchor.about}": anchor.total}
+    forces, moments = (max(float(np.abs(w[part]).max()) for w in rows.values()) for part in (slice(3), slice(3, 6)))
+    shape = ", deformed" if anchor.deformed else ""
+    lines = [f"On the ground{shape}: force x, y, z [N]; moment x, y, z [N·mm]"]
+    for name, wrench in rows.items():
+        force = ", ".join(number(float(x), 4, 1e3 * forces) for x in wrench[:3])
+        moment = ", ".join(number(float(x), 4, 1e3 * moments) for x in wrench[3:])
+        lines.append(f"  {name}: {force}; {moment}")
+    return "\n".join(lines)
 
 
 def _table(*columns: tuple[str, bool]) -> "Table":

@@ -5,9 +5,11 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from fea.check import NEAR_DEAD_POINT
 from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.verdict import Verdict
 from geometry.material import Material
+from reports.loads import air_record, anchor_record
 from reports.mechanism import design_of
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
 from reports.record import alula_version, worst_load_case
@@ -85,6 +87,9 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
             (name, result.load_cases[name], figures.get(linkage_name(name))) for name in governing_load_cases(result)
         ],
         dead_points=_dead_points(result),
+        near_dead_point=NEAR_DEAD_POINT,
+        anchors={name: anchor_record(case) for name, case in result.load_cases.items()},
+        air={name: found for name in result.load_cases if (found := air_record(result, name))},
         turning=turning,
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
         links=[_link(result, link, figures) for link in first.links],

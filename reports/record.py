@@ -11,6 +11,8 @@ from fea.result import CheckResult, LinkResult, LoadCaseResult
 from geometry.material import Material
 from loads.published import StaticsAudit
 from loads.statics import Reactions
+from reports.loads import UNITS as LOAD_UNITS
+from reports.loads import air_record, anchor_record
 from reports.mechanism import design_record
 
 RESULT_SCHEMA_VERSION = 1
@@ -71,7 +73,7 @@ FIELD_UNITS = {
     "published_statics.imbalances.force": "N",
     "published_statics.imbalances.moment": "N*mm",
     "timings": "s",
-}
+} | LOAD_UNITS
 
 
 def alula_version() -> str:
@@ -241,6 +243,8 @@ def _load_case(result: CheckResult, name: str) -> dict[str, Any]:
         "title": result.case.load_cases[name].title,
         "statics": _statics(case.reactions),
         "drive_torque": _drive_torque(case.reactions),
+        "anchor": anchor_record(case),
+        "air": air_record(result, name),
         "links": {link: _link(found) for link, found in case.links.items()},
     }
 

@@ -1,0 +1,58 @@
+"""What the ground must hold: force and moment that the linkage exerts on it at each of its joints, and in all."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.result import LoadCaseResult
+from loads.applied import shifted
+from loads.statics import Reactions
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AnchorLoads:
+    """What the linkage does to the ground.
+
+    joints    joint on the ground -> wrench (6,) on the ground about the joint [N, N mm], global axes; the reaction of
+              the drive torque, where it goes to the ground, is in the moment about z at the drive's joint
+    about     the joint about which ``total`` is taken
+    total     wrench (6,) of all joints together about that joint
+    deformed  True where the forces are those on the deformed shape
+    """
+
+    joints: Mapping[str, Real]
+    about: str
+    total: Real
+    deformed: bool
+
+
+def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
+    """Return what a load case asks of the ground, on the deformed shape where equilibrium was found there."""
+    moved = case.large_displacement.reactions
+    reactions = moved or case.reactions
+    joints = wrenches_on_ground(reactions)
+    pose = reactions.pose
+    ground = pose.linkage.ground
+    places = {name: pose.position(ground, pose.linkage.point_of(name, ground)) for name in joints}
+    about = next(iter(joints))
+    total = np.zeros(6)
+    for name, wrench in joints.items():
+        total += shifted(wrench, np.array([*(places[name] - places[about]), 0.0]))
+    return AnchorLoads(joints=joints, about=about, total=total, deformed=moved is not None)
+
+
+def wrenches_on_ground(reactions: Reactions) -> dict[str, Real]:
+    """Return the wrench (6,) on the ground about each of its joints, the drive torque's reaction included."""
+    linkage, drive = reactions.pose.linkage, reactions.drive
+    found = {}
+    for name, reaction in reactions.joints.items():
+        if linkage.ground in (reaction.on, reaction.by):
+            wrench = reaction.wrench if reaction.on == linkage.ground else -reaction.wrench
+            if drive is not None and name == drive.joint:
+                wrench = wrench + np.array([0.0, 0.0, 0.0, 0.0, 0.0, reactions.torque_on(linkage.ground)])
+            found[name] = wrench
+    return found
