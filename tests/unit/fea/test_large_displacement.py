@@ -101,7 +101,9 @@ def test_links_carry_what_the_deformed_frame_says(load):
     assert checked == 8
     result = check_case(case, name="owl-wing-static", fidelity="beam")
     assert result.load_cases["weight"].large_displacement.state == "deformed"
-    undeformed = check_case(under(load, *HELD_AT_GF, 'large_displacement="off"'), name="owl", fidelity="beam")
+    undeformed = check_case(
+        under(load, *HELD_AT_GF, 'large_displacement="off"'), name="owl-wing-static", fidelity="beam"
+    )
     stresses = [r.load_cases["weight"].links["CF"].von_mises_max.value for r in (result, undeformed)]
     assert abs(stresses[0] / stresses[1] - 1.0) > 0.005
 

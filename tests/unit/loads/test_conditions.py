@@ -1,0 +1,103 @@
+"""How long and how warm: strengths, moduli, and what a material must state for them."""
+
+import numpy as np
+import pytest
+
+from fea.check import check_case
+from fea.verdict import Verdict
+from geometry.errors import CaseError
+from geometry.material import library
+from loads.case_file import read_case
+from loads.check_spec import SustainedCheck
+from loads.conditions import Conditions, temperature_factor, under
+
+WING = "owl-wing-static"
+PVC = library()["pvc-u"]
+OF_PVC_U = ('parts.tube.material="pvc-u"', 'large_displacement="off"')
+
+
+@pytest.mark.parametrize(
+    ("temperature", "factor"), [(-10.0, 1.0), (23.0, 1.0), (26.5, 0.935), (30.0, 0.87), (38.0, 0.734), (40.0, 0.70)]
+)
+def test_the_factor_is_linear_between_those_of_the_card(temperature, factor):
+    assert temperature_factor(PVC, temperature) == pytest.approx(factor)
+    assert factor == pytest.approx(np.interp(temperature, [23.0, 30.0, 40.0], [1.0, 0.87, 0.70]))
+
+
+def test_warm_and_long():
+    warm = under(PVC, Conditions.model_validate({"temperature": "40 degC"}))
+    assert (warm.yield_strength, warm.ultimate_strength) == (
+        pytest.approx(41.4 * 0.7),
+        pytest.approx(48.3 * 0.7),
+    )
+    assert warm.youngs_modulus == PVC.youngs_modulus
+    both = under(PVC, Conditions.model_validate({"temperature": "30 degC", "duration": "10 year"}))
+    assert both.sustained_stress == pytest.approx(11.0 * 0.87)
+    assert both.youngs_modulus == pytest.approx(1200.0)
+    assert under(PVC, Conditions()) is PVC
+    assert PVC.yield_strength == 41.4
+
+
+@pytest.mark.parametrize(
+    ("overrides", "sentence"),
+    [
+        (['conditions.temperature="30 degC"'], r"conditions\.temperature: .*Paredes.*states no temperature_factors"),
+        (
+            ['conditions.duration="10 year"'],
+            r"conditions\.duration: .*states no sustained_stress, .*add it to its card",
+        ),
+        ([*OF_PVC_U, 'conditions.temperature="41 degC"'], r"41 degC is above 40 degC, the last for which"),
+        ([*OF_PVC_U, "conditions.temperature=30"], r"conditions\.temperature.*needs its unit"),
+        ([*OF_PVC_U, 'conditions.duration="0 s"'], r"conditions\.duration.*greater than zero"),
+        (['checks.long={type="sustained"}'], r"checks\.long: .*add \[conditions\] with its duration"),
+        (
+            [
+                'materials.half={title="half",density="1 g/cm^3",youngs_modulus="2 GPa",poissons_ratio=0.3,'
+                'yield_strength="40 MPa",strength="yield",minimum_safety_factor=2.0,sustained_stress="9 MPa",'
+                "sources={},status={}}",
+                'parts.tube.material="half"',
+                'conditions.duration="1 year"',
+            ],
+            r"'half' states no sustained_modulus",
+        ),
+    ],
+)
+def test_what_cannot_be_known(overrides, sentence):
+    with pytest.raises(CaseError, match=sentence):
+        read_case(WING, overrides)
+
+
+def checked(*overrides):
+    return check_case(read_case(WING, [*OF_PVC_U, *overrides]), name=WING, fidelity="beam").load_cases["weight"]
+
+
+def test_a_load_that_stays_is_checked_without_being_asked_for():
+    case = read_case(WING, [*OF_PVC_U, 'conditions.duration="10 year"'])
+    assert isinstance(case.all_checks["sustained load"], SustainedCheck)
+    named = read_case(WING, [*OF_PVC_U, 'conditions.duration="10 year"', 'checks.long={type="sustained",links=["AE"]}'])
+    assert "sustained load" not in named.all_checks
+    assert "sustained load" not in read_case(WING, list(OF_PVC_U)).all_checks
+
+
+def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
+    """Beam theory has 11.35 MPa there: beyond 11 MPa, and far beyond 11 x 0.70."""
+    short, long = checked(), checked('conditions.duration="10 year"')
+    stress = short.links["AE"].von_mises_max.value
+    assert stress == pytest.approx(11.35, abs=0.01)
+    assert long.links["AE"].von_mises_max.value == pytest.approx(stress, rel=1e-12)
+    (root,) = [c for c in long.checks if c.quantity == "sustained stress" and c.link == "AE"]
+    assert (root.verdict, root.limit, root.unit) == (Verdict.FAIL, 11.0, "MPa")
+    others = {c.link: c.verdict for c in long.checks if c.quantity == "sustained stress" and c.link != "AE"}
+    assert set(others.values()) == {Verdict.UNDECIDED}, "beam theory cannot pass a link"
+    warm = checked('conditions.duration="10 year"', 'conditions.temperature="40 degC"')
+    (root,) = [c for c in warm.checks if c.quantity == "sustained stress" and c.link == "AE"]
+    assert root.limit == pytest.approx(7.7)
+    assert warm.links["AE"].safety_factor.value == pytest.approx(0.7 * short.links["AE"].safety_factor.value)
+
+
+def test_creep_makes_links_give_more():
+    short, long = checked(), checked('conditions.duration="10 year"')
+    for link in ("AE", "CF", "CH"):
+        ratio = long.links[link].displacement_max.value / short.links[link].displacement_max.value
+        # Bending with Young's modulus; shear with the shear modulus, which follows it.
+        assert ratio == pytest.approx(2800.0 / 1200.0, rel=1e-9)
