@@ -31,6 +31,8 @@ SHORTEST_STEP = 1e-8
 """Steps of the driven angle [rad]; below the shortest one the branch has come to its end."""
 _AGREEMENT = 1e-3
 _SHARE = 0.1
+_ROUNDING = 1e-12
+"""Agreement [rad] that is not asked for in steps so short that rounding is all that is left."""
 _SETTLED = 1e-8
 """Newton's last step [rad]: the next one would be some 1e-16, since it converges quadratically."""
 _PROBE = 1e-4
@@ -241,7 +243,7 @@ def _advance(driven: DrivenClosure, here: Node, angle: float) -> Node | None:
     except np.linalg.LinAlgError:
         return None
     moved = float(np.max(np.abs((q - here[0]) / driven.sizes)))
-    tolerance = min(_AGREEMENT, _SHARE * moved)
+    tolerance = max(min(_AGREEMENT, _SHARE * moved), _ROUNDING)
     for first, second in ((guess, q), (_taylor(new, -by), here[0])):
         if not np.max(np.abs((first - second) / driven.sizes)) <= tolerance:
             return None

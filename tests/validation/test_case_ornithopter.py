@@ -1,0 +1,146 @@
+"""The ornithopter of Hernández (2022) as a built-in case, and its motor."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fea.check import check_case
+from fea.motor_check import motor_outcomes
+from fea.verdict import Verdict
+from geometry.ornithopter import OrnithopterRules
+from geometry.pose import freedom
+from geometry.wing_power import electrical_power, inertial_power, rod_inertia
+from loads.actions import PartMass
+from loads.case_file import read_case
+from loads.case_motion import solve_case_motion
+from loads.inertia import acting_loads, with_carried
+from loads.kinetostatics import solve_kinetostatics
+from loads.masses import moving_masses
+from loads.statics import solve_statics
+
+RPM = math.pi / 30.0
+
+
+@pytest.fixture(scope="module")
+def case():
+    return read_case("ornithopter")
+
+
+@pytest.fixture(scope="module")
+def moved(case):
+    return solve_case_motion(case)
+
+
+def test_dimensions_follow_the_rules_of_the_source(case) -> None:
+    sizes = OrnithopterRules().dimensions()
+    base = case.links["base"].points
+    assert base["R"] == pytest.approx((sizes.pivot_offset, sizes.pivot_height), abs=1e-9)
+    assert case.links["lever-right"].points["slot"][0] == pytest.approx(-sizes.slot_reach, abs=1e-9)
+    assert case.links["rod"].points["C"][0] == sizes.link_length
+    assert case.parts["lever"].thickness == sizes.lever_thickness
+    assert case.parts["rod"].thickness == sizes.link_thickness
+    assert case.parts["rod"].eye_diameter == sizes.hole_diameter + 2.0 * sizes.thick_wall
+
+
+def test_half_joints_leave_one_freedom(case) -> None:
+    """Hernández (2022): mobility 1 after Gruebler and Kutzbach, each slot a half joint."""
+    assert case.linkage.mobility == 1
+    assert freedom(case.solve_pose()) == 1
+
+
+def test_wings_move_as_in_closed_form(case, moved) -> None:
+    drive, motion = OrnithopterRules().drive(), moved.motion
+    closed = drive.motion(motion.angles - math.pi / 2.0, 150.0 * RPM)
+    for link, sense, rest in (("lever-right", -1.0, 0.0), ("lever-left", 1.0, math.pi)):
+        np.testing.assert_allclose(sense * (motion.angle(link) - rest), closed.wing_angle, atol=1e-10)
+        np.testing.assert_allclose(sense * motion.angular_speed(link), closed.wing_speed, atol=1e-8)
+        np.testing.assert_allclose(sense * motion.angular_acceleration(link), closed.wing_acceleration, atol=1e-7)
+    assert np.degrees(np.ptp(motion.angle("lever-right"))) == pytest.approx(46.0, abs=1e-8)
+
+
+def test_both_slots_carry_alike(moved) -> None:
+    for solved in moved.forces.values():
+        left, right = (np.linalg.norm(solved.forces[f"slot-{side}"], axis=1) for side in ("left", "right"))
+        np.testing.assert_allclose(left, right, rtol=1e-9, atol=1e-9 * right.max())
+
+
+@pytest.mark.parametrize("load_case", ["slow", "fast", "wings-10", "wings-12"])
+def test_statics_with_inertia_are_kinetostatics(case, moved, load_case: str) -> None:
+    pose = case.solve_pose()
+    found = solve_statics(
+        pose, case.pinned_drive, acting_loads(case, case.load_cases[load_case], pose, moving_masses(case))
+    )
+    largest = max(joint.magnitude for joint in found.joints.values())
+    for joint, reaction in found.joints.items():
+        forces = moved.forces[load_case].forces[joint]
+        np.testing.assert_allclose(reaction.force[:2], forces[0], rtol=0, atol=1e-10 * largest)
+
+
+def test_the_power_of_the_wings_is_that_of_the_closed_form(case, moved) -> None:
+    """Wings alone, weightless: kinetostatics of the linkage against P = n I φ' φ''."""
+    wings = {
+        link: with_carried(None, tuple(m for m in case.carried if m.link == link), case.links[link].points)
+        for link in ("lever-right", "lever-left")
+    }
+    motion = moved.forces["wings-12"].motion
+    solved = solve_kinetostatics(motion, case.pinned_drive, (), wings)
+    inertia = rod_inertia(mass=1e-7, span=60.0, root=6.0)
+    closed = inertial_power(OrnithopterRules().drive(), inertia=inertia, frequency=12.0)
+    assert solved.drive_power.max() == pytest.approx(closed.peak_power, rel=2e-4)  # 361 poses
+    assert np.abs(solved.torque).max() == pytest.approx(closed.peak_torque, rel=2e-4)
+
+
+def test_the_motor_covers_weight_and_inertia(case) -> None:
+    """6 V and 170 mA (Hernández 2022), half of it at the crank."""
+    check = case.checks["motor"]
+    assert check.output_power * 1e3 == pytest.approx(0.5 * electrical_power(voltage=6.0, current=0.17))
+    outcomes = motor_outcomes(case, "motor", check)
+    assert set(outcomes) == set(case.load_cases)
+    assert all(outcome.verdict is Verdict.PASS for outcome in outcomes.values())
+    for load_case in ("wings-10", "wings-12"):
+        assert "of carried mass, where 0.2 g are carried" in outcomes[load_case].reason
+    assert "carried mass" not in outcomes["fast"].reason
+
+
+def test_the_heaviest_wings_that_the_motor_drives(case) -> None:
+    """At the mass that the check tells, the peak is the motor's power; 12 Hz asks for more than 10 Hz."""
+    heaviest = {}
+    outcomes = motor_outcomes(case, "motor", case.checks["motor"])
+    for load_case in ("wings-10", "wings-12"):
+        reason = outcomes[load_case].reason
+        heaviest[load_case] = float(reason.partition("up to ")[2].partition(" g")[0])
+    assert heaviest["wings-12"] < heaviest["wings-10"]
+    each = heaviest["wings-12"] / 2.0
+    laden = read_case("ornithopter", [f'carried.{i}.mass="{each} g"' for i in (0, 1)])
+    outcome = motor_outcomes(laden, "motor", laden.checks["motor"])["wings-12"]
+    assert outcome.value.high == pytest.approx(outcome.limit, rel=3e-3)  # told to three digits
+    heavy = read_case("ornithopter", [f'carried.{i}.mass="{20 * each} g"' for i in (0, 1)])
+    assert motor_outcomes(heavy, "motor", heavy.checks["motor"])["wings-12"].verdict is Verdict.FAIL
+
+
+def test_closed_form_agrees_on_the_heaviest_wings() -> None:
+    """Without gravity: m = m0 P / P(m0), for wings of 60 mm from 6 mm beyond the pivot, levers left out."""
+    case = read_case("ornithopter", ['load_cases.wings-12.gravity="0 m/s^2"'])
+    found = inertial_power(
+        OrnithopterRules().drive(), inertia=rod_inertia(mass=1e-7, span=60.0, root=6.0), frequency=12.0
+    )
+    grams = found.largest_mass(0.1, 1e3 * case.checks["motor"].output_power)
+    reason = motor_outcomes(case, "motor", case.checks["motor"])["wings-12"].reason
+    told = float(reason.partition("up to ")[2].partition(" g")[0])
+    assert told == pytest.approx(2.0 * grams, rel=0.005)  # the levers take their share
+
+
+def test_the_check_ends_in_pass(case) -> None:
+    result = check_case(case.model_copy(update={"solid": case.solid.model_copy(update={"mesh_size": 2.0})}))
+    assert result.verdict is Verdict.PASS
+
+
+def test_a_massless_part_has_no_say(case) -> None:
+    """The rod's and the crank's inertia count: without them the joint at the crank pin carries less."""
+    motion = solve_case_motion(case).forces["fast"].motion
+    masses = moving_masses(case)
+    levers: dict[str, PartMass] = {link: own for link, own in masses.items() if link.startswith("lever")}
+    whole = solve_kinetostatics(motion, case.pinned_drive, (), masses)
+    part = solve_kinetostatics(motion, case.pinned_drive, (), levers)
+    assert np.linalg.norm(whole.forces["A"][0]) > 1.5 * np.linalg.norm(part.forces["A"][0])
