@@ -1,5 +1,7 @@
 """Isotropic linear elasticity: the constitutive law and the stiffness matrix of a link."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from geometry.errors import CannotRunError
 
 CURVED_DEGREE = 5  # 14 points with positive weights
 _LINEAR = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # gradients
-_CHUNK = 4096  # elements at a time: some 40 MB of working memory
+_CHUNK = 1024  # elements at a time: some 10 MB of working memory, which caches hold in part
 
 
 def lame_constants(E: float, nu: float) -> tuple[float, float]:
@@ -90,38 +92,39 @@ def assemble_stiffness(
         raise CannotRunError(f"E = {E} MPa with ν = {nu} is no stable compressible material (E > 0, 0 ≤ ν < 0.5)")
     order = space.order if order is None else order
     cells, count = (space.cells[:, :4], space.corners) if order == 1 else (space.cells, len(space.nodes))
-    indptr, indices, place, swapped = _pattern(cells, count)
-    blocks = np.zeros((len(indices), 3, 3))
+    place = _pattern(cells, count)
+    blocks = np.zeros((place.nnz, 3, 3))
+    first, second = np.triu_indices(cells.shape[1])
     straight, curved = (Kernel(space, order, E, nu) for Kernel in (_StraightElements, _CurvedElements))
     for kernel, members in ((straight, np.flatnonzero(~space.curved)), (curved, np.flatnonzero(space.curved))):
         for start in range(0, len(members), _CHUNK):
             chunk = members[start : start + _CHUNK]
             values = kernel(space.nodes[space.cells[chunk]])
-            target, mirror = place[chunk].ravel(), swapped[chunk]
+            row, column = cells[chunk][:, first], cells[chunk][:, second]
+            mirror = row > column
+            target = place[np.minimum(row, column).ravel(), np.maximum(row, column).ravel()]
             for i in range(3):
                 for j in range(3):
                     # The block of a pair whose nodes stand in descending order belongs below the diagonal.
                     value = values[i, j] if i == j else np.where(mirror, values[j, i], values[i, j])
                     np.add.at(blocks[:, i, j], target, value.ravel())
-    return SymmetricBlockMatrix(indptr=indptr, indices=indices, blocks=blocks)
+    return SymmetricBlockMatrix(indptr=place.indptr, indices=place.indices, blocks=blocks)
 
 
-def _pattern(
-    cells: NDArray[np.int64], count: int
-) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], NDArray[np.bool_]]:
-    """Block rows and columns, the place of every element's node pairs, and whether a pair is in descending order."""
-    first, second = np.triu_indices(cells.shape[1])
-    row, column = cells[:, first], cells[:, second]
-    swapped = row > column
-    keys = np.minimum(row, column)
-    keys *= count
-    keys += np.maximum(row, column, out=row)
-    del row, column
-    keys, place = np.unique(keys, return_inverse=True)
-    rows = keys // count
-    indptr = np.zeros(count + 1, dtype=np.int32)
-    np.cumsum(np.bincount(rows, minlength=count), out=indptr[1:])
-    return indptr, (keys - rows * count).astype(np.int32), place.reshape(swapped.shape), swapped
+def _pattern(cells: NDArray[np.int64], count: int) -> Any:
+    """Upper triangle of the pairs of nodes that share an element, as a ``csr_array`` of the blocks' numbers.
+
+    A boolean product of incidence matrices: no list of all pairs of all elements has to be stored and sorted.
+    """
+    from scipy.sparse import csr_array, triu
+
+    elements, local = cells.shape
+    start = np.arange(0, elements * local + 1, local, dtype=np.int32)
+    node = cells.astype(np.int32).ravel()
+    incidence = csr_array((np.ones(len(node), dtype=np.bool_), node, start), shape=(elements, count))
+    pairs = triu(incidence.T.tocsr() @ incidence, format="csr")
+    pairs.sort_indices()
+    return csr_array((np.arange(pairs.nnz, dtype=np.int32), pairs.indices, pairs.indptr), shape=pairs.shape)
 
 
 class _StraightElements:
