@@ -56,7 +56,9 @@ def linkage_drawing(result: CheckResult, load_case: str) -> bytes:
     with rc_context(STYLE):
         sheet = _Sheet(result, load_case)
         low, high = sheet.extent
-        left, right, bottom, top = 0.62, 0.1, 0.85, 0.1  # inches
+        right, bottom, top = 0.1, 0.85, 0.1  # inches
+        digits = len(f"{np.abs([low[1], high[1]]).max():.0f}")
+        left = 0.62 + 0.08 * max(digits - 3, 0)  # room for the numbers of the y axis
         wide = WIDTH - left - right
         tall = min(max(wide * (high - low)[1] / (high - low)[0], 2.6), 8.0)
         per_inch = max((high - low) / (wide, tall))
