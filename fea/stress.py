@@ -27,7 +27,7 @@ from fea.space import DisplacementSpace
 from geometry.errors import CannotRunError
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
-_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 _CHUNK = 8192
 _NODES = np.array(
     [
@@ -178,7 +178,7 @@ def stress_field(space: DisplacementSpace, displacement: NDArray[np.float64], *,
         inverse, determinant = jacobians(space.nodes[cells], gradient)
         slopes = inverse @ gradient.transpose(0, 2, 1)  # [k, q, i, b] = ∂φb/∂x_i
         tensor = stress((slopes @ displacement[cells][:, None]).swapaxes(-1, -2), E, nu)
-        for n, (i, j) in enumerate(_PAIRS):
+        for n, (i, j) in enumerate(PAIRS):
             at_points[part, :, n] = tensor[..., i, j]
         points[part] = phi @ space.nodes[cells]
         weights[part] = determinant * W
@@ -187,14 +187,17 @@ def stress_field(space: DisplacementSpace, displacement: NDArray[np.float64], *,
     )
 
 
+def carry_to_nodes(X: NDArray[np.float64], local: int) -> NDArray[np.float64]:
+    """Weights (local, q) that carry values at the points X (3, q) of an element to its nodes, linearly."""
+    if X.shape[1] == 1:
+        return np.ones((local, 1))
+    linear = np.vstack([np.ones(X.shape[1]), X]).T
+    return np.asarray(np.vstack([np.ones(local), _NODES[:, :local]]).T @ np.linalg.inv(linear))
+
+
 def _averaged(space: DisplacementSpace, X: NDArray[np.float64], at_points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Extrapolate from the integration points X (3, q) to each element's nodes and average over elements."""
-    local = space.cells.shape[1]
-    if X.shape[1] == 1:
-        carry = np.ones((local, 1))
-    else:
-        linear = np.vstack([np.ones(X.shape[1]), X]).T
-        carry = np.vstack([np.ones(local), _NODES[:, :local]]).T @ np.linalg.inv(linear)
+    carry = carry_to_nodes(X, space.cells.shape[1])
     values = np.einsum("bq,kqs->kbs", carry, at_points, optimize=True)
     node = space.cells.ravel()
     sums = [np.bincount(node, values[..., i].ravel(), minlength=len(space.nodes)) for i in range(6)]
