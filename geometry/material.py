@@ -38,6 +38,8 @@ class Fatigue(CaseModel):
     """Exponent of the power law; none where a single point is known."""
     stress_ratio: Annotated[float, Field(ge=-1, lt=1)] = 0.0
     """Least over largest stress of the cycle in the test."""
+    rule: Literal["goodman", "peak-stress"] = "goodman"
+    """How cycles with another mean count: by Goodman's line, or by their peak stress alone, whatever their range."""
     source: Text
 
 
