@@ -191,7 +191,7 @@ class _Path:
                     moved = float(np.linalg.norm(state.displacements - self.state.displacements))
                     return (state, iteration) if moved <= _JUMP * predicted else None
                 change = -self._solve(tangent, residual)
-            except (CannotRunError, np.linalg.LinAlgError):
+            except CannotRunError:
                 return None
             self.iterations += 1
             if iteration == 0:
@@ -208,7 +208,14 @@ class _Path:
         return self.assemble(answer.forces, answer.tangent, state, factor)
 
     def _solve(self, tangent: Floats, right: Floats) -> Floats:
-        scaled = np.linalg.solve(tangent * np.outer(self.unit, self.unit), right * self.unit)
+        # A sparse factorisation, single-threaded: threads that wait for each other cost more than matrices this small.
+        from scipy.sparse import csc_matrix
+        from scipy.sparse.linalg import splu
+
+        try:
+            scaled = splu(csc_matrix(tangent * np.outer(self.unit, self.unit))).solve(right * self.unit)
+        except RuntimeError as error:
+            raise CannotRunError(f"the tangent stiffness of the frame is singular: {error}") from None
         return np.asarray(scaled * self.unit)
 
     def _size(self, change: Floats) -> float:
