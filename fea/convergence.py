@@ -104,7 +104,7 @@ def grid_convergence(
     least, most = FLOOR * estimate, max(CEILING * estimate, abs(step))
 
     def index(factor: float, left: float, order: float) -> float:
-        return min(max(factor * left / (ratio**order - 1.0), least), most)
+        return min(max(factor * left / (math.pow(ratio, order) - 1.0), least), most)
 
     if len(f) == 2:
         reach = index(DOUBT, abs(step), formal_order)
@@ -130,7 +130,8 @@ def grid_convergence(
 
 def _share(h: Sequence[float], order: float) -> float:
     """Step between the two finest sizes over the step before, for errors that fall with that order."""
-    return (h[-2] ** order - h[-1] ** order) / (h[-3] ** order - h[-2] ** order)
+    h3, h2, h1 = (math.pow(size, order) for size in h[-3:])
+    return (h2 - h1) / (h3 - h2)
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | None:
@@ -147,7 +148,8 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | N
     def excess(p: float) -> float:
         if abs(p) < 1e-9:
             return math.log(h3 / h2) / math.log(h2 / h1) - wanted
-        return (h3**p - h2**p) / (h2**p - h1**p) - wanted
+        a3, a2, a1 = (math.pow(size, p) for size in (h3, h2, h1))
+        return (a3 - a2) / (a2 - a1) - wanted
 
     return _root(excess, -4.0, 12.0)
 

@@ -1,0 +1,292 @@
+"""Meshes made finer until a link's numbers are good enough for the decision or the stated accuracy.
+
+A link whose stress is far from every limit, with its estimated error taken threefold and a factor of two
+on top, needs one coarse mesh. Any other gets at least three, refined where the peaks are and where the
+estimate asks (``fea.target_sizes``), until every limit lies outside the band or the band is as narrow as
+asked for; or until a limit of time, unknowns or number of meshes stops it, which the link's numbers then say.
+"""
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.convergence import GridConvergence
+from fea.link_loads import LinkLoads
+from fea.link_series import CasePrecision, Level, goals, level_of, precision
+from fea.singular import edge_at, element_exponents
+from fea.solid import SolidSolution, solve_solid
+from fea.target_sizes import element_sizes, next_sizes, reduction
+from geometry.body_rules import section_height, section_width
+from geometry.errors import AlulaError, CaseError
+from geometry.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
+from geometry.part import Bar, Body
+from geometry.tagged_mesh import TaggedMesh
+
+FAR = 2.0
+"""Factor that a link with one mesh keeps from every limit, beyond its band."""
+ROUGH = 0.25
+"""Estimate over peak above which one mesh decides nothing."""
+SERIES = 3
+"""Meshes in the least series with an observed order."""
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effort:
+    """What accuracy is asked for and what it may cost.
+
+    accuracy      largest distance of the discretisation band from the number, relative to it
+    stated        True where it was asked for: then every link is refined to it, even if its verdict is clear
+    max_unknowns  largest system that is solved for accuracy's sake
+    time_limit    seconds after which no further mesh is begun
+    max_meshes    per link
+    """
+
+    accuracy: float = 0.05
+    stated: bool = False
+    max_unknowns: int = 600_000
+    time_limit: float = 600.0
+    max_meshes: int = 6
+
+    def __post_init__(self) -> None:
+        """Refuse an accuracy that no series of meshes reaches."""
+        if not 0.001 <= self.accuracy <= 1.0:
+            raise CaseError(f"accuracy: {100.0 * self.accuracy:g} % is outside 0.1 % to 100 %; choose one between")
+        if self.max_meshes < 1 or self.max_unknowns < 1 or self.time_limit < 0.0:
+            raise CaseError("the limits of unknowns, meshes and time must be above zero; raise them")
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkTask:
+    """A link to be solved.
+
+    E, nu, density        of the material [MPa, -, tonne/mm³]
+    line                  surfaces that displacements refer to (``solve_solid``)
+    brittle               True where the principal stress decides, False where von Mises does
+    stress_limits         [MPa] on the deciding stress; ``displacement_limits`` [mm]
+    """
+
+    body: Body
+    loads: tuple[LinkLoads, ...]
+    E: float
+    nu: float
+    density: float
+    line: tuple[str, str]
+    brittle: bool
+    stress_limits: tuple[float, ...]
+    displacement_limits: tuple[float, ...]
+
+    @property
+    def section(self) -> float:
+        """Smaller dimension of the section [mm]."""
+        return min(section_width(self.body.part), section_height(self.body.part))
+
+    @property
+    def may_be_sharp(self) -> bool:
+        """True where the shape may have re-entrant edges: without fillets, or at a step too low for its fillet."""
+        part = self.body.part
+        step = isinstance(part, Bar) and part.thickness < part.eye_thickness
+        return part.fillet_radius == 0.0 or step
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshRecord:
+    """Size of one mesh, the worst case's relative estimate in the energy norm (``error``), seconds to solve and judge."""
+
+    elements: int
+    unknowns: int
+    error: float
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RefinedSolid:
+    """A link's finest solution and how precise it is.
+
+    precision   of every case, in the order of ``solution.cases``
+    meshes      coarse to fine
+    stopped     why refinement ended before its aim was reached; "" where it was reached
+    far         True where one mesh sufficed since every limit is far away
+    accuracy    that was aimed at
+    """
+
+    solution: SolidSolution
+    precision: tuple[CasePrecision, ...]
+    meshes: tuple[MeshRecord, ...]
+    stopped: str
+    far: bool
+    accuracy: float
+
+
+def refine_links(
+    tasks: Mapping[str, LinkTask],
+    start: MeshSettings,
+    effort: Effort,
+    *,
+    threads: int | None = None,
+    progress: Progress = lambda message: None,
+) -> dict[str, RefinedSolid]:
+    """Mesh and solve every link as often as its numbers need it; the next meshes are made while one is solved.
+
+    Raises what ``mesh_body`` and ``solve_solid`` raise on a link's first mesh, with the link's name before it.
+    """
+    links = [_Link(name, task, start, effort) for name, task in tasks.items()]
+    begun = time.perf_counter()
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        try:
+            for link in links:
+                link.order_mesh(pool)
+            while open_links := [link for link in links if not link.done]:
+                for link in open_links:
+                    link.advance(pool, threads, time.perf_counter() - begun, progress)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return {link.name: link.result() for link in links}
+
+
+class _Link:
+    """One link on its way through the meshes."""
+
+    def __init__(self, name: str, task: LinkTask, settings: MeshSettings, effort: Effort) -> None:
+        self.name, self.task, self.settings, self.effort = name, task, settings, effort
+        self.levels: list[Level] = []
+        self.meshes: list[MeshRecord] = []
+        self.precision: tuple[CasePrecision, ...] = ()
+        self.solution: SolidSolution | None = None
+        self.stopped, self.done, self.far = "", False, False
+        self._mesh: Future[TaggedMesh] | None = None
+        self._sharp: Future[list[ReentrantEdge]] | None = None
+
+    def order_mesh(self, pool: ThreadPoolExecutor) -> None:
+        """Have the next mesh made, and the re-entrant edges found where they may matter."""
+        self._mesh = pool.submit(mesh_body, self.task.body, self.settings)
+        if self._sharp is None and (self.task.may_be_sharp or self._growing):
+            self._sharp = pool.submit(reentrant_edges, self.task.body)
+
+    def advance(self, pool: ThreadPoolExecutor, threads: int | None, elapsed: float, progress: Progress) -> None:
+        """Solve on the mesh that was ordered, judge the series and order the next one if need be."""
+        assert self._mesh is not None
+        called = time.perf_counter()
+        try:
+            mesh = self._mesh.result()
+            begun = time.perf_counter()
+            solution = self._solved(mesh, threads, progress)
+        except (AlulaError, MemoryError) as error:
+            if not self.levels:
+                raise type(error)(f"{self.name}: {error}") from None
+            self._stop(f"a finer mesh could not be used: {error or 'memory ran out'}")
+            return
+        if solution is None:
+            return
+        self.solution = solution
+        self.levels.append(level_of(solution, mesh.volume))
+        self.meshes.append(
+            MeshRecord(
+                elements=len(solution.space.cells),
+                unknowns=solution.space.unknowns,
+                error=max(figures.estimate.relative for figures in self.levels[-1].figures),
+                seconds=time.perf_counter() - begun,
+            )
+        )
+        self._judge()
+        if self._settled():
+            self.done = True
+        elif len(self.levels) >= self.effort.max_meshes:
+            self._stop(f"{len(self.levels)} meshes are as many as may be made")
+        elif elapsed + time.perf_counter() - called > self.effort.time_limit:
+            self._stop(f"the time limit of {self.effort.time_limit:g} s is used up")
+        else:
+            self._refine(pool)
+
+    def result(self) -> RefinedSolid:
+        """What was found."""
+        assert self.solution is not None
+        return RefinedSolid(
+            solution=self.solution,
+            precision=self.precision,
+            meshes=tuple(self.meshes),
+            stopped=self.stopped,
+            far=self.far,
+            accuracy=self.effort.accuracy,
+        )
+
+    def _solved(self, mesh: TaggedMesh, threads: int | None, progress: Progress) -> SolidSolution | None:
+        unknowns = 3 * len(mesh.points)
+        if self.levels and unknowns > self.effort.max_unknowns:
+            self._stop(f"the next mesh has {unknowns:,} unknowns, more than the {self.effort.max_unknowns:,} allowed")
+            return None
+        progress(f"Solving {self.name}, mesh {len(self.levels) + 1}: {len(mesh.cells)} elements ...")
+        task = self.task
+        return solve_solid(
+            mesh, E=task.E, nu=task.nu, density=task.density, loads=task.loads, line=task.line, threads=threads
+        )
+
+    def _stop(self, reason: str) -> None:
+        self.stopped, self.done = reason, True
+
+    @property
+    def edges(self) -> Sequence[ReentrantEdge]:
+        """Re-entrant edges, as far as they were asked for."""
+        return self._sharp.result() if self._sharp is not None else ()
+
+    @property
+    def _growing(self) -> bool:
+        return any(p.without_limit for p in self.precision)
+
+    def _judge(self) -> None:
+        self.precision = precision(self.levels, self.edges, section=self.task.section)
+
+    def _settled(self) -> bool:
+        """Whether nothing finer is needed."""
+        if len(self.levels) == 1:
+            self.far = not self.effort.stated and self._far()
+            return self.far
+        if all(p.sharp is not None for p in self.precision if self._deciding(p).kind == "growing" or p.sharp) and any(
+            p.sharp is not None for p in self.precision
+        ):
+            return True
+        if self._growing or min(len(self._deciding(p).values) for p in self.precision) < SERIES:
+            return False
+        narrow = all(max(self._deciding(p).index, p.displacement.index) <= self.effort.accuracy for p in self.precision)
+        return narrow or (not self.effort.stated and self._decided())
+
+    def _deciding(self, case: CasePrecision) -> GridConvergence:
+        return case.principal if self.task.brittle else case.von_mises
+
+    def _limits(self) -> Iterable[tuple[GridConvergence, float]]:
+        for case in self.precision:
+            yield from ((self._deciding(case), limit) for limit in self.task.stress_limits)
+            yield from ((case.displacement, limit) for limit in self.task.displacement_limits)
+
+    def _decided(self) -> bool:
+        """Whether every limit lies outside every band."""
+        return all(not band.low <= limit <= band.high for band, limit in self._limits())
+
+    def _far(self) -> bool:
+        """Whether one mesh decides: well resolved, away from sharp edges, every limit far outside the band."""
+        level = self.levels[0]
+        for case, figures in zip(self.precision, level.figures, strict=True):
+            place = level.nodes[int(np.argmax(figures.von_mises))]
+            if self._deciding(case).index > 3.0 * ROUGH or edge_at(self.edges, place, level.size(place)):
+                return False
+        return all(band.high * FAR < limit or band.low > FAR * limit for band, limit in self._limits())
+
+    def _refine(self, pool: ThreadPoolExecutor) -> None:
+        """Order a mesh that is finer where the peaks are and where the energy of the error is."""
+        assert self.solution is not None
+        accuracy, level = self.effort.accuracy, self.levels[-1]
+        allowed = float(np.sqrt(accuracy)) / 2.0  # of the energy norm: displacements miss its square
+        exponent = element_exponents(self.edges, level.centres, element_sizes(self.solution.space))
+        factors = [
+            reduction(figures.estimate.energy, figures.estimate.energy_norm, allowed, exponent)
+            for figures in level.figures
+        ]
+        points, sizes = next_sizes(
+            self.solution.space, factors, goals(level, accuracy / 1.5, brittle=self.task.brittle)
+        )
+        self.settings = replace(self.settings, size_points=points, size_values=sizes)
+        self.order_mesh(pool)
