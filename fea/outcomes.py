@@ -41,7 +41,7 @@ def _link(
 ) -> CheckOutcome:
     material = case.material_of(result.link)
     if isinstance(check, SafetyFactorCheck):
-        limit = _least(name, check.minimum, material, result.link)
+        limit = least_safety_factor(name, check.minimum, material, result.link)
         quantity, unit, value = SAFETY_FACTOR, "", result.safety_factor
         verdict = at_least(value, limit)
     elif isinstance(check, SustainedCheck):
@@ -58,7 +58,7 @@ def _link(
         verdict = Verdict.UNDECIDED
         reason = "beam theory leaves stress concentration out, so it cannot pass a link; run the solid model"
     else:
-        reason = _reason(value, limit, verdict)
+        reason = reason_for(value, limit, verdict)
     return CheckOutcome(
         name=name,
         link=result.link,
@@ -75,7 +75,7 @@ def _link(
 def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str, PinStress]) -> Iterator[CheckOutcome]:
     for joint in check.joints or case.pinned_joints:
         material = case.pin_material(joint)
-        limit = _least(name, check.minimum, material, f"{PIN}{joint}")
+        limit = least_safety_factor(name, check.minimum, material, f"{PIN}{joint}")
         value = pins[joint].equivalent.inverse(material.allowable)
         verdict = at_least(value, limit)
         yield CheckOutcome(
@@ -87,7 +87,7 @@ def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str,
             value=value,
             limit=limit,
             verdict=verdict,
-            reason=_reason(value, limit, verdict),
+            reason=reason_for(value, limit, verdict),
         )
 
 
@@ -107,14 +107,16 @@ def _large_displacement(title: str, moved: LargeDisplacement) -> Iterator[CheckO
     )
 
 
-def _least(name: str, stated: float | None, material: Material, what: str) -> float:
+def least_safety_factor(name: str, stated: float | None, material: Material, what: str) -> float:
+    """Return the limit that a check states, else the material's; raises ``CaseError`` where neither is there."""
     limit = stated or material.minimum_safety_factor
     if limit is None:
         raise CaseError(f"checks.{name}.minimum: the material of '{what}' has no default; state the limit")
     return limit
 
 
-def _reason(value: Band, limit: float, verdict: Verdict) -> str:
+def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
+    """Say in a few words why a band gives its verdict."""
     band = f"its band {value.low:.3g} to {value.high:.3g}"
     if verdict is Verdict.UNDECIDED:
         return f"{band} straddles the limit {limit:g}"

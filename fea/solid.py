@@ -141,7 +141,7 @@ def solve_solid(
     reaction = np.abs((K @ U - F)[supports.unknowns]).max(axis=0) / size
     notes = _reaction_notes(reaction, names)
     motions = rigid_motions(space.nodes, space.nodes.mean(axis=0))
-    reference = _LineReference(space, motions, line)
+    reference = LineReference(space, motions, line)
     cases = tuple(
         SolidCase(
             load=load,
@@ -293,7 +293,7 @@ def _reaction_notes(
     )
 
 
-class _LineReference:
+class LineReference:
     """Takes the rigid-body part out of displacements.
 
     Six conditions: the first hole does not move on average (3), the last one stays on the line through
