@@ -49,6 +49,7 @@ def test_the_motion_passes_all_three_points_on_one_branch(case, synthesis) -> No
     assert not solve_case_motion(case).dead_points
 
 
+@pytest.mark.converged
 def test_the_check_ends_in_pass_and_the_sag_is_that_of_a_beam(case) -> None:
     """Link b as a simple beam under its weight: 5 q L^4 / (384 E I)."""
     result = check_case(case)

@@ -131,6 +131,7 @@ def test_closed_form_agrees_on_the_heaviest_wings() -> None:
     assert told == pytest.approx(2.0 * grams, rel=0.005)  # the levers take their share
 
 
+@pytest.mark.converged
 def test_the_check_ends_in_pass(case) -> None:
     result = check_case(case.model_copy(update={"solid": case.solid.model_copy(update={"mesh_size": 2.0})}))
     assert result.verdict is Verdict.PASS
