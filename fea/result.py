@@ -11,6 +11,7 @@ from fea.beam import BeamCheck, CantileverCheck
 from fea.joint_forces import Held, JointForces
 from fea.large_displacement import LargeDisplacement
 from fea.pins import PinStress
+from fea.second_opinion import SecondOpinion
 from fea.solid import SolidCase, SolidSolution
 from fea.stress import StressField
 from fea.verdict import CheckOutcome, Verdict
@@ -130,6 +131,7 @@ class CheckResult:
     audit           of the published statics, where the case has one
     timings         stage -> seconds
     warnings        one sentence each
+    second_opinions CalculiX beside our solid models, where it was asked for
     """
 
     name: str
@@ -141,3 +143,4 @@ class CheckResult:
     verdict: Verdict
     timings: Mapping[str, float]
     warnings: tuple[str, ...]
+    second_opinions: tuple[SecondOpinion, ...] = ()

@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, NoReturn
 
 import typer
@@ -88,6 +89,13 @@ def check(
     overrides: SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model that decides: solid or beam.")] = "solid",
     threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
+    second_opinion: Annotated[
+        bool,
+        typer.Option(
+            "--second-opinion",
+            help="Write a CalculiX deck of each link and, where ccx is installed, set its answer beside ours.",
+        ),
+    ] = False,
 ) -> None:
     """Check a case and end in a verdict."""
     from fea.check import check_case
@@ -95,10 +103,15 @@ def check(
 
     parsed = read_case(case, overrides or ())
     result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, progress=_progress)
-    if output is not None:
-        from reports.folder import write_report
+    with TemporaryDirectory(prefix="alula-") as decks:
+        if second_opinion:
+            from reports.second_opinion import with_second_opinions
 
-        write_report(result, output, progress=_progress)
+            result = with_second_opinions(result, Path(decks), threads=threads, progress=_progress)
+        if output is not None:
+            from reports.folder import write_report
+
+            write_report(result, output, decks=Path(decks), progress=_progress)
     if json:
         from reports.record import as_json
 

@@ -1,5 +1,6 @@
 """The output folder of a check: report, result, pictures and VTU files."""
 
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,10 +12,19 @@ from reports.record import as_json, worst_load_case
 REPORT = "report.html"
 PICTURES = "pictures"
 FIELDS = "vtu"
+DECKS = "calculix"
 
 
-def write_report(result: CheckResult, target: Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
+def write_report(
+    result: CheckResult,
+    target: Path,
+    *,
+    decks: Path | None = None,
+    progress: Callable[[str], None] = lambda message: None,
+) -> None:
     """Write ``report.html``, ``result.json``, ``pictures/*.png`` and ``vtu/<link>.vtu`` into a folder, or nothing.
+
+    decks   folder whose CalculiX decks go into ``calculix/``
 
     The VTU file of a link holds the load case that stresses it most. Pictures that cannot be rendered are
     left out with a warning in report and result. Raises ``CaseError`` for a folder that holds something
@@ -40,5 +50,7 @@ def write_report(result: CheckResult, target: Path, *, progress: Callable[[str],
             if found.stress is not None and found.solid_case is not None:
                 (folder / FIELDS).mkdir(exist_ok=True)
                 write_vtu(folder / FIELDS / f"{link}.vtu", found.solid_case.displacement, found.stress)
+        if decks is not None and result.second_opinions:
+            shutil.copytree(decks, folder / DECKS)
 
     write_folder(target, fill)
