@@ -1,12 +1,14 @@
 """The choice among solvers of symmetric positive definite systems, by work, memory and Poisson's ratio.
 
-Work in seconds of one core and memory are estimated from figures measured on cubes cut into tetrahedra,
-whose factors are among the fullest; slender bodies take down to half as much. At n unknowns of quadratic
-elements, one core of an AMD EPYC server, threads set to one:
+Work in seconds of one core and memory are estimated from figures measured on boxes cut into quadratic
+tetrahedra, on one core of an AMD EPYC server. Cubes have the fullest factors, and memory is estimated by
+them; for work the estimate lies between cubes and bars six times as long as wide.
 
-    MKL PARDISO    47,000 unknowns: 2.3 s and 0.26 GB; 152,000: 1.35 GB; 499,000: 7.2 GB
-    SuperLU        15,000 unknowns: 1.4 s; 47,000: 36 s and 1.4 GB
-    two levels     160,000 unknowns, one right-hand side, ν = 0.38: 0.07 s for each of 18 iterations
+    MKL PARDISO    cubes of 47,000 unknowns: 2.3 s and 0.26 GB; 152,000: 1.35 GB; 499,000: 7.2 GB
+                   bar of 160,000: 9.8 s and 1.07 GB, 0.1 s for each right-hand side
+    SuperLU        cubes of 15,000 unknowns: 1.4 s and 0.17 GB; 47,000: 36 s and 1.4 GB
+                   bar of 160,000: 102 s and 4.4 GB
+    two levels     bar of 160,000 unknowns, ν = 0.38: 0.4 s, and 0.04 s for each of 19 iterations
 """
 
 from dataclasses import dataclass
@@ -141,7 +143,7 @@ def direct_estimate(method: DirectMethod, unknowns: int, right_hand_sides: int) 
     """Work and memory of a factorisation."""
     size = unknowns / 47_000.0
     if method == "pardiso":
-        work, space = 2.3 * size**2.05 + 0.035 * size**1.41 * right_hand_sides, 0.27e9 * size**1.41
+        work, space = 1.5 * size**2.05 + 0.015 * size**1.41 * right_hand_sides, 0.27e9 * size**1.41
     else:
         work, space = 36.0 * size**2.6 + 0.056 * size**1.8 * right_hand_sides, 1.45e9 * size**1.8
     return Estimate(method=method, work=work, memory=space + 24.0 * unknowns * right_hand_sides)
@@ -155,7 +157,7 @@ def two_level_estimate(
     coarse = direct_estimate(direct, 3 * level.space.corners, 1)
     slow = 1.0 if direct == "pardiso" else 2.5  # products by scipy
     iterations = iterations_estimate(level.nu)
-    work = coarse.work + slow * size * (0.3 + 0.07 * iterations * right_hand_sides)
+    work = coarse.work + slow * size * (0.3 + 0.04 * iterations * right_hand_sides)
     copy = 0.0 if direct == "pardiso" else 1.2 * K.blocks.nbytes
     vectors = 8.0 * K.size * (2 * right_hand_sides + 10 * min(right_hand_sides, 8))
     return Estimate(method="two-level", work=work, memory=coarse.memory + copy + 0.15 * K.blocks.nbytes + vectors)
