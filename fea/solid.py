@@ -22,6 +22,7 @@ from fea.traction import (
     thrust_traction,
     wrench_density,
 )
+from fea.two_level import linear_level
 from geometry.errors import CannotRunError
 from geometry.tagged_mesh import TaggedMesh
 from loads.bearing import NARROW, WIDE, PressureLaw, Span
@@ -67,6 +68,7 @@ class SolidSolution:
     E, nu, density   of the material [MPa, -, tonne/mm³]
     cases            every load case under every variant
     solver           name of the solver
+    solver_reason    why it was chosen
     rank_margin      smallest singular value of the rigid-body motions at the supports
     notes            what the report has to say about this solution
     timings          stage -> seconds
@@ -78,6 +80,7 @@ class SolidSolution:
     density: float
     cases: tuple[SolidCase, ...]
     solver: str
+    solver_reason: str
     rank_margin: float
     notes: tuple[str, ...]
     timings: dict[str, float]
@@ -102,7 +105,7 @@ def solve_solid(
     line      names of the surfaces at the link's first and last pin (``bore:A``, ``bore:B``): displacements
               are relative to the line through them
     order     of the displacements, 2 or 1
-    method    solver, by default the fastest available; ``threads`` bounds its threads
+    method    solver, by default the one with the least work that fits; ``threads`` bounds its threads
 
     Raises ``CannotRunError`` for loads that do not balance (to 0.1 % of the load), reactions above 1 %,
     surfaces that the mesh lacks, a mesh with folded elements, or a solver that fails.
@@ -132,7 +135,13 @@ def solve_solid(
     K = assemble_stiffness(space, E=E, nu=nu)
     clock("assembly")
     supports = isostatic_supports(space.nodes, space.corners)
-    factor = factorise(K.with_fixed(supports.unknowns), method=method, threads=threads)
+    factor = factorise(
+        K.with_fixed(supports.unknowns),
+        level=linear_level(space, E=E, nu=nu, fixed=supports.unknowns),
+        right_hand_sides=F.shape[1],
+        method=method,
+        threads=threads,
+    )
     clock("factorisation")
     free = F.copy()
     free[supports.unknowns] = 0.0
@@ -161,6 +170,7 @@ def solve_solid(
         density=density,
         cases=cases,
         solver=factor.name,
+        solver_reason=factor.reason,
         rank_margin=supports.rank_margin,
         notes=(*mesh.notes, *notes),
         timings=timings,

@@ -65,6 +65,11 @@ class LinearLevel:
         return K.with_fixed(self.fixed[self.fixed < K.size])
 
 
+def linear_level(space: DisplacementSpace, *, E: float, nu: float, fixed: NDArray[np.int64]) -> LinearLevel | None:
+    """Return the linear level below a space of quadratic displacements; None below a linear one."""
+    return LinearLevel(space=space, E=E, nu=nu, fixed=fixed) if space.order == 2 else None
+
+
 class TwoLevelFactor:
     """A quadratic system prepared for conjugate gradients.
 

@@ -10,7 +10,7 @@ from fea.elasticity import assemble_stiffness
 from fea.solve import factorise
 from fea.space import EDGES, displacement_space
 from fea.supports import isostatic_supports, rigid_motions
-from fea.two_level import LinearLevel
+from fea.two_level import LinearLevel, linear_level
 from geometry.errors import CannotRunError
 
 E = 2900.0
@@ -175,3 +175,11 @@ def test_works_without_mkl(monkeypatch):
     factor = factorise(replace(K), level=level, method="two-level")
     assert factor.name == "conjugate gradients over linear elements by SuperLU"
     np.testing.assert_allclose(factor.solve(rhs), expected.x, rtol=0.0, atol=1e-8 * np.abs(expected.x).max())
+
+
+def test_only_quadratic_displacements_have_linear_ones_below():
+    mesh = solid_meshes.box()
+    fixed = np.arange(6)
+    assert linear_level(displacement_space(mesh, order=1), E=E, nu=0.3, fixed=fixed) is None
+    level = linear_level(displacement_space(mesh), E=E, nu=0.3, fixed=fixed)
+    assert level.stiffness().size == 3 * level.space.corners
