@@ -111,7 +111,7 @@ def examine(
         points=frame.at_points(solution.displacements),
         links={},
         sentence=(
-            f"the linear frame moves by at most {linear:.3g} mm ({where}), {linear / size:.1%} of the span of "
+            f"the linear frame moves by at most {linear:.3g} mm ({where}), {linear / size:.2%} of the span of "
             f"{size:.4g} mm: the undeformed pose is good enough (limit {LARGE:.0%})"
         ),
     )
@@ -129,7 +129,7 @@ def _deformed(
     masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
     lead = (
-        f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {small.share:.1%} of the span of "
+        f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {small.share:.2%} of the span of "
         f"{small.span:.4g} mm, above {LARGE:.0%}: the linear answer is not valid; in large displacement "
     )
     try:

@@ -8,6 +8,8 @@ from fea.anchor import anchor_loads
 from fea.result import CheckResult, LoadCaseResult
 from fea.verdict import Verdict
 from loads.aero import AirForces
+from reports.frames import frame_lines
+from reports.second_opinion import opinion_table
 from reports.wording import AGREEMENT, band, fixed, headline, joined, number, percent, plain, turning
 
 if TYPE_CHECKING:
@@ -34,6 +36,8 @@ def print_result(result: CheckResult, console: "Console") -> None:
         for air in result.case.air_forces(case.name):
             console.print(Text(_air(air)))
         console.print(Text(_statics(case)))
+        for line in frame_lines(result, case):
+            console.print(Text(line))
         console.print(Text(_anchor(case)))
         console.print(_links(case))
         if case.checks:
@@ -56,6 +60,8 @@ def print_result(result: CheckResult, console: "Console") -> None:
             f"equations {joined(wrong)} are no equilibrium equations" if wrong else "every equation is an equilibrium"
         )
         console.print(Text(f"Published statics ({result.audit.source}): {found} of this linkage."))
+    if result.second_opinions:
+        console.print(opinion_table(result.second_opinions))
     for warning in result.warnings:
         console.print(Text(f"Warning: {warning}", style="yellow"))
 

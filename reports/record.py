@@ -11,9 +11,13 @@ from fea.result import CheckResult, LinkResult, LoadCaseResult
 from geometry.material import Material
 from loads.published import StaticsAudit
 from loads.statics import Reactions
+from reports.frames import UNITS as FRAME_UNITS
+from reports.frames import frame_record, reaction_records
 from reports.loads import UNITS as LOAD_UNITS
 from reports.loads import air_record, anchor_record
 from reports.mechanism import design_record
+from reports.second_opinion import UNITS as OPINION_UNITS
+from reports.second_opinion import opinion_records
 
 RESULT_SCHEMA_VERSION = 1
 
@@ -72,8 +76,10 @@ FIELD_UNITS = {
     "published_statics.rows.defect": "share of the row",
     "published_statics.imbalances.force": "N",
     "published_statics.imbalances.moment": "N*mm",
+    "conditions.duration": "s",
+    "conditions.temperature": "degC",
     "timings": "s",
-} | LOAD_UNITS
+} | {**FRAME_UNITS, **LOAD_UNITS, **OPINION_UNITS}
 
 
 def alula_version() -> str:
@@ -123,6 +129,11 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         },
         "published_statics": None if result.audit is None else _audit(result.audit),
         "design": design_record(result.case),
+        "second_opinions": opinion_records(result.second_opinions),
+        "conditions": {
+            "duration": result.case.conditions.duration,
+            "temperature": result.case.conditions.temperature,
+        },
         "assumptions": list(result.case.assumptions),
         "warnings": list(result.warnings),
         "timings": dict(result.timings),
@@ -183,16 +194,8 @@ def _drive_torque(reactions: Reactions) -> float | None:
 
 def _reactions(case: LoadCaseResult) -> list[dict[str, Any]]:
     return [
-        {
-            "load_case": case.name,
-            "joint": reaction.joint,
-            "on": reaction.on,
-            "by": reaction.by,
-            "force": [float(x) for x in reaction.force[:2]],
-            "magnitude": reaction.magnitude,
-            "moment": float(reaction.wrench[5]),
-        }
-        for reaction in case.reactions.joints.values()
+        {"load_case": case.name} | reaction | {"moment": reaction["wrench"][5]}
+        for reaction in reaction_records(case.reactions)
     ]
 
 
@@ -245,6 +248,7 @@ def _load_case(result: CheckResult, name: str) -> dict[str, Any]:
         "drive_torque": _drive_torque(case.reactions),
         "anchor": anchor_record(case),
         "air": air_record(result, name),
+        **frame_record(case),
         "links": {link: _link(found) for link, found in case.links.items()},
     }
 

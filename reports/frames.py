@@ -1,0 +1,104 @@
+"""Which model gave the joint forces, what large displacement changes, and pins: as data and as lines of text."""
+
+from typing import Any
+
+from fea.band import Band
+from fea.joint_forces import PINNED_STATICS
+from fea.result import CheckResult, LoadCaseResult
+from loads.statics import Reactions
+from reports.wording import fixed, number
+
+UNITS = {
+    "reactions.wrench": "N; N*mm",
+    "large_displacement.span": "mm",
+    "large_displacement.linear": "mm",
+    "large_displacement.held": "share of the load",
+    "large_displacement.points.displacement": "mm",
+    "large_displacement.reactions.wrench": "N; N*mm",
+    "large_displacement.reactions.force": "N",
+    "large_displacement.reactions.magnitude": "N",
+    "large_displacement.drive_torque": "N*mm",
+    "pins.lever": "mm",
+    "pins.moment": "N*mm",
+    "pins.bending": "MPa",
+    "pins.shear": "MPa",
+    "ways_to_hold.displacement": "mm",
+    "ways_to_hold.size": "mm",
+}
+
+
+def reaction_records(reactions: Reactions) -> list[dict[str, Any]]:
+    """Return every joint's reaction: force in the plane and its size, and the whole wrench."""
+    return [
+        {
+            "joint": joint.joint,
+            "on": joint.on,
+            "by": joint.by,
+            "force": [float(x) for x in joint.force[:2]],
+            "magnitude": joint.magnitude,
+            "wrench": [float(x) for x in joint.wrench],
+        }
+        for joint in reactions.joints.values()
+    ]
+
+
+def frame_record(case: LoadCaseResult) -> dict[str, Any]:
+    """Return what a load case's ``joint_forces``, ``large_displacement``, ``pins`` and ``ways_to_hold`` are."""
+    moved = case.large_displacement
+    return {
+        "joint_forces": {"model": case.forces.model, "reason": case.forces.reason},
+        "large_displacement": {
+            "state": moved.state,
+            "span": moved.span,
+            "linear": moved.linear,
+            "where": moved.where,
+            "held": moved.held,
+            "sentence": moved.sentence,
+            "points": [
+                {"link": link, "point": point, "displacement": [float(x) for x in d]}
+                for (link, point), d in moved.points.items()
+            ],
+            "reactions": None if moved.reactions is None else reaction_records(moved.reactions),
+            "drive_torque": None if moved.reactions is None else moved.reactions.drive_torque,
+        },
+        "pins": [
+            {
+                "joint": joint,
+                "lever": pin.lever,
+                "moment": _band(pin.moment),
+                "bending": _band(pin.bending),
+                "shear": pin.shear,
+            }
+            for joint, pin in case.pins.items()
+        ],
+        "ways_to_hold": [
+            {"name": held.name, "displacement": [float(x) for x in held.displacement], "size": held.size}
+            for held in case.ways_to_hold
+        ],
+    }
+
+
+def _band(band: Band) -> dict[str, Any]:
+    return {"value": band.value, "low": band.low, "high": band.high, "holds": list(band.holds)}
+
+
+def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:
+    """Return what the terminal says of a load case's joint forces and displacements."""
+    lines = []
+    if case.forces.model != PINNED_STATICS:
+        lines.append(f"Joint forces by a {case.forces.model}: {case.forces.reason}.")
+    deformed = case.large_displacement.reactions
+    if deformed is not None:
+        forces = "  ".join(f"{name} {number(joint.magnitude)}" for name, joint in deformed.joints.items())
+        lines.append(f"On the deformed shape [N]: {forces}")
+        if deformed.drive is not None:
+            lines.append(f"Drive torque on the deformed shape: {number(deformed.drive_torque)} N·mm")
+    asked = result.case.ways_to_hold
+    if asked is not None:
+        ways = [
+            f"{held.name} ({', '.join(fixed(float(x), 1) for x in held.displacement)})" for held in case.ways_to_hold
+        ]
+        if asked.published is not None:
+            ways.append(f"published {number(asked.published, 3)}")
+        lines.append(f"{asked.at} moves by x, y, z [mm, linear frame]: {'; '.join(ways)}")
+    return lines
