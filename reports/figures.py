@@ -7,9 +7,7 @@ Scales, labels and the colour bar are drawn around the renderings by matplotlib.
 
 import json
 import math
-import os
 import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -21,6 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.result import LinkResult
+from geometry import child
+from fea.stress import StressField
 from reports.drawings import DPI, INK, STYLE, WIDTH, as_png
 from reports.wording import fixed, number, plain
 
@@ -107,9 +107,20 @@ def stress_plots(
     No picture is worth failing for: where rendering fails there are fewer pictures and one warning.
     """
     scenes = {name: scene_of(link) for name, link in links.items() if link.stress is not None}
+    return plots_of(scenes, points, time_limit=time_limit)
+
+
+def plots_of(
+    scenes: Mapping[str, Scene], points: Mapping[str, Mapping[str, float]], *, time_limit: float = TIME_LIMIT
+) -> tuple[dict[str, bytes], tuple[str, ...]]:
+    """Return a PNG for every scene by name, and what to warn of; ``points`` as for ``stress_plots``."""
     if not scenes:
         return {}, ()
-    renderings, trouble = _rendered(scenes, time_limit)
+    renderings: dict[str, tuple[Real, Real]] = {}
+    try:
+        renderings, trouble = _rendered(scenes, time_limit)
+    except OSError as error:  # the disk of temporary files is full, or may not be written
+        trouble = f"rendering had no room for its files ({error.strerror or error})"
     found = {
         name: _composed(scene, *renderings[name], points[name]) for name, scene in scenes.items() if name in renderings
     }
@@ -121,8 +132,12 @@ def scene_of(link: LinkResult) -> Scene:
     """Prepare the plot of a link that ran as a solid."""
     assert link.stress is not None
     assert link.solid_case is not None
-    space, values = link.stress.space, link.stress.von_mises
-    displacement = link.solid_case.displacement
+    return scene_from(link.stress, link.solid_case.displacement)
+
+
+def scene_from(stress: StressField, displacement: Real) -> Scene:
+    """Prepare the plot of a stress field with its displacements (n, 3) [mm]."""
+    space, values = stress.space, stress.von_mises
     faces = space.boundary
     triangles = faces if faces.shape[1] == 3 else faces[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
     length = float(np.ptp(space.nodes[:, 0]))
@@ -239,7 +254,7 @@ def _limits(scene: Scene) -> tuple[float, float]:
 def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str, tuple[Real, Real]], str]:
     """Render both views of every scene; returns the images that came out, and what went wrong with the others."""
     trouble = ""
-    with tempfile.TemporaryDirectory(prefix="alula-") as name:
+    with tempfile.TemporaryDirectory(prefix="alula-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         views = {}
         for i, scene in enumerate(scenes.values()):
@@ -289,32 +304,23 @@ def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str,
 
 
 def _command(folder: Path) -> list[str]:
-    # -P: nothing in the folder where the user stands, or beside the worker, is taken for a library.
-    return [sys.executable, "-P", str(Path(__file__).with_name("figures_worker.py")), str(folder)]
+    return child.module_command("reports.figures_worker", str(folder))
 
 
 def _run_worker(folder: Path, views: dict[str, Any], choice: dict[str, str], time_limit: float) -> str:
     """Run a child on some of the views; returns what went wrong, or nothing."""
+    request = f"{next(iter(views))}.json"
     try:
-        done = subprocess.run(
-            _command(folder),
-            env=os.environ | {"PYVISTA_OFF_SCREEN": "true"} | choice,
-            input=json.dumps(views).encode(),
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            timeout=time_limit,
-            check=False,
-        )
+        (folder / request).write_text(json.dumps(views), encoding="utf-8")
+        environment = child.environment(PYVISTA_OFF_SCREEN="true", **choice)
+        status, told = child.run([*_command(folder), request], environment=environment, time_limit=time_limit)
     except subprocess.TimeoutExpired:
         return f"rendering was stopped after {time_limit:g} s"
     except OSError as error:
         return f"rendering could not be started ({error.strerror})"
-    if done.returncode == 0:
-        return ""
-    if done.returncode < 0:
-        return f"rendering crashed (signal {-done.returncode}); check that the system libraries in the README are there"
-    last = (done.stderr.decode(errors="replace").strip().splitlines() or ["no message"])[-1]
-    return f"rendering failed ({last})"
+    if status < 0:
+        return f"rendering crashed (signal {-status}); check that the system libraries in the README are there"
+    return f"rendering failed ({told})" if status else ""
 
 
 def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float]) -> bytes:
