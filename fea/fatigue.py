@@ -5,6 +5,7 @@ size; brittle ones: that principal stress itself. One direction of stress at a t
 principal directions turn within a cycle, neither measure knows.
 """
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -62,7 +63,7 @@ def rainflow(history: Real) -> Real:
             else:
                 note(points[-3], points[-2], 1.0)
                 del points[-3:-1]
-    for a, b in zip(points[:-1], points[1:], strict=True):
+    for a, b in itertools.pairwise(points):
         note(a, b, 0.5)
     return np.array(found).reshape(-1, 3)
 
@@ -179,5 +180,5 @@ def strength_at(fatigue: Fatigue, cycles: float) -> float | None:
     Without an exponent: the stated stress up to the stated cycles, unknown beyond.
     """
     if fatigue.exponent is not None:
-        return fatigue.stress * (cycles / fatigue.cycles) ** (-1.0 / fatigue.exponent)
+        return float(fatigue.stress * (cycles / fatigue.cycles) ** (-1.0 / fatigue.exponent))
     return fatigue.stress if cycles <= fatigue.cycles else None

@@ -103,3 +103,17 @@ def principal_peaks(stress: Real, combination: Real) -> Peaks:
         better = best > value
         value[better], node[better] = best[better], where[better]
     return Peaks(value=value, node=node)
+
+
+def largest_sizes(stress: Real, combination: Real, *, whole: bool) -> Real:
+    """Largest size of the stress of each node (nodes,) under any of the loads [MPa]; other arguments as above.
+
+    whole   True: the Frobenius norm, which no principal stress exceeds; False: the von Mises stress
+    """
+    weights = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+    parts = stress * np.sqrt(weights)[:, None] if whole else deviator(stress)
+    found = np.empty(len(parts))
+    step = max(1, _BLOCK // (parts.shape[1] * combination.shape[1]))
+    for start in range(0, len(parts), step):
+        found[start : start + step] = _squares(parts[start : start + step], combination).max(axis=1)
+    return np.sqrt(found)
