@@ -8,7 +8,6 @@ import os
 import pickle
 import signal
 import subprocess
-import sys
 import tempfile
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -19,6 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry import child
 from geometry.body_rules import check_body
 from geometry.errors import AlulaError, CannotRunError, CaseError
 from geometry.mesh_settings import COARSE, MeshSettings
@@ -141,37 +141,29 @@ def _naming(name: str, task: Callable[..., _T], *arguments: Any) -> _T:
 
 
 def _command(folder: Path) -> list[str]:
-    # -P: a folder named "geometry" where the user stands must not be taken for this package.
-    return [sys.executable, "-P", "-m", "geometry.mesh_worker", str(folder)]
+    return child.module_command("geometry.mesh_worker", str(folder))
 
 
 def _run(task: str, *arguments: Any, time_limit: float) -> Any:
     """Do a task of ``geometry.mesh_worker`` in a child process and return its result."""
-    root = str(Path(__file__).resolve().parents[1])
-    paths = os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH", "")]))
-    environment = os.environ | {"PYTHONPATH": paths, "OMP_NUM_THREADS": "1"}
-    with tempfile.TemporaryDirectory(prefix="alula-") as name:
-        folder = Path(name)
-        (folder / "request").write_bytes(pickle.dumps((task, *arguments)))
-        try:
-            done = subprocess.run(
-                _command(folder),
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.PIPE,
-                timeout=time_limit,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            raise CannotRunError(
-                f"the mesher was stopped after its time limit of {time_limit:g} s; "
-                "use a coarser size or raise the limit"
-            ) from None
-        try:
-            kind, result = pickle.loads((folder / "answer").read_bytes())
-        except (OSError, EOFError, pickle.UnpicklingError):
-            raise CannotRunError(_obituary(done.returncode, done.stderr.decode(errors="replace"))) from None
+    try:
+        with tempfile.TemporaryDirectory(prefix="alula-", ignore_cleanup_errors=True) as name:
+            folder = Path(name)
+            (folder / "request").write_bytes(pickle.dumps((task, *arguments)))
+            status, told = child.run(_command(folder), environment=child.environment(), time_limit=time_limit)
+            try:
+                kind, result = pickle.loads((folder / "answer").read_bytes())
+            except Exception:  # none, half of one, or something else
+                raise CannotRunError(_obituary(status, told)) from None
+    except subprocess.TimeoutExpired:
+        raise CannotRunError(
+            f"the mesher was stopped after its time limit of {time_limit:g} s; use a coarser size or raise the limit"
+        ) from None
+    except OSError as error:
+        raise CannotRunError(
+            f"the mesher could not be run ({error.strerror or error}); free space in the folder for temporary files "
+            "or name another in TMPDIR"
+        ) from None
     if kind == "case":
         raise CaseError(result)
     if kind == "cannot":
@@ -179,9 +171,8 @@ def _run(task: str, *arguments: Any, time_limit: float) -> Any:
     return result
 
 
-def _obituary(status: int, stderr: str) -> str:
-    last = (stderr.strip().splitlines() or ["it left no message"])[-1]
+def _obituary(status: int, told: str) -> str:
     if status < 0:
         name = signal.Signals(-status).name
         return f"the mesher crashed ({name}); change the part's dimensions or the mesh size a little"
-    return f"the mesher ended with status {status} and no answer: {last}"
+    return f"the mesher ended with status {status} and no answer: {told}"

@@ -11,6 +11,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from geometry.child import end_with_parent
 from geometry.errors import CannotRunError, CaseError
 from geometry.mesh_settings import MeshSettings
 from geometry.part import Body
@@ -73,9 +74,13 @@ def answer(task: str, arguments: tuple[Any, ...]) -> tuple[str, object]:
 
 def main(folder: Path) -> None:
     """Answer the request in a folder."""
+    end_with_parent(folder)
     task, *arguments = pickle.loads((folder / "request").read_bytes())
     result = answer(task, tuple(arguments))
-    (folder / "answer").write_bytes(pickle.dumps(result))
+    # By renaming, so that a crash leaves no half of an answer.
+    draft = folder / "draft"
+    draft.write_bytes(pickle.dumps(result))
+    draft.rename(folder / "answer")
 
 
 if __name__ == "__main__":

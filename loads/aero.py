@@ -166,10 +166,11 @@ def _need_all(air: AirLoad, entry: str) -> None:
 
 def _unit(stated: Direction, entry: str) -> Real:
     vector = np.array(stated)
-    length = float(np.linalg.norm(vector))
-    if length == 0.0:
+    largest = float(np.abs(vector).max())
+    if largest == 0.0:
         raise CaseError(f"{entry}: it has no direction; write for example [0.0, 0.0, 1.0]")
-    return np.asarray(vector / length)
+    vector /= largest  # so that the squares of huge numbers do not overflow, nor those of tiny ones vanish
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def _lift_direction(air: AirLoad, along: Real, lift: float, entry: str) -> Real:

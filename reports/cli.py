@@ -1,5 +1,8 @@
 """The command ``alula``. Heavy libraries are imported by the command that needs them."""
 
+import contextlib
+import errno
+import os
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -33,8 +36,19 @@ JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JS
 
 def main() -> NoReturn:
     """Run the command line; every way to end has its exit status and at most one sentence."""
+    _end_cleanly_on_signals()
     try:
-        app()
+        try:
+            app()
+        except SystemExit as stop:
+            if _pipe_was_closed(stop):
+                raise BrokenPipeError from None
+            sys.stdout.flush()  # here, where a full disk can still be explained
+            raise
+        except BaseException:
+            with contextlib.suppress(OSError):
+                sys.stdout.flush()
+            raise
     except AlulaError as error:
         _stop(str(error), error.exit_status)
     except KeyboardInterrupt:
@@ -44,9 +58,11 @@ def main() -> NoReturn:
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(CRASHED)
+    except OSError as error:
+        _abandon_output()
+        where = f"'{error.filename}'" if error.filename else "standard output"
+        _stop(f"{where} cannot be written or read ({error.strerror or error}); free space or choose another", CRASHED)
     except Exception as error:
-        import os
-
         if os.environ.get("ALULA_TRACEBACK"):
             raise
         _stop(
@@ -55,6 +71,38 @@ def main() -> NoReturn:
             CRASHED,
         )
     sys.exit(0)
+
+
+def _end_cleanly_on_signals() -> None:
+    """Let a signal to end do what Ctrl-C does: stop the children, remove half-written folders, end with 130."""
+    import signal
+
+    def end(number: int, frame: object) -> None:
+        for other in ending:
+            signal.signal(other, signal.SIG_IGN)  # a second one would cut the cleaning short
+        from geometry.child import stop_all
+
+        stop_all()
+        raise KeyboardInterrupt
+
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    found = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    # One that is ignored stays so: nohup says that the end of the terminal is to be survived.
+    ending = [number for number in found if signal.getsignal(number) is not signal.SIG_IGN]
+    for number in ending:
+        signal.signal(number, end)
+
+
+def _pipe_was_closed(stop: SystemExit) -> bool:
+    """Return True if typer took a closed pipe for the end, with the status that means a failed check."""
+    cause = stop.__context__
+    return isinstance(cause, OSError) and cause.errno == errno.EPIPE
+
+
+def _abandon_output() -> None:
+    """Keep the interpreter from trying once more to write what could not be written."""
+    with contextlib.suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _stop(sentence: str, status: int) -> NoReturn:
@@ -89,6 +137,17 @@ def check(
     overrides: SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model that decides: solid or beam.")] = "solid",
     threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
+    accuracy: Annotated[
+        str | None,
+        typer.Option(
+            help='Error of the meshes to reach in every link, such as "5 %"; without it: a clear verdict or 5 %.',
+            show_default=False,
+        ),
+    ] = None,
+    max_unknowns: Annotated[
+        int, typer.Option(min=1000, help="Largest system that is solved to reach the accuracy.")
+    ] = 600_000,
+    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds after which no finer mesh is begun.")] = 600.0,
     second_opinion: Annotated[
         bool,
         typer.Option(
@@ -98,11 +157,12 @@ def check(
     ] = False,
 ) -> None:
     """Check a case and end in a verdict."""
-    from fea.check import check_case
+    from fea.check import check_case, effort_of
     from loads.case_file import read_case
 
     parsed = read_case(case, overrides or ())
-    result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, progress=_progress)
+    effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
+    result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)
     with TemporaryDirectory(prefix="alula-") as decks:
         if second_opinion:
             from reports.second_opinion import with_second_opinions
@@ -166,6 +226,50 @@ def motion(
     print_motion(result, case, json=json)
     if output is not None and not json:
         print(f"\nTables and figures: {output}")
+
+
+@app.command()
+def envelope(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for result.json, the curves, pictures and VTU files.")
+    ] = None,
+    json: JsonOption = False,
+    overrides: SetOption = None,
+    repetitions: Annotated[
+        float | None,
+        typer.Option(
+            min=1.0,
+            help="How often the motion is to be borne, for fatigue; the cycles of the material's card when left out.",
+            show_default=False,
+        ),
+    ] = None,
+    growth: Annotated[
+        float,
+        typer.Option(min=1.0, help="Growth of the drive torque towards a dead point, beyond which poses are left out."),
+    ] = 20.0,
+    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
+) -> None:
+    """Check every link over the whole motion: least safety factor, where and when, and fatigue."""
+    from fea.envelope import envelope_case
+    from loads.case_file import read_case
+    from reports.envelope import as_json, print_envelope, write_envelope
+
+    parsed = read_case(case, overrides or ())
+    result = envelope_case(
+        parsed, name=case, threads=threads, repetitions=repetitions, growth=growth, progress=_progress
+    )
+    if output is not None:
+        write_envelope(result, output, progress=_progress)
+    if json:
+        print(as_json(result))
+    else:
+        from rich.console import Console
+
+        print_envelope(result, Console())
+        if output is not None:
+            print(f"Curves, pictures and fields: {output}")
+    raise SystemExit(result.verdict.exit_status)
 
 
 @app.command()
@@ -275,6 +379,8 @@ def new(
     except FileExistsError:
         raise CaseError(f"'{path}' exists; choose another name, so that nothing is lost") from None
     except OSError as error:
+        if path.is_file():
+            path.unlink()  # half of it
         raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
     print(f"Wrote {path}. Check it with: alula check {path} -o out")
 

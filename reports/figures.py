@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.result import LinkResult
-from geometry import child
 from fea.stress import StressField
+from geometry import child
 from reports.drawings import DPI, INK, STYLE, WIDTH, as_png
 from reports.wording import fixed, number, plain
 

@@ -1,8 +1,7 @@
-"""The child process that renders views with pyvista: ``python figures_worker.py FOLDER``.
+"""The child process that renders views with pyvista: ``python -m reports.figures_worker FOLDER REQUEST``.
 
-Reads from standard input a JSON object name -> view, and from the folder the arrays in the ``.npz`` file that
-each view names; writes the image of each as ``<view>.npy``. It imports nothing of alula, so that it can be
-started by its path.
+Reads from the folder the request, a JSON object name -> view, and the arrays in the ``.npz`` file that each view
+names; writes the image of each as ``<view>.npy``.
 """
 
 import json
@@ -12,6 +11,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from geometry.child import end_with_parent
 
 SMOOTH_BELOW = 40.0
 """Angle between faces [degrees] above which an edge is drawn sharp."""
@@ -73,12 +74,13 @@ def render(view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) ->
     draft.rename(path)
 
 
-def main(folder: Path) -> None:
-    """Render every view that standard input lists."""
-    for name, view in json.load(sys.stdin).items():
+def main(folder: Path, request: str) -> None:
+    """Render every view that the request lists."""
+    end_with_parent(folder)
+    for name, view in json.loads((folder / request).read_text(encoding="utf-8")).items():
         with np.load(folder / view["arrays"]) as stored:
             render(view, dict(stored), folder / f"{name}.npy")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), sys.argv[2])

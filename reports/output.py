@@ -1,10 +1,12 @@
 """An output folder that is written completely or not at all."""
 
+import glob
 import json
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from geometry.errors import CannotRunError, CaseError
@@ -17,31 +19,87 @@ def write_folder(target: Path, fill: Callable[[Path], None]) -> None:
     """Let ``fill`` write into a fresh folder beside ``target``, then put it in the target's place.
 
     An existing folder is replaced only if it is empty or holds an earlier result of alula's, and only
-    once the new one is whole. Raises ``CaseError`` for a target that is something else, and
-    ``CannotRunError`` where the disk refuses.
+    once the new one is whole. Of several runs into one folder the last to finish stays. What a killed run left
+    is removed. Raises ``CaseError`` for a target that is something else, and ``CannotRunError`` where the disk
+    refuses.
     """
     target = Path(os.path.abspath(target))
     _check(target)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        fresh = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+        with _alone_in(target.parent):
+            _clear(target)
+            fresh = Path(tempfile.mkdtemp(prefix=_prefix(target), dir=target.parent))
+            mine = _locked(fresh)
     except OSError as error:
         raise CannotRunError(
             f"output: '{target}' cannot be written ({error.strerror}); choose another folder"
         ) from None
     try:
         fill(fresh)
-        for path in fresh.rglob("*"):
-            if path.is_file():
-                _flush(path)
+        for path in (*fresh.rglob("*"), fresh):
+            _flush(path)
         fresh.chmod(0o755)
-        _replace(target, fresh)
+        with _alone_in(target.parent):
+            _check(target)
+            _replace(target, fresh)
     except OSError as error:
         raise CannotRunError(
             f"output: writing to '{target}' failed ({error.strerror or error}); nothing was changed there"
         ) from None
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
+        if mine is not None:
+            os.close(mine)
+
+
+def _prefix(target: Path) -> str:
+    return f".{target.name}.alula-"
+
+
+def _locked(folder: Path, *, wait: bool = True) -> int | None:
+    """Lock a folder and return the descriptor that holds the lock; None where that is not to be had.
+
+    The system takes the lock from a process that ends, however it ends. Programs that do not ask are not kept out.
+    """
+    try:
+        import fcntl
+    except ImportError:  # not a Unix
+        return None
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:  # held by another, or a network disk without locks
+        os.close(descriptor)
+        return None
+    return descriptor
+
+
+@contextmanager
+def _alone_in(parent: Path) -> Iterator[None]:
+    """Keep other runs from changing names in a folder meanwhile."""
+    held = _locked(parent)
+    try:
+        yield
+    finally:
+        if held is not None:
+            os.close(held)
+
+
+def _clear(target: Path) -> None:
+    """Remove what killed runs left beside the target: folders of its prefix that no process holds.
+
+    A run that was killed between its two renames left the earlier result in such a folder: it is put back.
+    """
+    for left in target.parent.glob(glob.escape(_prefix(target)) + "*"):
+        held = _locked(left, wait=False) if left.is_dir() and not left.is_symlink() else None
+        if held is None:
+            continue
+        earlier = left / target.name
+        if is_result(earlier) and not target.exists():
+            earlier.rename(target)
+        shutil.rmtree(left, ignore_errors=True)
+        os.close(held)
 
 
 def _check(target: Path) -> None:
@@ -64,8 +122,12 @@ def is_result(folder: Path) -> bool:
 
 
 def _flush(path: Path) -> None:
-    with path.open("rb") as stream:
-        os.fsync(stream.fileno())
+    """Have a file, or the names in a folder, written to the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def _replace(target: Path, fresh: Path) -> None:
@@ -73,7 +135,7 @@ def _replace(target: Path, fresh: Path) -> None:
     if not target.exists():
         fresh.rename(target)
         return
-    old = Path(tempfile.mkdtemp(prefix=f".{target.name}.old.", dir=target.parent))
+    old = Path(tempfile.mkdtemp(prefix=_prefix(target), dir=target.parent))
     moved = old / target.name
     target.rename(moved)
     try:

@@ -1,0 +1,83 @@
+"""Child processes for foreign code that can crash or never end, which no exception reports.
+
+A child is stopped at its time limit and on an interruption. It ends by itself when its parent is killed: its
+standard input is a pipe that only the parent holds open, and the end of that pipe is the end of the parent.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+from geometry.errors import CannotRunError
+
+_ROOT = str(Path(__file__).resolve().parents[1])
+_lock = threading.RLock()
+_running: set[subprocess.Popen[bytes]] = set()
+_stopped = threading.Event()
+
+
+def module_command(module: str, *arguments: str) -> list[str]:
+    """Return the command that runs a module of alula's."""
+    # -P: a folder named "geometry" where the user stands must not be taken for this package.
+    return [sys.executable, "-P", "-m", module, *arguments]
+
+
+def environment(**more: str) -> dict[str, str]:
+    """Return the environment in which a child finds alula's modules."""
+    paths = os.pathsep.join(filter(None, [_ROOT, os.environ.get("PYTHONPATH", "")]))
+    return os.environ | {"PYTHONPATH": paths, "OMP_NUM_THREADS": "1"} | more
+
+
+def run(command: list[str], *, environment: dict[str, str], time_limit: float) -> tuple[int, str]:
+    """Run a child and return its status (negative: the signal that ended it) and the last line of its standard error.
+
+    time_limit   seconds
+
+    Raises ``subprocess.TimeoutExpired`` at the limit, ``OSError`` if it cannot be started, ``CannotRunError``
+    after an interruption.
+    """
+    read, write = os.pipe()
+    try:
+        with _lock:
+            if _stopped.is_set():
+                raise CannotRunError("interrupted")
+            process = subprocess.Popen(
+                command, env=environment, stdin=read, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+            )
+            _running.add(process)
+        with process:
+            try:
+                _, told = process.communicate(timeout=time_limit)
+            except BaseException:
+                process.kill()
+                raise
+            finally:
+                _running.discard(process)
+    finally:
+        os.close(read)
+        os.close(write)
+    lines = told.decode(errors="replace").strip().splitlines()
+    return process.returncode, (lines or ["it left no message"])[-1]
+
+
+def stop_all() -> None:
+    """Kill every child and start no other: threads that wait for one go on at once. For a process that is to end."""
+    _stopped.set()
+    with _lock:
+        for process in tuple(_running):
+            process.kill()
+
+
+def end_with_parent(scratch: Path) -> None:
+    """In a child: when the parent has gone, remove the folder that both used, and end."""
+
+    def wait() -> None:
+        while os.read(sys.stdin.fileno(), 1):
+            pass
+        shutil.rmtree(scratch, ignore_errors=True)
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True).start()
