@@ -1,13 +1,21 @@
 """What each link weighs: from its part's volume and density, or as stated."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 
-from geometry.mesh import mass_properties
+from geometry.mesh import MassProperties, mass_properties
+from geometry.part import Body
 from loads.actions import PartMass
 from loads.case import Case
 from loads.inertia import with_carried
+
+
+@lru_cache(maxsize=256)
+def _measured(body: Body) -> MassProperties:
+    """Volume and inertia of a body; equal bodies, and one body in several motions, are measured once."""
+    return mass_properties(body)
 
 
 def part_mass(case: Case, link: str) -> PartMass:
@@ -16,7 +24,7 @@ def part_mass(case: Case, link: str) -> PartMass:
     Raises ``CaseError`` for a link without part or a body that cannot be built, ``CannotRunError`` where
     the kernel fails.
     """
-    solid, density = mass_properties(case.body(link)), case.material_of(link).density
+    solid, density = _measured(case.body(link)), case.material_of(link).density
     return PartMass(
         mass=solid.volume * density,
         centroid=np.asarray(solid.centroid)[:2],
