@@ -7,15 +7,22 @@ from fea.result import CheckResult, LoadCaseResult
 from loads.aero import shares
 
 UNITS = {
-    "load_cases.*.anchor.force": "N",
-    "load_cases.*.anchor.moment": "N*mm",
-    "load_cases.*.air.dynamic_pressure": "MPa",
-    "load_cases.*.air.speed": "mm/s",
-    "load_cases.*.air.density": "tonne/mm^3",
-    "load_cases.*.air.area": "mm^2",
-    "load_cases.*.air.lift": "N",
-    "load_cases.*.air.drag": "N",
-    "load_cases.*.air.force": "N",
+    "anchor.joints.force": "N",
+    "anchor.joints.moment": "N*mm",
+    "anchor.total.force": "N",
+    "anchor.total.moment": "N*mm",
+    "air.speed": "mm/s",
+    "air.density": "tonne/mm^3",
+    "air.area": "mm^2",
+    "air.dynamic_pressure": "MPa",
+    "air.lift": "N",
+    "air.drag": "N",
+    "air.lift_coefficient": "1",
+    "air.drag_coefficient": "1",
+    "air.lift_direction": "1",
+    "air.drag_direction": "1",
+    "air.force": "N",
+    "air.spread.share": "1",
 }
 
 
@@ -23,10 +30,10 @@ def anchor_record(case: LoadCaseResult) -> dict[str, Any]:
     """Return force and moment on the ground at each of its joints, and their total."""
     anchor = anchor_loads(case)
     return {
-        "joints": {
-            name: {"force": [float(x) for x in wrench[:3]], "moment": [float(x) for x in wrench[3:]]}
+        "joints": [
+            {"joint": name, "force": [float(x) for x in wrench[:3]], "moment": [float(x) for x in wrench[3:]]}
             for name, wrench in anchor.joints.items()
-        },
+        ],
         "total": {
             "about": anchor.about,
             "force": [float(x) for x in anchor.total[:3]],
