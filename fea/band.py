@@ -1,11 +1,12 @@
 """A number with its error band."""
 
+import math
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
 class Band:
-    """A value, the interval that it may lie in, and what that interval holds.
+    """A value, the interval that it may lie in, and what that interval holds; all NaN where nothing is known.
 
     holds   the sources of error that low and high cover, each in a few words
     """
@@ -17,8 +18,18 @@ class Band:
 
     def __post_init__(self) -> None:
         """Refuse a band that does not hold its value."""
-        if not self.low <= self.value <= self.high:
+        if not (self.low <= self.value <= self.high or self.unknowable):
             raise ValueError(f"the band {self.low:g} to {self.high:g} does not hold its value {self.value:g}")
+
+    @property
+    def unknowable(self) -> bool:
+        """True where no number stands for the quantity, such as a peak that grows without limit."""
+        return math.isnan(self.value) and math.isnan(self.low) and math.isnan(self.high)
+
+    @classmethod
+    def unknown(cls, *holds: str) -> "Band":
+        """Return a band of what has no value; every check of it is undecided."""
+        return cls(value=math.nan, low=math.nan, high=math.nan, holds=holds)
 
     @classmethod
     def exact(cls, value: float, *holds: str) -> "Band":
@@ -32,6 +43,8 @@ class Band:
 
     def inverse(self, numerator: float) -> "Band":
         """Return ``numerator`` divided by the number: strength over stress gives a safety factor."""
+        if self.unknowable:
+            return self
         return Band(
             value=_ratio(numerator, self.value),
             low=_ratio(numerator, self.high),

@@ -1,14 +1,14 @@
 """The whole check of a case: pose, statics, beams, solids, bands, verdict."""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from pydantic_core import PydanticCustomError
 
 from fea.band import Band
 from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
-from fea.compare import compare_sections
 from fea.cut_free import beam_loads, link_loads
 from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
 from fea.large_displacement import LargeDisplacement, examine
@@ -16,15 +16,16 @@ from fea.link_loads import LinkLoads
 from fea.motor_check import motor_outcomes
 from fea.outcomes import outcomes
 from fea.pins import PinStress, stress_at
-from fea.result import CheckResult, LinkResult, LoadCaseResult, VariantPeak
-from fea.solid import SolidCase, SolidSolution, solve_solid
-from fea.stress import StressField, stress_field
+from fea.refinement import START, Effort, RefinedSolid, refine_links
+from fea.result import CheckResult, LinkResult, LoadCaseResult
+from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
+from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
+from fea.solid_result import link_task, solid_result
 from fea.verdict import overall
 from geometry.errors import CaseError
 from geometry.material import Material
-from geometry.mesh import MeshSettings, mesh_bodies
 from geometry.pose import Pose
-from geometry.tagged_mesh import TaggedMesh
+from loads.accuracy import parse_accuracy
 from loads.actions import PartMass, needs_masses
 from loads.applied import Load
 from loads.case import Case
@@ -39,8 +40,6 @@ Progress = Callable[[str], None]
 FIDELITIES = ("solid", "beam")
 NEAR_DEAD_POINT = 0.02
 """Smallest singular value of the scaled Jacobian below which the run warns: on the owl wing, 2° off a dead point."""
-PINNED_HOLDS = ("pin pressure over 180° and over 90°",)
-DRIVEN_HOLDS = (*PINNED_HOLDS, "drive torque by eye-faces and by bore-shear")
 BEAM_HOLDS = ("nothing: beam theory without stress concentration",)
 
 
@@ -74,6 +73,25 @@ class _Clock:
         self.last = now
 
 
+def effort_of(
+    case: Case,
+    accuracy: str | None = None,
+    *,
+    max_unknowns: int = Effort.max_unknowns,
+    time_limit: float = Effort.time_limit,
+) -> Effort:
+    """Return what a check may cost: the stated ``accuracy`` such as ``"5 %"``, else the case's, else the default.
+
+    Raises ``CaseError`` for an accuracy that is none.
+    """
+    try:
+        stated = case.solid.accuracy if accuracy is None else parse_accuracy(accuracy)
+    except PydanticCustomError as error:
+        raise CaseError(f"accuracy: it is '{accuracy}', but {error.message()}") from None
+    effort = Effort(max_unknowns=max_unknowns, time_limit=time_limit)
+    return effort if stated is None else replace(effort, accuracy=stated, stated=True)
+
+
 def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     """Solve pose and statics of every load case; ``name`` is the path or built-in name of the case.
 
@@ -105,12 +123,14 @@ def check_case(
     name: str = "",
     fidelity: str = "solid",
     threads: int = 2,
+    effort: Effort | None = None,
     progress: Progress = lambda message: None,
 ) -> CheckResult:
     """Check a case: every link under every load case, against every check.
 
     name       path or built-in name of the case, for companion files and the report
     fidelity   "solid" for finite elements, "beam" for hand calculations alone
+    effort     accuracy of solid models and what it may cost, by default what the case says
     progress   called with a sentence before every stage that may take long
 
     Raises ``CaseError`` for a wrong case and ``CannotRunError`` where a stage fails.
@@ -134,22 +154,20 @@ def check_case(
     }
     beams = {link: tuple(_beam(case, statics, link, loads) for loads in cut[link]) for link in cut}
     clock("hand calculations")
-    solids: dict[str, SolidSolution | None] = dict.fromkeys(cut)
+    solids: dict[str, RefinedSolid] = {}
     if fidelity == "solid":
-        loaded = {link: tuple(x for x in loads if _acts(x)) for link, loads in cut.items()}
-        loaded = {link: loads for link, loads in loaded.items() if loads}
-        progress(f"Meshing {len(loaded)} links ...")
-        settings = MeshSettings(curved=case.solid.curved).scaled(case.solid.mesh_size)
-        meshes = mesh_bodies({link: case.body(link) for link in loaded}, settings)
-        clock("meshing")
-        for link, loads in loaded.items():
-            progress(f"Solving {link}: {len(meshes[link].cells)} elements ...")
-            solids[link] = _solid(case, link, meshes[link], loads, threads)
+        loaded = {link: [x for x in loads if _acts(x)] for link, loads in cut.items()}
+        tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
+        start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
+        solids = refine_links(tasks, start, effort or effort_of(case), threads=threads, progress=progress)
         clock("solid models")
     motors = [motor_outcomes(case, n, check) for n, check in case.checks.items() if isinstance(check, MotorCheck)]
     load_cases = {}
     for i, (title, forces) in enumerate(statics.forces.items()):
-        links = {link: _link_result(case, link, title, beams[link][i], solids[link]) for link in cut}
+        links = {
+            link: _link_result(case, link, title, beams[link][i], solids.get(link), solid=fidelity == "solid")
+            for link in cut
+        }
         pins = _pins(case, moved[title].reactions or forces.reactions)
         load_cases[title] = LoadCaseResult(
             name=title,
@@ -203,71 +221,11 @@ def _acts(loads: LinkLoads) -> bool:
     return bool(loads.bodies or loads.lines or loads.couples or any(np.any(w != 0.0) for w in wrenches))
 
 
-def _solid(case: Case, link: str, mesh: TaggedMesh, loads: Sequence[LinkLoads], threads: int) -> SolidSolution:
-    material, pins = case.material_of(link), case.body(link).pins
-    return solve_solid(
-        mesh,
-        E=material.youngs_modulus,
-        nu=material.poissons_ratio,
-        density=material.density,
-        loads=loads,
-        line=(f"bore:{pins[0].name}", f"bore:{pins[-1].name}"),
-        threads=threads,
-    )
-
-
-def _link_result(case: Case, link: str, title: str, beam: _Beam, solid: SolidSolution | None) -> LinkResult:
-    material = case.material_of(link)
-    solved = () if solid is None else tuple(c for c in solid.cases if c.load == title)
-    if solid is None or not solved:
-        return _beam_result(link, material, beam, ran=solid is not None)
-    fields = {id(v): stress_field(solid.space, v.displacement, E=solid.E, nu=solid.nu) for v in solved}
-    peaks = {id(v): _peak(v, fields[id(v)]) for v in solved}
-    stated = case.drive.transfer if case.drive else None
-    own = [v for v in solved if v.transfer in (None, stated)]
-    governing = max(own, key=lambda v: _decisive(material, peaks[id(v)]))
-    holds = PINNED_HOLDS if governing.transfer is None else DRIVEN_HOLDS
-    stress = fields[id(governing)]
-
-    def band(quantity: str) -> Band:
-        value = max(getattr(peaks[id(v)], quantity) for v in own)
-        return Band.around(value, tuple(getattr(p, quantity) for p in peaks.values()), *holds)
-
-    decisive = band("principal" if material.brittle else "von_mises")
-    comparisons = compare_sections(case.body(link), beam.check, stress)
-    return LinkResult(
-        link=link,
-        fidelity="solid",
-        von_mises_max=band("von_mises"),
-        principal_max=band("principal"),
-        safety_factor=decisive.inverse(material.allowable),
-        displacement_max=band("displacement"),
-        location=stress.peak.location,
-        elements=len(solid.space.cells),
-        unknowns=solid.space.unknowns,
-        beam=beam.check,
-        solid=solid,
-        variants=tuple(peaks.values()),
-        governing=peaks[id(governing)],
-        solid_case=governing,
-        stress=stress,
-        comparisons=comparisons,
-        notes=solid.notes,
-    )
-
-
-def _decisive(material: Material, peak: VariantPeak) -> float:
-    return peak.principal if material.brittle else peak.von_mises
-
-
-def _peak(variant: SolidCase, stress: StressField) -> VariantPeak:
-    return VariantPeak(
-        span=variant.span,
-        transfer=variant.transfer,
-        von_mises=stress.peak.value,
-        principal=float(stress.principal[:, 0].max()),
-        displacement=variant.displacement_max,
-    )
+def _link_result(
+    case: Case, link: str, title: str, beam: _Beam, refined: RefinedSolid | None, *, solid: bool
+) -> LinkResult:
+    found = None if refined is None else solid_result(case, link, title, beam.check, refined)
+    return found or _beam_result(link, case.material_of(link), beam, ran=solid)
 
 
 def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> LinkResult:

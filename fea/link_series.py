@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from fea.convergence import LEAST_RATIO, GridConvergence, grid_convergence
 from fea.error_estimate import ErrorEstimate, estimate_error
-from fea.singular import SharpPeak, edge_at, sharp_peak
+from fea.singular import SharpPeak, loaded_edge, sharp_peak
 from fea.solid import SolidSolution
 from fea.stress import stress_field
 from fea.target_sizes import LocalGoal
@@ -68,18 +68,15 @@ class Level:
 class CasePrecision:
     """How far the numbers of one solved case are from their limits on ever finer meshes.
 
-    sharp   the singular peak that the case has; None where there is none
+    edge    the stress where a sharp edge bears most; None without an edge that bears much
+    sharp   the singular peak that the case has there; None where there is none
     """
 
     von_mises: GridConvergence
     principal: GridConvergence
     displacement: GridConvergence
+    edge: GridConvergence | None
     sharp: SharpPeak | None
-
-    @property
-    def without_limit(self) -> bool:
-        """True where a peak has no limit in sight: it must not be reported as one."""
-        return self.sharp is not None or "growing" in (self.von_mises.kind, self.principal.kind)
 
 
 def level_of(solution: SolidSolution, volume: float) -> Level:
@@ -116,58 +113,69 @@ def precision(levels: Sequence[Level], edges: Sequence[ReentrantEdge], *, sectio
     return tuple(_case(levels, number, edges, section) for number in range(len(levels[-1].figures)))
 
 
-def goals(level: Level, allowed: float, *, brittle: bool) -> list[LocalGoal]:
-    """Peaks, of the principal stress where ``brittle``, that are to be resolved to a relative estimate ``allowed``."""
+def goals(
+    level: Level, allowed: float, *, brittle: bool, edges: Sequence[ReentrantEdge], section: float
+) -> list[LocalGoal]:
+    """Peaks, of the principal stress where ``brittle``, that are to be resolved to a relative estimate ``allowed``.
+
+    To these come sharp edges that bear much stress, so that their growth shows.
+    """
     found = []
     for figures in level.figures:
         stress = figures.principal if brittle else figures.von_mises
-        node = int(np.argmax(stress))
-        if stress[node] > 0.0:
-            found.append(
-                LocalGoal(
-                    location=level.nodes[node],
-                    value=float(stress[node]),
-                    stress=stress[level.cells].max(axis=1),
-                    estimate=figures.estimate.stress,
-                    allowed=allowed,
-                )
+        edge = loaded_edge(edges, level.nodes, figures.von_mises, section)
+        nodes = {int(np.argmax(stress))} | ({edge[1]} if edge else set())
+        found += [
+            LocalGoal(
+                location=level.nodes[node],
+                value=float(stress[node]),
+                stress=stress[level.cells].max(axis=1),
+                estimate=figures.estimate.stress,
+                allowed=allowed,
             )
+            for node in nodes
+            if stress[node] > 0.0
+        ]
     return found
 
 
 def _case(levels: Sequence[Level], number: int, edges: Sequence[ReentrantEdge], section: float) -> CasePrecision:
-    stresses = [level.figures[number].von_mises for level in levels]
-    series, place = _peak(levels, number, stresses)
     last = levels[-1]
-    edge = edge_at(edges, place, last.size(place))
-    sharp = None
-    if edge is not None:
+    stresses = [level.figures[number].von_mises for level in levels]
+    found = loaded_edge(edges, last.nodes, stresses[-1], section)
+    edge_series = sharp = None
+    if found is not None:
+        edge, node = found
+        edge_series = _series(levels, number, stresses, node)
         sharp = sharp_peak(
             edge,
             edges,
-            place=place,
-            sizes=series.sizes,
-            values=series.values,
+            place=last.nodes[node],
+            sizes=edge_series.sizes,
+            values=edge_series.values,
             nodes=last.nodes,
             von_mises=stresses[-1],
             section=section,
         )
-    principal, _ = _peak(levels, number, [level.figures[number].principal for level in levels])
-    return CasePrecision(von_mises=series, principal=principal, displacement=_displacement(levels, number), sharp=sharp)
+    principal = [level.figures[number].principal for level in levels]
+    return CasePrecision(
+        von_mises=_series(levels, number, stresses, int(np.argmax(stresses[-1]))),
+        principal=_series(levels, number, principal, int(np.argmax(principal[-1]))),
+        displacement=_displacement(levels, number),
+        edge=edge_series,
+        sharp=sharp,
+    )
 
 
-def _peak(
-    levels: Sequence[Level], number: int, nodal: Sequence[NDArray[np.float64]]
-) -> tuple[GridConvergence, NDArray[np.float64]]:
-    """Series of a nodal stress about the place of its peak on the finest mesh."""
+def _series(levels: Sequence[Level], number: int, nodal: Sequence[NDArray[np.float64]], node: int) -> GridConvergence:
+    """Series of a nodal stress about a node of the finest mesh."""
     last = levels[-1]
-    node = int(np.argmax(nodal[-1]))
     place = last.nodes[node]
     radius = levels[0].size(place)
     chosen = _falling([level.size(place, 1.5 * radius) for level in levels])
     values = [levels[i].around(nodal[i], place, radius) for i, _ in chosen]
     error = float(last.figures[number].estimate.stress[(last.cells == node).any(axis=1)].max())
-    return grid_convergence([size for _, size in chosen], values, estimate=error + last.chord * abs(values[-1])), place
+    return grid_convergence([size for _, size in chosen], values, estimate=error + last.chord * abs(values[-1]))
 
 
 def _displacement(levels: Sequence[Level], number: int) -> GridConvergence:

@@ -58,7 +58,7 @@ def _link(
         verdict = Verdict.UNDECIDED
         reason = "beam theory leaves stress concentration out, so it cannot pass a link; run the solid model"
     else:
-        reason = reason_for(value, limit, verdict)
+        reason = _why(result, value, limit, verdict)
     return CheckOutcome(
         name=name,
         link=result.link,
@@ -113,6 +113,38 @@ def least_safety_factor(name: str, stated: float | None, material: Material, wha
     if limit is None:
         raise CaseError(f"checks.{name}.minimum: the material of '{what}' has no default; state the limit")
     return limit
+
+
+def stress_limits(case: Case, link: str) -> tuple[float, ...]:
+    """Limits [MPa] on a link's deciding stress, of all checks; raises ``CaseError`` where one is not stated."""
+    material, found = case.material_of(link), []
+    for name, check in case.all_checks.items():
+        if isinstance(check, SafetyFactorCheck | SustainedCheck) and link in (check.links or case.checked_links):
+            if isinstance(check, SafetyFactorCheck):
+                found.append(material.allowable / least_safety_factor(name, check.minimum, material, link))
+            elif material.sustained_stress is not None:
+                found.append(material.sustained_stress)
+    return tuple(found)
+
+
+def displacement_limits(case: Case, link: str) -> tuple[float, ...]:
+    """Limits [mm] on a link's displacement, of all checks."""
+    return tuple(
+        check.maximum
+        for check in case.all_checks.values()
+        if isinstance(check, DisplacementCheck) and link in (check.links or case.checked_links)
+    )
+
+
+def _why(result: LinkResult, value: Band, limit: float, verdict: Verdict) -> str:
+    """Reason of a verdict on a link, with what its meshes have to do with it where it is open."""
+    meshes = result.discretisation
+    if value.unknowable and meshes is not None:
+        return meshes.sentence
+    reason = reason_for(value, limit, verdict)
+    if verdict is Verdict.UNDECIDED and meshes is not None and meshes.stopped:
+        return f"{reason}; the meshes were refined no further since {meshes.stopped}"
+    return reason
 
 
 def reason_for(value: Band, limit: float, verdict: Verdict) -> str:

@@ -16,9 +16,9 @@ import numpy as np
 from fea.convergence import GridConvergence
 from fea.link_loads import LinkLoads
 from fea.link_series import CasePrecision, Level, goals, level_of, precision
-from fea.singular import edge_at, element_exponents
+from fea.singular import element_exponents
 from fea.solid import SolidSolution, solve_solid
-from fea.target_sizes import element_sizes, next_sizes, reduction
+from fea.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction
 from geometry.body_rules import section_height, section_width
 from geometry.errors import AlulaError, CaseError
 from geometry.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
@@ -29,6 +29,8 @@ FAR = 2.0
 """Factor that a link with one mesh keeps from every limit, beyond its band."""
 ROUGH = 0.25
 """Estimate over peak above which one mesh decides nothing."""
+START = MeshSettings(size=0.6, bore_elements=10, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)
+"""The first mesh: coarse, since the next ones become finer where it matters."""
 SERIES = 3
 """Meshes in the least series with an observed order."""
 Progress = Callable[[str], None]
@@ -94,7 +96,7 @@ class LinkTask:
 
 @dataclass(frozen=True, kw_only=True)
 class MeshRecord:
-    """Size of one mesh, the worst case's relative estimate in the energy norm (``error``), seconds to solve and judge."""
+    """Size of one mesh; the worst case's relative estimate in the energy norm; seconds to solve and judge."""
 
     elements: int
     unknowns: int
@@ -111,6 +113,7 @@ class RefinedSolid:
     stopped     why refinement ended before its aim was reached; "" where it was reached
     far         True where one mesh sufficed since every limit is far away
     accuracy    that was aimed at
+    sharp_edges number of re-entrant edges of the link; 0 where its shape left none to look for
     """
 
     solution: SolidSolution
@@ -119,6 +122,7 @@ class RefinedSolid:
     stopped: str
     far: bool
     accuracy: float
+    sharp_edges: int
 
 
 def refine_links(
@@ -212,6 +216,7 @@ class _Link:
             stopped=self.stopped,
             far=self.far,
             accuracy=self.effort.accuracy,
+            sharp_edges=len(self.edges),
         )
 
     def _solved(self, mesh: TaggedMesh, threads: int | None, progress: Progress) -> SolidSolution | None:
@@ -235,7 +240,7 @@ class _Link:
 
     @property
     def _growing(self) -> bool:
-        return any(p.without_limit for p in self.precision)
+        return any(self._deciding(p).kind == "growing" for p in self.precision)
 
     def _judge(self) -> None:
         self.precision = precision(self.levels, self.edges, section=self.task.section)
@@ -245,13 +250,12 @@ class _Link:
         if len(self.levels) == 1:
             self.far = not self.effort.stated and self._far()
             return self.far
-        if all(p.sharp is not None for p in self.precision if self._deciding(p).kind == "growing" or p.sharp) and any(
-            p.sharp is not None for p in self.precision
-        ):
-            return True
-        if self._growing or min(len(self._deciding(p).values) for p in self.precision) < SERIES:
+        # Nothing finer makes a singular peak finite.
+        real = [p for p in self.precision if p.sharp is None]
+        series = [s for p in real for s in (self._deciding(p), p.edge) if s is not None]
+        if any(s.kind == "growing" or len(s.values) < SERIES for s in series):
             return False
-        narrow = all(max(self._deciding(p).index, p.displacement.index) <= self.effort.accuracy for p in self.precision)
+        narrow = all(max(self._deciding(p).index, p.displacement.index) <= self.effort.accuracy for p in real)
         return narrow or (not self.effort.stated and self._decided())
 
     def _deciding(self, case: CasePrecision) -> GridConvergence:
@@ -259,6 +263,8 @@ class _Link:
 
     def _limits(self) -> Iterable[tuple[GridConvergence, float]]:
         for case in self.precision:
+            if case.sharp is not None:
+                continue
             yield from ((self._deciding(case), limit) for limit in self.task.stress_limits)
             yield from ((case.displacement, limit) for limit in self.task.displacement_limits)
 
@@ -268,11 +274,8 @@ class _Link:
 
     def _far(self) -> bool:
         """Whether one mesh decides: well resolved, away from sharp edges, every limit far outside the band."""
-        level = self.levels[0]
-        for case, figures in zip(self.precision, level.figures, strict=True):
-            place = level.nodes[int(np.argmax(figures.von_mises))]
-            if self._deciding(case).index > 3.0 * ROUGH or edge_at(self.edges, place, level.size(place)):
-                return False
+        if any(self._deciding(p).index > 3.0 * ROUGH or p.edge is not None for p in self.precision):
+            return False
         return all(band.high * FAR < limit or band.low > FAR * limit for band, limit in self._limits())
 
     def _refine(self, pool: ThreadPoolExecutor) -> None:
@@ -285,8 +288,10 @@ class _Link:
             reduction(figures.estimate.energy, figures.estimate.energy_norm, allowed, exponent)
             for figures in level.figures
         ]
-        points, sizes = next_sizes(
-            self.solution.space, factors, goals(level, accuracy / 1.5, brittle=self.task.brittle)
-        )
+        wanted = goals(level, accuracy / 1.5, brittle=self.task.brittle, edges=self.edges, section=self.task.section)
+        points, sizes = next_sizes(self.solution.space, factors, wanted)
         self.settings = replace(self.settings, size_points=points, size_values=sizes)
+        if not self.settings.curved:  # straight sides miss the round of a surface, which sizes alone would leave
+            turn = round(SERIES_RATIO * self.settings.turn_elements)
+            self.settings = replace(self.settings, turn_elements=turn)
         self.order_mesh(pool)

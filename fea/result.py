@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from fea.band import Band
 from fea.beam import BeamCheck, CantileverCheck
+from fea.discretisation import Discretisation
 from fea.joint_forces import Held, JointForces
 from fea.large_displacement import LargeDisplacement
 from fea.pins import PinStress
@@ -77,6 +78,7 @@ class LinkResult:
                        (``solid_case``) and recovered stress (``stress``) for pictures and files
     comparisons        hand against solid, section by section
     notes              what the reader must know about this link's numbers
+    discretisation     the error that the meshes leave; None when no solid ran
     """
 
     link: str
@@ -96,6 +98,7 @@ class LinkResult:
     stress: StressField | None
     comparisons: tuple[SectionComparison, ...]
     notes: tuple[str, ...]
+    discretisation: Discretisation | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,11 @@ from geometry.mesh import ReentrantEdge
 
 ELEMENT_ORDER = 2.0
 AT_EDGE = 1.0
-"""Distance from an edge, in element sizes, up to which a peak counts as lying on it."""
+"""Distance from an edge, in element sizes, up to which its singularity rules an element."""
+ON_EDGE = 0.01
+"""Distance from an edge, over the section's smaller dimension, up to which a node lies on it: edges are polylines."""
+LOADED = 0.5
+"""Stress on a sharp edge over the peak from which on the edge is refined to see whether it grows without limit."""
 SCREENING = 0.1
 """Distance from the edge, over the section's smaller dimension, at which the screening stress is taken."""
 SHARE_OF_WILLIAMS = 0.3
@@ -61,13 +65,21 @@ def edge_distance(edges: Sequence[ReentrantEdge], points: NDArray[np.float64]) -
     return found
 
 
-def edge_at(edges: Sequence[ReentrantEdge], place: NDArray[np.float64], size: float) -> ReentrantEdge | None:
-    """The re-entrant edge on which a place (3,) lies, for elements of that size there [mm]; None away from all."""
+def loaded_edge(
+    edges: Sequence[ReentrantEdge], nodes: NDArray[np.float64], von_mises: NDArray[np.float64], section: float
+) -> tuple[ReentrantEdge, int] | None:
+    """The edge whose nodes bear the largest stress of all edges, and that node; None where it is well below the peak.
+
+    nodes (n, 3) [mm] with their von Mises stress (n,) [MPa]; section [mm] as in ``sharp_peak``
+    """
     if not edges:
         return None
-    distance = edge_distance(edges, place[None])[0]
-    nearest = int(np.argmin(distance))
-    return edges[nearest] if distance[nearest] <= AT_EDGE * size else None
+    distance = edge_distance(edges, nodes)
+    stress = np.where(distance.min(axis=1) <= ON_EDGE * section, von_mises, -1.0)
+    node = int(np.argmax(stress))
+    if stress[node] < LOADED * von_mises.max():
+        return None
+    return edges[int(np.argmin(distance[node]))], node
 
 
 def element_exponents(
@@ -96,7 +108,7 @@ def sharp_peak(
     von_mises: NDArray[np.float64],
     section: float,
 ) -> SharpPeak | None:
-    """Return the singular peak on ``edge`` if its growth over the meshes is that of one, else None.
+    """Return the singular peak at ``place`` on ``edge`` if its growth over the meshes is that of one, else None.
 
     sizes, values   of the series of meshes, coarse to fine, at least three
     nodes           (n, 3) [mm] of the finest, with their ``von_mises`` (n,) [MPa]

@@ -25,6 +25,7 @@ from geometry.units import (
     Length,
     parse,
 )
+from loads.accuracy import Accuracy
 from loads.aero import AirForces, AirLoad, air_forces, check_air
 from loads.carried import CarriedBody, CarriedSpread
 from loads.check_spec import Check, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
@@ -184,6 +185,9 @@ class SolidSettings(CaseModel):
     """Factor on the mesher's own element sizes: 0.5 halves them, 2 doubles them."""
     curved: bool = True
     """Quadratic elements with curved edges; straight edges when false."""
+    accuracy: Accuracy | None = None
+    """Largest error of the meshes that is wanted in the deciding stress and the displacement, such as "5 %"; without
+    it meshes are refined until the verdict is clear or that error is 5 %."""
 
 
 class Case(CaseModel):

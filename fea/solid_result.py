@@ -1,0 +1,115 @@
+"""A link's result from its solid model: the peaks of every variant, their bands and what these hold."""
+
+from collections.abc import Sequence
+
+from fea.band import Band
+from fea.beam import BeamCheck
+from fea.compare import compare_sections
+from fea.convergence import GridConvergence
+from fea.discretisation import holds, judged
+from fea.link_loads import LinkLoads
+from fea.link_series import CasePrecision
+from fea.outcomes import displacement_limits, stress_limits
+from fea.refinement import LinkTask, RefinedSolid
+from fea.result import LinkResult, VariantPeak
+from fea.singular import LOADED
+from fea.solid import SolidCase
+from fea.stress import stress_field
+from loads.case import Case
+
+PINNED_HOLDS = ("pin pressure over 180° and over 90°",)
+DRIVEN_HOLDS = (*PINNED_HOLDS, "drive torque by eye-faces and by bore-shear")
+
+
+def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
+    """Return what is to be solved for a link under all its load cases, and the limits that its numbers must clear."""
+    material, body = case.material_of(link), case.body(link)
+    return LinkTask(
+        body=body,
+        loads=tuple(loads),
+        E=material.youngs_modulus,
+        nu=material.poissons_ratio,
+        density=material.density,
+        line=(f"bore:{body.pins[0].name}", f"bore:{body.pins[-1].name}"),
+        brittle=material.brittle,
+        stress_limits=stress_limits(case, link),
+        displacement_limits=displacement_limits(case, link),
+    )
+
+
+def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: RefinedSolid) -> LinkResult | None:
+    """Return the result of a link under the load case ``title``; None where that load case was not solved."""
+    material, solid = case.material_of(link), refined.solution
+    solved = [number for number, found in enumerate(solid.cases) if found.load == title]
+    if not solved:
+        return None
+    stated = case.drive.transfer if case.drive else None
+    own = [number for number in solved if solid.cases[number].transfer in (None, stated)]
+
+    def decisive(number: int) -> GridConvergence:
+        found = refined.precision[number]
+        return found.principal if material.brittle else found.von_mises
+
+    governing = max(own, key=lambda number: decisive(number).value)
+    variant = solid.cases[governing]
+    stress = stress_field(solid.space, variant.displacement, E=solid.E, nu=solid.nu)
+    sources = PINNED_HOLDS if variant.transfer is None else DRIVEN_HOLDS
+    # A peak without limit under one variant leaves none for the link.
+    worst = max(
+        solved, key=lambda number: (not judged(refined, number, brittle=material.brittle).known, number == governing)
+    )
+    precision = judged(refined, worst, brittle=material.brittle)
+
+    def band(quantity: str) -> Band:
+        series = [getattr(refined.precision[number], quantity) for number in solved]
+        sharp = quantity != "displacement" and any(refined.precision[number].sharp for number in solved)
+        if sharp or any(s.kind == "growing" for s in series):
+            return Band.unknown("nothing: the peak has no limit")
+        value = max(getattr(refined.precision[number], quantity).value for number in own)
+        return Band(
+            value=value,
+            low=max(min(value, *(s.low for s in series)), 0.0),
+            high=max(value, *(s.high for s in series)),
+            holds=(*sources, holds(getattr(refined.precision[governing], quantity))),
+        )
+
+    deciding = band("principal" if material.brittle else "von_mises")
+    return LinkResult(
+        link=link,
+        fidelity="solid",
+        von_mises_max=band("von_mises"),
+        principal_max=band("principal"),
+        safety_factor=deciding.inverse(material.allowable),
+        displacement_max=band("displacement"),
+        location=stress.peak.location,
+        elements=len(solid.space.cells),
+        unknowns=solid.space.unknowns,
+        beam=beam,
+        solid=solid,
+        variants=tuple(_peak(solid.cases[number], refined.precision[number]) for number in solved),
+        governing=_peak(variant, refined.precision[governing]),
+        solid_case=variant,
+        stress=stress,
+        comparisons=compare_sections(case.body(link), beam, stress),
+        notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved)),
+        discretisation=precision,
+    )
+
+
+def _edge_notes(refined: RefinedSolid, solved: Sequence[int]) -> tuple[str, ...]:
+    if refined.sharp_edges == 0 or any(refined.precision[number].sharp for number in solved):
+        return ()
+    return (
+        f"elasticity has no finite stress at the {refined.sharp_edges} sharp inner edges of this link; they bear less "
+        f"than {LOADED:.0%} of its peak here, or do not grow as such edges do, and were left at that",
+    )
+
+
+def _peak(variant: SolidCase, precision: CasePrecision) -> VariantPeak:
+    return VariantPeak(
+        span=variant.span,
+        transfer=variant.transfer,
+        von_mises=precision.von_mises.value,
+        principal=precision.principal.value,
+        displacement=variant.displacement_max,
+    )
