@@ -96,12 +96,18 @@ def examine(
     if case.large_displacement == "off":
         return left("off", "large displacement was not looked into, as the case says (large_displacement = off)")
     frame, solution = forces.frame, forces.solution
+    odd = [f"{name} is a {joint.type}" for name, joint in case.joints.items() if joint.type != "revolute"]
+    if odd:
+        return left(
+            "unknown",
+            f"large displacement was not looked into: frames know revolute joints alone, and {', '.join(odd)}",
+        )
     try:
         if frame is None or solution is None:
             frame = build_frame(case, pose, loads, held=case.pinned_drive)
             solution = solve_frame(frame.model)
     except (CaseError, CannotRunError) as error:
-        return left("unknown", f"large displacement was not looked into, since the linkage has no frame: {error}")
+        return left("unknown", f"large displacement was not looked into: {error}")
     linear, where = _largest(frame, solution)
     small = LargeDisplacement(
         state="small",

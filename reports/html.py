@@ -27,13 +27,14 @@ NOT_COVERED = (
     ("Other poses", "One pose was checked. Another pose of the linkage may load a link more."),
     ("Stacking", "All links lie in one plane. In a real linkage they are stacked along the pins, and the offset "
      "bends and twists them."),
-    ("Pins and contact", "A pin is a pressure on its hole. Clearance, friction, wear, the pins' own strength and "
-     "what happens in the contact itself are left out."),
+    ("Pins and contact", "A pin is a pressure on its hole. Clearance, friction, wear and what happens in the contact "
+     "itself are left out; a pin's own strength is checked only where the case asks for it."),
     ("Fatigue", "The loads act once and stay. Loads that come and go break parts at lower stresses."),
     ("Creep, temperature, moisture, ageing", "Plastics lose strength and stiffness under load that lasts, in warmth "
-     "and with the years; the material values are short-term ones at room temperature."),
-    ("Large displacements", "Forces follow from the shape before loading. Where a displacement is not small against "
-     "the link, they would change."),
+     "and with the years; the material values are short-term ones at room temperature, unless the case states its "
+     "conditions. Moisture and ageing are left out in any case."),
+    ("Large displacements", "Up to 5 % of the span forces follow from the shape before loading; beyond, from the "
+     "deformed one, under loads that keep their direction."),
     ("Buckling and impact", "A slender link in compression may give way sideways; a blow loads it more than the same "
      "load at rest."),
     ("Making", "Voids, layers, notches, scatter of dimensions and of strength are left to the safety factor."),
