@@ -1,7 +1,7 @@
 """What acts on one link over a whole motion, in the link's own frame: every load an array over the poses."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,24 @@ class LinkHistory:
     def poses(self) -> int:
         """Number of poses."""
         return len(self.acceleration)
+
+    @property
+    def acts(self) -> bool:
+        """True if anything but zeros acts on the link at some pose."""
+        loads = (*self.pins.values(), *self.couples.values(), *self.ends.values())
+        inert = self.mass is not None and np.any(self.acceleration != 0.0)
+        return bool(inert or self.lines or any(np.any(np.nan_to_num(load) != 0.0) for load in loads))
+
+    def chosen(self, poses: NDArray[np.bool_]) -> "LinkHistory":
+        """Return the history at the chosen poses (n,) alone."""
+        return replace(
+            self,
+            pins={name: loads[poses] for name, loads in self.pins.items()},
+            couples={name: torque[poses] for name, torque in self.couples.items()},
+            ends={name: loads[poses] for name, loads in self.ends.items()},
+            lines=tuple(replace(line, intensity=line.intensity[poses]) for line in self.lines),
+            acceleration=self.acceleration[poses],
+        )
 
     def at(self, pose: int) -> LinkLoads:
         """Return the loads at one pose, for ``solve_solid``."""
@@ -110,7 +128,13 @@ def link_histories(moved: CaseMotion, link: str) -> tuple[LinkHistory, ...]:
         raise CaseError(
             "joint_model: an envelope needs joints that turn, but they are bonded; choose pinned, or check single poses"
         )
-    return tuple(_history(moved, link, name) for name in case.load_cases)
+    found = tuple(_history(moved, link, name) for name in case.load_cases)
+    if case.motion is not None and link in case.motion.masses and any(h.mass is not None for h in found):
+        raise CaseError(
+            f"motion.masses.{link}: an envelope spreads the mass of a link over its part by the material's density, so "
+            "a stated mass cannot replace it; leave it out, or state what the link carries under [[carried]]"
+        )
+    return found
 
 
 def _history(moved: CaseMotion, link: str, name: str) -> LinkHistory:

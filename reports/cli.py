@@ -249,15 +249,34 @@ def envelope(
         typer.Option(min=1.0, help="Growth of the drive torque towards a dead point, beyond which poses are left out."),
     ] = 20.0,
     threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
+    accuracy: Annotated[
+        str | None,
+        typer.Option(
+            help='Error of the meshes to reach in every link, such as "5 %"; without it: a clear verdict or 5 %.',
+            show_default=False,
+        ),
+    ] = None,
+    max_unknowns: Annotated[
+        int, typer.Option(min=1000, help="Largest system that is solved to reach the accuracy.")
+    ] = 600_000,
+    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds after which no finer mesh is begun.")] = 600.0,
 ) -> None:
     """Check every link over the whole motion: least safety factor, where and when, and fatigue."""
+    from fea.check import effort_of
     from fea.envelope import envelope_case
     from loads.case_file import read_case
     from reports.envelope import as_json, print_envelope, write_envelope
 
     parsed = read_case(case, overrides or ())
+    effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
     result = envelope_case(
-        parsed, name=case, threads=threads, repetitions=repetitions, growth=growth, progress=_progress
+        parsed,
+        name=case,
+        threads=threads,
+        repetitions=repetitions,
+        growth=growth,
+        effort=effort,
+        progress=_progress,
     )
     if output is not None:
         write_envelope(result, output, progress=_progress)

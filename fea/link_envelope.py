@@ -1,0 +1,266 @@
+"""One link over a motion: stress of every pose and load case from unit loads, its peaks, bands and fatigue."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.band import Band
+from fea.critical import critical_node
+from fea.discretisation import Discretisation, holds, judged
+from fea.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
+from fea.fatigue import fatigue_life, missing_data, strength_at
+from fea.link_history import LinkHistory
+from fea.peaks import Peaks, principal_peaks, von_mises_peaks
+from fea.refinement import RefinedSolid
+from fea.solid import IMBALANCE_LIMIT, REACTION_LIMIT, LineReference
+from fea.solid_result import DRIVEN_HOLDS, PINNED_HOLDS
+from fea.space import DisplacementSpace
+from fea.stress import stress_field
+from fea.supports import rigid_motions
+from fea.traction import Transfer
+from fea.unit_loads import TRANSFERS, load_scale, unit_loads
+from fea.unit_solutions import UnitSolutions, solve_units
+from geometry.errors import CannotRunError
+from geometry.material import Material
+from loads.bearing import NARROW, WIDE, PressureLaw, Span
+
+Real = NDArray[np.float64]
+
+LAWS = (WIDE, NARROW)
+
+
+def link_envelope(
+    space: DisplacementSpace,
+    *,
+    link: str,
+    material: Material,
+    histories: Sequence[LinkHistory],
+    evaluated: NDArray[np.bool_],
+    stated: Transfer | None,
+    returns: bool,
+    fatigue: bool = True,
+    repetitions: float | None = None,
+    refined: RefinedSolid | None = None,
+    notes: tuple[str, ...] = (),
+    threads: int | None = None,
+) -> LinkEnvelope:
+    """Solve one link over a motion.
+
+    histories  its loads, one record per load case
+    evaluated  (n,) the poses that count
+    stated     how the drive torque enters, by the case; the other way stands in the band
+    returns    True where the last pose is the first again; else the motion goes there and back
+    fatigue    False to leave it out; ``repetitions`` of the motion that are wanted
+    refined    the series of meshes that ended with this one, solved at the worst pose: for the bands
+
+    Raises ``CannotRunError`` for loads that do not balance, supports that react, or a failing solver.
+    """
+    chosen = [history.chosen(evaluated) for history in histories]
+    units = unit_loads(space, chosen, density=material.density)
+    size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
+    names: list[tuple[int, PressureLaw, Transfer | None]] = []
+    columns, scales = [], []
+    for i, history in enumerate(chosen):
+        torque = any(np.any(t != 0.0) for t in (*history.couples.values(), *(p[:, 2] for p in history.pins.values())))
+        scale = load_scale(history, size)
+        for law in LAWS:
+            for transfer in TRANSFERS if torque else (None,):
+                names.append((i, law, transfer))
+                columns.append(units.coefficients(history, law, transfer))
+                scales.append(np.where(scale > 0.0, scale, scale.max()))
+    solved = solve_units(
+        units,
+        np.hstack(columns),
+        np.concatenate(scales),
+        E=material.youngs_modulus,
+        nu=material.poissons_ratio,
+        threads=threads,
+    )
+    _balanced(link, solved)
+    peaks = (principal_peaks if material.brittle else von_mises_peaks)(solved.stress, solved.combination)
+    lacking = missing_data(material) if fatigue else "it was not asked for"
+    if not lacking and not evaluated.all():
+        lacking = "poses near a dead point are left out, so the stress history is not closed"
+    poses = int(evaluated.sum())
+    found = {}
+    for i, history in enumerate(chosen):
+        variants = [
+            _curve(law, transfer, peaks, number * poses, evaluated)
+            for number, (case, law, transfer) in enumerate(names)
+            if case == i
+        ]
+        series = _Series.of(refined, history.load_case, material)
+        load_case = _load_case(space.nodes, history.load_case, material, variants, stated, series)
+        if not lacking and load_case.known:
+            varied = _fatigue(solved, material, load_case, stated, series, returns, repetitions)
+            load_case = replace(load_case, fatigue=varied)
+        found[history.load_case] = load_case
+    worst = min(found.values(), key=lambda load_case: load_case.severity)
+    number = worst.governing.first + int(np.count_nonzero(evaluated[: worst.pose]))
+    pins = histories[0].body.pins
+    raw = solved.field(number)
+    return LinkEnvelope(
+        link=link,
+        measure="largest principal" if material.brittle else "von Mises",
+        strength=material.allowable,
+        load_cases=found,
+        elements=len(space.cells),
+        unknowns=space.unknowns,
+        units=solved.units,
+        modes=len(solved.combination),
+        solver=solved.solver,
+        reaction=float(solved.reaction.max()),
+        imbalance=float(solved.imbalance.max()),
+        field=stress_field(space, raw, E=material.youngs_modulus, nu=material.poissons_ratio),
+        displacement=_relative(space, (f"bore:{pins[0].name}", f"bore:{pins[-1].name}"), raw),
+        no_fatigue=lacking,
+        notes=notes,
+    )
+
+
+def _balanced(link: str, solved: UnitSolutions) -> None:
+    """Refuse loads that do not balance and supports that react."""
+    for what, values, limit in (
+        ("the loads leave a resultant", solved.imbalance, IMBALANCE_LIMIT),
+        ("the supports of the free body react", solved.reaction, REACTION_LIMIT),
+    ):
+        if not values.max() <= limit:
+            raise CannotRunError(
+                f"{link}: {what} of {values.max():.2%} of the load (at most {limit:.1%}): load and stress do not "
+                "balance"
+            )
+
+
+def _relative(space: DisplacementSpace, line: tuple[str, str], field: Real) -> Real:
+    """Displacements relative to the line through the link's first and last pin."""
+    motions = rigid_motions(space.nodes, space.nodes.mean(axis=0))
+    return LineReference(space, motions, line).relative(field)
+
+
+def _curve(
+    law: PressureLaw, transfer: Transfer | None, peaks: Peaks, first: int, evaluated: NDArray[np.bool_]
+) -> VariantCurve:
+    stress, node = np.full(len(evaluated), np.nan), np.full(len(evaluated), -1)
+    part = slice(first, first + int(evaluated.sum()))
+    stress[evaluated], node[evaluated] = peaks.value[part], peaks.node[part]
+    return VariantCurve(span=law.span, transfer=transfer, stress=stress, node=node, first=first)
+
+
+class _Series:
+    """How far the finest mesh's peak of every variant may be from its limit, as factors on its stress."""
+
+    def __init__(self) -> None:
+        self.factors: dict[tuple[Span, Transfer | None], tuple[float, float]] = {}
+        self.discretisation: Discretisation | None = None
+        self.holds: tuple[str, ...] = ("nothing of the discretisation: one mesh",)
+
+    @classmethod
+    def of(cls, refined: RefinedSolid | None, load_case: str, material: Material) -> "_Series":
+        """Return the factors of a load case."""
+        found = cls()
+        if refined is None:
+            return found
+        numbers = [n for n, case in enumerate(refined.solution.cases) if case.load == load_case]
+        judgements = [judged(refined, number, brittle=material.brittle) for number in numbers]
+        found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
+        found.holds = (f"{holds(found.discretisation.stress)}, at the worst pose",)
+        for number, judgement in zip(numbers, judgements, strict=True):
+            case, series = refined.solution.cases[number], judgement.stress
+            if judgement.known and series.value > 0.0:
+                low, high = max(series.low, 0.0) / series.value, series.high / series.value
+                found.factors[case.span, case.transfer] = (low, high)
+        return found
+
+    def of_variant(self, variant: VariantCurve) -> tuple[float, float]:
+        """Factors on the stress of a variant: its own, else those of its span without torque, else the widest."""
+        for key in ((variant.span, variant.transfer), (variant.span, None)):
+            if key in self.factors:
+                return self.factors[key]
+        lows, highs = zip(*self.factors.values(), strict=True) if self.factors else ((1.0,), (1.0,))
+        return min(lows), max(highs)
+
+
+def _load_case(
+    nodes: Real,
+    name: str,
+    material: Material,
+    variants: Sequence[VariantCurve],
+    stated: Transfer | None,
+    series: _Series,
+) -> LoadCaseEnvelope:
+    own = [v for v in variants if v.transfer in (None, stated)]
+    governing = max(own, key=lambda v: v.peak)
+    pose = int(np.nanargmax(governing.stress))
+    value = np.array([v.stress for v in own]).max(axis=0)
+    # Compression makes the ends of a band change places; no tension is no stress that breaks a brittle part.
+    ends = np.array([factor * v.stress for v in variants for factor in series.of_variant(v)])
+    low, high = np.minimum(ends.min(axis=0), value), np.maximum(ends.max(axis=0), value)
+    if series.discretisation is None or series.discretisation.known:
+        peak = Band(
+            value=max(governing.peak, 0.0),
+            low=max(min(f * v.peak for v in variants for f in (*series.of_variant(v), 1.0)), 0.0),
+            high=max(float(np.nanmax(high)), 0.0),
+            holds=(*_sources(governing), *series.holds),
+        )
+    else:
+        peak = Band.unknown("nothing: the peak has no limit")
+    return LoadCaseEnvelope(
+        name=name,
+        variants=tuple(variants),
+        governing=governing,
+        value=value,
+        low=low,
+        high=high,
+        stress=peak,
+        safety_factor=peak.inverse(material.allowable),
+        pose=pose,
+        location=nodes[governing.node[pose]].copy(),
+        fatigue=None,
+        discretisation=series.discretisation,
+    )
+
+
+def _sources(governing: VariantCurve) -> tuple[str, ...]:
+    return PINNED_HOLDS if governing.transfer is None else DRIVEN_HOLDS
+
+
+def closed_history(history: Real, *, returns: bool) -> Real:
+    """Return one repetition (n,) of a motion's history: a full turn, or there and back."""
+    return history[:-1] if returns else np.concatenate([history, history[-2:0:-1]])
+
+
+def _fatigue(
+    solved: UnitSolutions,
+    material: Material,
+    load_case: LoadCaseEnvelope,
+    stated: Transfer | None,
+    series: _Series,
+    returns: bool,
+    repetitions: float | None,
+) -> LinkFatigue:
+    assert material.fatigue is not None
+    every, found = [], []
+    for variant in load_case.variants:
+        count = int(np.isfinite(variant.stress).sum())
+        part = solved.combination[:, variant.first : variant.first + count]
+        node, history = critical_node(solved.stress, part, material)
+        closed = closed_history(history, returns=returns)
+        life = fatigue_life(closed, material)
+        every += [life, *(fatigue_life(factor * closed, material) for factor in series.of_variant(variant))]
+        if variant.transfer in (None, stated):
+            found.append((life, node, history))
+    life, node, history = max(found, key=lambda f: f[0].stress)
+    sources = (*_sources(load_case.governing), *series.holds)
+    wanted = material.fatigue.cycles if repetitions is None else repetitions
+    counts = tuple(one.repetitions for one in every if one.repetitions is not None)
+    return LinkFatigue(
+        location=solved.space.nodes[node].copy(),
+        history=history,
+        life=life,
+        stress=Band.around(life.stress, tuple(one.stress for one in every), *sources),
+        wanted=wanted,
+        strength=strength_at(material.fatigue, wanted),
+        repetitions=None if life.repetitions is None else Band.around(life.repetitions, counts, *sources),
+    )

@@ -1,0 +1,334 @@
+"""What ``alula envelope`` prints and writes: the least safety factor of each link over the motion, and its curve."""
+
+import csv
+import json
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.band import Band
+from fea.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
+from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from geometry.material import Material
+from reports.console import COLOURS
+from reports.output import MARK, write_folder
+from reports.wording import band, fixed, number, plain
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+Real = NDArray[np.float64]
+
+ENVELOPE_SCHEMA_VERSION = 1
+UNITS = {"angle": "deg", "length": "mm", "stress": "MPa"}
+CURVES = "envelope.csv"
+FIGURE = "envelope.png"
+
+
+def drive_angle(result: EnvelopeResult, pose: int) -> float:
+    """Direction of the driven link at a pose [degrees]."""
+    return math.degrees(float(result.drive_angles[pose]))
+
+
+def write_envelope(
+    result: EnvelopeResult, target: Path, *, progress: Callable[[str], None] = lambda message: None
+) -> None:
+    """Write ``result.json``, ``envelope.csv``, ``envelope.png``, ``vtu/<link>.vtu`` and ``pictures/stress-<link>.png``.
+
+    VTU file and picture show the worst pose under the worst load case. Raises ``CaseError`` for a folder that
+    holds something else, ``CannotRunError`` where the disk refuses.
+    """
+    from reports.envelope_figures import envelope_figure
+    from reports.export import write_vtu
+    from reports.figures import plots_of, scene_from
+
+    def fill(folder: Path) -> None:
+        (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")
+        write_curves(result, folder / CURVES)
+        progress("Drawing the envelope ...")
+        (folder / FIGURE).write_bytes(envelope_figure(result))
+        progress("Rendering the stress plots ...")
+        scenes = {name: scene_from(link.field, link.displacement) for name, link in result.links.items()}
+        stations = {name: {p: x for p, (x, _) in result.case.links[name].points.items()} for name in result.links}
+        plots, warnings = plots_of(scenes, stations)
+        for warning in warnings:
+            progress(f"Warning: {warning}")
+        (folder / "pictures").mkdir()
+        for name, plot in plots.items():
+            (folder / "pictures" / f"stress-{name}.png").write_bytes(plot)
+        (folder / "vtu").mkdir()
+        for name, link in result.links.items():
+            write_vtu(folder / "vtu" / f"{name}.vtu", link.displacement, link.field)
+
+    write_folder(target, fill)
+
+
+def write_curves(result: EnvelopeResult, path: Path) -> None:
+    """Write the curves over the motion as CSV, load case below load case; poses left out have empty fields."""
+    header = [
+        "load case",
+        f"{result.moved.motion.coordinate} angle [deg]",
+        f"{result.drive.link} angle [deg]",
+    ]
+    for link, found in result.links.items():
+        header += [f"{link} {found.measure} stress{end} [MPa]" for end in ("", " low", " high")]
+        header += [f"{link} safety factor{end} [1]" for end in ("", " low", " high")]
+        header += [f"{link} signed stress at the critical point [MPa]"]
+    base = [np.degrees(result.angles), np.degrees(result.drive_angles)]
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(header)
+        for name in result.case.load_cases:
+            columns = list(base)
+            for found in result.links.values():
+                columns += _columns(found, name, len(result.angles))
+            for row in np.column_stack(columns).tolist():
+                writer.writerow([name, *(f"{v:.9g}" if math.isfinite(v) else "" for v in row)])
+
+
+def _columns(link: LinkEnvelope, load_case: str, count: int) -> list[Real]:
+    if load_case not in link.load_cases:
+        return [np.full(count, np.nan)] * 7
+    found = link.load_cases[load_case]
+    with np.errstate(divide="ignore"):
+        factors = [link.strength / np.maximum(stress, 0.0) for stress in (found.value, found.high, found.low)]
+    history = np.full(count, np.nan) if found.fatigue is None else found.fatigue.history
+    return [found.value, found.low, found.high, *factors, history]
+
+
+def as_json(result: EnvelopeResult) -> str:
+    """Return the result as JSON text."""
+    return json.dumps(record(result), indent=2, allow_nan=False)
+
+
+def record(result: EnvelopeResult) -> dict[str, Any]:
+    """Return the result as plain data: angles in degrees, infinite or unknown numbers as null."""
+    motion = result.moved.motion
+    return {
+        "schema_version": ENVELOPE_SCHEMA_VERSION,
+        "case": result.name,
+        "title": result.case.title,
+        "verdict": result.verdict.value,
+        "units": UNITS,
+        "motion": {
+            "coordinate": motion.coordinate,
+            "first": math.degrees(float(result.angles[0])),
+            "last": math.degrees(float(result.angles[-1])),
+            "poses": len(result.angles),
+            "evaluated": int(result.evaluated.sum()),
+            "returns_to_start": motion.returns,
+            "drive": {"link": result.drive.link, "joint": result.drive.joint},
+            "dead_points": [math.degrees(angle) for angle in result.moved.dead_points],
+        },
+        "links": {name: _link_record(result, link) for name, link in result.links.items()},
+        "idle_links": list(result.idle),
+        "checks": [
+            {
+                "name": check.name,
+                "link": check.link,
+                "load_case": check.load_case,
+                "quantity": check.quantity,
+                "value": _band_record(check.value),
+                "limit": check.limit,
+                "verdict": check.verdict.value,
+                "reason": check.reason,
+            }
+            for check in result.checks
+        ],
+        "warnings": list(result.warnings),
+        "timings_s": dict(result.timings),
+    }
+
+
+def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
+    material = result.case.material_of(link.link)
+    return {
+        "measure": link.measure,
+        "strength": link.strength,
+        "worst_load_case": link.worst.name,
+        "load_cases": {name: _load_case_record(result, found, material) for name, found in link.load_cases.items()},
+        "no_fatigue": link.no_fatigue or None,
+        "elements": link.elements,
+        "unknowns": link.unknowns,
+        "unit_loads": link.units,
+        "solutions": link.modes,
+        "solver": link.solver,
+        "support_reaction": link.reaction,
+        "imbalance": link.imbalance,
+        "notes": list(link.notes),
+    }
+
+
+def _load_case_record(result: EnvelopeResult, found: LoadCaseEnvelope, material: Material) -> dict[str, Any]:
+    return {
+        "stress": _band_record(found.stress),
+        "safety_factor": _band_record(found.safety_factor),
+        "at": {
+            "pose": found.pose,
+            "coordinate": math.degrees(float(result.angles[found.pose])),
+            "drive": drive_angle(result, found.pose),
+            "location": found.location.tolist(),
+            "pin_pressure_span": found.governing.span,
+            "transfer": found.governing.transfer,
+        },
+        "fatigue": None if found.fatigue is None else _fatigue_record(found.fatigue, material),
+    }
+
+
+def _fatigue_record(fatigue: LinkFatigue, material: Material) -> dict[str, Any]:
+    assert material.fatigue is not None
+    life = fatigue.life
+    return {
+        "measure": measure_of(material),
+        "rule": material.fatigue.rule,
+        "location": fatigue.location.tolist(),
+        "smallest": life.smallest,
+        "largest": life.largest,
+        "range": life.stress_range,
+        "cycles": [{"range": size, "mean": mean, "count": count} for size, mean, count in life.cycles],
+        "equivalent_peak_stress": _band_record(fatigue.stress),
+        "wanted_repetitions": fatigue.wanted,
+        "strength_at_wanted": fatigue.strength,
+        "repetitions": None if fatigue.repetitions is None else _band_record(fatigue.repetitions),
+        "scatter": scatter_of(material),
+        "source": material.fatigue.source,
+    }
+
+
+def _band_record(value: Band) -> dict[str, Any]:
+    return {
+        "value": _finite(value.value),
+        "low": _finite(value.low),
+        "high": _finite(value.high),
+        "holds": list(value.holds),
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def measure_of(material: Material) -> str:
+    """What stands for the stress that varies."""
+    if material.brittle:
+        return "the principal stress of largest size"
+    return "the von Mises stress with the sign of the principal stress of largest size"
+
+
+def scatter_of(material: Material) -> str:
+    """How far a life may be off, in one sentence."""
+    fatigue = material.fatigue
+    assert fatigue is not None
+    asked = f"the limits of {STRESS_FACTOR:g} on stress and {LIFE_FACTOR:g} on life are to cover it"
+    if fatigue.exponent is None:
+        return f"the card states one point of the S-N curve and no scatter; {asked}"
+    return (
+        f"the card states no scatter in numbers; 10 % more stress shortens a life by a factor of "
+        f"{1.1**fatigue.exponent:.2g}; {asked}"
+    )
+
+
+def print_envelope(result: EnvelopeResult, console: "Console") -> None:
+    """Print a compact account, readable at 80 columns."""
+    from rich.text import Text
+
+    colour = COLOURS[result.verdict]
+    console.print(
+        Text.assemble((f" {result.verdict.value.upper()} ", f"bold reverse {colour}"), f" {result.case.title}")
+    )
+    coordinate, (first, last) = result.moved.motion.coordinate, np.degrees(result.angles[[0, -1]])
+    console.print(
+        Text(
+            f"Motion: {coordinate} from {first:.6g} to {last:.6g} deg, driven at {result.drive.link}; "
+            f"{int(result.evaluated.sum())} of {len(result.angles)} poses."
+        )
+    )
+    console.print(_links(result))
+    fatigued = {n: link for n, link in result.links.items() if any(c.fatigue for c in link.load_cases.values())}
+    if fatigued:
+        console.print(_fatigue(fatigued))
+        for material in {result.case.part_of(n).material: result.case.material_of(n) for n in fatigued}.values():
+            console.print(Text(f"Fatigue of {material.title}: of {measure_of(material)}; {scatter_of(material)}."))
+    missing: dict[str, list[str]] = {}
+    for name, link in result.links.items():
+        if link.no_fatigue:
+            missing.setdefault(link.no_fatigue, []).append(name)
+    for why, names in missing.items():
+        console.print(Text(f"No fatigue of {', '.join(names)}: {why}."))
+    console.print(_checks(result))
+    if result.idle:
+        console.print(Text(f"Nothing acts on {', '.join(result.idle)}."))
+    for warning in result.warnings:
+        console.print(Text(f"Warning: {warning}.", style="yellow"))
+
+
+def _table(columns: Mapping[str, bool]) -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    for title, right in columns.items():
+        table.add_column(title, justify="right" if right else "left", vertical="bottom")
+    return table
+
+
+def _links(result: EnvelopeResult) -> "Table":
+    drive = result.drive.link
+    table = _table(
+        {"link": False, "load case": False, "least safety\nfactor (band)": True, "stress\n[MPa]": True,
+         f"at {drive}\n[deg]": True, "at x, y, z\n[mm]": True}
+    )  # fmt: skip
+    for name, link in result.links.items():
+        for load_case, found in link.load_cases.items():
+            table.add_row(
+                name,
+                load_case,
+                band(found.safety_factor),
+                number(found.stress.value, 3),
+                fixed(drive_angle(result, found.pose), 1),
+                ", ".join(fixed(float(v), 1) for v in found.location),
+            )
+    return table
+
+
+def _fatigue(links: Mapping[str, LinkEnvelope]) -> "Table":
+    table = _table(
+        {"link": False, "load case": False, "signed stress\n[MPa]": True, "range\n[MPa]": True,
+         "repetitions to\nfailure (band)": True}
+    )  # fmt: skip
+    for name, link in links.items():
+        for load_case, found in link.load_cases.items():
+            fatigue = found.fatigue
+            if fatigue is None:
+                continue
+            life = fatigue.life
+            table.add_row(
+                name,
+                load_case,
+                f"{number(life.smallest, 3)} to {number(life.largest, 3)}",
+                number(life.stress_range, 3),
+                "no exponent known" if fatigue.repetitions is None else band(fatigue.repetitions, 2),
+            )
+    return table
+
+
+def _checks(result: EnvelopeResult) -> "Table":
+    from rich.text import Text
+
+    table = _table({"check": False, "link": False, "load case": False, "value (band)": True, "limit": True,
+                    "verdict": False})  # fmt: skip
+    for check in result.checks:
+        table.add_row(
+            check.name if check.name == check.quantity else f"{check.name}:\n{check.quantity}",
+            check.link,
+            check.load_case,
+            band(check.value),
+            f"≥ {plain(check.limit)}",
+            Text(check.verdict.value, style=COLOURS[check.verdict]),
+        )
+    return table

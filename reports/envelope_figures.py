@@ -1,0 +1,101 @@
+"""The curve of an envelope: safety factor of every link over the drive angle (matplotlib, PNG)."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.envelope_result import EnvelopeResult, LinkEnvelope
+from fea.verdict import SAFETY_FACTOR
+from reports.drawings import GROUND, INK, STYLE, WIDTH, as_png
+from reports.motion_figures import COLOURS, DASHES, quiet_glyphs
+from reports.wording import number, plain
+
+Real = NDArray[np.float64]
+
+_HEADROOM = 30.0
+"""Largest safety factor shown, as a multiple of the least one."""
+_PANEL = 2.1
+"""Height of a panel [inches]."""
+
+
+def envelope_figure(result: EnvelopeResult) -> bytes:
+    """Draw one panel per link: the safety factor of each load case, its band, its least value and the limit."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    angles, label = abscissa(result)
+    names = list(result.case.load_cases)
+    with rc_context(STYLE), quiet_glyphs():
+        rows = (len(result.links) + 1) // 2
+        figure = Figure(figsize=(WIDTH, _PANEL * rows + 0.7), layout="constrained")
+        FigureCanvasAgg(figure)
+        grid = figure.subplots(rows, 2, squeeze=False, sharex=True)
+        panels = grid.ravel().tolist()
+        handles: dict[str, Any] = {}
+        for axes, (name, link) in zip(panels, result.links.items(), strict=False):
+            limits = {c.limit for c in result.checks if c.link == name and c.quantity == SAFETY_FACTOR}
+            _panel(axes, angles, link, names, limits, handles)
+        for axes in panels[len(result.links) :]:
+            axes.remove()
+        for axes in panels[max(0, len(result.links) - 2) : len(result.links)]:
+            axes.set_xlabel(label, parse_math=False)
+            axes.tick_params(labelbottom=True)
+        figure.supylabel("safety factor", fontsize=9.0)
+        legend = figure.legend(
+            handles.values(), handles.keys(), loc="outside upper center", ncols=min(4, len(handles)), frameon=False
+        )
+        for text in legend.get_texts():
+            text.set_parse_math(False)
+        return as_png(figure)
+
+
+def abscissa(result: EnvelopeResult) -> tuple[Real, str]:
+    """Return angles (n,) [degrees] to draw over, and their label: the drive's, or the coordinate's if it turns back."""
+    steps = np.diff(result.drive_angles)
+    if np.all(steps > 0.0) or np.all(steps < 0.0):
+        return np.degrees(result.drive_angles), f"direction of {result.drive.link} (driven) [deg]"
+    return np.degrees(result.angles), f"direction of {result.moved.motion.coordinate} [deg]"
+
+
+def _panel(
+    axes: Any, angles: Real, link: LinkEnvelope, names: list[str], limits: set[float], handles: dict[str, Any]
+) -> None:
+    least = np.inf
+    for name, found in link.load_cases.items():
+        i = names.index(name)
+        colour, dash = COLOURS[i % len(COLOURS)], DASHES[i // len(COLOURS) % len(DASHES)]
+        with np.errstate(divide="ignore"):
+            value, low, high = (link.strength / np.maximum(s, 0.0) for s in (found.value, found.high, found.low))
+        top = 1e3 * link.strength / max(found.stress.value, 1e-300)
+        axes.fill_between(angles, np.minimum(low, top), np.minimum(high, top), color=colour, alpha=0.22, linewidth=0.0)
+        (handles[name],) = axes.plot(angles, np.minimum(value, top), color=colour, linestyle=dash, linewidth=1.6)
+        worst = found.safety_factor.value
+        if np.isfinite(worst):
+            least = min(least, found.safety_factor.low)
+            (handles["least"],) = axes.plot(
+                angles[found.pose], worst, marker="o", color=INK, markersize=4.5, markerfacecolor="white",
+                linestyle="none", zorder=4, clip_on=False,
+            )  # fmt: skip
+    for limit in sorted(limits):
+        handles["limit"] = axes.axhline(limit, color=GROUND, linewidth=1.0, linestyle=(0, (4, 2)))
+        least = min(least, limit)
+    axes.set_yscale("log")
+    if np.isfinite(least):
+        highest = max(f.safety_factor.value for f in link.load_cases.values() if np.isfinite(f.safety_factor.value))
+        axes.set_ylim(least / 1.5, _HEADROOM * max(highest, least) / 3.0)
+    axes.set_xlim(float(np.min(angles)), float(np.max(angles)))
+    axes.yaxis.set_major_formatter(lambda value, position: plain(value))
+    axes.yaxis.set_minor_formatter(lambda value, position: "")
+    axes.grid(color="0.9", linewidth=0.6)
+    axes.grid(which="minor", color="0.95", linewidth=0.4)
+    axes.set_axisbelow(True)
+    worst_case = link.worst
+    at = angles[worst_case.pose]
+    axes.set_title(
+        f"{link.link}: least {number(worst_case.safety_factor.value, 3)} at {at:.1f} deg",
+        loc="left",
+        fontsize=9.0,
+        parse_math=False,
+    )
