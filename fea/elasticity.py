@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fea import memory
 from fea.block_matrix import SymmetricBlockMatrix
 from fea.space import DisplacementSpace
 from geometry.errors import CannotRunError
@@ -74,7 +75,12 @@ def jacobians(
 
 
 def assemble_stiffness(
-    space: DisplacementSpace, *, E: float, nu: float, order: int | None = None
+    space: DisplacementSpace,
+    *,
+    E: float,
+    nu: float,
+    order: int | None = None,
+    memory_limit: float | None = None,
 ) -> SymmetricBlockMatrix:
     """Assemble the stiffness matrix [N/mm] of an isotropic body with E [MPa] and Poisson's ratio nu.
 
@@ -83,16 +89,19 @@ def assemble_stiffness(
     products of the gradients' matrices at the points of the rule of degree ``CURVED_DEGREE``.
     Elements are taken in chunks, so the working memory does not grow with the mesh.
 
-    order   1 for the linear displacements within a quadratic space, at its corner nodes (curved
-            elements stay curved); by default the order of the space
+    order         1 for the linear displacements within a quadratic space, at its corner nodes (curved
+                  elements stay curved); by default the order of the space
+    memory_limit  bytes that the whole process may hold, by default what the system leaves
 
-    Raises ``CannotRunError`` for a material that is not stable or a folded element.
+    Raises ``CannotRunError`` for a material that is not stable, a folded element, or a matrix that
+    does not fit into memory twice, as it is and with its supports.
     """
     if not (E > 0.0 and 0.0 <= nu < 0.5):
         raise CannotRunError(f"E = {E} MPa with ν = {nu} is no stable compressible material (E > 0, 0 ≤ ν < 0.5)")
     order = space.order if order is None else order
     cells, count = (space.cells[:, :4], space.corners) if order == 1 else (space.cells, len(space.nodes))
     place = _pattern(cells, count)
+    memory.require(2.0 * 72.0 * place.nnz, f"the stiffness matrix of {3 * count:,} unknowns", memory_limit)
     blocks = np.zeros((place.nnz, 3, 3))
     first, second = np.triu_indices(cells.shape[1])
     straight, curved = (Kernel(space, order, E, nu) for Kernel in (_StraightElements, _CurvedElements))

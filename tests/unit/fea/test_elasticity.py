@@ -4,7 +4,7 @@ import solid_meshes
 from skfem import Basis, ElementVector
 from skfem.models.elasticity import linear_elasticity
 
-from fea import elasticity
+from fea import elasticity, memory
 from fea.elasticity import CURVED_DEGREE, assemble_stiffness, lame_constants, stress
 from fea.space import displacement_space
 from geometry.errors import CannotRunError
@@ -86,3 +86,10 @@ def test_folded_element_is_refused():
 def test_impossible_material_is_refused(young, nu):
     with pytest.raises(CannotRunError, match=r"no stable compressible material"):
         assemble_stiffness(displacement_space(solid_meshes.box()), E=young, nu=nu)
+
+
+def test_matrix_beyond_the_memory_limit_is_refused():
+    space = displacement_space(solid_meshes.box())
+    with pytest.raises(CannotRunError, match=r"stiffness matrix of \d+ unknowns needs about .* raise the limit"):
+        assemble_stiffness(space, E=E, nu=NU, memory_limit=memory.resident() + 1e4)
+    assemble_stiffness(space, E=E, nu=NU, memory_limit=memory.resident() + 1e9)

@@ -39,7 +39,8 @@ def _choice(unknowns, *, nu=0.38, right_hand_sides=1, direct="pardiso", room=16e
         (160_000, {}, "two-level", "of the work of MKL PARDISO"),
         (160_000, {"right_hand_sides": 60}, "pardiso", "60 right-hand sides"),
         (160_000, {"nu": 0.495}, "pardiso", "ν = 0.495 is above 0.49"),
-        (550_000, {"right_hand_sides": 60}, "two-level", "of the work"),
+        (550_000, {"right_hand_sides": 10}, "two-level", "of the work"),
+        (550_000, {"right_hand_sides": 60}, "pardiso", "60 right-hand sides"),
         (550_000, {"right_hand_sides": 200, "room": 4e9}, "two-level", "a factorisation needs about"),
         (1_500_000, {}, "two-level", "GB left"),
         (20_000, {"direct": "superlu"}, "two-level", "of the work of SuperLU"),
@@ -82,7 +83,10 @@ def test_two_levels_need_quadratic_elements(small):
 @pytest.mark.parametrize(
     ("method", "unknowns", "work", "space"),
     [
-        ("pardiso", 47_000, 2.3, 0.26e9),
+        ("pardiso", 47_000, None, 0.26e9),
+        ("pardiso", 43_000, 0.6, None),
+        ("pardiso", 123_000, 3.5, None),
+        ("pardiso", 160_000, 9.8, None),
         ("pardiso", 152_000, None, 1.35e9),
         ("pardiso", 499_000, None, 7.2e9),
         ("superlu", 14_700, 1.4, 0.17e9),
@@ -91,15 +95,17 @@ def test_two_levels_need_quadratic_elements(small):
 )
 def test_estimates_of_factorisations_fit_the_measurements(method, unknowns, work, space):
     estimate = direct_estimate(method, unknowns, 1)
-    assert estimate.memory == pytest.approx(space, rel=0.25)
+    if space is not None:
+        assert estimate.memory == pytest.approx(space, rel=0.25)
     if work is not None:
-        assert estimate.work == pytest.approx(work, rel=0.4)
+        assert estimate.work == pytest.approx(work, rel=0.5)
 
 
 def test_estimated_iterations_fit_the_measurements():
-    measured = {0.0: 15, 0.38: 18, 0.45: 23, 0.48: 34, 0.49: 46, 0.495: 63}
-    for nu, iterations in measured.items():
-        assert iterations_estimate(nu) == pytest.approx(iterations * 9.0 / 8.0, rel=0.08)
+    measured = {0.38: (31, 28), 0.45: (42, 36), 0.49: (86, 76)}
+    for nu, (coarse, fine) in measured.items():
+        assert 0.95 * fine < iterations_estimate(nu) < 1.2 * coarse
+    assert iterations_estimate(0.495) > 1.3 * iterations_estimate(0.49)
 
 
 @pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")

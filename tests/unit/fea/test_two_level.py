@@ -149,7 +149,7 @@ def test_matrix_that_is_not_positive_definite_is_refused():
     K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)))
     blocks = K.blocks.copy()
     blocks[K.indptr[-2]] *= -1.0  # a mid-node, which the linear elements do not know
-    with pytest.raises(CannotRunError, match=r"converge|energy norm"):
+    with pytest.raises(CannotRunError, match=r"did not converge in \d{1,2} iterations"):
         factorise(replace(K, blocks=blocks), level=level, method="two-level", threads=1).solve(rhs)
 
 
