@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.result import CheckResult
+from loads.aero import shares
 from reports.labels import along, place_labels
 from reports.wording import number, turning
 
@@ -84,6 +85,7 @@ class _Sheet:
     """Positions and forces of one load case, and how to draw them."""
 
     def __init__(self, result: CheckResult, load_case: str) -> None:
+        self.name = load_case
         self.result, self.pose, self.linkage = result, result.pose, result.pose.linkage
         self.reactions = result.load_cases[load_case].reactions
         self.stated = result.case.load_cases[load_case]
@@ -128,6 +130,14 @@ class _Sheet:
             if np.any(vector):
                 middle = (self.points[spread.link, spread.start] + self.points[spread.link, spread.end]) / 2.0
                 found.append((f"{number(float(np.linalg.norm(vector)), 3)} N\nspread on {spread.link}", middle, vector))
+        points = self.result.case.link_points
+        for air, forces in zip(self.stated.air, self.result.case.air_forces(self.name), strict=True):
+            for patch, share in zip(air.spread, shares(air, points), strict=True):
+                vector = share * forces.total[:2]
+                if np.linalg.norm(vector) > 1e-9 * np.linalg.norm(forces.total):
+                    ends = [self.points[patch.link, p] for p in (patch.at, patch.start, patch.end) if p is not None]
+                    label = f"{number(float(np.linalg.norm(vector)), 3)} N\nof air on {patch.link}"
+                    found.append((label, np.asarray(sum(ends) / len(ends)), vector))
         return found
 
     def draw(self, axes: Any) -> None:

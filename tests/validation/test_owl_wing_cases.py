@@ -1,0 +1,178 @@
+"""The owl wing in flight, braking and closed, after Paredes (2018), and what its tables of coefficients imply."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fea.anchor import wrenches_on_ground
+from fea.check import check_case, solve_case_statics
+from geometry.errors import CaseError
+from loads.case_file import read_case
+from loads.masses import part_mass
+
+AIRBORNE = ("owl-wing-flight", "owl-wing-braking")
+ALL = (*AIRBORNE, "owl-wing-closed", "owl-wing-static")
+
+# Paredes (2018), tables 11 to 13, density 1.225 kg/m^3: angle [deg], speed [m/s], drag and lift [N], Cd, Cl.
+TABLES = [
+    (0, 22.0, 0.270, 0.523, 0.872, 0.093),
+    (0, 15.0, 0.128, 0.241, 0.193, 0.092),
+    (0, 7.0, 0.030, 0.052, 0.010, 0.091),
+    (60, 22.0, 0.9515, 4.51, 2.78, 0.09863),
+    (60, 15.0, 0.9518, 2.09, 1.29, 0.0986),
+    (60, 7.0, 0.9539, 0.45, 0.28, 0.0988),
+]
+
+
+@pytest.fixture(scope="module")
+def statics():
+    return {name: solve_case_statics(read_case(name), name) for name in ALL}
+
+
+# ---- the closed wing -------------------------------------------------------------------------------------------
+
+
+def test_joint_forces_of_the_closed_wing(statics):
+    found = statics["owl-wing-closed"].reactions["weight"]
+    assert found.joints["A"].magnitude == pytest.approx(0.2157, abs=5e-5)
+    assert found.joints["D"].magnitude == pytest.approx(0.4121, abs=5e-5)
+    assert found.joints["E"].magnitude == pytest.approx(0.4121, abs=5e-5)
+    assert found.drive_torque == pytest.approx(-19.90, abs=5e-3)
+
+
+def test_directions_of_the_closed_wing(statics):
+    """Table 8, closed: GAB 55.38, AED 71.94, AGF 96.05, AH 79.28 degrees, read as directions."""
+    angles = {link: math.degrees(a) % 360.0 for link, a in statics["owl-wing-closed"].pose.angles.items()}
+    for link, direction in (("GF", 180 - 55.38), ("AE", 180 - 71.94), ("CF", 360 - 96.05), ("CH", 180 - 79.28)):
+        assert angles[link] == pytest.approx(direction, abs=0.01)
+
+
+def test_the_closed_wing_stands_near_a_dead_point():
+    near = check_case(read_case("owl-wing-closed"), name="owl-wing-closed", fidelity="beam")
+    assert any("close to a dead point of the pose coordinate GF" in warning for warning in near.warnings)
+    far = check_case(read_case("owl-wing-static"), name="owl-wing-static", fidelity="beam")
+    assert not any("dead point" in warning for warning in far.warnings)
+
+
+def test_the_dead_point_lies_two_degrees_off():
+    case = read_case("owl-wing-closed")
+    read_case("owl-wing-closed", ["pose.angle=122.87 deg"]).solve_pose()
+    assert math.degrees(case.pose.angle) - 122.87 < 2.0
+    with pytest.raises(CaseError, match="cannot be assembled"):
+        read_case("owl-wing-closed", ["pose.angle=122.6 deg"]).solve_pose()
+
+
+# ---- the source's tables -----------------------------------------------------------------------------------------
+
+
+def areas(row):
+    """Wing areas [cm^2] that lift and drag of a row imply by the source's definitions."""
+    _, speed, drag, lift, cd, cl = row
+    q = 1.225 * speed**2 / 2.0
+    return 1e4 * lift / (q * cl), 1e4 * drag / (q * cd)
+
+
+@pytest.mark.parametrize("name", AIRBORNE)
+def test_the_case_tells_the_areas_that_the_source_implies(name):
+    told = " ".join(read_case(name).assumptions)
+    for row in TABLES:
+        if row[0] == (60 if "braking" in name else 0):
+            from_lift, from_drag = areas(row)
+            drag = f"{from_drag:.1f}" if from_drag < 20 else f"{from_drag:.0f}"
+            assert f"{row[1]:g} m/s: {from_lift:.0f} cm2 from lift, {drag} cm2 from drag" in told
+
+
+def test_the_source_contradicts_itself():
+    lift, drag = np.array([areas(row) for row in TABLES]).T
+    assert lift[3:].min() / lift[:3].max() > 7.9  # one wing, eight times the area at 60 deg
+    assert drag.max() / drag.min() > 100.0
+    ratio = TABLES[3][3] / TABLES[3][2]
+    assert ratio / (1.0 / math.tan(math.radians(60.0))) > 8.0  # separated air pushes normal to the wing
+
+
+# ---- loads ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "drag"), [("owl-wing-flight", 0.27), ("owl-wing-braking", 0.95)])
+def test_published_loads_are_drag_alone(name, drag):
+    case = read_case(name)
+    [air] = case.air_forces("as-published")
+    np.testing.assert_allclose(air.total, [0.0, 0.0, drag])
+    assert air.warnings
+
+
+@pytest.mark.parametrize("name", AIRBORNE)
+def test_complete_loads_follow_from_one_dynamic_pressure(name):
+    case = read_case(name)
+    [flat], [complete] = case.air_forces("planform"), case.air_forces("complete")
+    q_s = 1.225 * 22.0**2 / 2.0 * 0.366 * 0.140
+    assert (complete.lift, complete.drag) == pytest.approx((flat.lift, flat.drag))
+    coefficients = (0.32, 0.06) if "flight" in name else (1.2 * math.cos(math.pi / 3), 1.2 * math.sin(math.pi / 3))
+    assert complete.lift == pytest.approx(q_s * coefficients[0], rel=2e-3)
+    assert complete.drag == pytest.approx(q_s * coefficients[1], rel=2e-3)
+
+
+def test_one_wing_carries_half_of_the_bird_in_flight():
+    [air] = read_case("owl-wing-flight").air_forces("complete")
+    assert air.lift == pytest.approx(0.98 * 9.81 / 2.0, rel=0.02)
+
+
+def test_the_force_when_braking_stands_normal_to_the_wing():
+    [air] = read_case("owl-wing-braking").air_forces("planform")
+    normal = air.total / np.linalg.norm(air.total)
+    np.testing.assert_allclose(normal, [0.0, 0.0, 1.0], atol=2e-3)
+
+
+def test_plumage_and_links_weigh_in_the_complete_case(statics):
+    found = statics["owl-wing-flight"]
+    weight = sum(load.resultant(found.pose)[:3] for load in found.loads["complete"])
+    [air] = found.case.air_forces("complete")
+    links = sum(mass.mass for mass in found.masses.values())
+    expected = (links + 25.48e-6) * 9810.0
+    np.testing.assert_allclose(weight - air.total, [0.0, -expected, 0.0], atol=1e-9)
+    plumage = sum(mass.mass for mass in found.case.carried) * 9810.0
+    assert plumage == pytest.approx(0.25, abs=5e-3)  # what the source's weight of the wing is made of
+
+
+# ---- the anchor ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_the_anchor_holds_all_that_acts(name, statics):
+    found = statics[name]
+    for title, reactions in found.reactions.items():
+        ground = wrenches_on_ground(reactions)
+        assert set(ground) == {"A", "G"}
+        np.testing.assert_allclose(ground["A"][:3], -reactions.joints["A"].force)
+        total, moment = np.zeros(3), np.zeros(3)
+        for load in found.loads[title]:
+            wrench = load.resultant(found.pose)
+            total += wrench[:3]
+            moment += wrench[3:] + np.cross([*found.pose.origins[load.link], 0.0], wrench[:3])
+        size = float(np.linalg.norm(total))
+        np.testing.assert_allclose(ground["A"][:3] + ground["G"][:3], total, atol=1e-8 * size)
+        about_a = ground["A"][3:] + ground["G"][3:] + np.cross([0.0, 125.0, 0.0], ground["G"][:3])
+        np.testing.assert_allclose(about_a, moment, atol=1e-5 * size)
+
+
+# ---- sections ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_both_sections_stand_by(name):
+    links = ("GF", "AE", "CF", "CH", "ED")
+    case = read_case(name, [f"links.{link}.part=rod-4mm" for link in links])
+    assert {case.part_of(link).section.half_y for link in links} == {2.0}
+    assert {read_case(name).part_of(link).section.half_y for link in links} == {2.5}
+
+
+def test_the_rod_weighs_what_the_drawings_say():
+    """Five link drawings give 2.23 g each; a solid 4 mm rod comes near, eyes included; the tube is above."""
+    links = ("GF", "AE", "CF", "CH", "ED")
+    rod = read_case("owl-wing-static", [f"links.{link}.part=rod-4mm" for link in links])
+    assert 602.0 * rod.part_of("CH").section.area * 1450e-6 == pytest.approx(5 * 2.23, rel=0.02)
+    tube = read_case("owl-wing-static")
+    weights = [sum(part_mass(case, link).mass for link in links) * 1e6 for case in (rod, tube)]
+    assert weights[0] < weights[1]
+    assert abs(weights[0] - 11.15) < abs(weights[1] - 11.15)
