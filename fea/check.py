@@ -272,12 +272,15 @@ def _cantilever(case: Case, title: str) -> CantileverCheck:
 
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
-    found = [
-        f"load case {title}: {forces.reason}, so the joint forces are those of a {forces.model}"
-        for title, forces in statics.forces.items()
-        if forces.model != PINNED_STATICS
-    ]
-    found += [f"load case {title}: {what.sentence}" for title, what in moved.items() if what.state != "small"]
+    found = []
+    for model, reason in dict.fromkeys((f.model, f.reason) for f in statics.forces.values()):
+        if model != PINNED_STATICS:
+            titles = [title for title, f in statics.forces.items() if (f.model, f.reason) == (model, reason)]
+            found.append(f"load case {', '.join(titles)}: {reason}, so the joint forces are those of a {model}")
+    said = dict.fromkeys(what.sentence for what in moved.values() if what.state != "small")
+    for sentence in said:
+        titles = [title for title, what in moved.items() if what.sentence == sentence]
+        found.append(f"load case {', '.join(titles)}: {sentence}")
     found += [
         f"load case {title}: {sentence}"
         for title in case.load_cases
