@@ -8,7 +8,6 @@ from fea.refinement import MeshRecord, RefinedSolid
 from fea.singular import SharpPeak
 
 Status = Literal["converged", "decided", "far", "not reached", "singular", "growing"]
-_COUNTS = {"one mesh": "1 mesh", "two meshes": "2 meshes"}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,7 +51,7 @@ class Discretisation:
             )
         if self.status == "far":
             return (
-                f"one mesh of {self.meshes[-1].elements:,} elements, whose estimated error, taken threefold, is "
+                f"one mesh of {self.meshes[-1].elements:,} elements, whose estimated error, taken fourfold, is "
                 f"{series.index:.0%} of the peak: every limit is further away than twice that band"
             )
         order = "" if series.order is None else f", observed order {series.order:.1f}"
@@ -74,7 +73,7 @@ class Discretisation:
 def holds(series: GridConvergence) -> str:
     """What a band of this series says that it holds."""
     if series.kind == "one mesh":
-        return "discretisation (estimated on one mesh, threefold)"
+        return "discretisation (estimated on one mesh, fourfold)"
     count = len(series.values)
     return f"discretisation (grid convergence over {count} meshes, factor {series.factor:g})"
 

@@ -58,10 +58,10 @@ class Level:
         """Element edge [mm] of the mean volume."""
         return float(_EDGE * np.cbrt(self.volumes.mean()))
 
-    def around(self, nodal: NDArray[np.float64], place: NDArray[np.float64], radius: float) -> float:
-        """Largest nodal value within a radius of a place, or the nearest node's."""
+    def around(self, nodal: NDArray[np.float64], place: NDArray[np.float64], radius: float) -> int:
+        """Node of the largest value within a radius of a place, at least the nearest node."""
         distance = np.linalg.norm(self.nodes - place, axis=1)
-        return float(nodal[distance <= max(radius, float(distance.min()))].max())
+        return int(np.argmax(np.where(distance <= max(radius, float(distance.min())), nodal, -np.inf)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -151,8 +151,7 @@ def _case(levels: Sequence[Level], number: int, edges: Sequence[ReentrantEdge], 
             edge,
             edges,
             place=last.nodes[node],
-            sizes=edge_series.sizes,
-            values=edge_series.values,
+            **_at_maximum(levels, stresses, node),
             nodes=last.nodes,
             von_mises=stresses[-1],
             section=section,
@@ -173,9 +172,20 @@ def _series(levels: Sequence[Level], number: int, nodal: Sequence[NDArray[np.flo
     place = last.nodes[node]
     radius = levels[0].size(place)
     chosen = _falling([level.size(place, 1.5 * radius) for level in levels])
-    values = [levels[i].around(nodal[i], place, radius) for i, _ in chosen]
+    values = [float(nodal[i][levels[i].around(nodal[i], place, radius)]) for i, _ in chosen]
     error = float(last.figures[number].estimate.stress[(last.cells == node).any(axis=1)].max())
     return grid_convergence([size for _, size in chosen], values, estimate=error + last.chord * abs(values[-1]))
+
+
+def _at_maximum(levels: Sequence[Level], nodal: Sequence[NDArray[np.float64]], node: int) -> dict[str, list[float]]:
+    """Largest values about a node of the finest mesh, and the sizes of the elements just there."""
+    place = levels[-1].nodes[node]
+    radius = levels[0].size(place)
+    nodes = [level.around(values, place, radius) for level, values in zip(levels, nodal, strict=True)]
+    return {
+        "sizes": [level.size(level.nodes[number]) for level, number in zip(levels, nodes, strict=True)],
+        "values": [float(values[number]) for values, number in zip(nodal, nodes, strict=True)],
+    }
 
 
 def _displacement(levels: Sequence[Level], number: int) -> GridConvergence:

@@ -1,6 +1,6 @@
 """Meshes made finer until a link's numbers are good enough for the decision or the stated accuracy.
 
-A link whose stress is far from every limit, with its estimated error taken threefold and a factor of two
+A link whose stress is far from every limit, with its estimated error taken fourfold and a factor of two
 on top, needs one coarse mesh. Any other gets at least three, refined where the peaks are and where the
 estimate asks (``fea.target_sizes``), until every limit lies outside the band or the band is as narrow as
 asked for; or until a limit of time, unknowns or number of meshes stops it, which the link's numbers then say.
@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.convergence import GridConvergence
+from fea.convergence import ALONE, GridConvergence
 from fea.link_loads import LinkLoads
 from fea.link_series import CasePrecision, Level, goals, level_of, precision
 from fea.singular import element_exponents
@@ -250,6 +250,8 @@ class _Link:
         if len(self.levels) == 1:
             self.far = not self.effort.stated and self._far()
             return self.far
+        if any(p.sharp is not None and not p.sharp.resolved for p in self.precision):
+            return False
         # Nothing finer makes a singular peak finite.
         real = [p for p in self.precision if p.sharp is None]
         series = [s for p in real for s in (self._deciding(p), p.edge) if s is not None]
@@ -274,7 +276,7 @@ class _Link:
 
     def _far(self) -> bool:
         """Whether one mesh decides: well resolved, away from sharp edges, every limit far outside the band."""
-        if any(self._deciding(p).index > 3.0 * ROUGH or p.edge is not None for p in self.precision):
+        if any(self._deciding(p).index > ALONE * ROUGH or p.edge is not None for p in self.precision):
             return False
         return all(band.high * FAR < limit or band.low > FAR * limit for band, limit in self._limits())
 

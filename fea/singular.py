@@ -16,7 +16,7 @@ ON_EDGE = 0.01
 """Distance from an edge, over the section's smaller dimension, up to which a node lies on it: edges are polylines."""
 LOADED = 0.5
 """Stress on a sharp edge over the peak from which on the edge is refined to see whether it grows without limit."""
-SCREENING = 0.1
+SCREENING = 0.2
 """Distance from the edge, over the section's smaller dimension, at which the screening stress is taken."""
 SHARE_OF_WILLIAMS = 0.3
 """Observed growth over Williams's exponent 1 − λ from which a peak on an edge is singular."""
@@ -28,7 +28,8 @@ class SharpPeak:
 
     place      of the peak (3,) [mm]; ``angle`` of the material there [rad]
     growth     observed exponent s of the peak ~ h^(−s); ``theory`` 1 − λ after Williams
-    distance   from every re-entrant edge at which ``screening`` is the largest von Mises stress [mm, MPa]
+    distance   from every re-entrant edge beyond which ``screening`` is the largest von Mises stress [mm, MPa]
+    resolved   True where elements at the edge are small enough for that distance to be the one aimed at
     """
 
     place: NDArray[np.float64]
@@ -37,6 +38,7 @@ class SharpPeak:
     theory: float
     distance: float
     screening: float
+    resolved: bool
 
     @property
     def sentence(self) -> str:
@@ -46,8 +48,8 @@ class SharpPeak:
             f"the stress at the sharp inner edge at x = {x:.3g}, y = {y:.3g}, z = {z:.3g} mm "
             f"({np.degrees(self.angle):.0f}° of material) is singular: it grows with every refinement, as size to the "
             f"power {-self.growth:.2f} (theory {-self.theory:.2f}), and has no limit; state the real fillet_radius. "
-            f"For screening alone: {self.screening:.3g} MPa von Mises is the most at {self.distance:.2g} mm or more "
-            "from such edges"
+            f"For screening alone: at {self.distance:.2g} mm or more from such edges von Mises stress is at most "
+            f"{self.screening:.3g} MPa"
         )
 
 
@@ -110,11 +112,11 @@ def sharp_peak(
 ) -> SharpPeak | None:
     """Return the singular peak at ``place`` on ``edge`` if its growth over the meshes is that of one, else None.
 
-    sizes, values   of the series of meshes, coarse to fine, at least three
+    sizes, values   of the elements at the peak and of the peak, mesh by mesh, coarse to fine
     nodes           (n, 3) [mm] of the finest, with their ``von_mises`` (n,) [MPa]
     section         smaller dimension of the link's section [mm]
     """
-    if len(values) < 3 or values[-3] <= 0.0 or not values[-1] > values[-2] > values[-3]:
+    if len(values) < 3 or not values[-1] > values[-2] > values[-3] > 0.0 or not sizes[-1] < sizes[-2] < sizes[-3]:
         return None
     growth = float(np.log(values[-1] / values[-3]) / np.log(sizes[-3] / sizes[-1]))
     last = float(np.log(values[-1] / values[-2]) / np.log(sizes[-2] / sizes[-1]))
@@ -131,4 +133,5 @@ def sharp_peak(
         theory=theory,
         distance=distance,
         screening=float(von_mises[beyond].max()) if beyond.any() else 0.0,
+        resolved=distance == SCREENING * section,
     )
