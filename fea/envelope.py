@@ -32,8 +32,8 @@ Progress = Callable[[str], None]
 
 TORQUE_GROWTH = 20.0
 """Of the drive torque towards a dead point, beside that at the best leverage, beyond which poses are left out."""
-FATIGUE_STRESS = "fatigue strength over stress"
-FATIGUE_LIFE = "life over repetitions"
+FATIGUE_STRESS = "fatigue factor on stress"
+FATIGUE_LIFE = "fatigue factor on life"
 
 
 def envelope_case(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fea.band import Band
 from fea.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from fea.verdict import SAFETY_FACTOR
 from geometry.material import Material
 from reports.console import COLOURS
 from reports.output import MARK, write_folder
@@ -70,21 +71,20 @@ def write_envelope(
 
 def write_curves(result: EnvelopeResult, path: Path) -> None:
     """Write the curves over the motion as CSV, load case below load case; poses left out have empty fields."""
-    header = [
-        "load case",
-        f"{result.moved.motion.coordinate} angle [deg]",
-        f"{result.drive.link} angle [deg]",
-    ]
+    angles = {
+        f"{result.moved.motion.coordinate} angle [deg]": np.degrees(result.angles),
+        f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles),
+    }
+    header = ["load case", *angles]
     for link, found in result.links.items():
         header += [f"{link} {found.measure} stress{end} [MPa]" for end in ("", " low", " high")]
         header += [f"{link} safety factor{end} [1]" for end in ("", " low", " high")]
         header += [f"{link} signed stress at the critical point [MPa]"]
-    base = [np.degrees(result.angles), np.degrees(result.drive_angles)]
     with path.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(header)
         for name in result.case.load_cases:
-            columns = list(base)
+            columns = list(angles.values())
             for found in result.links.values():
                 columns += _columns(found, name, len(result.angles))
             for row in np.column_stack(columns).tolist():
@@ -273,7 +273,7 @@ def _table(columns: Mapping[str, bool]) -> "Table":
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
     for title, right in columns.items():
-        table.add_column(title, justify="right" if right else "left", vertical="bottom")
+        table.add_column(title, justify="right" if right else "left", vertical="bottom", no_wrap="(band)" in title)
     return table
 
 
@@ -320,11 +320,11 @@ def _fatigue(links: Mapping[str, LinkEnvelope]) -> "Table":
 def _checks(result: EnvelopeResult) -> "Table":
     from rich.text import Text
 
-    table = _table({"check": False, "link": False, "load case": False, "value (band)": True, "limit": True,
+    table = _table({"check": False, "link": False, "load case": False, "value\n(band)": True, "limit": True,
                     "verdict": False})  # fmt: skip
     for check in result.checks:
         table.add_row(
-            check.name if check.name == check.quantity else f"{check.name}:\n{check.quantity}",
+            check.name if check.quantity == SAFETY_FACTOR else check.quantity,
             check.link,
             check.load_case,
             band(check.value),

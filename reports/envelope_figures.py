@@ -15,6 +15,7 @@ Real = NDArray[np.float64]
 
 _HEADROOM = 30.0
 """Largest safety factor shown, as a multiple of the least one."""
+_MARKS = ("error band", "least of the motion", "limit of the check")
 _PANEL = 2.1
 """Height of a panel [inches]."""
 
@@ -24,6 +25,7 @@ def envelope_figure(result: EnvelopeResult) -> bytes:
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
 
     angles, label = abscissa(result)
     names = list(result.case.load_cases)
@@ -43,8 +45,14 @@ def envelope_figure(result: EnvelopeResult) -> bytes:
             axes.set_xlabel(label, parse_math=False)
             axes.tick_params(labelbottom=True)
         figure.supylabel("safety factor", fontsize=9.0)
+        handles[_MARKS[0]] = Patch(color="0.8", linewidth=0.0)
+        shown = [name for name in (*names, *_MARKS) if name in handles]
         legend = figure.legend(
-            handles.values(), handles.keys(), loc="outside upper center", ncols=min(4, len(handles)), frameon=False
+            [handles[name] for name in shown],
+            shown,
+            loc="outside upper center",
+            ncols=min(5, len(shown)),
+            frameon=False,
         )
         for text in legend.get_texts():
             text.set_parse_math(False)
@@ -74,12 +82,12 @@ def _panel(
         worst = found.safety_factor.value
         if np.isfinite(worst):
             least = min(least, found.safety_factor.low)
-            (handles["least"],) = axes.plot(
+            (handles[_MARKS[1]],) = axes.plot(
                 angles[found.pose], worst, marker="o", color=INK, markersize=4.5, markerfacecolor="white",
                 linestyle="none", zorder=4, clip_on=False,
             )  # fmt: skip
     for limit in sorted(limits):
-        handles["limit"] = axes.axhline(limit, color=GROUND, linewidth=1.0, linestyle=(0, (4, 2)))
+        handles[_MARKS[2]] = axes.axhline(limit, color=GROUND, linewidth=1.0, linestyle=(0, (4, 2)))
         least = min(least, limit)
     axes.set_yscale("log")
     if np.isfinite(least):

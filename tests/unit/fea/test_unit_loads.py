@@ -1,0 +1,109 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import solid_meshes
+from turning_load import BODY, POSES, RHO, L, history
+
+from fea.link_loads import PinLoad
+from fea.quadrature import surface_quadrature
+from fea.space import displacement_space
+from fea.supports import rigid_motions
+from fea.traction import pin_traction
+from fea.unit_loads import TRANSFERS, fourier_coefficients, load_scale, unit_loads
+from geometry.errors import CannotRunError
+from loads.actions import PartMass
+from loads.bearing import NARROW, WIDE
+
+ORIGIN = np.zeros(3)
+
+
+@pytest.fixture(scope="module")
+def space():
+    return displacement_space(solid_meshes.bar(around=12, radial=2, along=3, layers=1, tail=4.0))
+
+
+@pytest.fixture(scope="module")
+def units(space):
+    return unit_loads(space, [history(space)], density=RHO)
+
+
+@pytest.mark.parametrize("law", [WIDE, NARROW])
+def test_fourier_series_is_that_of_the_law(law):
+    theta = np.linspace(-math.pi, math.pi, 20001)
+    for n, a in enumerate(fourier_coefficients(law, 12)):
+        share = np.trapezoid(law.shape(theta) * np.cos(n * theta), theta) / math.pi
+        assert a == pytest.approx(share * (0.5 if n == 0 else 1.0), abs=1e-7)
+    order = np.arange(201)
+    series = fourier_coefficients(law, 200) @ np.cos(order[:, None] * theta)
+    assert np.abs(series - law.shape(theta)).max() < 0.01
+
+
+def test_even_orders_up_to_eight_hold_the_wide_peak():
+    a = fourier_coefficients(WIDE, 8)
+    assert a[[3, 5, 7]] == pytest.approx(0.0, abs=1e-15)
+    assert abs(a.sum() - 1.0) < 0.025  # of the pressure itself; the stress it makes is far closer
+
+
+@pytest.mark.parametrize("law", [WIDE, NARROW])
+@pytest.mark.parametrize("transfer", TRANSFERS)
+def test_every_pose_balances_on_the_meshed_hole(space, units, law, transfer):
+    loads = history(space)
+    resultant = units.wrenches @ units.coefficients(loads, law, transfer)
+    scale = load_scale(loads, 30.0)
+    assert np.abs(resultant[:3] / scale).max() < 1e-12
+    assert np.abs(resultant[3:] / (30.0 * scale)).max() < 1e-12
+
+
+def test_pressure_fields_have_no_resultant_and_tractions_deliver_the_force(units):
+    assert np.abs(units.wrenches[:, units.local]).max() < 1e-12
+    delivered = units.wrenches[:, units.pins["B"].force]
+    assert delivered[:, 0] == pytest.approx([1, 0, 0, 0, 0, 0], abs=1e-12)
+    assert delivered[:, 1] == pytest.approx([0, 1, 0, 0, 0, L], abs=1e-11)
+
+
+@pytest.mark.parametrize(("law", "least"), [(WIDE, 2e-3), (NARROW, 1e-2)])
+def test_load_vectors_are_those_of_the_pressure_itself(space, units, law, least):
+    bore = surface_quadrature(space, "bore:B")
+    loads = history(space, couples={}, ends={}, lines=(), mass=None)
+    loads = replace(loads, pins={"A": np.zeros((POSES, 3)), "B": loads.pins["B"]})
+    found = units.vectors @ units.coefficients(loads, law, None)
+    for pose, force in enumerate(loads.pins["B"]):
+        wrench = np.array([*force[:2], 0, 0, 0, 0])
+        pin = PinLoad(name="B", centre=np.array([L, 0, 0]), diameter=1.5, wrench=wrench)
+        whole = bore.load_vector(pin_traction(bore, pin, law), len(space.nodes))
+        assert np.linalg.norm(found[:, pose] - whole) < least * np.linalg.norm(whole)
+
+
+def test_inertia_carries_the_stated_mass(space):
+    mass = PartMass(mass=3e-6, centroid=np.array([11.0, 0.3]), inertia=4e-4)
+    made = unit_loads(space, [history(space, mass=mass)], density=RHO)
+    about = mass.inertia + mass.mass * (11.0**2 + 0.3**2)
+    expected = 3e-6 * np.array([[1, 0, -0.3], [0, 1, 11.0], [0.3, -11.0, -about / 3e-6], [11.0, 0.3, 0.0]]).T
+    assert made.wrenches[[0, 1, 5]][:, made.inertia] == pytest.approx(expected, rel=1e-9, abs=1e-15)
+
+
+def test_wrenches_are_those_of_the_vectors(space, units):
+    motions = rigid_motions(space.nodes, ORIGIN).reshape(6, -1)
+    assert units.wrenches == pytest.approx(motions @ units.vectors.toarray(), abs=1e-12)
+
+
+def test_only_what_acts_has_a_unit_load(space):
+    loads = history(space, couples={}, ends={}, lines=(), mass=None)
+    loads = replace(loads, pins={"A": np.zeros((POSES, 3)), "B": loads.pins["B"]})
+    made = unit_loads(space, [loads], density=RHO, highest=8)
+    assert list(made.pins) == ["B"]
+    assert (made.count, made.inertia, made.couples, made.ends, made.lines) == (2 * 8 + 1 + 2, None, {}, {}, {})
+
+
+def test_hole_of_another_size_is_refused(space):
+    pins = (replace(BODY.pins[0], diameter=2.5), BODY.pins[1])
+    with pytest.raises(CannotRunError, match=r"measures 1\.\d+ mm on the mesh, not 2\.5 mm"):
+        unit_loads(space, [history(space, body=replace(BODY, pins=pins))], density=RHO)
+
+
+def test_a_hole_that_misses_its_load_is_refused(units):
+    uneven = replace(units.pins["B"], wrench=units.pins["B"].wrench + np.array([0, 0, 0.5, 0, 0, 0])[:, None])
+    with pytest.raises(CannotRunError, match="meshed too unevenly"):
+        uneven.coefficients(np.array([[1.0, 0.0]]), WIDE)

@@ -1,0 +1,113 @@
+"""The stress of a whole motion from unit loads, against direct solutions at single poses."""
+
+import numpy as np
+import pytest
+import solid_meshes
+from turning_load import POSES, RHO, L, history
+
+from fea.link_envelope import link_envelope
+from fea.peaks import von_mises_peaks
+from fea.solid import solve_solid
+from fea.space import displacement_space
+from fea.stress import stress_field
+from fea.unit_loads import TRANSFERS, load_scale, unit_loads
+from fea.unit_solutions import solve_units
+from geometry.material import library
+from loads.bearing import NARROW, WIDE
+
+MATERIAL = library()["pvc-u"]
+E, NU = MATERIAL.youngs_modulus, MATERIAL.poissons_ratio
+VARIANTS = [(law, transfer) for law in (WIDE, NARROW) for transfer in TRANSFERS]
+EXACT = 5e-3
+"""Largest difference of a peak that the requirement allows."""
+
+
+@pytest.fixture(scope="module")
+def mesh():
+    return solid_meshes.bar(around=16, radial=3, along=4, layers=1, tail=4.0)
+
+
+@pytest.fixture(scope="module")
+def space(mesh):
+    return displacement_space(mesh)
+
+
+@pytest.fixture(scope="module")
+def solved(space):
+    loads = history(space)
+    units = unit_loads(space, [loads], density=RHO)
+    columns = np.hstack([units.coefficients(loads, law, transfer) for law, transfer in VARIANTS])
+    scale = np.tile(load_scale(loads, 30.0), len(VARIANTS))
+    return solve_units(units, columns, scale, E=E, nu=NU, threads=1)
+
+
+@pytest.mark.parametrize("pose", [0, 5, 10, 14, 21])
+def test_fields_and_peaks_equal_a_direct_solution(mesh, space, solved, pose):
+    peaks = von_mises_peaks(solved.stress, solved.combination)
+    direct = solve_solid(
+        mesh, E=E, nu=NU, density=RHO, loads=[history(space).at(pose)], line=("bore:A", "bore:B"), threads=1
+    )
+    assert [(c.span, c.transfer) for c in direct.cases] == [(law.span, transfer) for law, transfer in VARIANTS]
+    for number, case in enumerate(direct.cases):
+        load = number * POSES + pose
+        field = stress_field(space, case.displacement, E=E, nu=NU)
+        assert peaks.value[load] == pytest.approx(field.peak.value, rel=EXACT)
+        whole = np.einsum("nim,m->ni", solved.stress, solved.combination[:, load])
+        assert np.abs(whole - field.nodal).max() < 2.0 * EXACT * field.peak.value
+
+
+def test_supports_do_not_react_although_single_unit_loads_do_not_balance(solved):
+    assert solved.imbalance.max() < 1e-6
+    assert solved.reaction.max() < 1e-6
+
+
+def test_peaks_converge_to_the_direct_ones_with_the_order(mesh, space):
+    """What is left out are high orders of the pressure: more of them, less difference."""
+    loads = history(space)
+    direct = solve_solid(
+        mesh, E=E, nu=NU, density=RHO, loads=[loads.at(5)], line=("bore:A", "bore:B"), laws=[NARROW],
+        transfers=["eye-faces"], threads=1,
+    )  # fmt: skip
+    exact = stress_field(space, direct.cases[0].displacement, E=E, nu=NU)
+    missed = []
+    for highest in (4, 8, 12):
+        units = unit_loads(space, [loads], density=RHO, highest=highest)
+        found = solve_units(
+            units, units.coefficients(loads, NARROW, "eye-faces"), load_scale(loads, 30.0), E=E, nu=NU, threads=1
+        )
+        whole = np.einsum("nim,m->ni", found.stress, found.combination[:, 5])
+        missed.append(np.abs(whole - exact.nodal).max() / exact.peak.value)
+    assert missed[2] < 0.7 * missed[1] < 0.7 * missed[0]
+
+
+def test_two_forces_of_one_line_need_few_solutions(space):
+    """A two-force link turns with its force: only its size changes over the motion."""
+    size = np.linspace(-1.0, 2.0, POSES)
+    along = np.column_stack([size, np.zeros(POSES), np.zeros(POSES)])
+    loads = history(space, pins={"A": -along, "B": along}, couples={}, ends={}, lines=(), mass=None)
+    units = unit_loads(space, [loads], density=RHO)
+    found = solve_units(units, units.coefficients(loads, WIDE, None), load_scale(loads, 30.0), E=E, nu=NU, threads=1)
+    assert found.combination.shape[0] == 3  # the force, and the pressure of a pull and of a push
+
+
+def test_envelope_of_a_link_finds_the_pose_of_the_largest_direct_peak(mesh, space):
+    loads = history(space)
+    found = link_envelope(
+        space, link="bar", material=MATERIAL.model_copy(update={"density": RHO}), histories=[loads],
+        evaluated=np.ones(POSES, dtype=bool), stated="bore-shear", returns=True, threads=1,
+    )  # fmt: skip
+    worst = found.worst
+    direct = []
+    for pose in range(POSES):
+        solution = solve_solid(
+            mesh, E=E, nu=NU, density=RHO, loads=[loads.at(pose)], line=("bore:A", "bore:B"),
+            laws=[WIDE if worst.governing.span == 180 else NARROW], transfers=["bore-shear"], threads=1,
+        )  # fmt: skip
+        direct.append(stress_field(space, solution.cases[0].displacement, E=E, nu=NU).peak)
+    values = np.array([peak.value for peak in direct])
+    assert worst.governing.stress == pytest.approx(values, rel=EXACT)
+    assert worst.pose == int(np.argmax(values))
+    assert worst.location == pytest.approx(direct[worst.pose].location)
+    assert worst.safety_factor.value == pytest.approx(MATERIAL.allowable / values.max(), rel=EXACT)
+    assert found.field.peak.value == pytest.approx(values.max(), rel=EXACT)
+    assert abs(found.displacement).max() < L
