@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from fea.band import Band
 from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
+from fea.bearing_check import bearing_outcomes
 from fea.cut_free import beam_loads, link_loads
 from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
 from fea.large_displacement import LargeDisplacement, examine
@@ -21,7 +22,7 @@ from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
 from fea.solid_result import link_task, solid_result
-from fea.verdict import overall
+from fea.verdict import CheckOutcome, overall
 from geometry.errors import CaseError
 from geometry.material import Material
 from geometry.pose import Pose
@@ -30,7 +31,7 @@ from loads.actions import PartMass, needs_masses
 from loads.applied import Load
 from loads.case import Case
 from loads.case_file import read_companion
-from loads.check_spec import MotorCheck, PinCheck
+from loads.check_spec import BearingCheck, MotorCheck, PinCheck
 from loads.inertia import acting_loads
 from loads.masses import part_mass
 from loads.published import StaticsAudit, audit
@@ -168,7 +169,8 @@ def check_case(
             link: _link_result(case, link, title, beams[link][i], solids.get(link), solid=fidelity == "solid")
             for link in cut
         }
-        pins = _pins(case, moved[title].reactions or forces.reactions)
+        reactions = moved[title].reactions or forces.reactions
+        pins = _pins(case, reactions)
         load_cases[title] = LoadCaseResult(
             name=title,
             forces=forces,
@@ -178,6 +180,7 @@ def check_case(
             ways_to_hold=ways_to_hold(case, statics.pose, statics.loads[title]),
             checks=(
                 *outcomes(case, title, links, pins, moved[title]),
+                *_bearing(case, title, reactions),
                 *(found[title] for found in motors if title in found),
             ),
         )
@@ -262,6 +265,12 @@ def _pins(case: Case, reactions: Reactions) -> dict[str, PinStress]:
     checks = [check for check in case.all_checks.values() if isinstance(check, PinCheck)]
     asked = dict.fromkeys(joint for check in checks for joint in check.joints or case.pinned_joints)
     return {joint: stress_at(case, joint, reactions.joints[joint]) for joint in asked}
+
+
+def _bearing(case: Case, title: str, reactions: Reactions) -> list[CheckOutcome]:
+    """Outcomes of the checks that ask for bearing."""
+    asked = [(name, check) for name, check in case.checks.items() if isinstance(check, BearingCheck)]
+    return [found for name, check in asked for found in bearing_outcomes(case, title, name, check, reactions)]
 
 
 def _cantilever(case: Case, title: str) -> CantileverCheck:

@@ -10,7 +10,7 @@ from fea.verdict import LINKAGE, LOAD_SHARE, PIN, SAFETY_FACTOR, CheckOutcome, V
 from geometry.errors import CaseError
 from geometry.material import Material
 from loads.case import Case
-from loads.check_spec import DisplacementCheck, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
+from loads.check_spec import BearingCheck, DisplacementCheck, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
 
 LARGE_DISPLACEMENT = "large displacement"
 
@@ -22,15 +22,15 @@ def outcomes(
     pins: Mapping[str, PinStress],
     moved: LargeDisplacement,
 ) -> tuple[CheckOutcome, ...]:
-    """Return the outcome of every check of a load case called ``title``, but for motors (``fea.motor_check``).
+    """Return the outcome of every check of a load case called ``title``, but for motors and bearing.
 
-    Raises ``CaseError`` where neither check nor material states a limit.
+    These are in ``fea.motor_check`` and ``fea.bearing_check``. Raises ``CaseError`` where neither check nor material states a limit.
     """
     found: list[CheckOutcome] = []
     for name, check in case.all_checks.items():
         if isinstance(check, PinCheck):
             found += _pins(case, name, check, title, pins)
-        elif not isinstance(check, MotorCheck):
+        elif not isinstance(check, MotorCheck | BearingCheck):
             found += [_link(case, name, check, title, links[link]) for link in check.links or case.checked_links]
     found += _large_displacement(title, moved)
     return tuple(found)

@@ -250,7 +250,7 @@ class _Link:
         if len(self.levels) == 1:
             self.far = not self.effort.stated and self._far()
             return self.far
-        if any(p.sharp is not None and not p.sharp.resolved for p in self.precision):
+        if len(self.levels) <= SERIES and any(p.sharp and not p.sharp.resolved for p in self.precision):
             return False
         # Nothing finer makes a singular peak finite.
         real = [p for p in self.precision if p.sharp is None]

@@ -116,9 +116,13 @@ def sharp_peak(
     nodes           (n, 3) [mm] of the finest, with their ``von_mises`` (n,) [MPa]
     section         smaller dimension of the link's section [mm]
     """
-    if len(values) < 3 or not values[-1] > values[-2] > values[-3] > 0.0 or not sizes[-1] < sizes[-2] < sizes[-3]:
+    if (
+        len(values) < 3
+        or not values[-1] > values[-2] > values[-3] >= values[0] > 0.0
+        or not sizes[-1] < sizes[-2] < sizes[-3]
+    ):
         return None
-    growth = float(np.log(values[-1] / values[-3]) / np.log(sizes[-3] / sizes[-1]))
+    growth = float(np.log(values[-1] / values[0]) / np.log(sizes[0] / sizes[-1]))
     last = float(np.log(values[-1] / values[-2]) / np.log(sizes[-2] / sizes[-1]))
     theory = 1.0 - williams_exponent(edge.angle)
     if min(growth, last) < SHARE_OF_WILLIAMS * theory:

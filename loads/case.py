@@ -28,7 +28,7 @@ from geometry.units import (
 from loads.accuracy import Accuracy
 from loads.aero import AirForces, AirLoad, air_forces, check_air
 from loads.carried import CarriedBody, CarriedSpread
-from loads.check_spec import Check, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
+from loads.check_spec import BearingCheck, Check, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
 from loads.claim import Claim
 from loads.conditions import Conditions, under
 from loads.mechanism import FlappingWingSpec
@@ -265,7 +265,7 @@ class Case(CaseModel):
         for name, load_case in self.load_cases.items():
             _check_loads(self, f"load_cases.{name}", load_case)
         for name, check in self.checks.items():
-            if isinstance(check, PinCheck):
+            if isinstance(check, PinCheck | BearingCheck):
                 _check_pins(self, name, check)
                 continue
             if isinstance(check, MotorCheck):
@@ -476,13 +476,15 @@ def _check_loads(case: Case, where: str, load_case: LoadCase) -> None:
         raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
 
 
-def _check_pins(case: Case, name: str, check: PinCheck) -> None:
+def _check_pins(case: Case, name: str, check: PinCheck | BearingCheck) -> None:
     for joint in check.joints:
         if joint not in case.pinned_joints:
             raise CaseError(
                 f"checks.{name}.joints: '{joint}' is no revolute joint of a link with a part; "
                 f"choose among {', '.join(case.pinned_joints) or 'none'}"
             )
+    if isinstance(check, BearingCheck):
+        return
     for joint in check.joints or case.pinned_joints:
         if check.minimum is None and case.pin_material(joint).minimum_safety_factor is None:
             raise CaseError(

@@ -43,6 +43,23 @@ class PinCheck(CaseModel):
     """The joints to check; all whose pin joins a link with a part when left out."""
 
 
+class BearingCheck(CaseModel):
+    """Bearing of each pin on its eyes, F/(d t), against the ultimate strength of the softer one."""
+
+    type: Literal["bearing"]
+    minimum: Annotated[float, Field(gt=0)] | None = None
+    """The least safety factor; 3.33 when left out, 6.67 where flight depends on the joint."""
+    flight_depends: bool = False
+    """True for hinges that flight depends on."""
+    joints: tuple[Name, ...] = ()
+    """The joints to check; all whose pin joins a link with a part when left out."""
+
+    @property
+    def limit(self) -> float:
+        """The least safety factor: what is stated, else that of 14 CFR 23.693 or 23.657."""
+        return self.minimum or (6.67 if self.flight_depends else 3.33)
+
+
 class MotorCheck(CaseModel):
     """The motor must cover the drive power over the [motion], in every load case with a speed."""
 
@@ -59,6 +76,6 @@ class MotorCheck(CaseModel):
 
 
 Check = Annotated[
-    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck | MotorCheck,
+    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck | BearingCheck | MotorCheck,
     Field(discriminator="type"),
 ]

@@ -7,6 +7,7 @@ from loads.case_file import validate
 ARM = """
 schema_version = 1
 title = "Arm on a strut"
+large_displacement = "off"
 [links.frame]
 ground = true
 points.O = ["0 mm", "0 mm"]

@@ -1,0 +1,69 @@
+"""Bearing of pins on the eyes: the joint force over the projected area d t, apart from any peak stress.
+
+The nominal bearing stress F/(d t) (Budynas & Nisbett, Shigley's Mechanical Engineering Design, 10th ed., sec. 8-12)
+is set against the ultimate strength of the softer eye, 3.33 times at least as 14 CFR 23.693 asks of joints that
+turn, 6.67 times as 14 CFR 23.657 asks of hinges that flight depends on. Both mean the ultimate strength in bearing,
+for which the ultimate tensile strength of the card stands; that in bearing is rarely below it.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from fea.band import Band
+from fea.outcomes import reason_for
+from fea.verdict import PIN, SAFETY_FACTOR, CheckOutcome, at_least
+from geometry.errors import CaseError
+from loads.case import Case
+from loads.check_spec import BearingCheck
+from loads.statics import Reactions
+
+HOLDS = ("nothing: the joint force of statics, evenly over the pin's projected area",)
+
+
+def bearing_stress(force: float, diameter: float, thickness: float) -> float:
+    """Nominal bearing stress F/(d t) [MPa] of a force [N] on a pin and an eye [mm].
+
+    Raises ``CaseError`` for a pin or an eye without size.
+    """
+    if not (diameter > 0.0 and thickness > 0.0):
+        raise CaseError(
+            f"bearing needs a pin and an eye above zero, not {diameter:g} mm by {thickness:g} mm; state both"
+        )
+    return force / (diameter * thickness)
+
+
+def bearing_outcomes(
+    case: Case, title: str, name: str, check: BearingCheck, reactions: Reactions
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of each joint under the load case ``title``: that of its softer or thinner eye.
+
+    Raises ``CaseError`` for a joint without pin diameter.
+    """
+    for joint in check.joints or case.pinned_joints:
+        record = case.joints[joint]
+        if record.pin_diameter is None:
+            raise CaseError(
+                f'joints.{joint}.pin_diameter: checks.{name} needs it for bearing; state it, for example "1.5 mm"'
+            )
+        force = float(np.hypot(*reactions.joints[joint].wrench[:2]))
+        factors = {}
+        for link in record.links:
+            if link in case.checked_links:
+                material = case.material_of(link)
+                strength = material.ultimate_strength or material.allowable
+                stress = bearing_stress(force, record.pin_diameter, case.part_of(link).eye_thickness)
+                factors[link] = Band.exact(stress, *HOLDS).inverse(strength)
+        weakest = min(factors, key=lambda link: factors[link].value)
+        verdict = at_least(factors[weakest], check.limit)
+        yield CheckOutcome(
+            name=name,
+            link=f"{PIN}{joint}",
+            load_case=title,
+            quantity=SAFETY_FACTOR,
+            unit="",
+            value=factors[weakest],
+            limit=check.limit,
+            verdict=verdict,
+            reason=f"bearing on the eye of {weakest}: {reason_for(factors[weakest], check.limit, verdict)}",
+        )

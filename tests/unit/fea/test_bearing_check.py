@@ -1,0 +1,53 @@
+import tomllib
+
+import pytest
+from arm_case import ARM, BAR
+
+from fea.bearing_check import bearing_stress
+from fea.check import check_case
+from fea.verdict import Verdict
+from geometry.errors import CaseError
+from loads.case_file import validate
+
+
+def bearing(lines, force=-2.0):
+    text = ARM.format(part=BAR, fillet=1.0, force=force, minimum=3.0, thickness=3.0)
+    case = validate(tomllib.loads(f'{text}[checks.bearing]\ntype = "bearing"\n{lines}\n'))
+    result = check_case(case, fidelity="beam")
+    return {check.link: check for check in result.load_cases["tip"].checks if check.name == "bearing"}
+
+
+def test_stress_is_force_over_projected_area():
+    assert bearing_stress(12.0, 1.5, 4.0) == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(("diameter", "thickness"), [(0.0, 3.0), (1.0, 0.0)])
+def test_no_area_is_refused(diameter, thickness):
+    with pytest.raises(CaseError, match="above zero"):
+        bearing_stress(1.0, diameter, thickness)
+
+
+def test_arm_by_hand():
+    # Lever of two spans: the strut pushes with 4 N at B, the frame pulls with 2 N at O; eyes 3 mm, pins 2 mm,
+    # ultimate strength 52 MPa.
+    found = bearing("")
+    assert set(found) == {"pin O", "pin B"}
+    assert found["pin B"].value.value == pytest.approx(52.0 / (4.0 / 6.0))
+    assert found["pin O"].value.value == pytest.approx(52.0 / (2.0 / 6.0))
+    assert found["pin B"].limit == 3.33
+    assert found["pin B"].verdict is Verdict.PASS
+    assert "eye of arm" in found["pin B"].reason
+
+
+def test_limits_and_verdict():
+    found = bearing('flight_depends = true\njoints = ["B"]', force=-46.0)
+    assert set(found) == {"pin B"}
+    assert found["pin B"].limit == 6.67
+    assert found["pin B"].value.value == pytest.approx(52.0 * 6.0 / 92.0)
+    assert found["pin B"].verdict is Verdict.FAIL
+    assert bearing("minimum = 3.0", force=-46.0)["pin B"].verdict is Verdict.PASS
+
+
+def test_joint_that_does_not_exist():
+    with pytest.raises(CaseError, match=r"checks\.bearing\.joints: 'X'"):
+        bearing('joints = ["X"]')
