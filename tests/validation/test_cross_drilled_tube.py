@@ -7,9 +7,9 @@ end, largest principal stress anywhere.
 
 The difference: −4 to +2 %, either side of the handbook's curves, which are fits to photoelastic tests (H. T. Jessop,
 C. Snell, I. M. Allison, The stress concentration factors in cylindrical tubes with transverse circular holes,
-Aeronaut. Q. 10 (1959) 326-344). The largest stress lies on the bore of the hole, a few hundredths of the tube's radius below
-the outer rim that the handbook's nominal stress belongs to, where the wall hinders contraction; it hardly depends on
-ν between 0.2 and 0.47 (4 %). Two successive meshes differ by 0.4 %.
+Aeronaut. Q. 10 (1959) 326-344). The largest stress lies on the wall of the hole, a few hundredths of the tube's radius
+below the outer rim, where the wall hinders contraction; it hardly depends on ν between 0.2 and 0.47 (4 %). Two
+successive meshes differ by 0.4 %.
 """
 
 import math
