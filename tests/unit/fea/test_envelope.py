@@ -1,0 +1,344 @@
+"""Envelopes of a crank-rocker: its loads over the motion, peaks among all nodes, dead points, verdicts, output."""
+
+import csv
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import solid_meshes
+
+from fea.check import solve_case_statics
+from fea.cut_free import link_loads
+from fea.envelope import FATIGUE_LIFE, FATIGUE_STRESS, envelope_case, evaluated_poses
+from fea.link_envelope import closed_history
+from fea.link_history import link_histories
+from fea.peaks import deviator, largest_sizes, principal_peaks, von_mises_peaks
+from fea.refinement import Effort
+from fea.space import displacement_space
+from fea.stress import principal, stress_field, von_mises
+from fea.unit_solutions import nodal_stress
+from fea.verdict import SAFETY_FACTOR, Verdict
+from geometry.errors import CannotRunError, CaseError
+from loads.case_file import read_case
+from loads.case_motion import solve_case_motion
+
+TOML = """
+schema_version = 1
+title = "Crank and rocker"
+[links.base]
+ground = true
+points.O2 = ["0 mm", "0 mm"]
+points.O4 = ["60 mm", "0 mm"]
+[links.crank]
+points.O2 = ["0 mm", "0 mm"]
+points.A = ["20 mm", "0 mm"]
+[links.coupler]
+points.A = ["0 mm", "0 mm"]
+points.B = ["60 mm", "0 mm"]
+[links.rocker]
+part = "bar"
+points.O4 = ["0 mm", "0 mm"]
+points.B = ["40 mm", "0 mm"]
+points.P = ["60 mm", "0 mm"]
+end_patch = "4 mm"
+[joints]
+O2 = { links = ["base", "crank"], pin_diameter = "3 mm" }
+A = { links = ["crank", "coupler"], pin_diameter = "3 mm" }
+B = { links = ["coupler", "rocker"], pin_diameter = "3 mm" }
+O4 = { links = ["base", "rocker"], pin_diameter = "3 mm" }
+[pose]
+coordinate = "crank"
+angle = "40 deg"
+near = { coupler = "20 deg", rocker = "60 deg" }
+[drive]
+link = "crank"
+joint = "O2"
+[motion]
+turn = true
+speed = "300 rpm"
+poses = 25
+[parts.bar]
+shape = "bar"
+material = "pvc-u"
+width = "8 mm"
+thickness = "4 mm"
+eye_diameter = "12 mm"
+eye_thickness = "4 mm"
+fillet_radius = "2 mm"
+[[carried]]
+link = "rocker"
+at = "P"
+mass = "3 g"
+centroid = ["65 mm", "4 mm"]
+radius_of_gyration = "5 mm"
+[[carried]]
+link = "rocker"
+start = "O4"
+end = "B"
+mass = "2 g"
+[load_cases.spin]
+own_weight = true
+speed = "1500 rpm"
+[load_cases.push]
+carried = false
+[[load_cases.push.forces]]
+link = "rocker"
+at = "P"
+force = ["-3 N", "-2 N"]
+[[load_cases.push.moments]]
+link = "rocker"
+at = "P"
+moment = "15 N*mm"
+[[load_cases.push.spread]]
+link = "rocker"
+start = "O4"
+end = "P"
+total = ["2 N", "-1 N"]
+axes = "link"
+[solid]
+mesh_size = 3.0
+"""
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    path = tmp_path_factory.mktemp("case") / "crank-rocker.toml"
+    path.write_text(TOML, encoding="utf-8")
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def moved(path):
+    return solve_case_motion(read_case(path))
+
+
+@pytest.fixture(scope="module")
+def result(path):
+    return envelope_case(read_case(path), name="crank-rocker", threads=1, effort=Effort(max_meshes=1))
+
+
+def test_loads_at_a_pose_are_those_of_the_statics(path, moved):
+    """Weight, inertia, carried masses, forces, moments and spread loads, cut free by the other path of the code."""
+    statics = solve_case_statics(read_case(path))
+    for history in link_histories(moved, "rocker"):
+        reactions, loads = statics.reactions[history.load_case], statics.loads[history.load_case]
+        other = link_loads(history.load_case, "rocker", history.body, reactions, loads)
+        found = history.at(0)
+        close = {"rel": 1e-6, "abs": 1e-7}
+        for ours, theirs in zip((*found.pins, *found.ends), (*other.pins, *other.ends), strict=True):
+            assert ours.name == theirs.name
+            assert ours.wrench == pytest.approx(theirs.wrench, **close)
+        for ours, theirs in zip(
+            sorted(found.lines, key=lambda line: line.last),
+            sorted(other.lines, key=lambda line: line.last),
+            strict=True,
+        ):
+            assert (ours.first, ours.last) == (theirs.first, theirs.last)
+            assert ours.intensity == pytest.approx(theirs.intensity, **close)
+        probe = np.array([33.0, -7.0, 0.0])
+        assert sum((_per_mass(body, probe) for body in found.bodies), np.zeros(3)) == pytest.approx(
+            sum((_per_mass(body, probe) for body in other.bodies), np.zeros(3)), **close
+        )
+
+
+def _per_mass(body, place):
+    arm = place - body.about
+    swirl = np.cross([0.0, 0.0, body.angular_acceleration], arm)
+    return body.specific_force - swirl + body.angular_speed**2 * arm
+
+
+def test_the_driven_link_carries_the_torque_and_the_other_its_reaction(path):
+    moved = solve_case_motion(read_case(path, ["drive.link=rocker", "drive.joint=O4"]))
+    spin, push = link_histories(moved, "rocker")
+    assert list(spin.couples) == ["O4"]
+    assert spin.couples["O4"] == pytest.approx(moved.torque["spin"], nan_ok=True)
+    assert np.nanmax(np.abs(push.couples["O4"])) > 0.0
+
+
+def test_loads_out_of_the_plane_are_refused(path):
+    case = read_case(path, ['load_cases.push.forces=[{link="rocker", at="P", force=["0 N", "0 N", "1 N"]}]'])
+    with pytest.raises(CaseError, match="out of the linkage's plane"):
+        link_histories(solve_case_motion(case), "rocker")
+
+
+def test_a_stated_mass_of_a_part_is_refused(path):
+    masses = ['motion.masses={rocker={mass="9 g", centroid=["20 mm", "0 mm"]}}', "motion.inertia=true"]
+    with pytest.raises(CaseError, match=r"motion\.masses\.rocker"):
+        link_histories(solve_case_motion(read_case(path, masses)), "rocker")
+
+
+def test_poses_near_a_dead_point_are_left_out():
+    moved = solve_case_motion(read_case("owl-wing-static"))
+    assert len(moved.dead_points) == 1
+    good = evaluated_poses(moved)
+    angles = np.degrees(moved.motion.angles)
+    dead = math.degrees(moved.dead_points[0])
+    assert not good[np.argmin(np.abs(angles - dead))]
+    assert good[[0, -1]].all()
+    assert np.abs(angles[~good] - dead).max() < 10.0
+    assert evaluated_poses(moved, 1e6).sum() > good.sum() > evaluated_poses(moved, 3.0).sum()
+
+
+def test_a_motion_without_dead_points_keeps_every_pose(moved):
+    assert evaluated_poses(moved, 1.0).all()
+
+
+def test_peaks_are_those_of_all_nodes_under_all_loads():
+    rng = np.random.default_rng(3)
+    stress = rng.normal(size=(3000, 6, 7)) * rng.uniform(0.01, 1.0, size=(3000, 1, 1)) ** 2
+    combination = rng.normal(size=(7, 150)) * rng.uniform(0.01, 10.0, size=150)
+    whole = np.einsum("nim,mp->pni", stress, combination)
+    for found, values in (
+        (von_mises_peaks(stress, combination), von_mises(whole)),
+        (principal_peaks(stress, combination), principal(whole)[..., 0]),
+    ):
+        assert found.value == pytest.approx(values.max(axis=1), rel=1e-10)
+        assert found.node.tolist() == values.argmax(axis=1).tolist()
+    assert largest_sizes(stress, combination, whole=False) == pytest.approx(von_mises(whole).max(axis=0))
+    assert (largest_sizes(stress, combination, whole=True) >= np.abs(principal(whole)).max(axis=(0, 2))).all()
+
+
+def test_the_deviators_length_is_the_von_mises_stress():
+    stress = np.random.default_rng(1).normal(size=(50, 6, 3))
+    assert np.linalg.norm(deviator(stress), axis=1) == pytest.approx(von_mises(stress.swapaxes(1, 2)))
+
+
+def test_stress_of_a_compressed_link_may_have_no_tension():
+    stress = np.zeros((4, 6, 1))
+    stress[:, :3, 0] = -np.arange(1.0, 5.0)[:, None]
+    peaks = principal_peaks(stress, np.array([[1.0, 2.0]]))
+    assert peaks.value.tolist() == [-1.0, -2.0]
+    assert peaks.node.tolist() == [0, 0]
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_modal_stress_is_recovered_as_that_of_a_single_field(order):
+    space = displacement_space(solid_meshes.ring(1.0, 2.0, 1.0), order=order)
+    fields = np.random.default_rng(2).normal(size=(space.unknowns, 3))
+    found = nodal_stress(space, fields, E=2000.0, nu=0.3)
+    for i in range(3):
+        single = stress_field(space, fields[:, i].reshape(-1, 3), E=2000.0, nu=0.3)
+        assert found[..., i] == pytest.approx(single.nodal, rel=1e-9, abs=1e-9 * np.abs(single.nodal).max())
+
+
+def test_a_repetition_is_a_turn_or_there_and_back():
+    history = np.array([1.0, 4.0, 2.0, 1.0])
+    assert closed_history(history, returns=True).tolist() == [1.0, 4.0, 2.0]
+    assert closed_history(history, returns=False).tolist() == [1.0, 4.0, 2.0, 1.0, 2.0, 4.0]
+
+
+def test_the_envelope_says_how_little_when_and_where(result):
+    rocker = result.links["rocker"]
+    assert list(rocker.load_cases) == ["spin", "push"]
+    for load_case in rocker.load_cases.values():
+        assert load_case.value.shape == (25,)
+        assert (load_case.low <= load_case.value).all()
+        assert (load_case.value <= load_case.high).all()
+        assert load_case.pose == int(np.argmax(load_case.value))
+        assert load_case.safety_factor.value == pytest.approx(rocker.strength / load_case.value.max())
+        assert load_case.safety_factor.low == pytest.approx(rocker.strength / load_case.high.max())
+        assert any("discretisation" in what for what in load_case.safety_factor.holds)
+        assert load_case.value[0] == pytest.approx(load_case.value[-1])  # a full turn
+    assert rocker.worst.name == min(rocker.load_cases.values(), key=lambda found: found.safety_factor.low).name
+    assert rocker.field.peak.value == pytest.approx(rocker.worst.stress.value, rel=1e-9)
+    assert rocker.field.peak.location == pytest.approx(rocker.worst.location)
+    assert rocker.imbalance < 1e-6
+    assert rocker.reaction < 1e-3
+    assert result.idle == ()
+
+
+def test_every_load_case_is_checked_for_strength_and_fatigue(result):
+    asked = {(check.load_case, check.quantity) for check in result.checks}
+    assert asked == {(n, q) for n in ("spin", "push") for q in (SAFETY_FACTOR, FATIGUE_STRESS, FATIGUE_LIFE)}
+    for check in result.checks:
+        fatigue = result.links["rocker"].load_cases[check.load_case].fatigue
+        if check.quantity == FATIGUE_LIFE:
+            assert check.limit == 4.0
+            assert check.value.value == pytest.approx(fatigue.life.repetitions / 1e6)
+        if check.quantity == FATIGUE_STRESS:
+            assert check.limit == 2.0
+            assert check.value.value == pytest.approx(10.9 / fatigue.life.stress)
+
+
+def test_a_dead_point_of_the_drive_leaves_the_verdict_open(path):
+    case = read_case(
+        path, ["drive.link=rocker", "drive.joint=O4", 'checks.strength={type="safety-factor", minimum=0.01}']
+    )
+    found = envelope_case(case, threads=1, effort=Effort(max_meshes=1))
+    assert found.verdict is Verdict.UNDECIDED
+    assert 0 < found.evaluated.sum() < 25
+    assert any("turns back at" in warning for warning in found.warnings)
+    assert "dead point" in found.checks[0].reason
+    assert found.links["rocker"].no_fatigue
+    assert np.isnan(found.links["rocker"].worst.value[~found.evaluated]).all()
+
+
+def test_what_cannot_be_enveloped_is_refused(path, tmp_path):
+    bare = tmp_path / "bare.toml"
+    kept = TOML.replace('part = "bar"', "").replace("own_weight = true", "").replace('end_patch = "4 mm"', "")
+    bare.write_text(kept, encoding="utf-8")
+    with pytest.raises(CaseError, match="no moving link has a part"):
+        envelope_case(read_case(str(bare)))
+    case = read_case(path, ["drive.link=rocker", "drive.joint=O4"])
+    with pytest.raises(CannotRunError, match="no pose is left"):
+        envelope_case(case, growth=0.5)
+
+
+def test_curves_and_record_tell_the_same(result, tmp_path):
+    from reports.envelope import record, write_curves
+
+    write_curves(result, tmp_path / "curves.csv")
+    rows = list(csv.DictReader((tmp_path / "curves.csv").read_text(encoding="utf-8").splitlines()))
+    assert len(rows) == 50
+    told = json.loads(json.dumps(record(result), allow_nan=False))
+    for name, load_case in told["links"]["rocker"]["load_cases"].items():
+        stress = [float(row["rocker von Mises stress [MPa]"]) for row in rows if row["load case"] == name]
+        assert max(stress) == pytest.approx(load_case["stress"]["value"])
+        assert stress.index(max(stress)) == load_case["at"]["pose"]
+        crank = next(
+            float(r["crank angle [deg]"]) for r in rows if r["load case"] == name and r["rocker von Mises stress [MPa]"]
+        )
+        assert crank == pytest.approx(40.0)
+    assert told["verdict"] == result.verdict.value
+
+
+def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch):
+    from reports import figures
+    from reports.envelope import write_envelope
+
+    monkeypatch.setattr(figures, "plots_of", lambda scenes, points: ({}, ("no renderer",)))
+    told = []
+    write_envelope(result, tmp_path / "out", progress=told.append)
+    assert {p.relative_to(tmp_path / "out").as_posix() for p in (tmp_path / "out").rglob("*") if p.is_file()} == {
+        "result.json", "envelope.csv", "envelope.png", "vtu/rocker.vtu"
+    }  # fmt: skip
+    assert (tmp_path / "out" / "envelope.png").read_bytes().startswith(b"\x89PNG")
+    assert "Warning: no renderer" in told
+
+
+def test_console_names_link_angle_and_verdict(result):
+    from io import StringIO
+
+    from rich.console import Console
+
+    from reports.envelope import print_envelope
+
+    stream = StringIO()
+    print_envelope(result, Console(file=stream, width=80))
+    text = stream.getvalue()
+    assert result.verdict.value.upper() in text
+    assert "25 of 25 poses" in text
+    assert "at crank" in text
+    assert "shortens a life by a factor of 1.6" in " ".join(text.split())
+
+
+def test_the_figure_is_drawn_over_the_coordinate_where_the_drive_turns_back(result):
+    from reports.envelope_figures import abscissa
+
+    angles, label = abscissa(result)
+    assert label == "direction of crank (driven) [deg]"
+    assert angles[0] == pytest.approx(40.0)
+    back = replace(result, drive_angles=np.cos(result.drive_angles))
+    assert abscissa(back)[1] == "direction of crank [deg]"
