@@ -71,6 +71,11 @@ def stop_all() -> None:
             process.kill()
 
 
+def stopped() -> bool:
+    """Return True after ``stop_all``: a library may have swallowed the exception that was to end the process."""
+    return _stopped.is_set()
+
+
 def end_with_parent(scratch: Path) -> None:
     """In a child: when the parent has gone, remove the folder that both used, and end."""
 

@@ -23,7 +23,7 @@ class Link(CaseModel):
     """Pins and load points: name -> (x, y) in the link's frame, in order along the link."""
     part: Name | None = None
     """The part (shape and material) that the link is made of; none for a link that is not checked."""
-    holes: tuple[HoleRow, ...] = ()
+    holes: Annotated[tuple[HoleRow, ...], Field(max_length=10)] = ()
     """Rows of cross holes, such as those that hold feathers."""
     end_patch: Annotated[Length, POSITIVE] = 5.0
     """Length over which a load at a plain end (a point without pin) enters the part."""

@@ -172,6 +172,8 @@ def _run(task: str, *arguments: Any, time_limit: float) -> Any:
 
 
 def _obituary(status: int, told: str) -> str:
+    if status == -signal.SIGKILL:
+        return "the mesher was killed (SIGKILL), as the system does when memory runs out; use a coarser size"
     if status < 0:
         name = signal.Signals(-status).name
         return f"the mesher crashed ({name}); change the part's dimensions or the mesh size a little"

@@ -17,18 +17,20 @@ class CaseModel(BaseModel):
 
 def _name(text: str) -> str:
     letters = all(c.isalnum() or c in "-_+ " for c in text)
-    if not (0 < len(text) <= 64 and text[0].isalnum() and letters and text[-1] != " "):
+    short = len(text) <= 64 and len(text.encode(errors="replace")) <= 200  # files are named after it
+    if not (text and short and text[0].isalnum() and letters and text[-1] != " "):
         raise PydanticCustomError(
             "bad_name",
             "a name is made of letters, digits, '-', '_', '+' and spaces, begins with a letter or a digit, "
-            "ends without a space and has at most 64 characters; rename it",
+            "ends without a space and has at most 64 characters (200 bytes in UTF-8); rename it",
         )
     return text
 
 
 def _text(text: str) -> str:
-    # Control characters would reach the terminal, where they can move the cursor or clear the screen.
-    if any(unicodedata.category(c) == "Cc" and c not in "\n\t" for c in text):
+    # Control characters would reach the terminal, where they can move the cursor or clear the screen; halves of
+    # a pair of surrogates cannot be written to any file.
+    if any(unicodedata.category(c) in ("Cc", "Cs") and c not in "\n\t" for c in text):
         raise PydanticCustomError("control_character", "text must not hold control characters; remove them")
     return text
 

@@ -63,6 +63,10 @@ MomentVector = Annotated[
     ),
 ]
 SCHEMA_VERSION = 1
+MOST_RESULTS = 2_000
+"""Load cases times links with a part: each pair is solved, drawn and told of."""
+MOST_MOTION = 40_000_000
+"""Entries of a motion's equilibrium equations, some 44 bytes each (measured: 100,000 poses of four moving links)."""
 
 
 class PoseSpec(CaseModel):
@@ -294,6 +298,7 @@ class Case(CaseModel):
                 self.material_of(checked)
         if self.ways_to_hold is not None:
             _check_point(self, "ways_to_hold", self.ways_to_hold.link, self.ways_to_hold.at)
+        _check_size(self)
         for name, hand in self.hand_calculations.items():
             if hand.part not in self.parts:
                 raise CaseError(
@@ -431,6 +436,25 @@ class Case(CaseModel):
     def solve_pose(self) -> Pose:
         """Assemble the linkage in the stated pose."""
         return solve_pose(self.linkage, coordinate=self.pose.coordinate, angle=self.pose.angle, near=self.pose.near)
+
+
+def _check_size(case: Case) -> None:
+    results = len(case.load_cases) * len(case.checked_links)
+    if results > MOST_RESULTS:
+        raise CaseError(
+            f"load_cases: {len(case.load_cases)} load cases of {len(case.checked_links)} links with a part are "
+            f"{results:,} results, but at most {MOST_RESULTS:,} are computed; spread the load cases over several cases"
+        )
+    if case.motion is None:
+        return
+    unknowns = 3 * len(case.linkage.moving)
+    each = unknowns * (unknowns + len(case.load_cases))
+    if case.motion.poses * each > MOST_MOTION:
+        raise CaseError(
+            f"motion.poses: {case.motion.poses:,} poses of {len(case.linkage.moving)} moving links under "
+            f"{len(case.load_cases)} load cases need about {44e-9 * case.motion.poses * each:.2g} GB of memory; "
+            f"ask for at most {MOST_MOTION // each:,} poses"
+        )
 
 
 def _check_pose(case: Case) -> None:

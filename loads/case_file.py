@@ -99,6 +99,10 @@ def _override(data: dict[str, Any], override: str) -> None:
     path, sign, text = override.partition("=")
     path = path.strip()
     keys = [key.strip().strip("\"'") for key in path.split(".")]
+    try:
+        override.encode()
+    except UnicodeEncodeError:  # what a terminal hands over of bytes that are no text
+        raise CaseError(f"--set '{printable(override)}': it is not UTF-8 text; write it in UTF-8") from None
     if not sign or not all(keys):
         raise CaseError(f"--set '{printable(override)}': write it as path=value, for example pose.angle=\"30 deg\"")
     try:

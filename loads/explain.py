@@ -40,7 +40,10 @@ def printable(text: str) -> str:
 
 def sentence(error: ValidationError) -> str:
     """One sentence for the first problem: entry, value, rule, remedy."""
-    problems = error.errors(include_url=False)
+    try:
+        problems = error.errors(include_url=False)
+    except UnicodeEncodeError:  # pydantic itself cannot quote it
+        return "case: a text in it holds half of a surrogate pair, which is no character; remove it"
     first = problems[0]
     kind, place, value = first["type"], _place(first["loc"]), first["input"]
     context: dict[str, Any] = dict(first.get("ctx", {}))

@@ -79,9 +79,9 @@ def as_markdown(found: Mapping[str, Sequence[ClaimResult]], titles: Mapping[str,
     ]
     for name, results in found.items():
         kinds = Counter(result.finding for result in results)
-        lines.append(f"| `{name}` | {len(results)} | " + " | ".join(str(kinds[kind]) for kind in _WORDS) + " |")
+        lines.append(f"| `{_cell(name)}` | {len(results)} | " + " | ".join(str(kinds[kind]) for kind in _WORDS) + " |")
     for name, results in found.items():
-        lines += ["", f"## {titles[name]}", "", count(results)]
+        lines += ["", f"## {_cell(titles[name])}", "", count(results)]
         shown = list(results)
         if len(shown) > LONGEST_TABLE:
             shown = [result for result in shown if result.finding is not Finding.HOLDS]
@@ -96,4 +96,5 @@ def as_markdown(found: Mapping[str, Sequence[ClaimResult]], titles: Mapping[str,
 
 
 def _cell(text: str) -> str:
-    return text.replace("|", "\\|").replace("*", "\\*").replace("<", "&lt;")
+    plain = " ".join(text.split()).replace("&", "&amp;").replace("<", "&lt;")
+    return plain.replace("|", "\\|").replace("*", "\\*")

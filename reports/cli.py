@@ -43,6 +43,7 @@ def main() -> NoReturn:
         except SystemExit as stop:
             if _pipe_was_closed(stop):
                 raise BrokenPipeError from None
+            _end_if_stopped()
             sys.stdout.flush()  # here, where a full disk can still be explained
             raise
         except BaseException:
@@ -61,7 +62,7 @@ def main() -> NoReturn:
     except OSError as error:
         _abandon_output()
         where = f"'{error.filename}'" if error.filename else "standard output"
-        _stop(f"{where} cannot be written or read ({error.strerror or error}); free space or choose another", CRASHED)
+        _stop(f"{where} failed ({error.strerror or error}); free space on the disk or choose another place", CRASHED)
     except Exception as error:
         if os.environ.get("ALULA_TRACEBACK"):
             raise
@@ -91,6 +92,13 @@ def _end_cleanly_on_signals() -> None:
     ending = [number for number in found if signal.getsignal(number) is not signal.SIG_IGN]
     for number in ending:
         signal.signal(number, end)
+
+
+def _end_if_stopped() -> None:
+    from geometry.child import stopped
+
+    if stopped():
+        raise KeyboardInterrupt
 
 
 def _pipe_was_closed(stop: SystemExit) -> bool:
@@ -424,4 +432,5 @@ def export(
 
 
 def _progress(message: str) -> None:
+    _end_if_stopped()
     print(message, file=sys.stderr, flush=True)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from geometry import child
 from geometry.errors import CannotRunError, CaseError
 
 MARK = "result.json"
@@ -24,8 +25,8 @@ def write_folder(target: Path, fill: Callable[[Path], None]) -> None:
     refuses.
     """
     target = Path(os.path.abspath(target))
-    _check(target)
     try:
+        _check(target)
         target.parent.mkdir(parents=True, exist_ok=True)
         with _alone_in(target.parent):
             _clear(target)
@@ -40,6 +41,8 @@ def write_folder(target: Path, fill: Callable[[Path], None]) -> None:
         for path in (*fresh.rglob("*"), fresh):
             _flush(path)
         fresh.chmod(0o755)
+        if child.stopped():
+            raise KeyboardInterrupt
         with _alone_in(target.parent):
             _check(target)
             _replace(target, fresh)

@@ -1,9 +1,12 @@
 """What fuzzing found: symptom, cause, and a stable control beside each."""
 
+import tomllib
+
 import numpy as np
 import pytest
+
 from geometry.errors import CaseError
-from loads.case_file import read_case
+from loads.case_file import read_case, read_text, validate
 
 WING = "owl-wing-flight"
 
@@ -20,3 +23,22 @@ def test_the_length_of_a_direction_does_not_count(size: float) -> None:
         np.testing.assert_allclose(found.total, expected.total, rtol=1e-12)
     with pytest.raises(CaseError, match="no direction"):
         read_case(WING, [f"load_cases.{name}.air.0.stream=[0.0, 0.0, 0.0]"])
+
+
+@pytest.mark.parametrize("text", ['pose.angle="30 d\udce7%"', "pose.angle=30 d\udce7", 'title="a\udce7b"', "\udce7=1"])
+def test_bytes_that_are_no_text_behind_set(text: str) -> None:
+    """Python hands bytes of the command line that are not UTF-8 over as halves of surrogate pairs, which pydantic
+    cannot quote and no file can hold: a UnicodeEncodeError."""
+    with pytest.raises(CaseError, match="it is not UTF-8 text"):
+        read_case(WING, [text])
+    assert read_case(WING, ['title="Flügel ✓ \U0001f989"']).title == "Flügel ✓ \U0001f989"
+
+
+def test_halves_of_surrogate_pairs_in_tables() -> None:
+    """The same by way of the Python interface: quoted in an error, and in a text that the report would hold."""
+    tables = tomllib.loads(read_text(WING)[0])
+    with pytest.raises(CaseError, match="half of a surrogate pair"):
+        validate(tables | {"pose": {"coordinate": "GF", "angle": "1 d\udce7"}})
+    with pytest.raises(CaseError, match=r"^title .*control characters"):
+        validate(tables | {"title": "a\udce7b"})
+    assert validate(tables).title

@@ -1,0 +1,91 @@
+"""Programs that tests start, watch and kill: the command itself and small ones that write an output folder."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+COMMAND = [sys.executable, "-c", "from reports.cli import main; main()"]
+BEAM = ("check", "owl-wing-static", "--fidelity", "beam")
+WRITING = (
+    "import os, sys\n"
+    "from pathlib import Path\n"
+    "from reports.output import write_folder\n"
+    "def fill(text):\n"
+    "    def write(folder):\n"
+    "        (folder / 'report.html').write_text(text)\n"
+    "        (folder / 'pictures').mkdir()\n"
+    "        for i in range(3):\n"
+    "            (folder / 'pictures' / f'{i}.png').write_text(text)\n"
+    '        (folder / \'result.json\').write_text(\'{"schema_version": 1, "verdict": "pass", "text": "\' + text + \'"}\')\n'
+    "    return write\n"
+)
+"""A program that can write an output folder of five files, each holding the same text."""
+
+
+def environment(scratch: Path | None = None, **more: str) -> dict[str, str]:
+    """Return an environment in which the program finds its modules; ``scratch`` takes its temporary files."""
+    own = {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    return os.environ | own | ({} if scratch is None else {"TMPDIR": str(scratch)}) | more
+
+
+def start(*arguments: str, scratch: Path, **options: Any) -> subprocess.Popen[str]:
+    """Start the command, its temporary files in a folder of their own."""
+    scratch.mkdir(exist_ok=True)
+    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "stdin": subprocess.DEVNULL}
+    return subprocess.Popen([*COMMAND, *arguments], env=environment(scratch), text=True, **(pipes | options))
+
+
+def run(*arguments: str, scratch: Path, **options: Any) -> subprocess.CompletedProcess[str]:
+    """Run the command to its end."""
+    with start(*arguments, scratch=scratch, **options) as process:
+        out, told = process.communicate(timeout=300)
+    return subprocess.CompletedProcess(process.args, process.returncode, out, told)
+
+
+def script(text: str, *arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    """Run a program that can write an output folder."""
+    command = [sys.executable, "-c", WRITING + text, *arguments]
+    return subprocess.run(
+        command, env=environment(), capture_output=True, text=True, timeout=300, check=False, **options
+    )
+
+
+def text_of(folder: Path) -> str:
+    """Return the text in every file of a folder written by ``WRITING``; asserts that it is whole and of one run."""
+    files = [folder / "report.html", *(folder / "pictures" / f"{i}.png" for i in range(3))]
+    record = json.loads((folder / "result.json").read_text())
+    assert {file.read_text() for file in files} == {record["text"]}
+    assert sorted(p.name for p in folder.iterdir()) == ["pictures", "report.html", "result.json"]
+    return str(record["text"])
+
+
+def is_whole(folder: Path) -> bool:
+    """Return True for a report with all that it consists of, False where there is no folder; asserts the rest."""
+    if not folder.exists():
+        return False
+    assert (folder / "report.html").read_text(encoding="utf-8").rstrip().endswith("</html>")
+    assert json.loads((folder / "result.json").read_text(encoding="utf-8"))["verdict"] in ("pass", "fail", "undecided")
+    pictures = list((folder / "pictures").iterdir())
+    assert pictures
+    assert all(picture.read_bytes().endswith(b"IEND\xaeB`\x82") for picture in pictures)
+    return True
+
+
+def hidden(folder: Path) -> list[str]:
+    """Return the names of what is hidden in a folder."""
+    return [path.name for path in folder.iterdir() if path.name.startswith(".")]
+
+
+def gone(scratch: Path, within: float = 15.0) -> bool:
+    """Return True if every temporary file of the program vanishes in time: its children remove theirs."""
+    deadline = time.monotonic() + within
+    while time.monotonic() < deadline:
+        if not any(path.name.startswith("alula-") for path in scratch.iterdir()):
+            return True
+        time.sleep(0.1)
+    return False

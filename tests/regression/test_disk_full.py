@@ -1,0 +1,144 @@
+"""A disk that is full or may not be written: one sentence, status 4, and the earlier result untouched."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import programs
+import pytest
+
+from geometry.child import run as run_child
+from geometry.errors import CannotRunError
+from geometry.mesh import COARSE, mesh_body
+from geometry.part import Bar, Body, Pin
+from reports import figures
+
+resource = pytest.importorskip("resource")
+BODY = Body(
+    part=Bar(shape="bar", material="cfrp", width="6 mm", thickness="3 mm", eye_diameter="10 mm",
+             eye_thickness="3 mm", fillet_radius="1 mm"),
+    pins=(Pin(name="A", x=0.0, y=0.0, diameter=2.0), Pin(name="B", x=40.0, y=0.0, diameter=2.0)),
+    ends=(),
+    holes=(),
+)  # fmt: skip
+
+
+def small_files() -> None:
+    """Let no file of this process grow beyond 20 kB: every write beyond fails as on a full disk."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+
+
+def test_a_report_that_does_not_fit(tmp_path: Path) -> None:
+    out, scratch = tmp_path / "out", tmp_path / "scratch"
+    assert programs.script("write_folder(Path(sys.argv[1]), fill('old'))", str(out)).returncode == 0
+    done = programs.run(*programs.BEAM, "-o", str(out), scratch=scratch, preexec_fn=small_files)
+    assert done.returncode == 4, done.stderr
+    last = done.stderr.strip().splitlines()[-1]
+    assert last == f"alula: output: writing to '{out}' failed (File too large); nothing was changed there"
+    assert programs.text_of(out) == "old"
+    assert programs.hidden(tmp_path) == []
+    assert programs.run(*programs.BEAM, "-o", str(out), scratch=scratch).returncode in (0, 1, 3)
+    assert programs.is_whole(out)
+
+
+def test_a_disk_that_is_full(tmp_path: Path) -> None:
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    command = ["mount", "-t", "tmpfs", "-o", "size=128k", "tmpfs", str(disk)]
+    if subprocess.run(command, capture_output=True, check=False).returncode:
+        pytest.skip("only root may mount a small disk")
+    try:
+        assert programs.script("write_folder(Path(sys.argv[1]), fill('old'))", str(disk / "out")).returncode == 0
+        done = programs.run(*programs.BEAM, "-o", str(disk / "out"), scratch=tmp_path / "scratch")
+        assert done.returncode == 4
+        assert "failed (No space left on device); nothing was changed there" in done.stderr
+        assert programs.text_of(disk / "out") == "old"
+        assert programs.hidden(disk) == []
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+def test_standard_output_on_a_full_disk(tmp_path: Path) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = programs.run("cases", scratch=tmp_path / "scratch", stdout=full)
+    assert done.returncode == 4
+    assert done.stderr.startswith("alula: standard output failed (No space left on device)")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_starter_case_that_does_not_fit_leaves_no_half(tmp_path: Path) -> None:
+    def tiny() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+
+    path = tmp_path / "case.toml"
+    done = programs.run("new", str(path), scratch=tmp_path / "scratch", preexec_fn=tiny)
+    assert done.returncode == 4
+    assert "cannot be written (File too large)" in done.stderr
+    assert not path.exists()
+    assert programs.run("new", str(path), scratch=tmp_path / "scratch").returncode == 0
+
+
+def test_no_room_for_temporary_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
+    with pytest.raises(CannotRunError, match=r"the mesher could not be run \(No such file or directory\)"):
+        mesh_body(BODY, COARSE)
+
+
+def test_no_room_for_renderings_costs_one_warning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*arguments: object, **options: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("numpy.savez", full)
+    cube = figures.np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+    view = figures.View(right=cube[4], up=cube[2], toward=cube[1], focus=cube[0], half_width=1.0, half_height=1.0,
+                        size=(10, 10), cut=None)  # fmt: skip
+    faces = figures.np.array([[0, 1, 3]])
+    scene = figures.Scene(points=cube, displacement=cube, values=cube[:, 0], triangles=faces, cells=faces, hottest=0,
+                          scale=1.0, far_side=False, strip=view, close=view)  # fmt: skip
+    pictures, [warning] = figures.plots_of({"AE": scene}, {"AE": {}})
+    assert pictures == {}
+    assert warning == "no stress plot of AE: rendering had no room for its files (No space left on device)"
+
+
+READ_ONLY = """
+os.chmod(sys.argv[1], int(sys.argv[2], 8))
+os.chmod(sys.argv[1] + "/out", int(sys.argv[3], 8))
+if os.geteuid() == 0:
+    os.seteuid(65534)
+try:
+    write_folder(Path(sys.argv[1]) / "out", fill("new"))
+except Exception as error:
+    print(type(error).__name__, error)
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permissions are POSIX")
+@pytest.mark.parametrize(("parent", "own"), [("555", "755"), ("777", "555"), ("000", "755")])
+def test_a_folder_that_may_not_be_written(tmp_path: Path, parent: str, own: str) -> None:
+    place = tmp_path / "place"
+    place.mkdir()
+    assert programs.script("write_folder(Path(sys.argv[1]), fill('old'))", str(place / "out")).returncode == 0
+    # The folder of this test may be closed to others, which is one more way in which a place cannot be written.
+    done = programs.script(READ_ONLY, str(place), parent, own)
+    place.chmod(0o755)
+    (place / "out").chmod(0o755)
+    assert done.stdout.startswith("CannotRunError output: "), (done.stdout, done.stderr)
+    assert "Permission denied" in done.stdout
+    assert programs.text_of(place / "out") == "old"
+    assert programs.hidden(place) == []
+
+
+def test_memory_that_runs_out_is_status_4(tmp_path: Path) -> None:
+    code = "import reports.cli as c, fea.check\ndef f(*a, **k): raise MemoryError\nfea.check.check_case = f\nc.main()"
+    command = [sys.executable, "-c", code, *programs.BEAM]
+    done = subprocess.run(command, env=programs.environment(), capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 4
+    assert done.stderr.startswith("alula: memory ran out; use a coarser mesh")
+
+
+def test_a_child_that_floods_its_error_output_is_read_to_the_end() -> None:
+    """A full pipe would block the child for ever."""
+    flood = [sys.executable, "-c", "import sys; sys.stderr.write('x\\n' * 1_000_000 + 'last')"]
+    assert run_child(flood, environment=programs.environment(), time_limit=60.0) == (0, "last")

@@ -1,0 +1,239 @@
+"""A run that is killed at any moment leaves no half of a result, no child and nothing that the next run minds."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import programs
+import pytest
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals are POSIX")
+
+# Kills itself with the n-th request to the file system that concerns the folder, for n = 1, 2, ... to the end.
+AT_EVERY_STEP = """
+import json, shutil, signal
+sys.path.insert(0, TESTS)
+import programs
+parent = Path(sys.argv[1])
+target = parent / "out"
+with_earlier = sys.argv[2] == "earlier"
+seen = {"old": 0, "new": 0, "none": 0}
+step = 0
+while True:
+    step += 1
+    for path in parent.iterdir():
+        shutil.rmtree(path)
+    if with_earlier:
+        write_folder(target, fill("old"))
+    child = os.fork()
+    if child == 0:
+        left = step
+        def hook(event, arguments):
+            global left
+            if event == "open" or event.startswith(("os.", "shutil.", "fcntl.", "tempfile.")):
+                left -= 1
+                if left == 0:
+                    os.kill(os.getpid(), signal.SIGKILL)
+        sys.addaudithook(hook)
+        write_folder(target, fill("new"))
+        os._exit(0)
+    _, status = os.waitpid(child, 0)
+    found = programs.text_of(target) if target.exists() else "none"
+    seen[found] += 1
+    if not os.WIFSIGNALED(status):
+        break
+    if with_earlier:
+        # A next run that fails changes nothing, and the earlier result is in its place again.
+        def fail(folder):
+            raise OSError(28, "No space left on device")
+        try:
+            write_folder(target, fail)
+        except Exception:
+            pass
+        assert programs.text_of(target) in ("old", "new"), found
+    write_folder(target, fill("next"))
+    assert programs.text_of(target) == "next"
+    assert programs.hidden(parent) == [], programs.hidden(parent)
+print(json.dumps({"steps": step, **seen}))
+""".replace("TESTS", repr(str(programs.ROOT / "tests")))
+
+
+@pytest.mark.parametrize("earlier", ["earlier", "fresh"])
+def test_killed_at_every_step_of_writing(tmp_path: Path, earlier: str) -> None:
+    import json
+
+    done = programs.script(AT_EVERY_STEP, str(tmp_path), earlier)
+    assert done.returncode == 0, done.stderr
+    seen = json.loads(done.stdout)
+    assert seen["steps"] > 30
+    assert seen["new"] >= 1
+    # Only between the two renames is there nothing, and not even then is the earlier result lost.
+    assert (0 < seen["none"] <= 2 and seen["old"] > 20) if earlier == "earlier" else seen["none"] > 20
+
+
+def test_a_report_killed_at_any_time_is_whole_or_not_there(tmp_path: Path) -> None:
+    out, scratch = tmp_path / "out", tmp_path / "scratch"
+    begun = time.monotonic()
+    assert programs.run(*programs.BEAM, "-o", str(out), scratch=scratch).returncode in (0, 1, 3)
+    whole = time.monotonic() - begun
+    stamp = (out / "result.json").stat().st_ino
+    for share in (0.5, 0.8, 0.95):
+        with programs.start(*programs.BEAM, "-o", str(out), scratch=scratch) as process:
+            time.sleep(share * whole)
+            process.kill()
+            process.communicate()
+        assert programs.is_whole(out)
+    assert programs.run(*programs.BEAM, "-o", str(out), scratch=scratch).returncode in (0, 1, 3)
+    assert programs.is_whole(out)
+    assert (out / "result.json").stat().st_ino != stamp
+    assert programs.hidden(tmp_path) == []
+
+
+def _children(pid: int) -> list[int]:
+    done = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
+    return [int(word) for word in done.stdout.split()]
+
+
+def _meshing(process: subprocess.Popen[str]) -> list[int]:
+    """Wait until meshers are at work and return their numbers."""
+    for _ in range(600):
+        if found := _children(process.pid):
+            time.sleep(0.5)
+            return found
+        time.sleep(0.05)
+    raise AssertionError("no mesher was started")
+
+
+def _all_ended(pids: list[int]) -> bool:
+    deadline = time.monotonic() + 10.0
+    while any(map(_alive, pids)) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return not any(map(_alive, pids))
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    return state != "Z"
+
+
+FINE = ("check", "owl-wing-static", "--set", "solid.mesh_size=0.3")
+"""Meshes for minutes."""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_meshers_end_with_the_run(tmp_path: Path, number: signal.Signals) -> None:
+    out, scratch = tmp_path / "out", tmp_path / "scratch"
+    with programs.start(*FINE, "-o", str(out), scratch=scratch) as process:
+        meshers = _meshing(process)
+        begun = time.monotonic()
+        process.send_signal(number)
+        _, told = process.communicate(timeout=30)
+    assert process.returncode == (-9 if number == signal.SIGKILL else 130), told
+    assert time.monotonic() - begun < 15.0
+    assert programs.gone(scratch)
+    assert _all_ended(meshers)
+    assert not out.exists()
+    assert programs.hidden(tmp_path) == []
+    assert "Traceback" not in told
+
+
+def test_interrupted_while_it_writes(tmp_path: Path) -> None:
+    """The folder that was being filled is removed, and the exit status is neither a pass nor a failed check."""
+    out, scratch = tmp_path / "out", tmp_path / "scratch"
+    with programs.start(*programs.BEAM, "-o", str(out), scratch=scratch) as process:
+        assert process.stderr is not None
+        for line in process.stderr:
+            if line.startswith("Drawing"):
+                break
+        time.sleep(0.2)
+        process.terminate()
+        _, told = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in told
+    assert not out.exists()
+    assert programs.hidden(tmp_path) == []
+
+
+def test_an_interruption_that_a_library_swallows_still_ends_the_run(tmp_path: Path) -> None:
+    """Exceptions in callbacks and destructors are ignored; the earlier result must not be replaced all the same."""
+    text = (
+        "import signal, reports.cli\n"
+        "reports.cli._end_cleanly_on_signals()\n"
+        "def swallowing(folder):\n"
+        "    fill('new')(folder)\n"
+        "    try:\n"
+        "        signal.raise_signal(signal.SIGTERM)\n"
+        "    except KeyboardInterrupt:\n"
+        "        pass\n"
+        "write_folder(Path(sys.argv[1]), fill('old'))\n"
+        "write_folder(Path(sys.argv[1]), swallowing)\n"
+    )
+    done = programs.script(text, str(tmp_path / "out"))
+    assert done.stderr.strip().endswith("KeyboardInterrupt")
+    assert programs.text_of(tmp_path / "out") == "old"
+    assert programs.hidden(tmp_path) == []
+
+
+def test_leftovers_of_a_living_run_stay(tmp_path: Path) -> None:
+    """Another run into the same folder is at work: its half-written folder is not cleared away."""
+    text = (
+        "def slow(folder):\n"
+        "    fill('slow')(folder)\n"
+        "    print('half', flush=True)\n"
+        "    sys.stdin.readline()\n"
+        "write_folder(Path(sys.argv[1]), slow)\n"
+    )
+    out = tmp_path / "out"
+    command = [sys.executable, "-c", programs.WRITING + text, str(out)]
+    with subprocess.Popen(
+        command, env=programs.environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as slow:
+        assert slow.stdout is not None
+        assert slow.stdout.readline() == "half\n"
+        done = programs.script("write_folder(Path(sys.argv[1]), fill('quick'))", str(out))
+        assert done.returncode == 0, done.stderr
+        assert programs.text_of(out) == "quick"
+        assert len(programs.hidden(tmp_path)) == 1
+        slow.communicate("\n", timeout=60)
+    assert slow.returncode == 0
+    assert programs.text_of(out) == "slow"
+    assert programs.hidden(tmp_path) == []
+
+
+def test_a_folder_of_the_users_own_is_no_leftover(tmp_path: Path) -> None:
+    for name in (".out.backup", ".out.alula", ".out2.alula-12345678", "out.alula-12345678"):
+        (tmp_path / name).mkdir()
+    assert programs.script("write_folder(Path(sys.argv[1]), fill('a'))", str(tmp_path / "out")).returncode == 0
+    assert len(list(tmp_path.iterdir())) == 5
+    assert programs.text_of(tmp_path / "out") == "a"
+
+
+def test_runs_into_one_folder_at_the_same_time(tmp_path: Path) -> None:
+    """Four processes write twenty results each: whenever one is there, it is whole; the last to finish stays."""
+    out = tmp_path / "out"
+    text = "for i in range(20): write_folder(Path(sys.argv[1]), fill(sys.argv[2] + str(i)))"
+    command = [sys.executable, "-c", programs.WRITING + text, str(out)]
+    running = [
+        subprocess.Popen([*command, name], env=programs.environment(), stderr=subprocess.PIPE, text=True)
+        for name in "abcd"
+    ]
+    looked = 0
+    while any(process.poll() is None for process in running):
+        try:
+            looked += bool((out / "result.json").read_text().endswith('"}'))
+        except FileNotFoundError:  # between the two renames
+            continue
+    for process in running:
+        _, told = process.communicate()
+        assert process.returncode == 0, told
+    assert looked > 0
+    assert programs.text_of(out)[1:] == "19"
+    assert programs.hidden(tmp_path) == []
