@@ -168,7 +168,7 @@ def test_both_sections_stand_by(name):
 
 
 def test_the_rod_weighs_what_the_drawings_say():
-    """Five link drawings give 2.23 g each; a solid 4 mm rod comes near, eyes included; the tube is above."""
+    """Five link drawings give 2.23 g each: a solid 4 mm rod without eyes comes near; the eyes are ours."""
     links = ("GF", "AE", "CF", "CH", "ED")
     rod = read_case("owl-wing-static", [f"links.{link}.part=rod-4mm" for link in links])
     assert 602.0 * rod.part_of("CH").section.area * 1450e-6 == pytest.approx(5 * 2.23, rel=0.02)
