@@ -24,7 +24,9 @@ def outcomes(
 ) -> tuple[CheckOutcome, ...]:
     """Return the outcome of every check of a load case called ``title``, but for motors and bearing.
 
-    These are in ``fea.motor_check`` and ``fea.bearing_check``. Raises ``CaseError`` where neither check nor material states a limit.
+    These are in ``fea.motor_check`` and ``fea.bearing_check``.
+
+    Raises ``CaseError`` where neither check nor material states a limit.
     """
     found: list[CheckOutcome] = []
     for name, check in case.all_checks.items():

@@ -1,0 +1,24 @@
+import math
+
+import pytest
+
+from fea.band import Band
+from fea.verdict import Verdict, at_least, at_most
+
+
+def test_what_is_unknown_decides_nothing():
+    unknown = Band.unknown("nothing")
+    assert unknown.unknowable
+    assert at_least(unknown, 3.0) is Verdict.UNDECIDED
+    assert at_most(unknown, 3.0) is Verdict.UNDECIDED
+
+
+def test_an_unknown_stress_gives_no_safety_factor():
+    factor = Band.unknown("nothing").inverse(41.4)
+    assert factor.unknowable
+    assert factor.holds == ("nothing",)
+
+
+def test_half_a_band_is_refused():
+    with pytest.raises(ValueError, match="does not hold"):
+        Band(value=1.0, low=math.nan, high=2.0, holds=())
