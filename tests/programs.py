@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[1]
 COMMAND = [sys.executable, "-c", "from reports.cli import main; main()"]
 BEAM = ("check", "owl-wing-static", "--fidelity", "beam")
 WRITING = (
-    "import os, sys\n"
+    "import json, os, sys\n"
     "from pathlib import Path\n"
     "from reports.output import write_folder\n"
     "def fill(text):\n"
@@ -21,7 +21,8 @@ WRITING = (
     "        (folder / 'pictures').mkdir()\n"
     "        for i in range(3):\n"
     "            (folder / 'pictures' / f'{i}.png').write_text(text)\n"
-    '        (folder / \'result.json\').write_text(\'{"schema_version": 1, "verdict": "pass", "text": "\' + text + \'"}\')\n'
+    "        record = {'schema_version': 1, 'verdict': 'pass', 'text': text}\n"
+    "        (folder / 'result.json').write_text(json.dumps(record))\n"
     "    return write\n"
 )
 """A program that can write an output folder of five files, each holding the same text."""

@@ -1,0 +1,168 @@
+"""Names and texts of a case file are data: in the report, in file names, on the terminal and in CAD files."""
+
+import html.parser
+import io
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rich.console import Console
+
+from fea.check import check_case
+from fea.claims import check_claims
+from geometry.errors import CaseError
+from loads.case import Case
+from loads.case_file import read_case, read_companion, read_text, validate
+from reports.claims import as_markdown, as_text
+from reports.console import print_result
+from reports.folder import write_report
+from reports.html import render
+from reports.record import as_json
+
+OWL = "owl-wing-static"
+HOSTILE = (
+    "</title><script>alert('1')</script><img src=x onerror=alert(2)> \"'&{{7*7}}{% x %} [red]x[/] [/nothing] ../../x"
+)
+NAMES = (
+    "../x", "..", ".", ".hidden", "/etc/passwd", "a/b", "a\\b", "C:x", "a\x00b", "a\nb", "\x1b[2J", "<b>", 'a"b', "a'b",
+    "a&b",
+    "{{x}}", "$HOME", "`id`", "*", "?", "~", "-rf", " a", "a ", "", "x" * 65, "\U0001d49c" * 60, "\u202eabc", "\ud800",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES, ids=ascii)
+@pytest.mark.parametrize("table", ["links", "joints", "load_cases", "parts", "checks", "materials", "points"])
+def test_names_that_could_leave_a_folder_or_a_page_are_refused(name: str, table: str) -> None:
+    tables = _tables()
+    holder = tables["links"]["GF"]["points"] if table == "points" else tables.setdefault(table, {})
+    holder[name] = next(iter(holder.values()), {})
+    with pytest.raises(CaseError) as refused:
+        validate(tables)
+    assert all(c.isprintable() for c in str(refused.value))
+    assert "letters, digits" in str(refused.value)
+
+
+def _tables() -> dict[str, Any]:
+    return tomllib.loads(read_text(OWL)[0])
+
+
+def test_the_longest_name_makes_file_names_that_every_disk_takes() -> None:
+    """64 letters of four bytes each made names of files of more than 255 bytes: the report failed at its end."""
+    tables = _tables()
+    longest = "\U0001d49c" * 50
+    tables["load_cases"] = {longest: next(iter(tables["load_cases"].values()))}
+    case = validate(tables)
+    assert len(f"linkage-{next(iter(case.load_cases))}.png".encode()) <= 255
+
+
+class _Page(html.parser.HTMLParser):
+    """Collects what a browser would run or load."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str | None]] = []
+        self.text: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += attrs
+
+    def handle_data(self, data: str) -> None:
+        self.text.append(data)
+
+
+@pytest.fixture(scope="module")
+def hostile() -> Case:
+    """The owl wing, with every free text hostile."""
+    tables = _tables()
+    tables["title"] = tables["source"] = tables["description"] = HOSTILE
+    tables["assumptions"] = [HOSTILE]
+    for load_case in tables["load_cases"].values():
+        load_case["title"] = HOSTILE
+    del tables["published_statics"]  # its tables stand beside the built-in case
+    card = read_case(OWL).all_materials[next(iter(tables["parts"].values()))["material"]]
+    tables["materials"] = {
+        "own": {
+            "title": HOSTILE, "density": "1200 kg/m^3", "youngs_modulus": "3 GPa", "poissons_ratio": 0.38,
+            "yield_strength": "40 MPa", "strength": "yield", "minimum_safety_factor": card.minimum_safety_factor or 2.0,
+            "sources": {"density": HOSTILE, "youngs_modulus": HOSTILE, "poissons_ratio": HOSTILE,
+                        "yield_strength": HOSTILE, "minimum_safety_factor": HOSTILE},
+            "status": {"density": "assumed", "youngs_modulus": "assumed", "poissons_ratio": "assumed",
+                       "yield_strength": "assumed", "minimum_safety_factor": "assumed"},
+        }
+    }  # fmt: skip
+    for part in tables["parts"].values():
+        part["material"] = "own"
+    tables["claims"] = [
+        {"name": "a", "stated": "1 N + 1 N", "published": "3 N", "source": HOSTILE, "note": HOSTILE + "\n| x |"},
+        {"name": "b", "stated": "1 N", "published": HOSTILE[:200], "source": HOSTILE, "not_stated": {"x": HOSTILE}},
+    ]
+    return validate(tables)
+
+
+def test_the_report_shows_hostile_text_as_text(hostile: Case) -> None:
+    result = check_case(hostile, name=HOSTILE, fidelity="beam")
+    page = _Page()
+    page.feed(render(result, {}))
+    assert "script" not in page.tags
+    assert not [value for key, value in page.attributes if key.startswith("on")]
+    for key, value in page.attributes:
+        if key in ("src", "href"):
+            assert value is not None
+            assert value.startswith(("data:image/png;base64,", "#")), value
+    assert HOSTILE in " ".join("".join(page.text).split())
+    assert "{{7*7}}" in "".join(page.text)
+
+
+def test_the_control_finds_a_script() -> None:
+    page = _Page()
+    page.feed(f"<p>{HOSTILE}</p>")
+    assert "script" in page.tags
+    assert any(key == "onerror" for key, _ in page.attributes)
+
+
+def test_json_and_terminal_show_hostile_text_as_text(hostile: Case) -> None:
+    result = check_case(hostile, name=HOSTILE, fidelity="beam")
+    record = json.loads(as_json(result))
+    assert record["title"] == HOSTILE
+    assert record["case"] == HOSTILE
+    screen = io.StringIO()
+    print_result(result, Console(file=screen, width=10_000, force_terminal=True, color_system="truecolor"))
+    assert "[red]x[/] [/nothing]" in screen.getvalue()
+
+
+def test_only_the_output_folder_is_written(hostile: Case, tmp_path: Path) -> None:
+    inner = tmp_path / "inner"
+    write_report(check_case(hostile, name="../../x", fidelity="beam"), inner / "out")
+    assert [p.name for p in tmp_path.iterdir()] == ["inner"]
+    assert [p.name for p in inner.iterdir()] == ["out"]
+
+
+def test_claims_show_hostile_text_as_text(hostile: Case, tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    claims = "\n".join(
+        f"[[claims]]\nname = {c.name!r}\nstated = '1 N'\npublished = '3 N'\nsource = {json.dumps(c.source)}\n"
+        f"note = {json.dumps(c.note)}\n"
+        for c in hostile.claims
+    )
+    text = read_text("ornithopter")[0]
+    path.write_text(text + "\n" + claims, encoding="utf-8")
+    results = [r for r in check_claims(str(path)) if r.claim.name in ("a", "b")]
+    assert len(results) == 2
+    page = as_markdown({HOSTILE: results}, {HOSTILE: HOSTILE})
+    assert "<script" not in page
+    assert "<img" not in page
+    rows = [line for line in page.splitlines() if line.startswith(("| a ", "| b "))]
+    assert len(rows) == 2
+    assert as_text(results)
+
+
+@pytest.mark.parametrize("name", ["../cases/x.csv", "/etc/passwd", "..", ".", "a/../b", "~/x", "\x00", ".x"])
+def test_a_companion_file_stands_beside_the_case(name: str, tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text("x = 1")
+    for case in (OWL, str(tmp_path / "case.toml")):
+        with pytest.raises(CaseError):
+            read_companion(case, name)
