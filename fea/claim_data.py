@@ -22,7 +22,7 @@ import numpy as np
 
 from fea.check import CaseStatics, check_case, solve_case_statics
 from fea.result import CheckResult, LoadCaseResult
-from geometry.errors import CaseError
+from geometry.errors import CannotRunError, CaseError
 from geometry.flapping import FlappingWing
 from geometry.fourbar import FourBar
 from geometry.grashof import Grashof
@@ -175,6 +175,11 @@ def _check(result: CheckResult) -> Mapping[str, Any]:
 
 
 def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, Any]:
+    if sharp := [name for name, link in load_case.links.items() if link.safety_factor.unknowable]:
+        raise CannotRunError(
+            f"the peak stress of {', '.join(sharp)} has no limit under ever finer meshes, so no claim on it can be "
+            "judged; state the real fillet_radius"
+        )
     worst = max(load_case.links.values(), key=lambda link: link.von_mises_max.value)
     points = result.case.links[worst.link].points
     near = min(points, key=lambda point: math.hypot(*(np.array(points[point]) - worst.location[:2])))

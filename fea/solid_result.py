@@ -1,5 +1,6 @@
 """A link's result from its solid model: the peaks of every variant, their bands and what these hold."""
 
+import math
 from collections.abc import Sequence
 
 from fea.band import Band
@@ -106,10 +107,15 @@ def _edge_notes(refined: RefinedSolid, solved: Sequence[int]) -> tuple[str, ...]
 
 
 def _peak(variant: SolidCase, precision: CasePrecision) -> VariantPeak:
+    """Peaks of one variant; NaN for one without limit, which no number stands for."""
+
+    def known(series: GridConvergence) -> float:
+        return math.nan if precision.sharp is not None or series.kind == "growing" else series.value
+
     return VariantPeak(
         span=variant.span,
         transfer=variant.transfer,
-        von_mises=precision.von_mises.value,
-        principal=precision.principal.value,
+        von_mises=known(precision.von_mises),
+        principal=known(precision.principal),
         displacement=variant.displacement_max,
     )

@@ -16,6 +16,8 @@ from reports.frames import frame_record, reaction_records
 from reports.loads import UNITS as LOAD_UNITS
 from reports.loads import air_record, anchor_record
 from reports.mechanism import design_record
+from reports.meshes import UNITS as MESH_UNITS
+from reports.meshes import discretisation_record
 from reports.second_opinion import UNITS as OPINION_UNITS
 from reports.second_opinion import opinion_records
 
@@ -79,7 +81,7 @@ FIELD_UNITS = {
     "conditions.duration": "s",
     "conditions.temperature": "degC",
     "timings": "s",
-} | {**FRAME_UNITS, **LOAD_UNITS, **OPINION_UNITS}
+} | {**FRAME_UNITS, **LOAD_UNITS, **MESH_UNITS, **OPINION_UNITS}
 
 
 def alula_version() -> str:
@@ -150,8 +152,13 @@ def as_json(result: CheckResult) -> str:
 
 
 def worst_load_case(result: CheckResult, link: str) -> LoadCaseResult:
-    """The load case whose band of the safety factor reaches lowest on a link."""
-    return min(result.load_cases.values(), key=lambda case: case.links[link].safety_factor.low)
+    """The load case whose band of the safety factor reaches lowest on a link, or is unknown."""
+
+    def least(case: LoadCaseResult) -> float:
+        factor = case.links[link].safety_factor
+        return -math.inf if factor.unknowable else factor.low
+
+    return min(result.load_cases.values(), key=least)
 
 
 def _band(band: Band) -> dict[str, Any]:
@@ -226,6 +233,7 @@ def _link(result: LinkResult) -> dict[str, Any]:
             "safety_factor": result.beam.safety_factor,
         },
         "notes": list(result.notes),
+        "discretisation": discretisation_record(result.discretisation),
     }
 
 

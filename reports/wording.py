@@ -71,7 +71,9 @@ def checks_of(result: CheckResult) -> tuple[CheckOutcome, ...]:
 
 
 def tightness(check: CheckOutcome) -> float:
-    """How far the unfavourable end of a check's band is inside its limit, as a share of the limit."""
+    """How far the unfavourable end of a check's band is inside its limit, as a share of the limit; −∞ if unknown."""
+    if check.value.unknowable:
+        return -math.inf
     margin = check.value.low - check.limit if check.at_least else check.limit - check.value.high
     return margin / check.limit
 
