@@ -1,0 +1,82 @@
+"""``alula envelope`` as a user meets it."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+TOML = """
+schema_version = 1
+title = "A rocker with a part"
+links.base = { ground = true, points = { O2 = ["0 mm", "0 mm"], O4 = ["60 mm", "0 mm"] } }
+links.crank = { points = { O2 = ["0 mm", "0 mm"], A = ["20 mm", "0 mm"] } }
+links.coupler = { points = { A = ["0 mm", "0 mm"], B = ["60 mm", "0 mm"] } }
+links.rocker = { part = "bar", points = { O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"] } }
+joints.O2 = { links = ["base", "crank"], pin_diameter = "3 mm" }
+joints.A = { links = ["crank", "coupler"], pin_diameter = "3 mm" }
+joints.B = { links = ["coupler", "rocker"], pin_diameter = "3 mm" }
+joints.O4 = { links = ["base", "rocker"], pin_diameter = "3 mm" }
+pose = { coordinate = "crank", angle = "40 deg", near = { coupler = "20 deg", rocker = "60 deg" } }
+drive = { link = "crank", joint = "O2" }
+motion = { range = ["40 deg", "80 deg"], poses = 7 }
+load_cases.turn = { moments = [{ link = "rocker", at = "O4", moment = "20 N*mm" }] }
+solid = { mesh_size = 3.0 }
+[parts.bar]
+shape = "bar"
+material = "pvc-paredes-2018"
+width = "8 mm"
+thickness = "4 mm"
+eye_diameter = "12 mm"
+eye_thickness = "4 mm"
+fillet_radius = "2 mm"
+"""
+
+
+def envelope(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", "from reports.cli import main; main()", "envelope", *arguments],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("case") / "bar.toml"
+    path.write_text(TOML, encoding="utf-8")
+    return str(path)
+
+
+def test_the_verdict_is_the_exit_status_and_the_record_names_pose_and_place(path: str) -> None:
+    done = envelope(path, "--json", "--max-unknowns", "1000")
+    record = json.loads(done.stdout)
+    assert done.returncode == {"pass": 0, "fail": 1, "undecided": 3}[record["verdict"]]
+    found = record["links"]["rocker"]["load_cases"]["turn"]
+    assert 40.0 <= found["at"]["coordinate"] <= 80.0
+    assert found["safety_factor"]["value"] == pytest.approx(41.4 / found["stress"]["value"])
+    assert "no fatigue data" in record["links"]["rocker"]["no_fatigue"]
+    assert record["motion"]["evaluated"] == record["motion"]["poses"] == 7
+
+
+def test_a_weak_link_fails(path: str) -> None:
+    moment = 'load_cases.turn.moments=[{link="rocker", at="O4", moment="9000 N*mm"}]'
+    done = envelope(path, "--max-unknowns", "1000", "--set", moment)
+    assert done.returncode == 1
+    assert "FAIL" in done.stdout
+    assert "7 of 7 poses" in done.stdout
+
+
+def test_a_case_without_motion_is_bad_input(path: str) -> None:
+    assert envelope(path, "--growth", "0.5").returncode == 2  # growth is at least 1
+    still = Path(path).with_name("still.toml")
+    still.write_text(TOML.replace('motion = { range = ["40 deg", "80 deg"], poses = 7 }', ""), encoding="utf-8")
+    done = envelope(str(still))
+    assert done.returncode == 2
+    assert done.stderr.startswith("alula: motion: the case does not say what moves")
