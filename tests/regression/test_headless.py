@@ -1,0 +1,62 @@
+"""Without display, without EGL, without OSMesa: no stress plots, one warning, the same verdict."""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry import child
+from reports import figures
+
+FAR = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+
+
+def scene() -> figures.Scene:
+    view = figures.View(
+        right=FAR[1], up=FAR[2], toward=FAR[3], focus=FAR[0], half_width=1.0, half_height=1.0, size=(50, 50), cut=None
+    )
+    return figures.Scene(
+        points=FAR, displacement=0.0 * FAR, values=np.arange(4.0), triangles=FACES, cells=np.array([[0, 1, 2, 3]]),
+        hottest=3, scale=1.0, far_side=False, strip=view, close=view,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("broken", "told"),
+    [
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "rendering crashed (signal 11)"),
+        ("raise ImportError('libEGL.so.1: cannot open shared object file')", "rendering failed (ImportError: libEGL"),
+        ("import sys; sys.exit(0)", ""),
+    ],
+)  # fmt: skip
+def test_a_graphics_library_that_is_missing_or_crashes(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, broken: str, told: str
+) -> None:
+    """The worker is the real one; the library that it imports is not."""
+    (tmp_path / "pyvista.py").write_text(broken)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    pictures, warnings = figures.plots_of({"AE": scene(), "GF": scene()}, {"AE": {}, "GF": {}})
+    assert pictures == {}
+    [warning] = warnings
+    assert warning.startswith(f"no stress plot of AE, GF: {told}")
+
+
+def test_without_display(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    pictures, warnings = figures.plots_of({"AE": scene()}, {"AE": {}})
+    assert warnings == ()
+    assert pictures["AE"].startswith(b"\x89PNG")
+
+
+def test_a_worker_reads_its_request_and_no_more(tmp_path: Path) -> None:
+    """A request for nothing draws nothing and imports no graphics library."""
+    (tmp_path / "pyvista.py").write_text("raise SystemExit(9)")
+    (tmp_path / "none.json").write_text(json.dumps({}))
+    command = child.module_command("reports.figures_worker", str(tmp_path), "none.json")
+    environment = child.environment() | {"PYTHONPATH": f"{Path(figures.__file__).parents[1]}:{tmp_path}"}
+    assert child.run(command, environment=environment, time_limit=60.0)[0] == 0
+    assert sys.executable in command
