@@ -10,6 +10,7 @@ from pydantic_core import PydanticCustomError
 from fea.band import Band
 from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
 from fea.bearing_check import bearing_outcomes
+from fea.buckling_check import buckling_outcomes
 from fea.cut_free import beam_loads, link_loads
 from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
 from fea.large_displacement import LargeDisplacement, examine
@@ -181,6 +182,7 @@ def check_case(
             checks=(
                 *outcomes(case, title, links, pins, moved[title]),
                 *_bearing(case, title, reactions),
+                *buckling_outcomes(case, title, {link: beams[link][i].check for link in cut}),
                 *(found[title] for found in motors if title in found),
             ),
         )

@@ -6,9 +6,9 @@ from enum import StrEnum
 
 from fea.band import Band
 
-
 SAFETY_FACTOR = "safety factor"
 LOAD_SHARE = "share of the load that is held"
+BUCKLING_FACTOR = "buckling factor"
 LINKAGE = "the linkage"
 """Stands in the place of a link where a check is about all of them."""
 PIN = "pin "
@@ -51,7 +51,7 @@ class CheckOutcome:
     @property
     def at_least(self) -> bool:
         """True where the quantity must be at least its limit, False where it must be at most that."""
-        return self.quantity in (SAFETY_FACTOR, LOAD_SHARE)
+        return self.quantity in (SAFETY_FACTOR, LOAD_SHARE, BUCKLING_FACTOR)
 
     @property
     def what(self) -> str:

@@ -247,6 +247,8 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
             "without bound; change the pose or drive another link"
         )
     unknowns = np.linalg.solve(system.scaled, _scaled_rhs(system))
+    # What is but rounding would stand as unbalanced loads on a link on which nothing acts.
+    unknowns[np.abs(unknowns) <= ROUNDING * np.abs(unknowns).max(initial=0.0)] = 0.0
     unknowns = unknowns * np.array([system.scale if system._is_moment(c) else 1.0 for c in system.columns])
     leftover = system.matrix @ unknowns - system.rhs
     row_scale = np.array([system.scale if kind == "Mz" else 1.0 for _, kind in system.rows])
@@ -257,16 +259,9 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
         system=system,
         unknowns=unknowns,
         joints={name: _reaction(pose, name, system, unknowns) for name in linkage.joints},
-        drive_torque=_drive_torque(system, unknowns) if drive else 0.0,
+        drive_torque=float(unknowns[system.columns.index("T")]) if drive else 0.0,
         residual=float(np.max(np.abs(leftover / row_scale))) / load_size,
     )
-
-
-def _drive_torque(system: System, unknowns: Real) -> float:
-    """The drive torque [N mm]; zero where it is but the rounding of the largest joint force on the longest link."""
-    torque = float(unknowns[system.columns.index("T")])
-    forces = [abs(x) for name, x in zip(system.columns, unknowns, strict=True) if not system._is_moment(name)]
-    return torque if abs(torque) > ROUNDING * system.scale * max(forces, default=0.0) else 0.0
 
 
 def _scaled_rhs(system: System) -> Real:

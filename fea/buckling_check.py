@@ -1,0 +1,133 @@
+"""Buckling of links in compression: Euler's load over the largest compression anywhere along the link.
+
+Every link is a straight column of its section, under its largest compression N over its whole length. Both make the
+answer smaller, never larger. The end conditions are the least favourable ones that joints leave:
+
+pinned ends     a link whose compression lies between its outermost pins turns freely about them in the linkage's
+                plane, k = 1. Out of the plane the pins carry moments, which would give k down to 0.5 between stiff
+                neighbours; how stiff they are is not known here, so k = 1 stands there too.
+built in, free  k = 2 over the whole length, for the driven link (held in its angle at the drive's joint, free at
+                the other end), for compression beyond the outermost pins, and where pins are bonded (the linkage may
+                sway). For an overhang this is a lower bound: the slope v of a column held at x = 0 and x = L and free
+                at L + a has a zero between the pins, on either side of which ∫v'² ≥ (π/2)² ∫v²/(L + a)².
+
+That the joints stay where they are is taken for granted: sway of the whole linkage is what the co-rotational frame
+looks at (``fea.corotational.buckling_factor`` finds its factor).
+
+Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
+Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
+(5.2.1(3)) and for n >= 3 where a factor may stand for it (5.2.2(5)); below 3 stress by linear theory passes no link.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.band import Band
+from fea.beam import BeamCheck, euler_load
+from fea.verdict import BUCKLING_FACTOR, CheckOutcome, Verdict, at_least
+from loads.case import Case
+
+NAME = "buckling"
+LEAST_LINEAR = 3.0
+"""Factor below which stress by linear theory is not relied on."""
+SECOND_ORDER = 10.0
+"""Factor below which the growth of bending is told."""
+NO_COMPRESSION = 1e-9
+"""Share of the largest force in the link below which compression is rounding."""
+PINNED, BUILT_IN = 1.0, 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """A link in compression as a column.
+
+    compression       the largest along the link [N]
+    length            between its ends [mm]
+    effective_length  k, as a multiple of ``length``
+    ends              how they are held, for people
+    """
+
+    compression: float
+    length: float
+    effective_length: float
+    ends: str
+
+
+def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
+    """Return the column that stands for a link under a load case; None without compression."""
+    _, _, compression = beam.forces.largest(lambda f: -float(f[0]))
+    forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
+    if compression <= NO_COMPRESSION * forces:
+        return None
+    points, linkage = case.links[link].points, case.linkage
+    pins = sorted({points[linkage.point_of(joint, link)] for joint in linkage.joints_of(link)})
+    first, last = pins[0], pins[-1]
+    start, end = (float(x) for x in beam.forces.breaks[[0, -1]])
+    slack = 1e-9 * (end - start)
+    outside = (beam.x < first[0] - slack) | (beam.x > last[0] + slack)
+    whole = max(end, last[0]) - min(start, first[0])
+    reasons = {
+        "driven": case.drive is not None and case.drive.link == link,
+        "bonded": case.joint_model == "bonded",
+        "compressed beyond its pins": bool(np.any(-beam.n[outside] > NO_COMPRESSION * forces)),
+        "on one pin": len(pins) < 2,
+    }
+    why = [reason for reason, holds in reasons.items() if holds]
+    if why:
+        ends = f"built in and free, since it is {' and '.join(why)}"
+        return Column(compression=compression, length=whole, effective_length=BUILT_IN, ends=ends)
+    length = float(np.hypot(last[0] - first[0], last[1] - first[1]))
+    return Column(compression=compression, length=length, effective_length=PINNED, ends="pinned at both ends")
+
+
+def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every link that is compressed under the load case ``title``.
+
+    The band runs from a third of the factor of the least modulus, since linear stress is not relied on below 3, to
+    the factor: a link fails where its compression exceeds Euler's load, whatever its stress says.
+    """
+    for link, beam in beams.items():
+        found = column(case, link, beam)
+        if found is None:
+            continue
+        material = case.material_of(link)
+        least = min((material.youngs_modulus, *(material.youngs_modulus_range or ())))
+        inertia = min(beam.section.i_y, beam.section.i_z)
+        value, low = (
+            euler_load(young, inertia, found.length, found.effective_length) / found.compression
+            for young in (material.youngs_modulus, least)
+        )
+        band = Band(
+            value=value,
+            low=low / LEAST_LINEAR,
+            high=value,
+            holds=("the modulus", "bending that grows with compression, which linear stress leaves out"),
+        )
+        verdict = at_least(band, 1.0)
+        yield CheckOutcome(
+            name=NAME,
+            link=link,
+            load_case=title,
+            quantity=BUCKLING_FACTOR,
+            unit="",
+            value=band,
+            limit=1.0,
+            verdict=verdict,
+            reason=_reason(found, value, verdict),
+        )
+
+
+def _reason(found: Column, factor: float, verdict: Verdict) -> str:
+    load = (
+        f"{found.compression:.3g} N compress it, Euler's load is {factor * found.compression:.3g} N "
+        f"({found.length:.4g} mm, {found.ends}, k = {found.effective_length:g})"
+    )
+    if verdict is Verdict.FAIL:
+        return f"{load}, so it buckles"
+    if verdict is Verdict.UNDECIDED:
+        return f"{load}; within {LEAST_LINEAR:g} times the load, stress by linear theory does not hold"
+    if factor < SECOND_ORDER:
+        return f"{load}; bending is up to {1.0 / (1.0 - 1.0 / factor):.3g} times that of linear theory"
+    return load
