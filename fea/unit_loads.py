@@ -41,8 +41,11 @@ from loads.bearing import PressureLaw
 
 Real = NDArray[np.float64]
 
-HIGHEST_ORDER = 12
-"""Of the pressure's Fourier series."""
+HIGHEST_ORDER = 16
+"""Of the pressure's Fourier series. Measured on a bar with 24 quadratic elements round its holes under a force that
+turns fully, as the largest difference of the peak stress from the pressure's own, over 180° and over 90°: orders to
+8 0.17 and 0.63 %, to 10 0.20 and 1.13 %, to 12 0.12 and 0.36 %, to 16 0.05 and 0.09 %. Since only the span of the
+motion's loads is solved for, these took 38, 45, 48 and 50 solutions."""
 TRANSFERS: tuple[Transfer, ...] = ("eye-faces", "bore-shear")
 
 
