@@ -11,15 +11,15 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo test verify clean distclean
+.PHONY: help setup libraries demo test verify fuzz clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
 
 setup: $(INSTALLED) ## system libraries, .venv, locked packages, alula itself
 
-demo: setup ## check the built-in owl wing and say where its report is
-	@$(BIN)/alula check owl-wing-static -o $(DEMO); status=$$?; \
+demo: setup ## check the built-in owl wing, all links as solids, and say where its report is
+	@$(BIN)/alula check owl-wing-static --fidelity solid -o $(DEMO); status=$$?; \
 	case $$status in \
 	  0|1|3) echo "The report: $(CURDIR)/$(DEMO)/report.html" ;; \
 	  *) exit $$status ;; \
@@ -33,6 +33,11 @@ test: setup ## lint, types and every test but the converged studies
 
 verify: setup ## the converged studies, on fine meshes
 	$(PYTEST) -m converged
+
+# The fuzzer has wheels for x86-64 Linux alone and is needed for nothing else, so set-up leaves it out.
+fuzz: setup ## a million hostile inputs for all that reads a case
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --requirement tests/fuzz/requirements.lock
+	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m fuzz --output out/fuzz
 
 clean: ## remove results and caches
 	rm -rf out build dist alula.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -13,12 +13,13 @@ from fea.bearing_check import bearing_outcomes
 from fea.buckling_check import buckling_outcomes
 from fea.cut_free import beam_loads, link_loads
 from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
+from fea.ladder import Climb, HandBands, climb
 from fea.large_displacement import LargeDisplacement, examine
 from fea.link_loads import LinkLoads
 from fea.motor_check import motor_outcomes
 from fea.outcomes import outcomes
 from fea.pins import PinStress, stress_at
-from fea.refinement import START, Effort, RefinedSolid, refine_links
+from fea.refinement import START, Effort
 from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
@@ -39,7 +40,8 @@ from loads.published import StaticsAudit, audit
 from loads.statics import Reactions
 
 Progress = Callable[[str], None]
-FIDELITIES = ("solid", "beam")
+FIDELITIES = ("auto", "beam", "frame", "solid")
+FORCED_BEAM = ("beam", "frame")
 NEAR_DEAD_POINT = 0.02
 """Smallest singular value of the scaled Jacobian below which the run warns: on the owl wing, 2° off a dead point."""
 BEAM_HOLDS = ("nothing: beam theory without stress concentration",)
@@ -123,7 +125,7 @@ def check_case(
     case: Case,
     *,
     name: str = "",
-    fidelity: str = "solid",
+    fidelity: str = "auto",
     threads: int = 2,
     effort: Effort | None = None,
     progress: Progress = lambda message: None,
@@ -131,7 +133,9 @@ def check_case(
     """Check a case: every link under every load case, against every check.
 
     name       path or built-in name of the case, for companion files and the report
-    fidelity   "solid" for finite elements, "beam" for hand calculations alone
+    fidelity   "auto" for the cheapest model that decides each link (``fea.ladder``), or one for all of them: "solid",
+               "beam" for beam theory alone, without stress concentration, "frame" for the same where a frame gives
+               the joint forces
     effort     accuracy of solid models and what it may cost, by default what the case says
     progress   called with a sentence before every stage that may take long
 
@@ -156,18 +160,30 @@ def check_case(
     }
     beams = {link: tuple(_beam(case, statics, link, loads) for loads in cut[link]) for link in cut}
     clock("hand calculations")
-    solids: dict[str, RefinedSolid] = {}
-    if fidelity == "solid":
+    climbs: dict[str, Climb] = {}
+    if fidelity in ("auto", "solid"):
         loaded = {link: [x for x in loads if _acts(x)] for link, loads in cut.items()}
         tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
         start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
-        solids = refine_links(tasks, start, effort or effort_of(case), threads=threads, progress=progress)
+        climbs = climb(
+            tasks,
+            {
+                link: {loads.name: beam.check for loads, beam in zip(cut[link], beams[link], strict=True)}
+                for link in cut
+            },
+            start,
+            effort or effort_of(case),
+            fidelity=fidelity,
+            framed=any(forces.model != PINNED_STATICS for forces in statics.forces.values()),
+            threads=threads,
+            progress=progress,
+        )
         clock("solid models")
     motors = [motor_outcomes(case, n, check) for n, check in case.checks.items() if isinstance(check, MotorCheck)]
     load_cases = {}
     for i, (title, forces) in enumerate(statics.forces.items()):
         links = {
-            link: _link_result(case, link, title, beams[link][i], solids.get(link), solid=fidelity == "solid")
+            link: _link_result(case, link, title, beams[link][i], climbs.get(link), forced=fidelity in FORCED_BEAM)
             for link in cut
         }
         reactions = moved[title].reactions or forces.reactions
@@ -226,11 +242,33 @@ def _acts(loads: LinkLoads) -> bool:
     return bool(loads.bodies or loads.lines or loads.couples or any(np.any(w != 0.0) for w in wrenches))
 
 
-def _link_result(
-    case: Case, link: str, title: str, beam: _Beam, refined: RefinedSolid | None, *, solid: bool
-) -> LinkResult:
-    found = None if refined is None else solid_result(case, link, title, beam.check, refined)
-    return found or _beam_result(link, case.material_of(link), beam, ran=solid)
+def _link_result(case: Case, link: str, title: str, beam: _Beam, climbed: Climb | None, *, forced: bool) -> LinkResult:
+    material = case.material_of(link)
+    result = _beam_result(link, material, beam, ran=not forced)
+    if forced:
+        return result
+    if climbed is None:
+        return replace(result, decided_by="beam", why="nothing acts on it")
+    decision = climbed.decision
+    found = None if climbed.solid is None else solid_result(case, link, title, beam.check, climbed.solid)
+    if found is not None:
+        result = found
+    elif climbed.solid is None and title in climbed.hands:
+        result = _calibrated(result, material, climbed.hands[title])
+    return replace(result, decided_by=decision.rung, why=decision.why, next_cost=decision.next_cost)
+
+
+def _calibrated(result: LinkResult, material: Material, hand: HandBands) -> LinkResult:
+    """Return a result by beam theory with the bands that solid models gave it."""
+    return replace(
+        result,
+        von_mises_max=hand.von_mises,
+        principal_max=hand.principal,
+        safety_factor=hand.deciding(brittle=material.brittle).inverse(material.allowable),
+        displacement_max=hand.displacement,
+        location=np.array([hand.spots[0].spot.x, 0.0, 0.0]),
+        notes=(),
+    )
 
 
 def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> LinkResult:

@@ -56,7 +56,8 @@ def _link(
         limit = check.maximum
         quantity, unit, value = "displacement", "mm", result.displacement_max
         verdict = at_most(value, limit)
-    if result.fidelity == "beam" and verdict is Verdict.PASS and result.beam.worst.equivalent > 0.0:
+    forced = result.fidelity == "beam" and not result.decided_by
+    if forced and verdict is Verdict.PASS and result.beam.worst.equivalent > 0.0:
         verdict = Verdict.UNDECIDED
         reason = "beam theory leaves stress concentration out, so it cannot pass a link; run the solid model"
     else:

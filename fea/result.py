@@ -79,6 +79,9 @@ class LinkResult:
     comparisons        hand against solid, section by section
     notes              what the reader must know about this link's numbers
     discretisation     the error that the meshes leave; None when no solid ran
+    decided_by         rung of ``fea.ladder`` that decided: "beam", "frame", "submodel" or "solid"; "" where a model
+                       was forced that may not decide, with ``why``, for people
+    next_cost          what the next rung would have cost; "" where there is none
     """
 
     link: str
@@ -99,6 +102,9 @@ class LinkResult:
     comparisons: tuple[SectionComparison, ...]
     notes: tuple[str, ...]
     discretisation: Discretisation | None = None
+    decided_by: str = ""
+    why: str = ""
+    next_cost: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

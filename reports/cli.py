@@ -143,7 +143,9 @@ def check(
     ] = None,
     json: JsonOption = False,
     overrides: SetOption = None,
-    fidelity: Annotated[str, typer.Option(help="Model that decides: solid or beam.")] = "solid",
+    fidelity: Annotated[
+        str, typer.Option(help="Model that decides: auto (the cheapest that can), beam, frame or solid.")
+    ] = "auto",
     threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
     accuracy: Annotated[
         str | None,
@@ -160,7 +162,8 @@ def check(
         bool,
         typer.Option(
             "--second-opinion",
-            help="Write a CalculiX deck of each link and, where ccx is installed, set its answer beside ours.",
+            help="Write a CalculiX deck of each link and, where ccx is installed, set its answer beside ours "
+            "(every link as a solid, unless --fidelity says otherwise).",
         ),
     ] = False,
 ) -> None:
@@ -168,6 +171,8 @@ def check(
     from fea.check import check_case, effort_of
     from loads.case_file import read_case
 
+    if second_opinion and fidelity == "auto":
+        fidelity = "solid"  # a link that beam theory decides has no mesh that CalculiX could be given
     parsed = read_case(case, overrides or ())
     effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
     result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)

@@ -118,7 +118,7 @@ def _links(case: LoadCaseResult) -> "Table":
     for name, link in case.links.items():
         table.add_row(
             name,
-            link.fidelity,
+            link.decided_by or link.fidelity,
             number(link.von_mises_max.value, 3),
             band(link.safety_factor),
             number(link.displacement_max.value, 3),

@@ -209,6 +209,9 @@ def _reactions(case: LoadCaseResult) -> list[dict[str, Any]]:
 def _link(result: LinkResult) -> dict[str, Any]:
     return {
         "fidelity": result.fidelity,
+        "decided_by": result.decided_by or None,
+        "why": result.why or None,
+        "next_cost": result.next_cost or None,
         "von_mises_max": _band(result.von_mises_max),
         "principal_max": _band(result.principal_max),
         "safety_factor": _band(result.safety_factor),

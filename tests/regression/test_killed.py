@@ -123,7 +123,7 @@ def _alive(pid: int) -> bool:
     return state != "Z"
 
 
-FINE = ("check", "owl-wing-static", "--set", "solid.mesh_size=0.3")
+FINE = ("check", "owl-wing-static", "--fidelity", "solid", "--set", "solid.mesh_size=0.3")
 """Meshes for minutes."""
 
 

@@ -133,7 +133,9 @@ def test_closed_form_agrees_on_the_heaviest_wings() -> None:
 
 @pytest.mark.converged
 def test_the_check_ends_in_pass(case) -> None:
-    result = check_case(case.model_copy(update={"solid": case.solid.model_copy(update={"mesh_size": 2.0})}))
+    result = check_case(
+        case.model_copy(update={"solid": case.solid.model_copy(update={"mesh_size": 2.0})}), fidelity="solid"
+    )
     assert result.verdict is Verdict.PASS
 
 
