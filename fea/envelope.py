@@ -32,8 +32,9 @@ Progress = Callable[[str], None]
 
 TORQUE_GROWTH = 20.0
 """Of the drive torque towards a dead point, beside that at the best leverage, beyond which poses are left out."""
-FATIGUE_STRESS = "fatigue factor on stress"
-FATIGUE_LIFE = "fatigue factor on life"
+FATIGUE_STRESS = "fatigue, stress"
+FATIGUE_LIFE = "fatigue, life"
+"""Fatigue strength over stress, and life over the repetitions that are wanted."""
 
 
 def envelope_case(

@@ -273,7 +273,8 @@ def _table(columns: Mapping[str, bool]) -> "Table":
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
     for title, right in columns.items():
-        table.add_column(title, justify="right" if right else "left", vertical="bottom", no_wrap="(band)" in title)
+        keep = "(band)" in title or title in ("link", "verdict")
+        table.add_column(title, justify="right" if right else "left", vertical="bottom", no_wrap=keep)
     return table
 
 
