@@ -24,6 +24,10 @@ _LARGEST_STEP = 0.5
 _STARTS = 256
 _RANK_TOLERANCE = 1e-9
 """Singular values of the scaled Jacobian (entries of order 1) below it count as zero."""
+_SAME = 1e-5
+"""Assemblies whose links all point within it [rad] are one."""
+NEAR_DEAD_POINT = 0.02
+"""Smallest singular value of the scaled Jacobian below which a pose is next to a dead point: 2° off on the owl wing."""
 _LOOKED_INTO = 12
 """Attempts from which the least gap of an open loop is sought."""
 
@@ -199,7 +203,9 @@ def _assemble(linkage: Linkage, coordinate: str | None, angle: float, near: dict
     if not unstated:
         q, gaps = _newton(closure, fixed, near | fixed)
         if _is_assembled(closure, gaps) and not _astray(closure, q, near):
-            return _pose(closure, q, coordinate, gaps)
+            pose = _pose(closure, q, coordinate, gaps)
+            _refuse_rough(pose, fixed, near, free)
+            return pose
     found, attempts = _assemblies(closure, fixed, near, free)
     if not found:
         raise CaseError(_explain_open(closure, attempts, fixed))
@@ -210,6 +216,27 @@ def _assemble(linkage: Linkage, coordinate: str | None, angle: float, near: dict
     if kept:
         raise CaseError(f"pose.near: {len(kept)} assemblies fit it; state more directions to choose one of: {listed}")
     raise CaseError(f"pose.near: no assembly lies within 90 deg of all its directions; there are: {listed}")
+
+
+def _refuse_rough(pose: Pose, fixed: Mapping[str, float], near: Mapping[str, float], free: list[str]) -> None:
+    """Refuse directions that are further from the pose than another assembly is: they do not tell the two apart.
+
+    Looked for only next to a dead point of the coordinate, where assemblies come close to each other.
+    """
+    if pose.coordinate is None or pose.dead_point_distance(pose.coordinate) > NEAR_DEAD_POINT:
+        return
+    columns = [pose.linkage.moving.index(link) for link in free]
+    off = float(np.max(_turned(pose.q[columns] - np.array([near[link] for link in free])), initial=0.0))
+    if off <= _SAME:
+        return
+    others, _ = _assemblies(pose.closure, fixed, near, free)
+    apart = [q for q, _ in others if _SAME < float(np.max(_turned(q[columns] - pose.q[columns]))) <= off]
+    if apart:
+        listed = "; ".join(_describe(pose.closure, q, free) for q in (pose.q, *apart))
+        raise CaseError(
+            "pose.near: its directions do not tell apart assemblies that lie close together next to a dead point of "
+            f"'{pose.coordinate}': {listed}; state them to better than {math.degrees(off):.2g} deg or change the angle"
+        )
 
 
 def _first(kept: list[tuple[Real, Real]], coordinate: str | None) -> tuple[Real, str | None, Real]:
@@ -288,7 +315,7 @@ def _turned(difference: Real | float) -> Real:
 
 def _same(closure: LoopClosure, first: Real, second: Real) -> bool:
     moving = len(closure.linkage.moving)
-    return bool(np.max(_turned(first[:moving] - second[:moving])) < 1e-5)
+    return bool(np.max(_turned(first[:moving] - second[:moving])) < _SAME)
 
 
 def _astray(closure: LoopClosure, q: Real, near: Mapping[str, float]) -> bool:
