@@ -11,7 +11,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo test verify fuzz clean distclean
+.PHONY: help setup libraries demo test verify bench fuzz clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -34,10 +34,8 @@ test: setup ## lint, types and every test but the converged studies
 verify: setup ## the converged studies, on fine meshes
 	$(PYTEST) -m converged
 
-# The fuzzer has wheels for x86-64 Linux alone and is needed for nothing else, so set-up leaves it out.
-fuzz: setup ## a million hostile inputs for all that reads a case
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --requirement tests/fuzz/requirements.lock
-	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m fuzz --output out/fuzz
+bench: setup ## measure speed, accuracy and growth: an hour or so (BENCH="--quick": minutes)
+	$(BIN)/python benchmarks/run.py $(BENCH)
 
 # The fuzzer has wheels for x86-64 Linux alone and is needed for nothing else, so set-up leaves it out.
 fuzz: setup ## a million hostile inputs for all that reads a case
