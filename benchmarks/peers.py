@@ -13,7 +13,6 @@ A program that is missing is left out and named.
 import argparse
 import json
 import os
-import platform
 import resource
 import shutil
 import statistics
@@ -25,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from record import circumstances
 from solvers import COUNTS, grid
 
 HERE = Path(__file__).parent
@@ -165,8 +165,7 @@ def save(rows: list[dict[str, Any]], options: argparse.Namespace) -> None:
             row["alula_over_this"] = round(own["wall_s"] / row["wall_s"], 3)
             row["alula_cpu_over_this"] = round(own["cpu_s"] / row["cpu_s"], 3)
     RESULTS.parent.mkdir(exist_ok=True)
-    machine = {"cores": os.cpu_count(), "python": platform.python_version(), "system": platform.machine()}
-    record = {"machine": machine, "threads": options.threads, "load_before": os.getloadavg(), "rows": rows}
+    record = circumstances() | {"threads": options.threads, "rows": rows}
     RESULTS.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 

@@ -9,7 +9,6 @@ run in a process of its own. Prints a table and writes benchmarks/results/solver
 import argparse
 import json
 import math
-import platform
 import subprocess
 import sys
 import tempfile
@@ -19,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from record import circumstances
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = Path(__file__).parent / "results" / "solvers.json"
@@ -154,7 +154,7 @@ def main() -> None:
             growth = math.log(last["cpu_s"] / first["cpu_s"]) / math.log(last["unknowns"] / first["unknowns"])
             print(f"{solver}: processor time grows with power {growth:.2f} of the unknowns")
     RESULTS.parent.mkdir(exist_ok=True)
-    record = {"processor": platform.machine(), "threads": options.threads, "curved": options.curved, "runs": runs}
+    record = circumstances() | {"threads": options.threads, "curved": options.curved, "runs": runs}
     RESULTS.write_text(json.dumps(record, indent=1) + "\n")
 
 

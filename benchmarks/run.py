@@ -1,0 +1,74 @@
+"""Runs every benchmark in turn, draws the figures and fills in the tables of benchmarks/README.md.
+
+    python benchmarks/run.py [--quick] [--only accuracy peers ...] [--ngsolve PYTHON]
+
+On two quiet cores all of it takes an hour or so, most of it the slowest peers at 1.5 million unknowns; ``--quick``
+keeps to small sizes. A benchmark that fails is named at the end; the others run all the same.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+
+# Name -> whether its standard output is the result, arguments for all and for the quick run.
+BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
+    "motion": (True, [], []),
+    "solvers": (False, ["--solvers", "auto", "pardiso"], ["--solvers", "auto", "--sizes", "20k", "160k"]),
+    "envelope": (False, [], ["2"]),
+    "growth": (False, [], ["--mesh", "3", "--counts", "30", "5", "5"]),
+    "accuracy": (False, ["--largest", "150000"], ["--largest", "20000"]),
+    "stages": (False, [], []),
+    "peers": (False, [], ["--sizes", "20k", "160k", "--repeats", "1"]),
+}
+
+
+def run(name: str, arguments: list[str]) -> tuple[int, float]:
+    """Exit status and wall seconds of one benchmark."""
+    command = [sys.executable, str(HERE / f"{name}.py"), *arguments]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    start = time.perf_counter()
+    if BENCHMARKS[name][0]:
+        ended = subprocess.run(command, cwd=ROOT, env=environment, check=False, stdout=subprocess.PIPE)
+        if ended.returncode == 0:
+            (HERE / "results").mkdir(exist_ok=True)
+            (HERE / "results" / f"{name}.json").write_bytes(ended.stdout)
+    else:
+        ended = subprocess.run(command, cwd=ROOT, env=environment, check=False)
+    return ended.returncode, time.perf_counter() - start
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="small sizes")
+    parser.add_argument("--only", nargs="+", choices=list(BENCHMARKS), default=list(BENCHMARKS))
+    parser.add_argument("--ngsolve", help="an interpreter that can import ngsolve, for the peers")
+    options = parser.parse_args()
+    summary = []
+    for name in options.only:
+        _, usual, quick = BENCHMARKS[name]
+        arguments = list(quick if options.quick else usual)
+        if name == "peers" and options.ngsolve:
+            arguments += ["--ngsolve", options.ngsolve]
+        print(f"== {name} {' '.join(arguments)}", flush=True)
+        summary.append((name, *run(name, arguments)))
+    # Imported late: figures need matplotlib, the benchmarks do not.
+    import tables
+    from figures import drawn
+
+    print("== figures and tables", flush=True)
+    for path in (*drawn(), tables.filled_in()):
+        print(path.relative_to(ROOT))
+    print("== summary")
+    for name, status, seconds in summary:
+        print(f"{name:10} {'done' if status == 0 else f'failed with status {status}':26} {seconds:8.1f} s")
+    sys.exit(any(status for _, status, _ in summary))
+
+
+if __name__ == "__main__":
+    main()

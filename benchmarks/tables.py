@@ -1,0 +1,197 @@
+"""Fills the tables of benchmarks/README.md in from benchmarks/results/*.json: python benchmarks/tables.py."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from figures import HERE, loaded, power, seconds, unknowns_of
+
+PAGE = HERE / "README.md"
+MISSING = "Not measured yet.\n"
+Record = dict[str, Any]
+
+
+def table(header: str, rows: list[list[str]]) -> str:
+    """A Markdown table: the first column to the left, numbers to the right."""
+    names = header.split("|")
+    lines = [names, ["---"] + ["--:"] * (len(names) - 1), *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def stamp(record: Record) -> str:
+    """When and on what; the load average tells whether the machine was quiet."""
+    told = [str(record[key]) for key in ("date", "processor", "machine", "versions") if key in record]
+    if "threads" in record:
+        told.append(f"{record['threads']} thread{'s' if record['threads'] != 1 else ''}")
+    if "load_average" in record:
+        told.append(f"load average before {record['load_average']:.1f}")
+    return f"Measured: {'; '.join(told)}.\n"
+
+
+def solid(curve: Record) -> bool:
+    """Whether a curve is one of finite elements, not a formula or a frame."""
+    return curve["model"] not in ("hand", "frame")
+
+
+def accuracy(record: Record) -> str:
+    """Time to reach each target, over that of the fastest solid model, and absolutely."""
+    out = []
+    for part in record["parts"]:
+        targets = list(part["curves"][0]["time_to"]["stress"])
+        header = "model|" + "|".join(f"{q} {t}" for q in ("peak stress", "displacement") for t in targets)
+        columns = [(quantity, target) for quantity in ("stress", "displacement") for target in targets]
+        fastest = {
+            (q, t): min((c["time_to"][q][t] for c in part["curves"] if solid(c) and c["time_to"][q][t]), default=None)
+            for q, t in columns
+        }
+        rows = []
+        for curve in part["curves"]:
+            cells = []
+            for quantity, target in columns:
+                own, least = curve["time_to"][quantity][target], fastest[quantity, target]
+                ratio = f"{own / least:.1f} ({seconds(own)})" if own and least and solid(curve) else None
+                cells.append(ratio or (seconds(own) if own else "no"))
+            rows.append([curve["model"], *cells])
+        out.append(f"**{part['part'].capitalize()}**: {part['about'].split(chr(10))[0]} Reference: {part['source']}.\n")
+        out.append(table(header, rows))
+    return "\n".join(out) + "\n" + stamp(record)
+
+
+def peers(record: Record) -> str:
+    """Every program's time and memory over alula's, then absolutely."""
+    unknowns = unknowns_of(record)
+    own = {r["size"]: r for r in record["rows"] if r["program"] == "alula" and "wall_s" in r}
+    rows = []
+    for row in record["rows"]:
+        name = [f"{unknowns[row['size']]:,}, {row['program']}"]
+        ours = own.get(row["size"])
+        if "end" in row:
+            rows.append([*name, row["end"], "", "", "", "", ""])
+            continue
+        ratios = ["", "", ""]
+        if ours:
+            ratios = [f"{ours[key] / row[key]:.2f}" for key in ("wall_s", "cpu_s", "peak_gb")]
+        rows.append([*name, *ratios, f"{row['wall_s']:.1f} s", f"{row['cpu_s']:.1f} s", f"{row['peak_gb']:.2f} GB"])
+    header = "unknowns, program|alula's wall time over this|processor time|memory|wall time|processor time|peak memory"
+    picture = "![Time and memory of every program](figures/peers.png)\n"
+    return "\n".join((picture, table(header, rows), stamp(record)))
+
+
+def unknowns(record: Record) -> str:
+    """Time and memory of each size, with the fitted power."""
+    rows, said = [], []
+    for run in record["runs"]:
+        name = f"{run['solver']}, {run['mesh']}"
+        if "stages" not in run:
+            rows.append([name, run["failed"], "", "", "", ""])
+            continue
+        held = max(s["peak_gb"] for s in run["stages"])
+        rows.append(
+            [
+                name,
+                f"{run['unknowns']:,}",
+                run["name"],
+                f"{run['wall_s']:.1f} s",
+                f"{run['cpu_s']:.1f} s",
+                f"{held:.2f} GB",
+            ]
+        )
+    for solver in dict.fromkeys(r["solver"] for r in record["runs"]):
+        done = [r for r in record["runs"] if r["solver"] == solver and "stages" in r]
+        if len(done) > 2:
+            n = [r["unknowns"] for r in done]
+            wall, cpu = (power(n, [r[key] for r in done]) for key in ("wall_s", "cpu_s"))
+            said.append(
+                f"{solver}: wall time grows with power {wall:.2f} of the unknowns, processor time with {cpu:.2f}."
+            )
+    header = "solver, mesh|unknowns|solved by|wall time|processor time|peak memory"
+    return "\n".join((*(f"{line}\n" for line in said), table(header, rows), stamp(record)))
+
+
+def envelope(record: Record) -> str:
+    """Envelope of 360 poses over one direct solution."""
+    rows = []
+    for run in record["runs"]:
+        cpu = f"{run['cpu_ratio']:.2f}" if "cpu_ratio" in run else ""
+        absolute = [seconds(run["direct_seconds"]), seconds(run["envelope_seconds"])]
+        rows.append([run["link"], f"{run['unknowns']:,}", f"{run['ratio']:.2f}", cpu, *absolute])
+    header = "link|unknowns|envelope over direct, wall time|processor time|direct|envelope"
+    return table(header, rows) + "\n" + stamp(record)
+
+
+def motion(record: Record) -> str:
+    """The one number of the motion: seconds for all poses, beside the limit."""
+    spent, limit = record["seconds"], record["limit_seconds"]
+    wall, cpu = spent["total"], spent["total_cpu"]
+    said = (
+        f"{wall / limit:.2f} of the limit in wall time, {cpu / limit:.2f} in processor time ({cpu:.2f} of {limit:g} s)"
+    )
+    return f"{record['poses']:,} poses with their forces: {said}.\n\n{stamp(record)}"
+
+
+def growth(record: Record) -> str:
+    """Poses and load cases."""
+    once = record["envelope"]["direct"]["cpu_s"]
+    rows = [
+        [f"envelope of {r['poses']:,} poses", f"{r['cpu_s'] / once:.2f} direct solutions", seconds(r["cpu_s"])]
+        for r in record["envelope"]["runs"]
+    ]
+    first = record["motion"][0]
+    rows += [
+        [
+            f"motion of {r['poses']:,} poses",
+            f"{r['cpu_s'] / first['cpu_s']:.1f} times {first['poses']}",
+            seconds(r["cpu_s"]),
+        ]
+        for r in record["motion"]
+    ]
+    for method in dict.fromkeys(r["method"] for r in record["load_cases"]["runs"]):
+        own = [r for r in record["load_cases"]["runs"] if r["method"] == method]
+        spent = [r["set_up"]["cpu_s"] + r["solution"]["cpu_s"] for r in own]
+        rows += [
+            [f"{method}, load cases: {r['load_cases']}", f"{s / spent[0]:.2f} times one", seconds(s)]
+            for r, s in zip(own, spent, strict=True)
+        ]
+    return table("what|ratio|processor time", rows) + "\n" + stamp(record)
+
+
+def stages(record: Record) -> str:
+    """Whole checks, by fidelity."""
+    least = min((r["wall_s"] for r in record["runs"] if "stages" in r), default=1.0)
+    rows = []
+    for run in record["runs"]:
+        if "stages" not in run:
+            rows.append([run["fidelity"], run["end"], "", "", ""])
+            continue
+        most = max(run["stages"], key=run["stages"].__getitem__)
+        ratio = f"{run['wall_s'] / least:.1f}"
+        rows.append([run["fidelity"], ratio, seconds(run["wall_s"]), seconds(run["cpu_s"]), f"{most}"])
+    header = "fidelity|wall time over the fastest|wall time|processor time|longest stage"
+    return table(header, rows) + "\n" + stamp(record)
+
+
+SECTIONS: dict[str, Callable[[Record], str]] = {
+    "accuracy": accuracy,
+    "peers": peers,
+    "solvers": unknowns,
+    "envelope": envelope,
+    "growth": growth,
+    "motion": motion,
+    "stages": stages,
+}
+
+
+def filled_in() -> Path:
+    """Write every section between its marks, and return the page."""
+    text = PAGE.read_text(encoding="utf-8")
+    for name, told in SECTIONS.items():
+        record = loaded(name)
+        begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->\n"
+        before, rest = text.split(begin)
+        text = before + begin + "\n" + (told(record) if record else MISSING) + "\n" + end + rest.split(end)[1]
+    PAGE.write_text(text, encoding="utf-8")
+    return PAGE
+
+
+if __name__ == "__main__":
+    print(filled_in())
