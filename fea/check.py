@@ -40,7 +40,7 @@ from loads.published import StaticsAudit, audit
 from loads.statics import Reactions
 
 Progress = Callable[[str], None]
-FIDELITIES = ("auto", "beam", "frame", "solid")
+FIDELITIES = ("auto", "beam", "frame", "submodel", "solid")
 FORCED_BEAM = ("beam", "frame")
 NEAR_DEAD_POINT = 0.02
 """Smallest singular value of the scaled Jacobian below which the run warns: on the owl wing, 2° off a dead point."""
@@ -135,7 +135,7 @@ def check_case(
     name       path or built-in name of the case, for companion files and the report
     fidelity   "auto" for the cheapest model that decides each link (``fea.ladder``), or one for all of them: "solid",
                "beam" for beam theory alone, without stress concentration, "frame" for the same where a frame gives
-               the joint forces
+               the joint forces, "submodel" for submodels of the eyes that may bear a link's peak, where they can
     effort     accuracy of solid models and what it may cost, by default what the case says
     progress   called with a sentence before every stage that may take long
 
@@ -161,7 +161,7 @@ def check_case(
     beams = {link: tuple(_beam(case, statics, link, loads) for loads in cut[link]) for link in cut}
     clock("hand calculations")
     climbs: dict[str, Climb] = {}
-    if fidelity in ("auto", "solid"):
+    if fidelity not in FORCED_BEAM:
         loaded = {link: [x for x in loads if _acts(x)] for link, loads in cut.items()}
         tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
         start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
@@ -255,6 +255,8 @@ def _link_result(case: Case, link: str, title: str, beam: _Beam, climbed: Climb 
         result = found
     elif climbed.solid is None and title in climbed.hands:
         result = _calibrated(result, material, climbed.hands[title])
+    if decision.rung == "submodel":
+        result = replace(result, fidelity="submodel")
     return replace(result, decided_by=decision.rung, why=decision.why, next_cost=decision.next_cost)
 
 

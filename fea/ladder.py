@@ -6,15 +6,17 @@ the same way; a frame is a rung of its own where equilibrium alone does not give
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from fea.band import Band
 from fea.beam import BeamCheck
 from fea.calibration import Calibration, Factors, calibration_of
+from fea.eye_models import EyePeaks, covers, peaks, plan
 from fea.link_loads import LinkLoads
 from fea.refinement import Effort, LinkTask, Progress, RefinedSolid, refine_links
 from fea.spots import Spot, displacement_estimate, spots
+from fea.submodel import Submodel
 from geometry.body_rules import extent, eye_reach, section_height, section_width
 from geometry.errors import CannotRunError
 from geometry.mesh import MeshSettings
@@ -65,7 +67,8 @@ class Decision:
 class Climb:
     """How far one link had to climb, and what it found.
 
-    hands   load case -> bands by hand; empty where no hand calculation was asked for
+    hands   load case -> bands by hand, with those of submodels where they were solved; empty where neither was asked
+            for
     solid   the whole link's solutions; None where a lower rung decided
     """
 
@@ -95,20 +98,93 @@ def climb(
     hands: dict[str, dict[str, HandBands]] = {}
     reasons: dict[str, str] = {}
     found: dict[str, Climb] = {}
+    cuts: dict[str, tuple[Submodel, ...]] = {}
     for link, task in tasks.items():
         if fidelity == "solid" or effort.stated:
             reasons[link] = "a solid was asked for" if fidelity == "solid" else "an accuracy was asked for"
             continue
         hands[link] = {loads.name: hand_bands(task, loads, beams[link][loads.name]) for loads in task.loads}
-        decision, reasons[link] = decided_by_hand(task, [*hands[link].values()], "frame" if framed else "beam")
-        if decision is not None:
+        bands = [*hands[link].values()]
+        decision, reasons[link] = decided_by_hand(task, bands, "frame" if framed else "beam")
+        if decision is not None and fidelity == "auto":
             found[link] = Climb(decision=decision, hands=hands[link])
+            continue
+        reasons[link] = reasons[link] or "submodels were asked for"
+        cuts[link] = _cuts(
+            task, [beams[link][loads.name] for loads in task.loads], bands, forced=fidelity == "submodel"
+        )
+    parts = {f"{link} at {cut.pin}": cut.task for link in cuts for cut in cuts[link]}
+    solved = refine_links(parts, start, effort, threads=threads, progress=progress)
+    for link in cuts:
+        refined = [(cut, solved[f"{link} at {cut.pin}"]) for cut in cuts[link]]
+        climbed = _decided_by_submodels(tasks[link], hands[link], refined, reasons[link]) if refined else None
+        if climbed is not None:
+            found[link] = climbed
+        elif refined:
+            reasons[link] += ", and submodels of its eyes did not decide it"
     rest = {link: task for link, task in tasks.items() if link not in found}
     solids = refine_links(rest, start, effort, threads=threads, progress=progress)
     for link, solid in solids.items():
         decision = Decision(rung="solid", why=reasons[link], next_cost="")
         found[link] = Climb(decision=decision, hands=hands.get(link, {}), solid=solid)
     return {link: found[link] for link in tasks}
+
+
+def _cuts(
+    task: LinkTask, beams: Sequence[BeamCheck], hands: Sequence[HandBands], *, forced: bool
+) -> tuple[Submodel, ...]:
+    """Submodels of what hand calculation leaves open or, where ``forced``, of whatever may bear the peak."""
+    if any(hand.outside for hand in hands) or undecided(task, [], [hand.displacement for hand in hands]):
+        return ()
+
+    def critical(spot: Spot) -> bool:
+        rows = [(hand, row) for hand in hands for row in hand.spots if row.spot.name == spot.name]
+        if forced:
+            return any(_own(row, task).high >= hand.deciding(brittle=task.brittle).low for hand, row in rows)
+        return bool(undecided(task, [_own(row, task) for _, row in rows], []))
+
+    def elements(cut: Submodel) -> float:
+        return expected_elements(cut.body)
+
+    allowed = 1.0 if forced else LARGEST_SHARE
+    spots = [row.spot for row in hands[0].spots]
+    return plan(task, beams, spots, critical, elements, allowed * expected_elements(task.body))
+
+
+def _own(row: SpotBand, task: LinkTask) -> Band:
+    return row.principal if task.brittle else row.von_mises
+
+
+def _decided_by_submodels(
+    task: LinkTask, hands: Mapping[str, HandBands], refined: Sequence[tuple[Submodel, RefinedSolid]], reason: str
+) -> Climb | None:
+    """Return what submodels decide, with the bands of hand calculation where they do not reach; None if they do not."""
+    solved = [(cut, peaks(cut, solid)) for cut, solid in refined]
+    combined = {}
+    for load, hand in hands.items():
+        own: list[EyePeaks] = []
+        for _, found in solved:
+            if found is None:
+                return None
+            own.append(found[load])
+        others = [row for row in hand.spots if not any(covers(cut, row.spot) for cut, _ in solved)]
+        combined[load] = replace(
+            hand,
+            von_mises=largest([*(p.von_mises for p in own), *(row.von_mises for row in others)]),
+            principal=largest([*(p.principal for p in own), *(row.principal for row in others)]),
+        )
+    bands = [*combined.values()]
+    stresses = [hand.deciding(brittle=task.brittle) for hand in bands]
+    if undecided(task, stresses, [hand.displacement for hand in bands]):
+        return None
+    band = max(stresses, key=lambda band: band.high)
+    eyes = ", ".join(cut.pin for cut, _ in refined)
+    elements = sum(solid.meshes[-1].elements for _, solid in refined)
+    why = (
+        f"{reason}; submodels of the eyes at {eyes}, of {elements:,} elements, put it between {band.low:.3g} and "
+        f"{band.high:.3g} MPa, clear of it"
+    )
+    return Climb(decision=Decision(rung="submodel", why=why, next_cost=cost(task.body, "solid")), hands=combined)
 
 
 def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
@@ -199,6 +275,8 @@ def cost(body: Body, rung: Rung) -> str:
     return f"a {rung} model of some {elements:,} elements, about {max(1, round(SECONDS * elements)):,} s"
 
 
+LARGEST_SHARE = 0.7
+"""Of a whole link's elements that its submodels may have: else the whole is solved at once."""
 SECONDS = 1.0e-3
 """Of meshing, solving and judging per element, on one core."""
 

@@ -144,7 +144,7 @@ def check(
     json: JsonOption = False,
     overrides: SetOption = None,
     fidelity: Annotated[
-        str, typer.Option(help="Model that decides: auto (the cheapest that can), beam, frame or solid.")
+        str, typer.Option(help="Model that decides: auto (the cheapest that can), beam, frame, submodel or solid.")
     ] = "auto",
     threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
     accuracy: Annotated[

@@ -1,0 +1,142 @@
+"""One eye of a link as a solid of its own, cut where the section's stress is linear again, loaded there by the beam.
+
+By Saint-Venant's principle what is left of an eye's or hole's disturbance a diameter or two away is small (Timoshenko &
+Goodier, Theory of Elasticity, 3rd ed., art. 18): the beam's N, V, M and T, spread over the last stretch of the
+submodel, then stand for the rest of the link.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.beam import BeamCheck
+from fea.link_loads import EndLoad, LineLoad, LinkLoads
+from fea.refinement import LinkTask
+from geometry.body_rules import extent, eye_reach, patch_span, section_width
+from geometry.part import Body, HoleRow, Pin, PlainEnd
+
+CLEAR = 1.5
+"""Widths of plain section between an eye or hole and the loaded stretch at a cut."""
+PATCH = 1.0
+"""Length of that stretch, in widths."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Submodel:
+    """The part of a link about one pin.
+
+    task     to be solved like a whole link
+    pin      name of the pin in its middle
+    covered  stations [mm] between which its stress is that of the whole link
+    """
+
+    task: LinkTask
+    pin: str
+    covered: tuple[float, float]
+
+    @property
+    def body(self) -> Body:
+        """Its shape, in the link's frame."""
+        return self.task.body
+
+
+def submodel(task: LinkTask, beams: Sequence[BeamCheck], pin: str, *, clear: float = CLEAR) -> Submodel | None:
+    """Cut the eye at a pin out of a link; None where the link leaves no room for a cut, or where weight acts.
+
+    beams   of the task's load cases, in their order
+    clear   widths between the eye and the loaded stretch of a cut
+
+    Weight and inertia act in the volume, of which the beam knows the section's alone: such a link is solved whole.
+    """
+    body = task.body
+    place = next(p for p in body.pins if p.name == pin)
+    if any(loads.bodies for loads in task.loads):
+        return None
+    before, after = _cut(body, place, -1, clear), _cut(body, place, 1, clear)
+    if before is None or after is None:
+        return None
+    (first, cut_first), (last, cut_last) = before, after
+    if not (cut_first or cut_last):
+        return None
+    patch, width = PATCH * section_width(body.part), section_width(body.part)
+    cuts = [("cut before", first)] if cut_first else []
+    cuts += [("cut after", last)] if cut_last else []
+    ends = tuple(PlainEnd(name=name, x=x, patch=patch) for name, x in cuts)
+    kept = tuple(end for end in body.ends if first <= end.x <= last)
+    part = Body(part=body.part, pins=(place,), ends=(*ends, *kept), holes=_rows(body, first, last))
+    names = {end.name for end in kept}
+    loads = tuple(
+        LinkLoads(
+            name=load.name,
+            pins=tuple(p for p in load.pins if p.name == pin),
+            couples=tuple(c for c in load.couples if c.pin == pin),
+            ends=(*(e for e in load.ends if e.name in names), *_cut_loads(beam, cuts, first)),
+            lines=tuple(_clipped(line, first, last) for line in load.lines if line.first < last and line.last > first),
+        )
+        for load, beam in zip(task.loads, beams, strict=True)
+    )
+    near = clear / 2.0 * width + patch
+    return Submodel(
+        task=replace(
+            task, body=part, loads=loads, line=(f"bore:{pin}", f"end:{part.ends[0].name}"), displacement_limits=()
+        ),
+        pin=pin,
+        covered=(first + near if cut_first else first, last - near if cut_last else last),
+    )
+
+
+def _cut(body: Body, pin: Pin, side: int, clear: float) -> tuple[float, bool] | None:
+    """Return where the submodel ends on one side of a pin and whether by a cut; None where there is no room.
+
+    A cut is moved on behind holes that come too near to its loaded stretch.
+    """
+    first, last = extent(body)
+    border = last if side > 0 else first
+    if pin.x == border:
+        return border, False
+    width = section_width(body.part)
+    away, patch = clear * width, PATCH * width
+    # Distances from the pin, outwards: (where it begins, where it ends).
+    holes = [(side * (x - pin.x), row.diameter / 2.0) for row in body.holes for x in row.positions]
+    features = sorted((at - radius, at + radius) for at, radius in holes if at > 0.0)
+    eyes = [side * (p.x - pin.x) - eye_reach(body, p) for p in body.pins if side * (p.x - pin.x) > 0.0]
+    spans = [patch_span(body, end) for end in body.ends if side * (end.x - pin.x) > 0.0]
+    eyes += [min(side * (low - pin.x), side * (high - pin.x)) for low, high in spans]
+    reach = eye_reach(body, pin)
+    for low, high in features:
+        if low >= reach + away + patch:
+            break
+        reach = max(reach, high)
+    cut = reach + away + patch
+    if cut >= min([*eyes, side * (border - pin.x)]):
+        return None
+    return pin.x + side * cut, True
+
+
+def _rows(body: Body, first: float, last: float) -> tuple[HoleRow, ...]:
+    """Holes between two stations, one row each."""
+    return tuple(
+        HoleRow.model_construct(count=1, diameter=row.diameter, first=x, last=x, along=row.along)
+        for row in body.holes
+        for x in row.positions
+        if first < x < last
+    )
+
+
+def _cut_loads(beam: BeamCheck, cuts: Sequence[tuple[str, float]], first: float) -> list[EndLoad]:
+    """What the rest of the link does at the cuts: the section's forces, reversed on the side before the pin."""
+    found = []
+    for name, x in cuts:
+        if beam.forces.breaks[0] <= x <= beam.forces.breaks[-1]:
+            wrench = beam.forces.at(x) * (-1.0 if x == first else 1.0)
+            found.append(EndLoad(name=name, point=np.array([x, 0.0, 0.0]), wrench=wrench))
+    return found
+
+
+def _clipped(line: LineLoad, first: float, last: float) -> LineLoad:
+    """Return the part of a spread load between two stations."""
+    low, high = max(line.first, first), min(line.last, last)
+    slope = (line.intensity[1] - line.intensity[0]) / (line.last - line.first)
+    intensity = np.array([line.intensity[0] + slope * (x - line.first) for x in (low, high)])
+    return LineLoad(first=low, last=high, intensity=intensity)

@@ -1,0 +1,104 @@
+"""The cheapest model that decides: which rung does, and that no rung speaks where it was not calibrated."""
+
+import math
+from dataclasses import replace
+
+import eye_link
+import pytest
+
+from fea.calibration import calibrations
+from fea.ladder import climb, decided_by_hand, hand_bands
+from fea.refinement import START, Effort
+from fea.spots import shoulder_factors, spots
+from geometry.part import HoleRow
+
+
+def climbed(limit, **options):
+    task = eye_link.task(limit)
+    beams = {"AC": {"mixed": eye_link.beam(task)}}
+    settings = {"fidelity": "auto", "framed": False, "threads": 1} | options
+    return climb({"AC": task}, beams, START, Effort(), **settings)["AC"]
+
+
+def test_a_limit_far_off_is_decided_by_hand_without_a_mesh():
+    found = climbed(40.0)
+    assert (found.decision.rung, found.solid) == ("beam", None)
+    assert "clear of the limit 40 MPa" in found.decision.why
+    assert "at most at the eye at B" in found.decision.why
+    assert "elements" in found.decision.next_cost
+    assert found.hands["mixed"].von_mises.high < 40.0
+
+
+def test_a_limit_far_below_fails_by_hand():
+    assert climbed(2.0).decision.rung == "beam"
+
+
+def test_the_rung_has_the_name_of_the_model_that_gave_the_forces():
+    assert climbed(40.0, framed=True).decision.rung == "frame"
+
+
+def test_what_one_eye_leaves_open_its_submodel_decides():
+    found = climbed(18.0)
+    assert (found.decision.rung, found.solid) == ("submodel", None)
+    assert "holds the limit 18; submodels of the eyes at B" in found.decision.why
+    band = found.hands["mixed"].von_mises
+    assert band.low < 7.07 < band.high < 18.0  # 7.07 MPa: the whole link on the mesh of test_submodel.py
+
+
+def test_a_limit_within_the_band_is_not_decided_by_hand():
+    task = eye_link.task(9.0)
+    decision, why = decided_by_hand(task, [hand_bands(task, task.loads[0], eye_link.beam(task))], "beam")
+    assert decision is None
+    assert "holds the limit 9" in why
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"fillet_radius": 0.0}, "sharp"),
+        ({"fillet_radius": 0.2}, "fillet over width 0.04 is outside of the calibrated 0.1"),
+        ({"inner_diameter": 4.5}, "inner over outer diameter 0.9"),
+    ],
+)
+def test_hand_calculation_says_nothing_outside_of_its_calibration(change, says):
+    task = eye_link.task(40.0)
+    other = replace(task, body=replace(task.body, part=task.body.part.model_copy(update=change)))
+    hand = hand_bands(other, other.loads[0], eye_link.beam(other))
+    assert says in hand.outside
+    assert hand.von_mises.unknowable
+    assert decided_by_hand(other, [hand], "beam")[0] is None
+
+
+def test_every_shape_is_calibrated_with_factors_in_order():
+    assert set(calibrations()) == {"tube", "bar"}
+    for found in calibrations().values():
+        every = [*found.von_mises.values(), *found.principal.values(), found.displacement]
+        assert len(every) == 9
+        assert all(0.0 < f.low <= f.typical <= f.high for f in every)
+        assert found.margin > 1.0
+        assert found.parts >= 6
+
+
+def test_a_cross_hole_bears_the_handbooks_factors():
+    """Under the section's N and M_z of a hole along y, with the factors and torsion written out by hand."""
+    task = eye_link.task()
+    row = HoleRow(count=1, diameter="1 mm", first="20 mm", last="20 mm", along="y")
+    beam = eye_link.beam(task)
+    [hole] = [s for s in spots(replace(task.body, holes=(row,)), task.loads[0], beam) if s.kind == "hole"]
+    r, h = 0.5, 0.2
+    tension = 3.0 + (0.427 - 6.770 * r + 22.698 * r**2 - 16.670 * r**3) * h
+    tension += (11.357 + 15.665 * r - 60.929 * r**2 + 41.501 * r**3) * h**2
+    bending = 3.0 + (-6.250 - 0.585 * r + 3.115 * r**2) * h + (41.000 - 1.071 * r - 6.746 * r**2) * h**2
+    bending += (-45.000 + 1.389 * r + 13.889 * r**2) * h**3
+    area, second = math.pi * (5.0**2 - 2.5**2) / 4.0, math.pi * (5.0**4 - 2.5**4) / 64.0
+    expected = tension * 6.0 / area + bending * 40.0 * 2.5 / second + 4.0 * 5.0 * 2.5 / (2.0 * second)
+    assert hole.estimate == pytest.approx(expected, rel=1e-9)
+
+
+def test_shoulder_factors_are_the_handbooks():
+    """Roark, 8th ed., table 17.1, case 16: D/d = 1.5, r/d = 0.25, hence h/r = 1 and 2h/D = 1/3, worked by hand."""
+    s = 1.0 / 3.0
+    tension = 1.984 - 2.063 * s + 1.931 * s**2 - 0.855 * s**3
+    bending = 2.022 - 2.468 * s + 2.091 * s**2 - 0.648 * s**3
+    torsion = 1.613 - 1.853 * s + 2.052 * s**2 - 0.804 * s**3
+    assert shoulder_factors(4.0, 1.0, 1.0) == pytest.approx((tension, bending, torsion), rel=1e-12)
