@@ -175,6 +175,8 @@ def check(
         fidelity = "solid"  # a link that beam theory decides has no mesh that CalculiX could be given
     parsed = read_case(case, overrides or ())
     effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
+    if second_opinion and fidelity == "auto":
+        fidelity = "solid"  # of which there is a second opinion alone
     result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)
     with TemporaryDirectory(prefix="alula-") as decks:
         if second_opinion:
