@@ -5,6 +5,8 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -34,11 +36,16 @@ def environment(scratch: Path | None = None, **more: str) -> dict[str, str]:
     return os.environ | own | ({} if scratch is None else {"TMPDIR": str(scratch)}) | more
 
 
-def start(*arguments: str, scratch: Path, **options: Any) -> subprocess.Popen[str]:
-    """Start the command, its temporary files in a folder of their own."""
+@contextmanager
+def start(*arguments: str, scratch: Path, **options: Any) -> Iterator[subprocess.Popen[str]]:
+    """Start the command, its temporary files in a folder of their own; it is killed at the end of the block."""
     scratch.mkdir(exist_ok=True)
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "stdin": subprocess.DEVNULL}
-    return subprocess.Popen([*COMMAND, *arguments], env=environment(scratch), text=True, **(pipes | options))
+    with subprocess.Popen([*COMMAND, *arguments], env=environment(scratch), text=True, **(pipes | options)) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
 
 
 def run(*arguments: str, scratch: Path, **options: Any) -> subprocess.CompletedProcess[str]:
