@@ -119,7 +119,7 @@ def cheap(part: accuracy_parts.Part, answer: Callable[[], accuracy_parts.Answer]
 
 
 def time_to(runs: list[dict[str, Any]], quantity: str) -> dict[str, float | None]:
-    """Target -> processor seconds of the cheapest run among the last ones, all of which stay within it; None for none."""
+    """Target -> processor seconds of the cheapest of the last runs that all stay within it; None for none."""
     found: dict[str, float | None] = {}
     for target in TARGETS:
         within = None

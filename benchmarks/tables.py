@@ -22,7 +22,7 @@ def stamp(record: Record) -> str:
     """When and on what; the load average tells whether the machine was quiet."""
     told = [str(record[key]) for key in ("date", "processor", "machine", "versions") if key in record]
     if "threads" in record:
-        told.append(f"{record['threads']} thread{'s' if record['threads'] != 1 else ''}")
+        told.append(f"{record['threads']} thread{'s' if str(record['threads']) != '1' else ''}")
     if "load_average" in record:
         told.append(f"load average before {record['load_average']:.1f}")
     return f"Measured: {'; '.join(told)}.\n"
