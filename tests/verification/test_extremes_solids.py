@@ -1,0 +1,165 @@
+"""Solid models at the edges: incompressible materials, slender and thin tubes, slivers; over the range: docs/stability.md."""
+
+import numpy as np
+import pytest
+from known_solutions import NU, kirsch, solved
+from solid_meshes import bar, box, ring
+
+from fea.elasticity import assemble_stiffness
+from fea.error_estimate import estimate_error
+from fea.frame import FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from fea.link_loads import LinkLoads, PinLoad
+from fea.quadrature import surface_quadrature
+from fea.solid import LARGEST_POISSON_RATIO, solve_solid
+from fea.solve import factorise
+from fea.space import displacement_space
+from fea.stress import stress_field
+from fea.supports import isostatic_supports
+from geometry.errors import CannotRunError, CaseError
+from geometry.part import Section
+from loads.bearing import WIDE
+
+
+def pulled(nu, **options):
+    """Bar pulled between its pins."""
+
+    def pin(name, x, force):
+        wrench = np.array([force, 0.0, 0.0, 0.0, 0.0, 0.0])
+        return PinLoad(name=name, centre=np.array([x, 0.0, 0.0]), diameter=1.5, wrench=wrench)
+
+    loads = LinkLoads(name="pull", pins=(pin("A", 0.0, -10.0), pin("B", 20.0, 10.0)))
+    return solve_solid(
+        bar(),
+        E=2900.0,
+        nu=nu,
+        density=1e-9,
+        loads=[loads],
+        line=("bore:A", "bore:B"),
+        laws=(WIDE,),
+        threads=1,
+        **options,
+    )
+
+
+def test_poisson_ratio_is_refused_beyond_its_boundary():
+    for nu, noted in ((0.38, False), (0.495, True), (LARGEST_POISSON_RATIO, True)):
+        found = pulled(nu)
+        assert any("Poisson" in note for note in found.notes) == noted
+    with pytest.raises(CaseError, match="poissons_ratio: it is 0.49995"):
+        pulled(0.49995)
+
+
+def test_two_level_solver_says_that_it_stalls():
+    with pytest.raises(CannotRunError, match=r"conjugate gradients|leaves an error|iterations"):
+        pulled(LARGEST_POISSON_RATIO, method="two-level")
+
+
+def bore_displacement(nu, order):
+    """Lamé's tube in plane strain, radii 1 and 2: radial displacement of the bore over the exact one."""
+    space = displacement_space(ring(1.0, 2.0, 0.5, around=16, radial=4, layers=2), order=order)
+    bore = surface_quadrature(space, "bore:A")
+    load = bore.load_vector(-10.0 * bore.normals, len(space.nodes))
+    # Both ends stay in their planes; rigid motions in the plane are held by three unknowns.
+    ends = np.flatnonzero(np.abs(np.abs(space.nodes[:, 2]) - 0.25) < 1e-9)
+    on = [int(np.argmin(np.linalg.norm(space.nodes - p, axis=1))) for p in ([2.0, 0.0, 0.25], [-2.0, 0.0, 0.25])]
+    fixed = np.unique([*(3 * ends + 2), 3 * on[0] + 1, 3 * on[1] + 1, 3 * on[0]])
+    load[fixed] = 0.0
+    K = assemble_stiffness(space, E=2900.0, nu=nu).with_fixed(fixed)
+    U = factorise(K, threads=1).solve(load).reshape(-1, 3)
+    radius = np.hypot(*space.nodes[:, :2].T)
+    inner = np.abs(radius - 1.0) < 1e-8
+    direction = space.nodes[inner, :2] / radius[inner, None]
+    moved = (direction * (U[inner, :2] - (U[on[0], :2] + U[on[1], :2]) / 2.0)).sum(axis=1).mean()
+    return moved / ((1.0 + nu) * 10.0 / (3.0 * 2900.0) * (5.0 - 2.0 * nu))
+
+
+def test_linear_elements_lock_and_quadratic_ones_are_bounded():
+    assert bore_displacement(0.3, 1) == pytest.approx(1.0, abs=0.07)
+    assert bore_displacement(0.4999, 1) < 0.85
+    for nu in (0.3, 0.45, 0.49):
+        assert bore_displacement(nu, 2) == pytest.approx(1.0, abs=2e-3)
+    assert bore_displacement(LARGEST_POISSON_RATIO, 2) == pytest.approx(1.0, abs=0.035)
+
+
+def sliver(height):
+    """Box beside a hole, one inner node moved until an element has that share of its height."""
+    mesh = box((1.2, 0.0, 0.0), (2.2, 1.0, 1.0), (3, 3, 3))
+    inner = int(np.argmin(np.linalg.norm(mesh.points - [1.2 + 1 / 3, 1 / 3, 1 / 3], axis=1)))
+    cell = mesh.cells[(mesh.cells == inner).any(axis=1)][0]
+    a, b, c = mesh.points[cell[cell != inner]]
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal)
+    mesh.points[inner] -= (1.0 - height) * ((mesh.points[inner] - a) @ normal) * normal
+    return mesh
+
+
+@pytest.mark.parametrize("height", [1.0, 1e-4, 1e-8])
+def test_sliver_changes_neither_answer_nor_estimate(height):
+    reference = estimate(sliver(1e-2))
+    assert estimate(sliver(height)) == pytest.approx(reference, rel=0.15)
+
+
+def estimate(mesh):
+    space, U = solved(mesh, kirsch)
+    return estimate_error(stress_field(space, U, E=2900.0, nu=NU), U, E=2900.0, nu=NU).relative
+
+
+def test_flat_element_is_refused():
+    with pytest.raises(CannotRunError, match="flat"):
+        displacement_space(sliver(1e-13))
+
+
+def flexure(ratio):
+    """Energy error of the solver for a tube ``ratio`` times as long as wide, bent by a moment."""
+    length = 2.0 * ratio
+    space = displacement_space(ring(0.5, 1.0, length, around=12, radial=1, layers=40))
+    ends = surface_quadrature(space, "top:A", "bottom:A")
+    traction = np.zeros_like(ends.x)
+    traction[..., 2] = ends.x[..., 0] * ends.normals[..., 2]
+    load = ends.load_vector(traction, len(space.nodes))
+    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    load[fixed] = 0.0
+    return factorise(assemble_stiffness(space, E=2900.0, nu=NU).with_fixed(fixed), threads=1).solved(load).error
+
+
+def test_slenderness_beyond_rounding_is_refused():
+    assert flexure(100.0) < 1e-6
+    with pytest.raises(CannotRunError, match="slenderness"):
+        flexure(30_000.0)
+
+
+@pytest.mark.parametrize("ratio", [2, 10, 100, 1000])
+@pytest.mark.parametrize("wall", [0.5, 0.1, 0.01])
+def test_frame_is_timoshenkos_beam(ratio, wall):
+    inner, length, nu = 1.0 - wall, 2.0 * ratio, 0.38
+    second = np.pi / 4.0 * (1.0 - inner**4)
+    section = Section(
+        area=np.pi * (1.0 - inner**2), i_y=second, i_z=second, torsion=2.0 * second, half_y=1.0, half_z=1.0, round=True,
+        radius_ratio=inner,
+    )  # fmt: skip
+    model = FrameModel(
+        nodes=np.array([[0.0, 0.0, 0.0], [length, 0.0, 0.0]]),
+        elements=(FrameElement(nodes=(0, 1), section=section, young=2900.0, poisson=nu),),
+        supports=(Support(node=0),),
+        loads=(NodeLoad(node=1, wrench=np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])),),
+    )
+    shear = 2900.0 / (2.0 * (1.0 + nu)) * section.area * section.shear_coefficient(nu)
+    exact = length**3 / (3.0 * 2900.0 * second) + length / shear
+    assert solve_frame(model).displacements[1, 1] == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1e3, 1e6])
+def test_frame_of_two_materials(ratio):
+    section = Section(area=8.0, i_y=2.0, i_z=3.0, torsion=4.0, half_y=1.0, half_z=1.0, round=False)
+    model = FrameModel(
+        nodes=np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [200.0, 0.0, 0.0]]),
+        elements=tuple(
+            FrameElement(nodes=(i, i + 1), section=section, young=young, poisson=0.3)
+            for i, young in enumerate((2900.0, 2900.0 * ratio))
+        ),
+        supports=(Support(node=0), Support(node=2)),
+        loads=(NodeLoad(node=1, wrench=np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])),),
+    )
+    found = solve_frame(model)
+    assert -found.reactions[0, 0] == pytest.approx(1.0 / (1.0 + ratio), rel=1e-10)
+    assert found.residual < 1e-14
