@@ -12,7 +12,7 @@ from geometry.errors import CaseError
 
 
 def checked(effort=None, **changes):
-    result = check_case(arm_case.arm(**changes), effort=effort, threads=1)
+    result = check_case(arm_case.arm(**changes), fidelity="solid", effort=effort, threads=1)
     load_case = result.load_cases["tip"]
     return load_case.links["arm"], load_case.checks[0]
 
