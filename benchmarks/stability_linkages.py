@@ -255,7 +255,7 @@ def synthesis() -> Row:
     axes.loglog([row[1] for row in kept], [2.2e-16 * row[1] for row in kept], "k:", label="rounding × condition number")
     for at, what in ((1e6, "warned"), (1e12, "refused")):
         axes.axvline(at, color="r", lw=1, ls="--")
-        axes.text(at * 1.3, 1e-15, what, rotation=90, color="r", fontsize=8)
+        axes.text(at / 4.0, 1e-13, what, rotation=90, color="r", fontsize=8)
     axes.set(xlabel="condition number", ylabel="relative error of the lengths")
     axes.legend(fontsize=8)
     head = ("spread of the points [rad]", "condition number", "error of the lengths", "the program", "time [ms]")

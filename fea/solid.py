@@ -111,8 +111,9 @@ def solve_solid(
     order     of the displacements, 2 or 1
     method    solver, by default the one with the least work that fits; ``threads`` bounds its threads
 
-    Raises ``CaseError`` for a Poisson's ratio above ``LARGEST_POISSON_RATIO``, ``CannotRunError`` for loads that do not balance (to 0.1 % of the load), reactions above 1 %,
-    surfaces that the mesh lacks, a mesh with folded elements, or a solver that fails.
+    Raises ``CaseError`` for a Poisson's ratio above ``LARGEST_POISSON_RATIO``, ``CannotRunError`` for loads that do
+    not balance (to 0.1 % of the load), reactions above 1 %, surfaces that the mesh lacks, a mesh with folded elements,
+    or a solver that fails.
     """
     if nu > LARGEST_POISSON_RATIO:
         raise CaseError(
