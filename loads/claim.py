@@ -51,7 +51,8 @@ def read_printed(text: str) -> Printed | None:
     sign, digits, unit = match[1], match[2], match[3] or ""
     mantissa, _, exponent = digits.lower().partition("e")
     number = float(sign + digits)
-    if len(digits) > 32 or not math.isfinite(number):
+    # The exponent by itself: that of a zero is not in the number.
+    if len(digits) > 32 or not math.isfinite(number) or abs(int(exponent or 0)) > 300:
         raise CaseError(f"published '{printable(text)}': the number is too long or too large; write it as printed")
     decimals = len(mantissa.partition(".")[2])
     half = 0.5 * 10.0 ** (int(exponent or 0) - decimals)

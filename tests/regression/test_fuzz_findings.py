@@ -7,6 +7,7 @@ import pytest
 
 from geometry.errors import CaseError
 from loads.case_file import read_case, read_text, validate
+from loads.claim import read_printed
 
 WING = "owl-wing-flight"
 
@@ -42,3 +43,13 @@ def test_halves_of_surrogate_pairs_in_tables() -> None:
     with pytest.raises(CaseError, match=r"^title .*control characters"):
         validate(tables | {"title": "a\udce7b"})
     assert validate(tables).title
+
+
+@pytest.mark.parametrize("digits", ["0e400", "0.00E+309", "1e-999"])
+def test_a_published_zero_with_a_huge_exponent(digits: str) -> None:
+    """Zero times ten to the 400 is a finite number, but half a unit of its last digit is not: an OverflowError."""
+    with pytest.raises(CaseError, match="too long or too large"):
+        read_printed(f"{digits} N")
+    found = read_printed("0e3 N")
+    assert found is not None
+    assert (found.number, found.half) == (0.0, 500.0)

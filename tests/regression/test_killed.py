@@ -93,8 +93,15 @@ def test_a_report_killed_at_any_time_is_whole_or_not_there(tmp_path: Path) -> No
 
 
 def _children(pid: int) -> list[int]:
-    done = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
-    return [int(word) for word in done.stdout.split()]
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            parent = int(status.read_text().rpartition(")")[2].split()[1])
+        except OSError:  # it has ended meanwhile
+            continue
+        if parent == pid:
+            found.append(int(status.parent.name))
+    return found
 
 
 def _meshing(process: subprocess.Popen[str]) -> list[int]:
