@@ -27,7 +27,7 @@ from fea.solid_result import link_task, solid_result
 from fea.verdict import CheckOutcome, overall
 from geometry.errors import CaseError
 from geometry.material import Material
-from geometry.pose import Pose
+from geometry.pose import NEAR_DEAD_POINT, Pose
 from loads.accuracy import parse_accuracy
 from loads.actions import PartMass, needs_masses
 from loads.applied import Load
@@ -42,8 +42,6 @@ from loads.statics import Reactions
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "submodel", "solid")
 FORCED_BEAM = ("beam", "frame")
-NEAR_DEAD_POINT = 0.02
-"""Smallest singular value of the scaled Jacobian below which the run warns: on the owl wing, 2° off a dead point."""
 BEAM_HOLDS = ("nothing: beam theory without stress concentration",)
 
 
