@@ -5,10 +5,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from fea.check import NEAR_DEAD_POINT
 from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.verdict import Verdict
 from geometry.material import Material
+from geometry.pose import NEAR_DEAD_POINT
 from reports.loads import air_record, anchor_record
 from reports.mechanism import design_of
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
