@@ -61,7 +61,7 @@ def _narrowed(
         return float(gap @ gap), 2.0 * gap @ slope
 
     constraint = {"type": "eq", "fun": lambda x: rows(x, closed)[0], "jac": lambda x: rows(x, closed)[1]}
-    found: Any = minimize(  # type: ignore[call-overload]
+    found: Any = minimize(
         objective,
         start[free] / weights,
         jac=True,
