@@ -3,12 +3,16 @@
 import base64
 import math
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
+from fea.claims import ClaimResult, check_claims
 from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.verdict import Verdict
 from geometry.material import Material
 from geometry.pose import NEAR_DEAD_POINT
+from loads.case_file import built_in_cases
+from reports.claims import as_records, count
 from reports.loads import air_record, anchor_record
 from reports.mechanism import design_of
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
@@ -47,6 +51,19 @@ _PROPERTIES = (
     ("yield_strength", "yield strength", "MPa", 1.0),
     ("ultimate_strength", "ultimate strength", "MPa", 1.0),
 )
+
+
+def _claims(result: CheckResult) -> dict[str, Any] | None:
+    """Findings on what the source of a case published; None where it published nothing that is entered."""
+    if not result.case.claims and result.name not in built_in_cases():
+        return None
+    found = _findings(result.name)
+    return {"count": count(found), "rows": as_records(found)} if found else None
+
+
+@cache
+def _findings(name: str) -> tuple[ClaimResult, ...]:
+    return check_claims(name, fidelity="beam")
 
 
 def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
@@ -96,6 +113,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         links=[_link(result, link, figures) for link in first.links],
         agreement=AGREEMENT,
         materials=_materials(result),
+        claims=_claims(result),
         not_covered=NOT_COVERED,
         design=design_of(result.case),
         version=alula_version(),

@@ -150,3 +150,14 @@ def test_a_case_without_the_optional_parts_renders(result):
 
 def test_no_zero_has_a_sign(page):
     assert not re.search(r"−0(\.0+)?(?![.\d])", page.words)
+
+
+def test_what_the_source_published_stands_in_the_report(result, monkeypatch) -> None:
+    from reports import html
+
+    monkeypatch.setattr(html, "built_in_cases", lambda: ("owl-wing-static",))
+    page = html.render(replace(result, name="owl-wing-static"), {})
+    assert 'id="claims"' in page
+    assert "does not hold" in page
+    assert "claims: " in page
+    assert 'id="claims"' not in html.render(replace(result, name="elsewhere.toml"), {})
