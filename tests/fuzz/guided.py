@@ -5,6 +5,7 @@ python -m fuzz.guided TARGET INPUTS SEED FOLDER
 
 import os
 import random
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -54,6 +55,8 @@ def main(name: str, inputs: str, start: str, folder: str) -> None:
     targets.warm()
     guard.install()
     target, most = targets.TARGETS[name], int(inputs)
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    corpus = tempfile.mkdtemp(prefix="alula-corpus-")
     findings = Findings(engine="atheris", target=name, folder=Path(folder))
 
     def one(data: bytes) -> None:
@@ -69,6 +72,7 @@ def main(name: str, inputs: str, start: str, folder: str) -> None:
         if findings.tried >= most or findings.full:
             findings.write()
             targets.clean()
+            shutil.rmtree(corpus, ignore_errors=True)
             sys.stdout.flush()
             os._exit(0)
 
@@ -78,26 +82,25 @@ def main(name: str, inputs: str, start: str, folder: str) -> None:
             return bytes(atheris.Mutate(data, max_size))
         return mutate.text(rng, data)[:max_size]
 
-    with tempfile.TemporaryDirectory(prefix="alula-corpus-") as corpus:
-        for i, seed in enumerate(_seeded(name)):
-            (Path(corpus) / str(i)).write_bytes(seed)
-        # Its own time limit is wall time on a busy machine; the guard's is processor time.
-        options = [
-            f"-max_len={LONGEST[name]}",
-            f"-seed={start}",
-            "-timeout=120",
-            "-rss_limit_mb=4096",
-            "-verbosity=0",
-            "-print_final_stats=0",
-            "-len_control=0",
-            f"-artifact_prefix={folder}/",
-        ]
-        arguments = [sys.argv[0], *options, corpus]
-        if name == "case_bytes":
-            atheris.Setup(arguments, one, custom_mutator=mutated)
-        else:
-            atheris.Setup(arguments, one)
-        atheris.Fuzz()
+    for i, seed in enumerate(_seeded(name)):
+        (Path(corpus) / str(i)).write_bytes(seed)
+    # Its own time limit is wall time on a busy machine; the guard's is processor time.
+    options = [
+        f"-max_len={LONGEST[name]}",
+        f"-seed={start}",
+        "-timeout=120",
+        "-rss_limit_mb=4096",
+        "-verbosity=0",
+        "-print_final_stats=0",
+        "-len_control=0",
+        f"-artifact_prefix={folder}/",
+    ]
+    arguments = [sys.argv[0], *options, corpus]
+    if name == "case_bytes":
+        atheris.Setup(arguments, one, custom_mutator=mutated)
+    else:
+        atheris.Setup(arguments, one)
+    atheris.Fuzz()
 
 
 if __name__ == "__main__":

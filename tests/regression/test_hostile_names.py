@@ -74,9 +74,18 @@ class _Page(html.parser.HTMLParser):
         self.text.append(data)
 
 
+def _written(value: Any) -> str:
+    """Return a value as TOML, on one line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(key)} = {_written(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_written, value)) + "]"
+    return json.dumps(value)
+
+
 @pytest.fixture(scope="module")
-def hostile() -> Case:
-    """The owl wing, with every free text hostile."""
+def hostile(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, str]:
+    """The owl wing with every free text hostile, and the path of its file."""
     tables = _tables()
     tables["title"] = tables["source"] = tables["description"] = HOSTILE
     tables["assumptions"] = [HOSTILE]
@@ -98,13 +107,23 @@ def hostile() -> Case:
         part["material"] = "own"
     tables["claims"] = [
         {"name": "a", "stated": "1 N + 1 N", "published": "3 N", "source": HOSTILE, "note": HOSTILE + "\n| x |"},
-        {"name": "b", "stated": "1 N", "published": HOSTILE[:200], "source": HOSTILE, "not_stated": {"x": HOSTILE}},
+        {
+            "name": "b",
+            "stated": "below(2, 1)",
+            "published": HOSTILE[:200],
+            "source": HOSTILE,
+            "not_stated": {"x": HOSTILE},
+        },
     ]
-    return validate(tables)
+    path = tmp_path_factory.mktemp("cases") / "<script>{{7*7}} [red] & x.toml"
+    path.write_text("\n".join(f"{key} = {_written(value)}" for key, value in tables.items()), encoding="utf-8")
+    case = read_case(str(path))
+    assert case.title == HOSTILE
+    return case, str(path)
 
 
-def test_the_report_shows_hostile_text_as_text(hostile: Case) -> None:
-    result = check_case(hostile, name=HOSTILE, fidelity="beam")
+def test_the_report_shows_hostile_text_as_text(hostile: tuple[Case, str]) -> None:
+    result = check_case(hostile[0], name=hostile[1], fidelity="beam")
     page = _Page()
     page.feed(render(result, {}))
     assert "script" not in page.tags
@@ -124,34 +143,26 @@ def test_the_control_finds_a_script() -> None:
     assert any(key == "onerror" for key, _ in page.attributes)
 
 
-def test_json_and_terminal_show_hostile_text_as_text(hostile: Case) -> None:
-    result = check_case(hostile, name=HOSTILE, fidelity="beam")
+def test_json_and_terminal_show_hostile_text_as_text(hostile: tuple[Case, str]) -> None:
+    result = check_case(hostile[0], name=hostile[1], fidelity="beam")
     record = json.loads(as_json(result))
     assert record["title"] == HOSTILE
-    assert record["case"] == HOSTILE
+    assert record["case"] == hostile[1]
     screen = io.StringIO()
     print_result(result, Console(file=screen, width=10_000, force_terminal=True, color_system="truecolor"))
     assert "[red]x[/] [/nothing]" in screen.getvalue()
 
 
-def test_only_the_output_folder_is_written(hostile: Case, tmp_path: Path) -> None:
+def test_only_the_output_folder_is_written(hostile: tuple[Case, str], tmp_path: Path) -> None:
     inner = tmp_path / "inner"
-    write_report(check_case(hostile, name="../../x", fidelity="beam"), inner / "out")
+    write_report(check_case(hostile[0], name=hostile[1], fidelity="beam"), inner / "out")
     assert [p.name for p in tmp_path.iterdir()] == ["inner"]
     assert [p.name for p in inner.iterdir()] == ["out"]
 
 
-def test_claims_show_hostile_text_as_text(hostile: Case, tmp_path: Path) -> None:
-    path = tmp_path / "case.toml"
-    claims = "\n".join(
-        f"[[claims]]\nname = {c.name!r}\nstated = '1 N'\npublished = '3 N'\nsource = {json.dumps(c.source)}\n"
-        f"note = {json.dumps(c.note)}\n"
-        for c in hostile.claims
-    )
-    text = read_text("ornithopter")[0]
-    path.write_text(text + "\n" + claims, encoding="utf-8")
-    results = [r for r in check_claims(str(path)) if r.claim.name in ("a", "b")]
-    assert len(results) == 2
+def test_claims_show_hostile_text_as_text(hostile: tuple[Case, str]) -> None:
+    results = check_claims(hostile[1])
+    assert [result.claim.name for result in results] == ["a", "b"]
     page = as_markdown({HOSTILE: results}, {HOSTILE: HOSTILE})
     assert "<script" not in page
     assert "<img" not in page
