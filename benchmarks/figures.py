@@ -247,16 +247,17 @@ def unknowns_of(record: dict[str, Any]) -> dict[str, int]:
     found = {}
     for row in record["rows"]:
         told = [r["answer"]["unknowns"] for r in row["runs"] if "unknowns" in r.get("answer", {})]
-        found.setdefault(row["size"], int(row["size"].rstrip("k")) * 1000)
+        found.setdefault(row["size"], int(row["size"].split("k")[0]) * 1000)
         if told:
             found[row["size"]] = told[0]
     return found
 
 
 def peers(record: dict[str, Any]) -> plt.Figure:
-    """Time and memory of every program; a cross stands where one ended without an answer."""
+    """Time and memory of every program; a cross stands where one ended without an answer. Straight sides alone."""
     figure, axes = plt.subplots(1, 2, figsize=(12, 5))
     unknowns = unknowns_of(record)
+    record = record | {"rows": [r for r in record["rows"] if not r["size"].endswith("-curved")]}
     for ax, (key, label) in zip(axes, (("wall_s", "wall time [s]"), ("peak_gb", "peak memory [GB]")), strict=True):
         top = max((r[key] for r in record["rows"] if key in r), default=1.0)
         ended = 0

@@ -1,4 +1,10 @@
-"""The same bar with NGSolve. Usage: peer_ngsolve.py MESH.npz direct|bddc THREADS. Needs numpy and ngsolve alone."""
+"""The same bar with NGSolve. Usage: peer_ngsolve.py MESH.npz direct|bddc THREADS. Needs numpy and ngsolve alone.
+
+Its fastest settings of those tried at 160,000 unknowns. BDDC takes edges out of its coarse (wirebasket) space: with
+them it factorises nearly the whole matrix, four times as slow. One triangle of the symmetric matrix is stored: three
+quarters of the time. The direct solver is its own sparse Cholesky: MKL PARDISO through NGSolve took longer and twice
+the memory.
+"""
 
 import json
 import sys
@@ -55,13 +61,13 @@ def main() -> None:
     SetNumThreads(threads)
     with TaskManager():
         mesh, area = read(sys.argv[1])
-        space = VectorH1(mesh, order=2, dirichlet="start")
+        space = VectorH1(mesh, order=2, dirichlet="start", wb_withedges=False)
         u, v = space.TnT()
 
         def stress(strain):
             return LAME * Trace(strain) * Id(3) + 2 * SHEAR * strain
 
-        form = BilinearForm(space, symmetric=True)
+        form = BilinearForm(space, symmetric=True, symmetric_storage=True)
         form += InnerProduct(stress(Sym(Grad(u))), Sym(Grad(v))) * dx
         load = LinearForm(space)
         load += CoefficientFunction((0, 0, -1.0 / area)) * v * ds("end")

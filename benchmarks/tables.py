@@ -63,7 +63,8 @@ def peers(record: Record) -> str:
     own = {r["size"]: r for r in record["rows"] if r["program"] == "alula" and "wall_s" in r}
     rows = []
     for row in record["rows"]:
-        name = [f"{unknowns[row['size']]:,}, {row['program']}"]
+        sides = ", curved" if row["size"].endswith("-curved") else ""
+        name = [f"{unknowns[row['size']]:,}{sides}, {row['program']}"]
         ours = own.get(row["size"])
         if "end" in row:
             rows.append([*name, row["end"], "", "", "", "", ""])
