@@ -5,3 +5,9 @@ from hypothesis import settings
 # No deadline per example: a first call may import a library or build a mesh, and machines that test are busy.
 settings.register_profile("unhurried", parent=settings(), deadline=None)
 settings.load_profile("unhurried")
+
+
+def pytest_generate_tests(metafunc):
+    """Run the tests of ``benchmark_tests`` on each of the importing module's BENCHMARKS."""
+    if "benchmark" in metafunc.fixturenames:
+        metafunc.parametrize("benchmark", metafunc.module.BENCHMARKS, ids=str)

@@ -16,7 +16,7 @@ reach a third of the deflection at most.
 """
 
 import numpy as np
-import pytest
+from benchmark_tests import *  # noqa: F403
 from solid_problems import Benchmark, Problem, Reading, even, graded, single
 
 PLANE_STRAIN = (240.565, 0.4999)
@@ -83,24 +83,6 @@ BENCHMARKS = (
         within={"coarse": 0.05, "converged": 0.01},
     ),
 )
-
-
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_coarse(benchmark):
-    benchmark.check("coarse")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_converged(benchmark):
-    benchmark.check("converged")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_band_and_estimate(benchmark):
-    for study in benchmark.studies():
-        study.check()
 
 
 def test_linear_tetrahedra_lock():

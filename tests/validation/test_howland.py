@@ -7,7 +7,7 @@ not depend on Poisson's ratio, so plane strain serves: one layer of elements bet
 """
 
 import numpy as np
-import pytest
+from benchmark_tests import *  # noqa: F403
 from solid_problems import Benchmark, Problem, Reading, block, even, graded, joined
 
 TARGETS = {0.1: 2.734, 0.3: 2.362, 0.5: 2.174}
@@ -66,21 +66,3 @@ BENCHMARKS = tuple(
     )
     for ratio, target in TARGETS.items()
 )
-
-
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_coarse(benchmark):
-    benchmark.check("coarse")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_converged(benchmark):
-    benchmark.check("converged")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_band_and_estimate(benchmark):
-    for study in benchmark.studies():
-        study.check()

@@ -6,7 +6,7 @@ Timoshenko-Goodier, Theory of Elasticity, 3rd ed., art. 28; Code_Aster SSLV04 (V
 """
 
 import numpy as np
-import pytest
+from benchmark_tests import *  # noqa: F403
 from solid_problems import Benchmark, Problem, Reading, even, graded, single
 
 A, B, PRESSURE, E, NU = 100.0, 200.0, 60.0, 200_000.0, 0.3
@@ -83,21 +83,3 @@ def test_the_closed_form_is_in_equilibrium_with_the_pressure():
     at = bore.space.nodes[bore.nodes_on("u0")]
     s = exact_stress(at, held=True)
     np.testing.assert_allclose((s[:, 0] * at[:, 0] + s[:, 3] * at[:, 1]) / A, -PRESSURE * at[:, 0] / A, atol=1e-9)
-
-
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_coarse(benchmark):
-    benchmark.check("coarse")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_converged(benchmark):
-    benchmark.check("converged")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_band_and_estimate(benchmark):
-    for study in benchmark.studies():
-        study.check()

@@ -21,6 +21,7 @@ import math
 
 import numpy as np
 import pytest
+from benchmark_tests import *  # noqa: F403
 from solid_problems import Benchmark, Problem, Reading, even, single
 
 
@@ -133,21 +134,3 @@ BENCHMARKS = (
 
 def test_closed_form_of_the_curved_beam():
     assert closed_form() == pytest.approx(0.088566, rel=1e-4)
-
-
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_coarse(benchmark):
-    benchmark.check("coarse")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_converged(benchmark):
-    benchmark.check("converged")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_band_and_estimate(benchmark):
-    for study in benchmark.studies():
-        study.check()

@@ -13,7 +13,7 @@ LE10  thickness 0.6 m, 1 MPa on top, ux = 0 on x = 0, uy = 0 on y = 0, ux = uy =
 """
 
 import numpy as np
-import pytest
+from benchmark_tests import *  # noqa: F403
 from solid_problems import Benchmark, Problem, Reading, even, graded, single
 
 E, NU = 210_000.0, 0.3
@@ -94,21 +94,3 @@ BENCHMARKS = (
         within={"coarse": 0.04, "converged": 0.02},
     ),
 )
-
-
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_coarse(benchmark):
-    benchmark.check("coarse")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_converged(benchmark):
-    benchmark.check("converged")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_band_and_estimate(benchmark):
-    for study in benchmark.studies():
-        study.check()

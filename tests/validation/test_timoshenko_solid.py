@@ -8,6 +8,7 @@ as in Saint-Venant's solution. A root that is clamped whole deflects 0.5 % less,
 
 import numpy as np
 import pytest
+from benchmark_tests import *  # noqa: F403
 from solid_problems import Benchmark, Problem, Reading, even, single
 
 E, NU, LENGTH, OUTER, INNER, FORCE = 2900.0, 0.38, 88.0, 2.5, 1.25, 1.0
@@ -60,21 +61,3 @@ BENCHMARKS = (
 
 def test_closed_form():
     assert exact() == pytest.approx((2.732449, 2.723376, 0.626817), rel=1e-6)
-
-
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_coarse(benchmark):
-    benchmark.check("coarse")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_converged(benchmark):
-    benchmark.check("converged")
-
-
-@pytest.mark.converged
-@pytest.mark.parametrize("benchmark", BENCHMARKS, ids=str)
-def test_band_and_estimate(benchmark):
-    for study in benchmark.studies():
-        study.check()
