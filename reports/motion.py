@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from geometry.motion import Motion
 from loads.case_motion import CaseMotion, with_inertia
+from reports.joint_paths import moving_points, path_length
 from reports.mechanism import design_lines, design_record
 
 Real = NDArray[np.float64]
 
 MOTION_SCHEMA_VERSION = 1
 UNITS = {"angle": "deg", "length": "mm", "force": "N", "moment": "N*mm", "time": "s", "power": "W"}
-_SAME = 1e-9
 
 
 def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
@@ -69,7 +69,7 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
                 }
                 for link in motion.linkage.moving
             },
-            "points": {label: {"path_length": _path_length(xy)} for label, xy in moving_points(motion).items()},
+            "points": {label: {"path_length": path_length(xy)} for label, xy in moving_points(motion).items()},
         },
         "drive": {
             "link": result.drive.link,
@@ -171,25 +171,6 @@ def _text(value: float | None, scale: float) -> str:
     if value is None:
         return "unbounded"
     return f"{value:.4g}" if abs(value) > 1e-12 * scale else "0"
-
-
-def moving_points(motion: Motion) -> dict[str, Real]:
-    """Paths (n, 2) [mm] of all points that move, by name; ``link.point`` where points of one name differ."""
-    groups: dict[str, list[tuple[str, Real]]] = {}
-    for link, point in motion.closure.point_names:
-        groups.setdefault(point, []).append((link, motion.position(link, point)))
-    found: dict[str, Real] = {}
-    near = _SAME * motion.linkage.longest
-    for point, members in groups.items():
-        same = all(float(np.max(np.abs(xy - members[0][1]))) <= near for _, xy in members)
-        for link, xy in members[:1] if same else members:
-            if float(np.max(np.abs(xy - xy[0]))) > near:
-                found[point if same else f"{link}.{point}"] = xy
-    return found
-
-
-def _path_length(xy: Real) -> float:
-    return float(np.sum(np.linalg.norm(np.diff(xy, axis=0), axis=1)))
 
 
 def _base(motion: Motion) -> dict[str, Real]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from geometry.motion import Motion
-from reports.motion import moving_points
+from reports.joint_paths import moving_points
 from reports.motion_figures import COLOURS, chains, ground, plane, quiet_glyphs
 
 Real = NDArray[np.float64]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from geometry.linkage import Linkage
 from geometry.motion import Motion
 from loads.case_motion import CaseMotion
-from reports.motion import moving_points
+from reports.joint_paths import moving_points
 
 Real = NDArray[np.float64]
 
