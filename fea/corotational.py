@@ -4,8 +4,15 @@ The model is that of ``fea.frame_model``, every beam divided into several co-rot
 (``fea.corotational_element``); strains are small, displacements and rotations are not. Forces keep their direction,
 and so do moments (a moment that keeps its axis in space does no path-independent work unless it turns about that
 axis: the tangent is then unsymmetric, and exact all the same). Pins turn with the links that carry them.
+
+A guide holds its pin at d · n = 0, d from the carrier's node to the pin's, n the normal that turns with the carrier's
+section there: the slot is a straight line on the deformed link, and the force of a pin that has slid along it has its
+moment about the carrier's node. Or it holds the pin's axis a, which turns with the pin's node, at a · n = 0. Its force
+is an unknown of its own (a Lagrange multiplier: Bathe, Finite Element Procedures, 1996, section 3.4.1), so that slots
+have neither play nor stiffness.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +20,7 @@ from numpy.typing import NDArray
 
 from fea.corotational_element import CorotationalElements, ElementResponse
 from fea.frame import solve_frame
-from fea.frame_model import FrameModel
+from fea.frame_model import FrameModel, Guide
 from fea.frame_system import FrameSystem, refuse_mechanism
 from fea.kinematic_chain import KinematicChain, Step, present_axes, turned
 from geometry.errors import CannotRunError
@@ -46,8 +53,10 @@ class CorotationalSolution:
     rotations       (n, 3, 3) rotation matrices of the nodes
     axes            (m, 3, 3) columns: each element's x, y, z on the deformed shape, in global axes
     end_forces      (m, 2, 6) what acts on both ends of each element, in those axes [N, N·mm]
-    joint_wrenches  (n, 6) what ties and supports together do to the part of the frame at each node, global axes
-    reactions       (n, 6) what the supports do to the frame; of tied nodes the one with most supports has it
+    joint_wrenches  (n, 6) what ties, guides and supports together do to the part of the frame at each node, global axes
+    reactions       (n, 6) what supports and guides on the ground do to the frame; of tied nodes the one with most
+                    supports has it
+    guide_forces    (g,) what each guide's carrier takes along its turned normal [N], or about axis x normal [N·mm]
     residual        largest force left over, over the sum of the loads (moments over the frame's size)
     steps, iterations  load steps taken and Newton iterations over all of them
     stable          True where every small motion stores energy (on the symmetric part of the tangent): otherwise the
@@ -62,6 +71,7 @@ class CorotationalSolution:
     end_forces: Floats
     joint_wrenches: Floats
     reactions: Floats
+    guide_forces: Floats
     residual: float
     steps: int
     iterations: int
@@ -135,11 +145,12 @@ def solve_large_displacement(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _State:
-    """Displacements (n, 3), rotations of nodes (n, 3, 3) and of the attachments of the elements (m, 2, 3, 3)."""
+    """Displacements (n, 3), rotations of nodes (n, 3, 3) and of attachments (m, 2, 3, 3), forces of guides (g,)."""
 
     displacements: Floats
     rotations: Floats
     attachments: Floats
+    guide_forces: Floats
 
 
 class _Path:
@@ -155,9 +166,13 @@ class _Path:
             displacements=np.zeros((n, 3)),
             rotations=np.tile(np.eye(3), (n, 1, 1)),
             attachments=np.tile(np.eye(3), (m, 2, 1, 1)),
+            guide_forces=np.zeros(len(model.guides)),
         )
         self.scale = model.load_scale or 1.0
-        self.unit = np.where(self.chain.is_turn, 1.0 / model.size, 1.0)
+        stiffness = float(np.median(self.elements.stiffness[:, 0, 0]))
+        moving = np.where(self.chain.is_turn, 1.0 / model.size, 1.0)
+        self.gap_unit = np.array([1.0 / model.size if guide.axis is None else 1.0 for guide in model.guides])
+        self.unit = np.concatenate([moving, stiffness * model.size * self.gap_unit])
         self.reached = 0.0
         self.steps = self.iterations = 0
 
@@ -196,14 +211,14 @@ class _Path:
             self.iterations += 1
             if iteration == 0:
                 predicted = self._size(change)
-            turn = float(np.abs(change[self.chain.is_turn]).max(initial=0.0))
+            turn = float(np.abs(change[: self.chain.count][self.chain.is_turn]).max(initial=0.0))
             if not np.isfinite(change).all() or turn > _DIVERGED:
                 return None
             state = self._moved(state, change * min(1.0, _LARGEST_TURN / turn if turn > 0.0 else 1.0))
         return None
 
     def balance(self, state: _State, factor: float) -> tuple[Floats, Floats]:
-        """Out-of-balance forces (k,) and their derivative (k, k)."""
+        """Out-of-balance forces (k,) and gaps of the guides (g,), with their derivative (k + g, k + g)."""
         answer = self.respond(state, factor)
         return self.assemble(answer.forces, answer.tangent, state, factor)
 
@@ -231,8 +246,10 @@ class _Path:
         return min(8.0 * float(np.finfo(float).eps * (stretched + bent)) / self.scale, _MOST_ROUNDING)
 
     def measure(self, residual: Floats) -> float:
-        """Largest force left over, over the sum of the loads."""
-        return float(np.abs(residual * self.unit).max(initial=0.0)) / self.scale
+        """Largest force left over, over the sum of the loads; or gap of a guide, over the frame's size or in rad."""
+        count = self.chain.count
+        forces = float(np.abs(residual[:count] * self.unit[:count]).max(initial=0.0)) / self.scale
+        return max(forces, float(np.abs(residual[count:] * self.gap_unit).max(initial=0.0)))
 
     def _moved(self, state: _State, change: Floats) -> _State:
         places = self.chain.translations
@@ -245,31 +262,38 @@ class _Path:
             for end, steps in enumerate(ends):
                 axes = present_axes(steps, state.rotations)
                 attachments[i, end] = turned(steps, axes, change, state.attachments[i, end])
-        return _State(displacements=displacements, rotations=rotations, attachments=attachments)
+        return _State(
+            displacements=displacements,
+            rotations=rotations,
+            attachments=attachments,
+            guide_forces=state.guide_forces + change[self.chain.count :],
+        )
 
     def assemble(self, forces: Floats, tangents: Floats, state: _State, factor: float) -> tuple[Floats, Floats]:
-        """Out-of-balance forces (k,) and their derivative (k, k) from those of the elements."""
-        count = self.chain.count
-        residual, tangent = np.zeros(count), np.zeros((count, count))
+        """Out-of-balance forces and gaps (k + g,) and their derivative (k + g, k + g) from what the elements answer."""
+        count, size = self.chain.count, self.chain.count + len(self.model.guides)
+        residual, tangent = np.zeros(size), np.zeros((size, size))
         for i, pair in enumerate(self.pairs):
-            numbers: list[int] = []
-            columns: list[Floats] = []
-            for end, node in enumerate(pair):
-                steps = self.chain.ends[i][end]
-                axes = present_axes(steps, state.rotations)
-                for k, number in enumerate(self.chain.translations[node]):
-                    if number >= 0:
-                        numbers.append(int(number))
-                        columns.append(np.eye(12)[6 * end + k])
-                for step, axis in zip(steps, axes, strict=True):
-                    numbers.append(step.number)
-                    column = np.zeros(12)
-                    column[6 * end + 3 : 6 * end + 6] = axis
-                    columns.append(column)
-                _carry(tangent, steps, axes, forces[i, 6 * end + 3 : 6 * end + 6])
-            T = np.array(columns).reshape(-1, 12)
+            numbers, T = self._place(pair, self.chain.ends[i], state)
             np.add.at(residual, numbers, T @ forces[i])
-            np.add.at(tangent, (np.array(numbers)[:, None], np.array(numbers)), T @ tangents[i] @ T.T)
+            np.add.at(tangent, (numbers[:, None], numbers), T @ tangents[i] @ T.T)
+            for end, steps in enumerate(self.chain.ends[i]):
+                _carry(tangent, steps, present_axes(steps, state.rotations), forces[i, 6 * end + 3 : 6 * end + 6])
+        for j, guide in enumerate(self.model.guides):
+            force, gap, gradient, curvature = state.guide_forces[j], *_gap(guide, state)
+            nodes = [guide.carrier, guide.pin]
+            steps_of = [[] if node is None else self.chain.nodes[node] for node in nodes]
+            numbers, T = self._place(nodes, steps_of, state)
+            residual[count + j] = gap
+            np.add.at(residual, numbers, force * (T @ gradient))
+            np.add.at(tangent, (numbers[:, None], numbers), force * (T @ curvature @ T.T))
+            column = np.zeros(size)
+            np.add.at(column, numbers, T @ gradient)
+            tangent[:, count + j] += column
+            tangent[count + j] += column
+            for end, steps in enumerate(steps_of):
+                moment = force * gradient[6 * end + 3 : 6 * end + 6]
+                _carry(tangent, steps, present_axes(steps, state.rotations), moment)
         for load in self.model.loads:
             places = self.chain.translations[load.node]
             np.add.at(residual, places[places >= 0], -factor * load.wrench[:3][places >= 0])
@@ -278,6 +302,37 @@ class _Path:
             np.add.at(residual, [s.number for s in steps], -factor * (axes @ load.wrench[3:]))
             _carry(tangent, steps, axes, -factor * load.wrench[3:])
         return residual, tangent
+
+    def _place(
+        self, nodes: Sequence[int | None], chains: Sequence[list[Step]], state: _State
+    ) -> tuple[NDArray[np.int64], Floats]:
+        """Numbers (c,) of the unknowns that move two attachments, and (c, 12) how each moves them; None: the ground."""
+        numbers: list[int] = []
+        columns: list[Floats] = []
+        for end, (node, steps) in enumerate(zip(nodes, chains, strict=True)):
+            if node is None:
+                continue
+            for k, number in enumerate(self.chain.translations[node]):
+                if number >= 0:
+                    numbers.append(int(number))
+                    columns.append(np.eye(12)[6 * end + k])
+            for step, axis in zip(steps, present_axes(steps, state.rotations), strict=True):
+                numbers.append(step.number)
+                column = np.zeros(12)
+                column[6 * end + 3 : 6 * end + 6] = axis
+                columns.append(column)
+        return np.array(numbers, dtype=np.int64), np.array(columns).reshape(-1, 12)
+
+    def free(self, bordered: Floats) -> Floats:
+        """Scaled stiffness of the motions that the guides allow, from the bordered matrix (k + g, k + g)."""
+        from scipy.linalg import null_space
+
+        count = self.chain.count
+        scaled = bordered * np.outer(self.unit, self.unit)
+        if count == len(scaled):
+            return scaled
+        Z = null_space(bordered[count:, :count] * self.unit[:count])
+        return np.asarray(Z.T @ scaled[:count, :count] @ Z)
 
     def record(self, origin: NDArray[np.int64]) -> CorotationalSolution:
         model, state = self.model, self.state
@@ -288,15 +343,24 @@ class _Path:
         np.add.at(joints, self.pairs, wrenches)
         for load in model.loads:
             joints[load.node] -= load.wrench
+        tied, grounded = joints.copy(), np.zeros_like(joints)
+        for guide, force in zip(model.guides, state.guide_forces, strict=True):
+            wrenches_of = force * _gap(guide, state)[1].reshape(2, 6)
+            for end, node in enumerate((guide.carrier, guide.pin)):
+                if node is not None:
+                    tied[node] += wrenches_of[end]
+                    if len(guide.nodes) == 1:
+                        grounded[node] -= wrenches_of[end]
         reactions = np.zeros_like(joints)
-        np.add.at(reactions, self.chain.groups, joints)
+        np.add.at(reactions, self.chain.groups, tied)
         supported = {int(self.chain.groups[s.node]) for s in model.supports}
         reactions[[i for i in range(len(model.nodes)) if i not in supported]] = 0.0
+        reactions += grounded
         ends = wrenches.copy()
         arms = np.einsum("mkij,mkj->mki", state.attachments, self.elements.arms)
         ends[:, :, 3:] -= np.cross(arms, wrenches[:, :, :3])
         local = np.einsum("mji,mkcj->mkci", answer.axes, ends.reshape(-1, 2, 2, 3)).reshape(-1, 2, 6)
-        scaled = tangent * np.outer(self.unit, self.unit)
+        scaled = self.free(tangent)
         return CorotationalSolution(
             model=model,
             origin=origin,
@@ -306,6 +370,7 @@ class _Path:
             end_forces=local,
             joint_wrenches=joints,
             reactions=reactions,
+            guide_forces=state.guide_forces,
             residual=self.measure(residual),
             steps=self.steps,
             iterations=self.iterations,
@@ -319,6 +384,35 @@ def _carry(tangent: Floats, steps: list[Step], axes: Floats, moment: Floats) -> 
         if step.carrier is not None:
             for i in range(j):
                 tangent[step.number, steps[i].number] += np.cross(axes[i], axes[j]) @ moment
+
+
+def _gap(guide: Guide, state: _State) -> tuple[float, Floats, Floats]:
+    """Gap d · n or a · n of a guide, its gradient (12,) by displacement and spin of carrier and pin, and its curvature.
+
+    With the carrier's spin w the normal changes by w × n. Rows and columns of what is ground stand for nothing.
+    """
+    n, d = guide.normal, np.zeros(3)
+    gradient, curvature = np.zeros(12), np.zeros((12, 12))
+    if guide.carrier is not None:
+        n = state.rotations[guide.carrier] @ n
+    if guide.axis is not None:
+        a = guide.axis if guide.pin is None else state.rotations[guide.pin] @ guide.axis
+        gradient[3:6], gradient[9:] = np.cross(n, a), np.cross(a, n)
+        own = (a @ n) * np.eye(3)
+        curvature[3:6, 3:6], curvature[3:6, 9:] = np.outer(n, a) - own, own - np.outer(a, n)
+        curvature[9:, 3:6], curvature[9:, 9:] = own - np.outer(n, a), np.outer(a, n) - own
+        return float(a @ n), gradient, curvature
+    for node, sign in guide.nodes:
+        d = d + sign * state.displacements[node]
+    if guide.carrier is not None:
+        gradient[3:6] = np.cross(n, d)
+        across = np.array([[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]])
+        curvature[3:6, 3:6] = np.outer(n, d) - (n @ d) * np.eye(3)
+        for k, sign in ((0, -1.0), (6, 1.0)):
+            curvature[3:6, k : k + 3] = sign * across
+            curvature[k : k + 3, 3:6] = -sign * across
+    gradient[:3], gradient[6:9] = -n, n
+    return float(d @ n), gradient, curvature
 
 
 def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> float:
@@ -338,8 +432,8 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
     natural = np.column_stack(
         [(f[:, 1, 0] - f[:, 0, 0]) / 2.0, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]]
     )
-    K = path.assemble(np.zeros((len(f), 12)), path.respond(start, 0.0).tangent, start, 0.0)[1]
-    G = path.assemble(*path.elements.geometric(natural), start, 1.0)[1]
-    scale = np.outer(path.unit, path.unit)
-    largest = float(eigh(-(G + G.T) * scale / 2.0, (K + K.T) * scale / 2.0, eigvals_only=True)[-1])
+    K = path.free(path.assemble(np.zeros((len(f), 12)), path.respond(start, 0.0).tangent, start, 0.0)[1])
+    loaded = replace(start, guide_forces=linear.guide_forces)
+    G = path.free(path.assemble(*path.elements.geometric(natural), loaded, 1.0)[1])
+    largest = float(eigh(-(G + G.T) / 2.0, (K + K.T) / 2.0, eigvals_only=True)[-1])
     return 1.0 / largest if largest > 1e-12 else np.inf

@@ -10,7 +10,8 @@ unknowns are the natural forces q of the elements (``fea.frame_element``) togeth
 language of frames Przemieniecki, Theory of Matrix Structural Analysis, 1968, chapters 6 and 8). Forces so come out
 of equilibrium rather than as small differences of large displacements times large stiffnesses: nothing is lost
 where stiffnesses differ by many orders of magnitude, and a statically determinate frame gets its forces to rounding
-whatever its stiffness. Released ends are unknowns of their own. Line loads act on the axis of the beams and are
+whatever its stiffness. Guides are further rows of B without flexibility, their forces further entries of q. Released
+ends are unknowns of their own. Line loads act on the axis of the beams and are
 treated exactly, so that one element per link is enough.
 """
 
@@ -28,6 +29,7 @@ from fea.frame_model import (
     Dof,
     FrameElement,
     FrameModel,
+    Guide,
     NodeLoad,
     Support,
     Tie,
@@ -43,6 +45,7 @@ __all__ = [
     "FrameElement",
     "FrameModel",
     "FrameSolution",
+    "Guide",
     "NodeLoad",
     "Support",
     "Tie",
@@ -61,9 +64,12 @@ class FrameSolution:
     displacements      (n, 6) [mm, rad], global axes; a rotation in which no element takes part stands as zero
     end_displacements  (m, 2, 6) of the two ends of each beam, beyond arms and releases, local axes
     end_forces         (m, 2, 6) what acts on the two ends of each beam, beyond the arms, local axes [N, N·mm]
-    joint_wrenches     (n, 6) what ties and supports together do to the part of the frame at each node, global axes:
-                       the joint force at a pin; zero (to rounding) at nodes without either
-    reactions          (n, 6) what the supports do to the frame, global axes; of tied nodes the first supported has it
+    joint_wrenches     (n, 6) what ties, guides and supports together do to the part of the frame at each node, global
+                       axes: the joint force at a pin; zero (to rounding) at nodes without any
+    reactions          (n, 6) what supports and guides on the ground do to the frame, global axes; of tied nodes the
+                       first supported has it
+    guide_forces       (g,) what each guide's carrier takes along its normal [N], or about axis x normal [N·mm]; the pin
+                       gets the opposite
     residual           largest force left over at a node or in the balance of the whole frame, over the sum of loads
     condition          1-norm condition number of the scaled equations (estimated)
     redundancy         degree of static indeterminacy; 0 where equilibrium alone gives all forces
@@ -75,6 +81,7 @@ class FrameSolution:
     end_forces: Floats
     joint_wrenches: Floats
     reactions: Floats
+    guide_forces: Floats
     residual: float
     condition: float
     redundancy: int
@@ -157,8 +164,15 @@ def _collect(system: FrameSystem, q: Floats, u: Floats, condition: float) -> Fra
         for dof in support.dofs:
             place = 6 * support.node + DOFS.index(dof)
             held_by.setdefault(int(system.owner[place]), place)
+    guided, grounded = np.zeros((n, 6)), np.zeros((n, 6))
+    guide_forces = q[6 * m :] * system.guide_unit
+    for guide, force in zip(model.guides, guide_forces, strict=True):
+        for node, sign in guide.nodes:
+            guided[node] -= sign * force * guide.gradient
+            if len(guide.nodes) == 1:
+                grounded[node] -= sign * force * guide.gradient
     left_over = np.zeros(6 * n)
-    np.add.at(left_over, system.owner, joints.ravel())
+    np.add.at(left_over, system.owner, (joints - guided).ravel())
     reactions = np.zeros((n, 6))
     for owner, place in held_by.items():
         reactions[divmod(place, 6)], left_over[owner] = left_over[owner], 0.0
@@ -168,10 +182,11 @@ def _collect(system: FrameSystem, q: Floats, u: Floats, condition: float) -> Fra
         end_displacements=ends.reshape(m, 2, 6),
         end_forces=forces.reshape(m, 2, 6),
         joint_wrenches=joints,
-        reactions=reactions,
-        residual=_residual(model, left_over.reshape(n, 6), reactions),
+        reactions=reactions + grounded,
+        guide_forces=guide_forces,
+        residual=_residual(model, left_over.reshape(n, 6), reactions + grounded),
         condition=condition,
-        redundancy=6 * m - len(u),
+        redundancy=len(q) - len(u),
     )
 
 

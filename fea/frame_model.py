@@ -3,6 +3,7 @@
 Global axes x, y (the linkage's plane) and z (along the pins); mm, N, N·mm, rad. Each node has three displacements
 and three rotations (right-hand rule), named ux, uy, uz, rx, ry, rz. Links meet in ties: two nodes at one place
 that share some of these, all but rz for a pin along z, which so carries moments about x and y and none about z.
+A pin in a slot is kept there by guides.
 """
 
 from dataclasses import dataclass, field
@@ -91,6 +92,43 @@ class Tie:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Guide:
+    """A pin's node stays in the plane through its carrier's node, whose normal (3,) turns with the carrier.
+
+    With an axis (3,), which turns with the pin's node, it is that axis which stays in a plane of that normal, wherever
+    the node is. Both nodes start at one place; None stands for the ground, as carrier or as pin.
+    """
+
+    carrier: int | None
+    pin: int | None
+    normal: Floats
+    axis: Floats | None = None
+
+    def __post_init__(self) -> None:
+        """Copy and check."""
+        for name in ("normal", "axis"):
+            if getattr(self, name) is not None:
+                vector = _array(getattr(self, name), f"the {name} of a guide", 3)
+                object.__setattr__(self, name, vector)
+                if abs(float(np.linalg.norm(vector)) - 1.0) > 1e-9:
+                    raise CannotRunError(f"the {name} of a guide must have unit length, not {vector.tolist()}")
+        if self.carrier == self.pin:
+            raise CannotRunError("a guide joins two different nodes, or one node and the ground")
+
+    @property
+    def nodes(self) -> tuple[tuple[int, float], ...]:
+        """Nodes that move, each with the sign of its motion in the guide's equation."""
+        return tuple((node, sign) for node, sign in ((self.carrier, -1.0), (self.pin, 1.0)) if node is not None)
+
+    @property
+    def gradient(self) -> Floats:
+        """(6,) by displacement and rotation of the pin's node, as it stands: what a unit of the guide's force does."""
+        if self.axis is None:
+            return np.concatenate([self.normal, np.zeros(3)])
+        return np.concatenate([np.zeros(3), np.cross(self.axis, self.normal)])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class NodeLoad:
     """A wrench (6,) on a node in global axes: Fx, Fy, Fz [N], Mx, My, Mz [N·mm]."""
 
@@ -111,13 +149,14 @@ class FrameModel:
     names    of the nodes, for messages; their numbers where empty
 
     Raises ``CannotRunError`` for an element without length or along its own z, for nodes that do not exist, and for
-    ties between nodes at different places.
+    ties or guides between nodes at different places.
     """
 
     nodes: Floats
     elements: tuple[FrameElement, ...]
     supports: tuple[Support, ...]
     ties: tuple[Tie, ...] = ()
+    guides: tuple[Guide, ...] = ()
     loads: tuple[NodeLoad, ...] = ()
     gravity: Floats = field(default_factory=_zeros)
     names: tuple[str, ...] = ()
@@ -133,15 +172,19 @@ class FrameModel:
             raise CannotRunError("a frame needs at least one element")
         named = [e.nodes for e in self.elements] + [t.nodes for t in self.ties]
         named += [(s.node, s.node) for s in self.supports] + [(p.node, p.node) for p in self.loads]
+        named += [(n, n) for g in self.guides for n, _ in g.nodes]
         for pair in named:
             if not all(0 <= i < len(nodes) for i in pair):
                 raise CannotRunError(f"the frame has nodes 0 to {len(nodes) - 1}, but {pair} are named")
         for i in range(len(self.elements)):
             self._check_element(i)
-        for tie in self.ties:
-            if np.linalg.norm(nodes[tie.nodes[0]] - nodes[tie.nodes[1]]) > 1e-9 * self.size:
-                a, b = (self.name(i) for i in tie.nodes)
-                raise CannotRunError(f"tied nodes {a} and {b} of a frame lie at different places; move one of them")
+        joined = [t.nodes for t in self.ties]
+        joined += [(g.carrier, g.pin) for g in self.guides if g.carrier is not None and g.pin is not None]
+        for i, j in joined:
+            if np.linalg.norm(nodes[i] - nodes[j]) > 1e-9 * self.size:
+                raise CannotRunError(
+                    f"tied nodes {self.name(i)} and {self.name(j)} of a frame lie at different places; move one of them"
+                )
 
     def _check_element(self, i: int) -> None:
         start, end = self.ends(i)

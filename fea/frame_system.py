@@ -27,6 +27,7 @@ class FrameSystem:
 
     labels   what moves with each unknown, for messages
     unit     (k,) factor from the scaled unknowns to mm and rad
+    guide_unit  (g,) factor from the scaled forces of the guides to N or N·mm
     """
 
     def __init__(self, model: FrameModel) -> None:
@@ -34,6 +35,7 @@ class FrameSystem:
         n, m = len(model.nodes), len(model.elements)
         self.lengths = np.array([model.length(i) for i in range(m)])
         mean = float(self.lengths.mean())
+        self.guide_unit = np.array([1.0 if guide.axis is None else mean for guide in model.guides])
         self.owner = self._owners()
         self._matrices = [self._attachment(i) for i in range(m)]
         supported = {int(self.owner[6 * s.node + DOFS.index(dof)]) for s in model.supports for dof in s.dofs}
@@ -87,7 +89,7 @@ class FrameSystem:
         return np.concatenate([np.arange(6 * a, 6 * a + 6), np.arange(6 * b, 6 * b + 6)])
 
     def _idle(self) -> NDArray[np.bool_]:
-        """(6 n,) rotations in which no element takes part, all ends there being released, and that no moment turns.
+        """(6 n,) rotations in which no element takes part, all ends there being released, and no moment or guide.
 
         They are no unknowns. Where a moment does act the rotation stays one, and is refused as a mechanism.
         """
@@ -96,9 +98,10 @@ class FrameSystem:
         for i, (T, _) in enumerate(self._matrices):
             taking_part = np.abs(T).max(axis=0) > 1e-12  # direction cosines: below is rounding
             needed[self.owner[self._node_columns(i)[taking_part]]] = True
-        for load in self.model.loads:
-            place = np.arange(6 * load.node, 6 * load.node + 6)
-            needed[self.owner[place[load.wrench != 0.0]]] = True
+        acting = [(load.node, load.wrench) for load in self.model.loads]
+        acting += [(node, guide.gradient) for guide in self.model.guides for node, _ in guide.nodes]
+        for node, wrench in acting:
+            needed[self.owner[6 * node + np.flatnonzero(wrench)]] = True
         return ~needed
 
     def place(self, i: int) -> tuple[NDArray[np.int64], Floats]:
@@ -121,12 +124,15 @@ class FrameSystem:
         return np.array([1.0, *[self.lengths[i]] * 5])
 
     def equations(self) -> tuple[Any, Any, Floats, Floats]:
-        """Scaled B (6 m, k) and F (6 m, 6 m), sparse, natural deformations v0 (6 m,) and nodal loads p - p0 (k,)."""
+        """Scaled B (6 m + g, k) and F, sparse, natural deformations v0 (6 m + g,) and nodal loads p - p0 (k,).
+
+        The g guides come after the m elements: rows of unit stiffness in B, without flexibility in F.
+        """
         from scipy.sparse import block_diag, coo_matrix
 
-        m = len(self.lengths)
+        m, guides = len(self.lengths), self.model.guides
         rows, columns, values, flexibility = [], [], [], []
-        v0, p = np.zeros(6 * m), np.zeros(len(self.unit))
+        v0, p = np.zeros(6 * m + len(guides)), np.zeros(len(self.unit))
         for load in self.model.loads:
             place = self.number[6 * load.node : 6 * load.node + 6]
             np.add.at(p, place[place >= 0], load.wrench[place >= 0])
@@ -142,7 +148,15 @@ class FrameSystem:
             v, ends = line_load_effect(e.section, e.young, length, first, last)
             v0[6 * i : 6 * i + 6] = unit * v
             np.add.at(p, numbers, -(matrix.T @ ends))
-        shape = (6 * m, len(self.unit))
+        for row, guide in enumerate(guides, start=6 * m):
+            for node, sign in guide.nodes:
+                place = self.number[6 * node : 6 * node + 6]
+                free = place >= 0
+                rows.append(np.full(np.count_nonzero(free), row))
+                columns.append(place[free])
+                values.append(sign * self.guide_unit[row - 6 * m] * guide.gradient[free] * self.unit[place[free]])
+            flexibility.append(np.zeros((1, 1)))
+        shape = (len(v0), len(self.unit))
         B = coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
         return B, block_diag(flexibility, format="csr"), v0, p * self.unit
 

@@ -95,7 +95,7 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[Held, .
     drives: Mapping[str, Drive] = {
         link: Drive(link=link, joint=name)
         for name, joint in case.joints.items()
-        if ground in joint.links
+        if joint.type == "revolute" and ground in joint.links
         for link in joint.links
         if link != ground
     }

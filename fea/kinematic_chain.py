@@ -2,7 +2,8 @@
 
 Tied nodes form trees. The rotation of a tied node is that of its parent, followed by a turn about the pin's axis,
 which the parent carries along; a released end likewise follows its node. Virtual spins of a node are so the sum of
-the spins of its chain of steps, each about its present axis.
+the spins of its chain of steps, each about its present axis. Displacements are shared or are not, apart from that: a
+slider turns with what carries it and moves by itself.
 """
 
 import math
@@ -28,7 +29,7 @@ class Step:
 
 
 class KinematicChain:
-    """Unknowns of a frame in large displacement: three displacements per tree of tied nodes, and the turns.
+    """Unknowns of a frame in large displacement: three displacements per place at which nodes are tied, and the turns.
 
     count         of the unknowns
     is_turn       (count,) True where the unknown is a turn
@@ -48,7 +49,7 @@ class KinematicChain:
         self.turns: list[bool] = []
         n = len(model.nodes)
         self.groups = np.full(n, -1)
-        self.translations = np.full((n, 3), -1)
+        self.translations = self._translations()
         self.nodes: list[list[Step]] = [[] for _ in range(n)]
         supports = np.bincount([node for node, _ in self._held], minlength=n) if self._held else np.zeros(n)
         for root in sorted(range(n), key=lambda i: (-supports[i], i)):
@@ -61,6 +62,11 @@ class KinematicChain:
     def _unknown(self, *, turn: bool) -> int:
         self.turns.append(turn)
         return len(self.turns) - 1
+
+    def _translations(self) -> NDArray[np.int64]:
+        linear = self._linear.reshape(-1, 6)[:, :3]
+        numbers = {int(k): self._unknown(turn=False) for k in np.unique(linear[linear >= 0])}
+        return np.array([[numbers.get(int(k), -1) for k in row] for row in linear])
 
     def _own_turns(self, node: int) -> list[Step]:
         held = [k for k in range(3) if (node, 3 + k) in self._held]
@@ -75,8 +81,6 @@ class KinematicChain:
     def _grow(self, root: int) -> None:
         """Number the tree of nodes tied to a root."""
         self.groups[root] = root
-        moves = [self._unknown(turn=False) if self._linear[6 * root + k] >= 0 else -1 for k in range(3)]
-        self.translations[root] = moves
         self.nodes[root] = self._own_turns(root)
         front = [root]
         while front:
@@ -87,16 +91,15 @@ class KinematicChain:
                 child = tie.nodes[1] if tie.nodes[0] == parent else tie.nodes[0]
                 if self.groups[child] < 0:
                     self.groups[child] = root
-                    self.translations[child] = moves
                     self.nodes[child] = self._tied(parent, child, tie.dofs)
                     front.append(child)
 
     def _tied(self, parent: int, child: int, dofs: frozenset[str]) -> list[Step]:
         free = [k for k in range(3) if DOFS[3 + k] not in dofs]
-        if not {"ux", "uy", "uz"} <= dofs or len(free) == 2:
+        if len({"ux", "uy", "uz"} & dofs) not in (0, 3) or len(free) == 2:
             raise CannotRunError(
-                f"in large displacement a tie shares all displacements and all rotations, all but one, or none; "
-                f"that of nodes {self.model.name(parent)} and {self.model.name(child)} shares {sorted(dofs)}"
+                f"in large displacement a tie shares all displacements or none, and all rotations, all but one, or "
+                f"none; that of nodes {self.model.name(parent)} and {self.model.name(child)} shares {sorted(dofs)}"
             )
         if len(free) == 3:
             return self._own_turns(child)

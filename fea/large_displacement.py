@@ -96,12 +96,6 @@ def examine(
     if case.large_displacement == "off":
         return left("off", "large displacement was not looked into, as the case says (large_displacement = off)")
     frame, solution = forces.frame, forces.solution
-    odd = [f"{name} is a {joint.type}" for name, joint in case.joints.items() if joint.type != "revolute"]
-    if odd:
-        return left(
-            "unknown",
-            f"large displacement was not looked into: frames know revolute joints alone, and {', '.join(odd)}",
-        )
     try:
         if frame is None or solution is None:
             frame = build_frame(case, pose, loads, held=case.pinned_drive)
@@ -152,7 +146,8 @@ def _deformed(
     if not found.stable:
         sentence = f"{lead}the linkage has buckled before the whole load acts, so it does not hold it"
         return replace(small, state="unstable", points=points, sentence=sentence)
-    reactions = frame.reactions(found.joint_wrenches[: len(frame.model.nodes)], found.residual)
+    count = len(frame.model.nodes)
+    reactions = frame.reactions(found.joint_wrenches[:count], found.residual, found.displacements[:count])
     moved = max((float(np.linalg.norm(d)) for d in points.values()), default=0.0)
     return replace(
         small,

@@ -3,25 +3,35 @@
 Every link with a part is a beam of its section along the x axis of its frame, at z = 0; a pin off the axis sits on
 a rigid arm. Links without a part are rigid. The link that the drive holds keeps its angle to the other link at the
 drive's joint, where the moment about z is the drive torque. In bonded linkages every pin carries all six components.
+
+A pin in a slot stands at a station of its own of the slotted link. It presses on the slot's flanks: they take a force
+normal to the slot in the linkage's plane, and the moment about the slot of a pin that would tilt between them. It is
+free to slide along the slot, which turns with that station, to turn about its own axis and, having no heads, to shift
+along it and to tilt along the slot. A slider is free to slide, and carries all else.
 """
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame_model import ALL_DOFS, PIN_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
+from fea.frame_model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from geometry.errors import CaseError
 from geometry.part import Section
 from geometry.pose import Pose
 from loads.applied import BodyForce, LineLoad, Load, PointLoad, shifted
 from loads.case import Case
-from loads.statics import Drive, JointReaction, Reactions, assemble
+from loads.statics import Drive, JointReaction, Reactions, assemble, travelled
 
 Real = NDArray[np.float64]
 
+TURNS: frozenset[Dof] = frozenset({"rx", "ry", "rz"})
+JOINT_DOFS: Mapping[str, frozenset[Dof]] = {"revolute": PIN_DOFS, "pin-in-slot": frozenset(), "slider": TURNS}
+"""What the two links of a joint share; guides add what slots hold."""
+ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
 """How many times stiffer than the stiffest part a link without part is."""
 _SAME_PLACE = 1e-9
@@ -34,6 +44,7 @@ class LinkageFrame:
     held      the link that the drive holds, and where; None where nothing is driven
     bonded    True where pins carry moments about their own axis as well
     points    (link, point) -> node
+    pins      joint -> nodes of its first and its second link, where the pin stands; None on the ground
     stations  link with a part -> (x in the link's frame, node) along its axis; the node may stand off the axis
     arms      node -> (3,) from it to its link's axis at that station, global axes [mm]; left out where zero
     notes     what the reader must know about this frame
@@ -45,16 +56,19 @@ class LinkageFrame:
     loads: tuple[Load, ...]
     model: FrameModel
     points: Mapping[tuple[str, str], int]
+    pins: Mapping[str, tuple[int | None, int | None]]
     stations: Mapping[str, tuple[tuple[float, int], ...]]
     arms: Mapping[int, Real]
     notes: tuple[str, ...]
 
-    def reactions(self, joint_wrenches: Real, residual: float) -> Reactions:
+    def reactions(self, joint_wrenches: Real, residual: float, displacements: Real | None = None) -> Reactions:
         """Return joint reactions and drive torque from what all joints together do to each node (n, 6), global axes.
 
         The moment about z at the drive's joint is the drive torque, and not in the joint's wrench.
+        ``displacements`` (n, 3) are those of the nodes where equilibrium holds on the deformed shape [mm].
         """
-        on_link = _joint_by_joint(self, joint_wrenches)
+        shape = np.zeros((len(self.model.nodes), 3)) if displacements is None else displacements
+        on_link = _joint_by_joint(self, joint_wrenches, shape)
         torque = 0.0
         joints = {}
         for name, joint in self.pose.linkage.joints.items():
@@ -62,9 +76,14 @@ class LinkageFrame:
             if self.held is not None and name == self.held.joint:
                 torque = float(wrench[5]) * (1.0 if joint.links[1] == self.held.link else -1.0)
                 wrench[5] = 0.0
-            joints[name] = JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench)
+            joints[name] = JointReaction(
+                joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=self._arm(name, shape)
+            )
         system = assemble(self.pose, self.held, self.loads)
         value = {f"R{name}{axis}": joints[name].wrench[k] for name in joints for k, axis in enumerate("xy")}
+        for name in joints:
+            value[f"N{name}"] = float(slot_normal(self.pose, name) @ joints[name].wrench[:3])
+            value[f"M:{name}"] = float(joints[name].wrench[5])
         return Reactions(
             pose=self.pose,
             drive=self.held,
@@ -74,6 +93,18 @@ class LinkageFrame:
             drive_torque=torque,
             residual=residual,
         )
+
+    def _arm(self, name: str, shape: Real) -> Real:
+        """From the point of a joint's first link to its pin (3,), with the nodes displaced by ``shape`` (n, 3)."""
+        linkage, arm = self.pose.linkage, travelled(self.pose, name)
+        if linkage.joints[name].type == "revolute":
+            return arm
+        first, second = linkage.joints[name].links
+        if second != linkage.ground:
+            arm = arm + shape[self.points[second, linkage.point_of(name, second)]]
+        if first != linkage.ground:
+            arm = arm - shape[self.points[first, linkage.point_of(name, first)]]
+        return arm
 
     def at_points(self, displacements: Real) -> dict[tuple[str, str], Real]:
         """Displacement (3,) of every link's point [mm] from those of the nodes (n, 3 or more)."""
@@ -99,36 +130,32 @@ def build_frame(
 ) -> LinkageFrame:
     """Build the frame of a case in a pose under loads in global axes.
 
-    Raises ``CaseError`` for joints other than revolute ones and for linkages without any part.
+    Raises ``CaseError`` for linkages without any part.
     """
-    for name, joint in case.joints.items():
-        if joint.type != "revolute":
-            raise CaseError(
-                f"joints.{name}.type: it is '{joint.type}', but the frame that bonded joints, redundant linkages and "
-                "loads out of the plane need knows revolute joints alone; make it revolute or leave those out"
-            )
     if not case.checked_links:
         raise CaseError(
             "links: none has a part, so no stiffness is known, which bonded joints, redundant linkages and loads out "
             "of the plane need; give the links parts"
         )
     builder = _Builder(case, pose, loads)
-    supports, ties = [], []
-    for name, joint in case.joints.items():
-        holds = bonded or (held is not None and name == held.joint)
-        dofs = ALL_DOFS if holds else PIN_DOFS
-        ends = [
-            builder.points[link, point]
-            for link, point in zip(joint.links, case.linkage.joint_points(name), strict=True)
-            if link != case.linkage.ground
-        ]
-        if len(ends) == 1:
-            supports.append(Support(node=ends[0], dofs=dofs))
-        else:
-            ties.append(Tie(nodes=(ends[0], ends[1]), dofs=dofs))
+    supports, ties, guides = [], [], []
     places = np.array(builder.places)
-    for tie in ties:
-        places[tie.nodes[1]] = places[tie.nodes[0]]
+    for name, joint in case.joints.items():
+        held_here = held is not None and name == held.joint
+        dofs = ALL_DOFS if bonded else JOINT_DOFS[joint.type] | (TURNS if held_here else frozenset())
+        first, second = builder.pins[name]
+        if first is not None and second is not None:
+            places[second] = places[first]
+            ties += [Tie(nodes=(first, second), dofs=dofs)] if dofs else []
+        else:
+            supports += [Support(node=node, dofs=dofs) for node in (first, second) if node is not None and dofs]
+        if not {"ux", "uy"} <= dofs:
+            across = slot_normal(pose, name)
+            guides.append(Guide(carrier=first, pin=second, normal=across))
+            if joint.type == "slider":
+                guides.append(Guide(carrier=first, pin=second, normal=ALONG_PINS))
+            elif not dofs:
+                guides.append(Guide(carrier=first, pin=second, normal=across, axis=ALONG_PINS))
     return LinkageFrame(
         pose=pose,
         held=held,
@@ -139,14 +166,23 @@ def build_frame(
             elements=tuple(builder.elements),
             supports=tuple(supports),
             ties=tuple(ties),
+            guides=tuple(guides),
             loads=tuple(builder.node_loads),
             names=tuple(builder.names),
         ),
         points=builder.points,
+        pins=builder.pins,
         stations=builder.stations,
         arms=builder.arms,
         notes=tuple(builder.notes),
     )
+
+
+def slot_normal(pose: Pose, name: str) -> Real:
+    """Return the direction (3,) in the linkage's plane in which a joint's slot holds its pin."""
+    joint = pose.linkage.joints[name]
+    along = pose.angles[joint.links[0]] + joint.direction
+    return np.array([-math.sin(along), math.cos(along), 0.0])
 
 
 class _Builder:
@@ -159,6 +195,7 @@ class _Builder:
         self.elements: list[FrameElement] = []
         self.node_loads: list[NodeLoad] = []
         self.points: dict[tuple[str, str], int] = {}
+        self.contacts: dict[tuple[str, str], int] = {}
         self.stations: dict[str, tuple[tuple[float, int], ...]] = {}
         self.arms: dict[int, Real] = {}
         self.notes: list[str] = []
@@ -173,6 +210,24 @@ class _Builder:
             for load in own:
                 if isinstance(load, PointLoad):
                     self.node_loads.append(NodeLoad(node=self.points[link, load.point], wrench=load.wrench))
+        self.pins = {name: (self._pin(name, 0), self._pin(name, 1)) for name in case.joints}
+
+    def _pin(self, name: str, which: int) -> int | None:
+        link = self.case.joints[name].links[which]
+        if link == self.case.linkage.ground:
+            return None
+        known = self.contacts.get((link, name))
+        return self.points[link, self.case.linkage.joint_points(name)[which]] if known is None else known
+
+    def _contacts(self, link: str) -> dict[str, tuple[float, float]]:
+        """Joint -> place of its pin in the frame of a link that carries the slot."""
+        found = {}
+        for name, joint in self.case.joints.items():
+            if joint.type != "revolute" and joint.links[0] == link:
+                pin = self.pose.position(joint.links[1], self.case.linkage.joint_points(name)[1])
+                x, y = self.pose.rotation(link).T @ (pin - self.pose.origins[link])
+                found[name] = (float(x), float(y))
+        return found
 
     def _place(self, link: str, x: float, y: float) -> Real:
         return np.array([*(self.pose.origins[link] + self.pose.rotation(link) @ np.array([x, y])), 0.0])
@@ -183,8 +238,8 @@ class _Builder:
         return len(self.places) - 1
 
     def _beam(self, link: str, loads: Sequence[Load]) -> None:
-        points = self.case.links[link].points
-        wanted = [x for x, _ in points.values()]
+        points, contacts = self.case.links[link].points, self._contacts(link)
+        wanted = [x for x, _ in (*points.values(), *contacts.values())]
         wanted += [x for load in loads if isinstance(load, LineLoad) for x in (load.start, load.end)]
         xs: list[float] = []
         for x in sorted(wanted):
@@ -197,21 +252,26 @@ class _Builder:
             )
         stations = []
         for x in xs:
-            here = {name: y for name, (x_p, y) in points.items() if abs(x_p - x) <= self.slack}
-            here = dict(sorted(here.items(), key=lambda item: abs(item[1])))
-            first, y = next(iter(here.items()), (f"x = {x:g} mm", 0.0))
+            places = [
+                (abs(y), name, y, self.points if group is points else self.contacts)
+                for group in (points, contacts)
+                for name, (x_p, y) in group.items()
+                if abs(x_p - x) <= self.slack
+            ]
+            places.sort(key=lambda place: place[0])
+            _, first, y, _ = places[0] if places else (0.0, f"x = {x:g} mm", 0.0, self.points)
             node = self._node(link, x, y, first)
             if abs(y) > self.slack:
                 self.arms[node] = self._place(link, x, 0.0) - self.places[node]
             stations.append((x, node))
             known = [(y, node)]
-            for name, y_p in here.items():
+            for _, name, y_p, found in places:
                 twin = next((n for y_n, n in known if abs(y_n - y_p) <= self.slack), None)
                 if twin is None:
                     twin = self._node(link, x, y_p, name)
                     known.append((y_p, twin))
                     self._stiff(node, twin)
-                self.points[link, name] = twin
+                found[link, name] = twin
         self.stations[link] = tuple(stations)
         lines = [load for load in loads if isinstance(load, LineLoad)]
         lines += [self._spread(link, load) for load in loads if isinstance(load, BodyForce)]
@@ -246,7 +306,9 @@ class _Builder:
 
     def _rigid(self, link: str, loads: Sequence[Load]) -> None:
         known: list[tuple[Real, int]] = []
-        for name, (x, y) in self.case.links[link].points.items():
+        named = [(self.points, name, at) for name, at in self.case.links[link].points.items()]
+        named += [(self.contacts, name, at) for name, at in self._contacts(link).items()]
+        for found, name, (x, y) in named:
             place = self._place(link, x, y)
             node = next((n for p, n in known if np.linalg.norm(p - place) <= self.slack), None)
             if node is None:
@@ -254,7 +316,7 @@ class _Builder:
                 known.append((place, node))
                 if len(known) > 1:
                     self._stiff(known[0][1], node)
-            self.points[link, name] = node
+            found[link, name] = node
         place, node = known[0]
         for load in loads:
             if not isinstance(load, PointLoad):
@@ -291,17 +353,23 @@ def _line_between(lines: Sequence[LineLoad], x0: float, x1: float) -> tuple[Real
     return first, last
 
 
-def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real) -> dict[str, Real]:
+def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real, shape: Real) -> dict[str, Real]:
     """What each joint does to its second link (6,), told apart where several joints share a node.
 
     A node with one joint gives that joint; taking it off the other link's node may leave one joint there, and so on.
+    Where a pin has slid in its slot by what the nodes are displaced (``shape``), its force is moved along.
     """
     linkage = frame.pose.linkage
     left = joint_wrenches.copy()
     ends = {
-        name: {link: frame.points[link, linkage.point_of(name, link)] for link in joint.links if link != linkage.ground}
-        for name, joint in linkage.joints.items()
+        name: {link: node for link, node in zip(linkage.joints[name].links, nodes, strict=True) if node is not None}
+        for name, nodes in frame.pins.items()
     }
+
+    def moved(wrench: Real, start: int | None, end: int | None) -> Real:
+        away = [np.zeros(3) if node is None else shape[node] for node in (start, end)]
+        return shifted(wrench, away[0] - away[1])
+
     found: dict[str, Real] = {}
     while len(found) < len(ends):
         open_at: dict[int, list[tuple[str, str]]] = {}
@@ -317,7 +385,8 @@ def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real) -> dict[str, Real
             )
         node, [(name, link)] = single
         wrench = left[node].copy()
-        found[name] = wrench if link == linkage.joints[name].links[1] else -wrench
+        first, second = frame.pins[name]
+        found[name] = wrench if link == linkage.joints[name].links[1] else moved(-wrench, first, second)
         for other, other_node in ends[name].items():
-            left[other_node] += -wrench if other == link else wrench
+            left[other_node] += -wrench if other == link else moved(wrench, node, other_node)
     return found

@@ -12,7 +12,7 @@ force and a moment.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -43,12 +43,16 @@ class Drive:
 
 @dataclass(frozen=True, kw_only=True)
 class JointReaction:
-    """What link ``by`` does to link ``on`` at a joint: wrench (6,) about the pin, global axes [N, N mm]."""
+    """What link ``by`` does to link ``on`` at a joint: wrench (6,) about the pin, global axes [N, N mm].
+
+    arm  (3,) from the point of link ``by`` to the pin, which has travelled in a slot or along a guide [mm]
+    """
 
     joint: str
     on: str
     by: str
     wrench: Real
+    arm: Real = field(default_factory=lambda: np.zeros(3))
 
     @property
     def force(self) -> Real:
@@ -129,10 +133,8 @@ class Reactions:
                 sign = 1.0 if reaction.on == link else -1.0
                 point = self.pose.linkage.point_of(name, link)
                 wrench = sign * reaction.wrench
-                if link == reaction.by and self.pose.linkage.joints[name].type != "revolute":
-                    # A pin has travelled in its slot: its force acts off the point from which the slot is measured.
-                    pin = self.pose.position(reaction.on, self.pose.linkage.point_of(name, reaction.on))
-                    wrench = shifted(wrench, np.array([*(pin - self.pose.position(link, point)), 0.0]))
+                if link == reaction.by:
+                    wrench = shifted(wrench, reaction.arm)
                 found.append((point, wrench))
         return tuple(found)
 
@@ -278,4 +280,13 @@ def _reaction(pose: Pose, name: str, system: System, unknowns: Real) -> JointRea
         along = pose.angles[joint.links[0]] + joint.direction
         wrench[:2] = value[f"N{name}"] * np.array([-math.sin(along), math.cos(along)])
         wrench[5] = value.get(f"M:{name}", 0.0)
-    return JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench)
+    return JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=travelled(pose, name))
+
+
+def travelled(pose: Pose, name: str) -> Real:
+    """Return the way (3,) from the point of a joint's first link to its pin [mm]: zero at revolute joints."""
+    joint = pose.linkage.joints[name]
+    if joint.type == "revolute":
+        return np.zeros(3)
+    first, second = (pose.position(*at) for at in zip(joint.links, pose.linkage.joint_points(name), strict=True))
+    return np.array([*(second - first), 0.0])
