@@ -128,13 +128,7 @@ def link_histories(moved: CaseMotion, link: str) -> tuple[LinkHistory, ...]:
         raise CaseError(
             "joint_model: an envelope needs joints that turn, but they are bonded; choose pinned, or check single poses"
         )
-    found = tuple(_history(moved, link, name) for name in case.load_cases)
-    if case.motion is not None and link in case.motion.masses and any(h.mass is not None for h in found):
-        raise CaseError(
-            f"motion.masses.{link}: an envelope spreads the mass of a link over its part by the material's density, so "
-            "a stated mass cannot replace it; leave it out, or state what the link carries under [[carried]]"
-        )
-    return found
+    return tuple(_history(moved, link, name) for name in case.load_cases)
 
 
 def _history(moved: CaseMotion, link: str, name: str) -> LinkHistory:
@@ -174,7 +168,7 @@ def _history(moved: CaseMotion, link: str, name: str) -> LinkHistory:
                 ends = [per_length * _per_mass(acceleration, complex(x)) for x in (first, last)]
                 lines.append(LineHistory(first=first, last=last, intensity=_planar(np.stack(ends, axis=1))))
                 continue
-            centroid = complex(*mass.centroid)
+            centroid = complex(*mass.place(points))
             force = np.asarray(mass.mass * _per_mass(acceleration, centroid))
             arm = centroid - complex(*points[mass.at])
             spin = mass.mass * mass.radius_of_gyration**2 * acceleration[:, 2]

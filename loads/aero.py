@@ -29,6 +29,9 @@ Points = Mapping[str, Mapping[str, tuple[float, float]]]
 LARGEST_LIFT_COEFFICIENT = 2.0
 """Above this a coefficient is refused; glide measurements of birds give at most 0.8 to 1.6 (Withers, J. Exp. Biol. 90,
 1981, 143-162; Tucker and Heine, J. Exp. Biol. 149, 1990, 469-489)."""
+LARGEST_DRAG_COEFFICIENT = 2.3
+"""Above this a coefficient is refused: a half tube open to the stream has about as much, the most of the plain shapes
+(Hoerner, Fluid-Dynamic Drag, 1965, chapter 3)."""
 LARGEST_LIFT_TO_DRAG = 20.0
 """Above this ratio the run warns; bird wings reach 3 to 17 (Withers 1981)."""
 PIECES = 6
@@ -116,7 +119,7 @@ class AirForces:
 def air_forces(air: AirLoad, entry: str) -> AirForces:
     """Return lift and drag with their directions; ``entry`` is the path of the load in the case file.
 
-    Raises ``CaseError`` for what is missing or stated twice, a lift not normal to the stream, and |C_L| > 2.
+    Raises ``CaseError`` for what is missing or stated twice, a lift not normal to the stream, |C_L| > 2, C_D > 2.3.
     """
     along = _unit(air.stream, f"{entry}.stream")
     q = None if air.speed is None or air.density is None else air.density * air.speed**2 / 2.0
@@ -136,6 +139,12 @@ def air_forces(air: AirLoad, entry: str) -> AirForces:
         raise CaseError(
             f"{entry}.lift_coefficient: {how} {coefficients[0]:.4g}, but above {LARGEST_LIFT_COEFFICIENT:g} in size no "
             "wing without power reaches (birds: 0.8 to 1.6); correct the coefficient, or speed, density and area"
+        )
+    if coefficients[1] is not None and coefficients[1] > LARGEST_DRAG_COEFFICIENT:
+        how = "it is" if air.drag_coefficient is not None else f"drag {drag:g} N over q S implies"
+        raise CaseError(
+            f"{entry}.drag_coefficient: {how} {coefficients[1]:.4g}, but above {LARGEST_DRAG_COEFFICIENT:g} no plain "
+            "shape reaches (a wing across the stream: 1.2 to 2); correct the coefficient, or speed, density and area"
         )
     return AirForces(
         pressure=q,

@@ -27,10 +27,11 @@ from geometry.units import (
 )
 from loads.accuracy import Accuracy
 from loads.aero import AirForces, AirLoad, air_forces, check_air
-from loads.carried import CarriedBody, CarriedSpread
+from loads.carried import Carried, CarriedSpread
 from loads.check_spec import BearingCheck, Check, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
 from loads.claim import Claim
 from loads.conditions import Conditions, under
+from loads.mass_rules import check_masses, check_weighed
 from loads.mechanism import FlappingWingSpec
 from loads.motion_spec import MotionSpec
 from loads.statics import Drive, check_drive
@@ -217,8 +218,10 @@ class Case(CaseModel):
     """auto: where the linkage moves by more than 5 % of its span, equilibrium is sought on the deformed shape."""
     conditions: Conditions = Conditions()
     ways_to_hold: WaysToHold | None = None
-    carried: tuple[CarriedSpread | CarriedBody, ...] = ()
+    carried: tuple[Carried, ...] = ()
     """Masses that links carry besides their parts; they weigh where the parts weigh, and have inertia."""
+    massless: tuple[Name, ...] = ()
+    """Moving links without part or carried mass that are to weigh nothing where others weigh or move."""
     load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=100)]
     checks: dict[Name, Check] = {}
     hand_calculations: dict[Name, CantileverCalculation] = {}
@@ -268,6 +271,7 @@ class Case(CaseModel):
             _check_carried(self, f"carried.{i}", mass)
         for name, load_case in self.load_cases.items():
             _check_loads(self, f"load_cases.{name}", load_case)
+        _check_masses(self)
         for name, check in self.checks.items():
             if isinstance(check, PinCheck | BearingCheck):
                 _check_pins(self, name, check)
@@ -307,11 +311,11 @@ class Case(CaseModel):
         if self.flapping_wing is not None:
             self.flapping_wing.wing(self.linkage)
         if self.motion is not None:
-            for moved in (self.motion_coordinate, *self.motion.masses):
-                if moved not in self.linkage.moving:
-                    raise CaseError(
-                        f"motion: '{moved}' is not a moving link; choose among {', '.join(self.linkage.moving)}"
-                    )
+            moved = self.motion_coordinate
+            if moved not in self.linkage.moving:
+                raise CaseError(
+                    f"motion: '{moved}' is not a moving link; choose among {', '.join(self.linkage.moving)}"
+                )
         for audited in self.published_statics.links if self.published_statics else ():
             if audited not in self.linkage.moving:
                 raise CaseError(f"published_statics.links: '{audited}' is not a moving link; name moving links")
@@ -500,6 +504,35 @@ def _check_loads(case: Case, where: str, load_case: LoadCase) -> None:
         raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
 
 
+def _check_torque(case: Case, entry: str, load: PointMoment) -> None:
+    """A pin that turns freely passes no torque about its own axis; only the drive's does."""
+    linkage = case.linkage
+    pins = [name for name in linkage.joints_of(load.link)
+            if linkage.point_of(name, load.link) == load.at and linkage.joints[name].type == "revolute"]  # fmt: skip
+    driven = case.drive is not None and case.drive.joint in pins
+    if pins and not driven and case.joint_model == "pinned":
+        raise CaseError(
+            f"{entry}: the pin at '{load.at}' turns freely and nothing drives it, so no torque about z enters link "
+            f"'{load.link}' there; name a point of the link without pin, drive that joint, or write "
+            'joint_model = "bonded"'
+        )
+
+
+def _check_masses(case: Case) -> None:
+    known = {
+        "moving": case.linkage.moving,
+        "with_part": case.checked_links,
+        "carrying": [mass.link for mass in case.carried],
+        "massless": case.massless,
+    }
+    check_masses(**known)
+    for name, load_case in case.load_cases.items():
+        if load_case.own_weight or load_case.speed != 0.0:
+            check_weighed(f"load_cases.{name}.{'own_weight' if load_case.own_weight else 'speed'}", **known)
+    if case.motion is not None and case.motion.inertia:
+        check_weighed("motion.inertia", **known)
+
+
 def _check_pins(case: Case, name: str, check: PinCheck | BearingCheck) -> None:
     for joint in check.joints:
         if joint not in case.pinned_joints:
@@ -536,7 +569,7 @@ def _check_motor(case: Case, name: str) -> None:
         )
 
 
-def _check_carried(case: Case, entry: str, mass: CarriedSpread | CarriedBody) -> None:
+def _check_carried(case: Case, entry: str, mass: Carried) -> None:
     if mass.link not in case.linkage.moving:
         raise CaseError(
             f"{entry}.link: '{mass.link}' is not a moving link; choose among {', '.join(case.linkage.moving)}"

@@ -13,7 +13,7 @@ from geometry.pose import Pose
 from loads.actions import PartMass, needs_masses, stated_loads
 from loads.case import Case, LoadCase
 from loads.kinetostatics import Kinetostatics, is_determinate, solve_kinetostatics, torque_by_virtual_work
-from loads.masses import laden_masses, moving_masses
+from loads.masses import laden_masses, part_masses
 from loads.statics import Drive
 
 Real = NDArray[np.float64]
@@ -23,7 +23,7 @@ Real = NDArray[np.float64]
 class CaseMotion:
     """A case over its motion.
 
-    masses  the links' masses; empty where nothing weighs and inertia is left out
+    masses  of the links' parts; empty where nothing weighs and inertia is left out
     forces  load case -> joint forces; empty where they do not follow from equilibrium (redundant linkages)
     torque  load case -> drive torque (n,) [N mm]; NaN at dead points of the driven link
     dead_points  angles of the coordinate [rad] at which the driven link turns back
@@ -55,11 +55,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
     angles = drive_angles(case, pose)
     speed, acceleration = drive_speeds(case, angles)
     motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate)
-    masses = moving_masses(case) if spec.inertia or needs_masses(case) else {}
-    if spec.inertia and not (masses or case.carried):
-        raise CaseError(
-            "motion.inertia: no moving link has a mass; give a link a part, or state a mass under [motion.masses]"
-        )
+    masses = part_masses(case) if spec.inertia or needs_masses(case) else {}
     for name, load_case in case.load_cases.items():
         if load_case.speed != 0.0 and coordinate != case.pose.coordinate:
             raise CaseError(

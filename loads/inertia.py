@@ -14,11 +14,10 @@ from geometry.motion import solve_motion
 from geometry.pose import Pose
 from loads.actions import PartMass, actions
 from loads.applied import BodyForce, LineLoad, Load, PointLoad
-from loads.carried import CarriedBody, CarriedSpread
+from loads.carried import Carried, CarriedSpread
 from loads.case import Case, LoadCase, gravity
 
 Real = NDArray[np.float64]
-Carried = CarriedSpread | CarriedBody
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,7 +110,7 @@ def carried_loads(pose: Pose, carried: tuple[Carried, ...], gravity: Real, speed
             first, last = (density * specific_force(np.array([x, 0.0])) for x in (start, end))
             found.append(LineLoad(link=mass.link, start=start, end=end, at_start=first, at_end=last))
             continue
-        centroid = np.array(mass.centroid)
+        centroid = np.array(mass.place(points))
         force = mass.mass * specific_force(centroid)
         arm = np.array([*(turn @ (centroid - np.array(points[mass.at]))), 0.0])
         moment = np.cross(arm, force)
@@ -134,7 +133,7 @@ def with_carried(
             start, end = points[mass.start][0], points[mass.end][0]
             centroid, inertia = np.array([(start + end) / 2.0, 0.0]), mass.mass * (end - start) ** 2 / 12.0
         else:
-            centroid, inertia = np.array(mass.centroid), mass.mass * mass.radius_of_gyration**2
+            centroid, inertia = np.array(mass.place(points)), mass.mass * mass.radius_of_gyration**2
         pieces.append(PartMass(mass=mass.mass, centroid=centroid, inertia=inertia))
     total = sum(piece.mass for piece in pieces)
     centre = np.asarray(sum(piece.mass * piece.centroid for piece in pieces) / total)

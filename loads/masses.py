@@ -1,4 +1,4 @@
-"""What each link weighs: from its part's volume and density, or as stated."""
+"""What each link weighs: its part, from volume and density, and what it carries."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -32,19 +32,9 @@ def part_mass(case: Case, link: str) -> PartMass:
     )
 
 
-def moving_masses(case: Case) -> dict[str, PartMass]:
-    """Return the masses of a motion: stated, else of the part; massless links are left out."""
-    stated = case.motion.masses if case.motion is not None else {}
-    found = {}
-    for link in case.linkage.moving:
-        if link in stated:
-            own = stated[link]
-            found[link] = PartMass(
-                mass=own.mass, centroid=np.array(own.centroid), inertia=own.mass * own.radius_of_gyration**2
-            )
-        elif link in case.checked_links:
-            found[link] = part_mass(case, link)
-    return found
+def part_masses(case: Case) -> dict[str, PartMass]:
+    """Return the mass of every moving link's part; links without part are left out."""
+    return {link: part_mass(case, link) for link in case.checked_links}
 
 
 def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMass]:

@@ -7,17 +7,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from geometry.model import CaseModel, Name
-from geometry.units import NOT_NEGATIVE, POSITIVE, Angle, AngularAcceleration, AngularSpeed, Length, Mass
-
-
-class LinkMass(CaseModel):
-    """A stated mass of a link; it replaces what the link's part weighs."""
-
-    mass: Annotated[Mass, POSITIVE]
-    centroid: tuple[Length, Length]
-    """In the link's frame."""
-    radius_of_gyration: Annotated[Length, NOT_NEGATIVE] = 0.0
-    """About the centroid, so that the moment of inertia is mass times its square; 0 for a point mass."""
+from geometry.units import Angle, AngularAcceleration, AngularSpeed
 
 
 class MotionSpec(CaseModel):
@@ -36,9 +26,7 @@ class MotionSpec(CaseModel):
     acceleration: AngularAcceleration = 0.0
     """Constant angular acceleration along the motion; negative where the drive slows down."""
     inertia: bool = False
-    """True: the links' inertia loads the joints."""
-    masses: dict[Name, LinkMass] = {}
-    """Stated masses of moving links; a link with a part weighs what its part weighs when left out."""
+    """True: the inertia of the links' parts and of what they carry loads the joints."""
 
     @model_validator(mode="after")
     def _fits(self) -> "MotionSpec":

@@ -12,7 +12,7 @@ from geometry.pose import freedom
 from loads.case_file import read_case
 from loads.case_motion import solve_case_motion
 from loads.inertia import acting_loads
-from loads.masses import laden_masses, moving_masses
+from loads.masses import laden_masses, part_masses
 from loads.statics import solve_statics
 from reports.mechanism import design_lines, design_of
 
@@ -78,7 +78,7 @@ def test_general_solver_and_closed_form_move_alike(case, moved) -> None:
 
 
 def test_statics_with_inertia_are_kinetostatics(case) -> None:
-    masses = moving_masses(case)
+    masses = part_masses(case)
     pose = case.solve_pose()
     statics = solve_statics(pose, case.pinned_drive, acting_loads(case, case.load_cases["flapping"], pose, masses))
     spec = case.motion.model_copy(update={"range": (pose.angles["crank"], pose.angles["crank"] + 0.1), "poses": 3})
@@ -104,14 +104,14 @@ def test_the_stated_pose_bears_the_greatest_rocker_force(case, moved) -> None:
 def test_the_prototype_weighs_what_its_source_says() -> None:
     """Freitas (2022): 76.26 g in all."""
     case = read_case("flapping-wing-chosen")
-    total = sum(own.mass for own in laden_masses(case, moving_masses(case)).values())
+    total = sum(own.mass for own in laden_masses(case, part_masses(case)).values())
     assert total * 1e6 == pytest.approx(76.26, abs=0.005)
 
 
 def test_weight_alone_turns_the_crank_by_virtual_work() -> None:
     """At rest the torque is the rate of the potential energy over the crank's angle (central difference)."""
     case = read_case("flapping-wing-chosen")
-    masses = laden_masses(case, moving_masses(case))
+    masses = laden_masses(case, part_masses(case))
     pose, step = case.solve_pose(), 1e-5
     near = solve_motion(pose, [pose.angles["crank"] - step, pose.angles["crank"] + step])
 
@@ -122,7 +122,7 @@ def test_weight_alone_turns_the_crank_by_virtual_work() -> None:
             for link, own in masses.items()
         )
 
-    loads = acting_loads(case, case.load_cases["held"], pose, moving_masses(case))
+    loads = acting_loads(case, case.load_cases["held"], pose, part_masses(case))
     found = solve_statics(pose, case.pinned_drive, loads).drive_torque
     assert found == pytest.approx((height(1) - height(0)) / (2 * step), rel=1e-5)
 

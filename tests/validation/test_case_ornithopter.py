@@ -16,7 +16,7 @@ from loads.case_file import read_case
 from loads.case_motion import solve_case_motion
 from loads.inertia import acting_loads, with_carried
 from loads.kinetostatics import solve_kinetostatics
-from loads.masses import moving_masses
+from loads.masses import part_masses
 from loads.statics import solve_statics
 
 RPM = math.pi / 30.0
@@ -69,7 +69,7 @@ def test_both_slots_carry_alike(moved) -> None:
 def test_statics_with_inertia_are_kinetostatics(case, moved, load_case: str) -> None:
     pose = case.solve_pose()
     found = solve_statics(
-        pose, case.pinned_drive, acting_loads(case, case.load_cases[load_case], pose, moving_masses(case))
+        pose, case.pinned_drive, acting_loads(case, case.load_cases[load_case], pose, part_masses(case))
     )
     largest = max(joint.magnitude for joint in found.joints.values())
     for joint, reaction in found.joints.items():
@@ -142,7 +142,7 @@ def test_the_check_ends_in_pass(case) -> None:
 def test_a_massless_part_has_no_say(case) -> None:
     """The rod's and the crank's inertia count: without them the joint at the crank pin carries less."""
     motion = solve_case_motion(case).forces["fast"].motion
-    masses = moving_masses(case)
+    masses = part_masses(case)
     levers: dict[str, PartMass] = {link: own for link, own in masses.items() if link.startswith("lever")}
     whole = solve_kinetostatics(motion, case.pinned_drive, (), masses)
     part = solve_kinetostatics(motion, case.pinned_drive, (), levers)

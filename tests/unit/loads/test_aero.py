@@ -203,6 +203,8 @@ FLIGHT = "owl-wing-flight"
 COMPLETE = "load_cases.complete.air.0"
 BAD = [
     (f"{COMPLETE}.lift_coefficient=2.5", [f"{COMPLETE}.lift_coefficient", "2.5", "above 2", "correct"]),
+    (f"{COMPLETE}.drag_coefficient=2.5", [f"{COMPLETE}.drag_coefficient", "2.5", "above 2.3", "correct"]),
+    ('load_cases.as-published.air.0.drag="50 N"', ["as-published.air.0.drag_coefficient", "drag 50 N", "implies 3.29"]),
     (f"{COMPLETE}.drag_coefficient=-0.1", [f"{COMPLETE}.drag_coefficient", "-0.1", "at least 0"]),
     (f"{COMPLETE}.speed=22", [f"{COMPLETE}.speed", "22", "unit", "22 m/s"]),
     (f"{COMPLETE}.speed=22 kg", [f"{COMPLETE}.speed", "22 kg", "not a unit of speed"]),
@@ -237,7 +239,7 @@ def test_a_weight_without_any_part_is_refused():
     for link in data["links"].values():
         link.pop("part", None)
     del data["carried"], data["checks"]
-    with pytest.raises(CaseError, match=r"load_cases\.complete\.own_weight: no moving link has a part"):
+    with pytest.raises(CaseError, match=r"load_cases\.complete\.own_weight: link 'GF' has neither a part nor a mass"):
         validate(data)
 
 

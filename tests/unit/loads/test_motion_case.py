@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 
 from geometry.errors import CaseError
-from loads.actions import actions, stated_loads
+from loads.actions import actions
 from loads.case_file import read_case
 from loads.case_motion import solve_case_motion
-from loads.kinetostatics import solve_kinetostatics
+from loads.masses import laden_masses
 from loads.statics import solve_statics
 
 FOUR_BAR = """
 schema_version = 1
 title = "A four-bar"
+massless = ["crank", "rocker"]
 [links.base]
 ground = true
 points.O2 = ["0 mm", "0 mm"]
@@ -46,7 +47,9 @@ turn = true
 poses = 37
 speed = "150 rpm"
 inertia = true
-[motion.masses.coupler]
+[[carried]]
+link = "coupler"
+at = "P"
 mass = "200 g"
 centroid = ["60 mm", "10 mm"]
 radius_of_gyration = "40 mm"
@@ -75,8 +78,9 @@ def test_a_full_turn_at_constant_speed(path):
     np.testing.assert_allclose(result.motion.speed, omega)
     assert result.motion.returns
     assert result.motion.times[-1] == pytest.approx(60.0 / 150.0)
-    assert result.masses["coupler"].mass == pytest.approx(2e-4)
-    assert result.masses["coupler"].inertia == pytest.approx(2e-4 * 40.0**2)
+    laden = laden_masses(result.case, result.masses)
+    assert laden["coupler"].mass == pytest.approx(2e-4)
+    assert laden["coupler"].inertia == pytest.approx(2e-4 * 40.0**2)
     for load_case in ("hung", "follower"):
         solution = result.forces[load_case]
         assert np.max(np.abs(solution.imbalance)) < 1e-8 * np.max(np.abs(solution.drive_power))
@@ -89,11 +93,9 @@ def test_inertia_counts_only_where_it_is_asked_for(path):
     assert np.max(without.forces["hung"].power.kinetic) == 0.0
 
 
-def test_stated_masses_weigh(path):
-    result = solved(path)
-    case = result.case.load_cases["hung"].model_copy(update={"own_weight": True})
-    heavy = solve_kinetostatics(result.motion, result.drive, stated_loads(result.case, case, result.masses))
-    ground = heavy.forces["O2"] + heavy.forces["O4"]
+def test_carried_masses_weigh(path):
+    result = solved(path, "motion.inertia=false", "load_cases.hung.own_weight=true")
+    ground = result.forces["hung"].forces["O2"] + result.forces["hung"].forces["O4"]
     np.testing.assert_allclose(ground, np.tile([0.0, 3.0 + 0.2 * 9.81], (37, 1)), atol=1e-10)
 
 
@@ -167,9 +169,9 @@ def test_a_redundant_linkage_has_a_torque_alone(path):
         (['motion.speed="0 rpm"', 'motion.acceleration="-1 rad/s^2"'], "must be positive"),
         (['motion.acceleration="-500 rad/s^2"'], r"slows down to a stop at 54\.137\d* deg"),
         (['motion.coordinate="base"'], "'base' is not a moving link"),
-        (['motion.masses.base={mass="1 g", centroid=["0 mm", "0 mm"]}'], "'base' is not a moving link"),
-        (['motion.masses.coupler.mass="0 g"'], "greater than zero"),
-        (["motion.masses={}"], "no moving link has a mass"),
+        (['carried.0.link="base"'], "'base' is not a moving link"),
+        (['carried.0.mass="0 g"'], r"carried\.0\.mass .*greater than zero"),
+        (["carried=[]"], r"motion\.inertia: link 'coupler' has neither a part nor a mass.*massless"),
         (["motion.poses=2"], r"motion\.poses"),
         (
             ['motion.coordinate="rocker"', 'drive.link="rocker"', 'drive.joint="O4"'],

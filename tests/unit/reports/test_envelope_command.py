@@ -15,7 +15,9 @@ title = "A rocker with a part"
 links.base = { ground = true, points = { O2 = ["0 mm", "0 mm"], O4 = ["60 mm", "0 mm"] } }
 links.crank = { points = { O2 = ["0 mm", "0 mm"], A = ["20 mm", "0 mm"] } }
 links.coupler = { points = { A = ["0 mm", "0 mm"], B = ["60 mm", "0 mm"] } }
-links.rocker = { part = "bar", points = { O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"] } }
+links.rocker.part = "bar"
+links.rocker.points = { O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"], P = ["60 mm", "0 mm"] }
+links.rocker.end_patch = "4 mm"
 joints.O2 = { links = ["base", "crank"], pin_diameter = "3 mm" }
 joints.A = { links = ["crank", "coupler"], pin_diameter = "3 mm" }
 joints.B = { links = ["coupler", "rocker"], pin_diameter = "3 mm" }
@@ -23,7 +25,7 @@ joints.O4 = { links = ["base", "rocker"], pin_diameter = "3 mm" }
 pose = { coordinate = "crank", angle = "40 deg", near = { coupler = "20 deg", rocker = "60 deg" } }
 drive = { link = "crank", joint = "O2" }
 motion = { range = ["40 deg", "80 deg"], poses = 7 }
-load_cases.turn = { moments = [{ link = "rocker", at = "O4", moment = "20 N*mm" }] }
+load_cases.turn = { moments = [{ link = "rocker", at = "P", moment = "20 N*mm" }] }
 solid = { mesh_size = 3.0 }
 [parts.bar]
 shape = "bar"
@@ -66,7 +68,7 @@ def test_the_verdict_is_the_exit_status_and_the_record_names_pose_and_place(path
 
 
 def test_a_weak_link_fails(path: str) -> None:
-    moment = 'load_cases.turn.moments=[{link="rocker", at="O4", moment="9000 N*mm"}]'
+    moment = 'load_cases.turn.moments=[{link="rocker", at="P", moment="9000 N*mm"}]'
     done = envelope(path, "--max-unknowns", "1000", "--set", moment)
     assert done.returncode == 1
     assert "FAIL" in done.stdout

@@ -18,6 +18,7 @@ from reports.output import write_folder
 CASE = """
 schema_version = 1
 title = "A slider-crank, 20 $ worth"
+massless = ["crank", "rod"]
 [links.frame]
 ground = true
 points.O = ["0 mm", "0 mm"]
@@ -48,7 +49,10 @@ turn = true
 poses = 73
 speed = "600 rpm"
 inertia = true
-masses.block = { mass = "50 g", centroid = ["0 mm", "0 mm"] }
+[[carried]]
+link = "block"
+at = "B"
+mass = "50 g"
 [load_cases.push]
 forces = [{ link = "block", at = "P", force = ["-5 N", "0 N"] }]
 [load_cases.idle]

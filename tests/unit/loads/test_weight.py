@@ -1,0 +1,65 @@
+"""What nothing weighs, and a torque on a pin that turns freely, are refused in one sentence."""
+
+from pathlib import Path
+
+import pytest
+
+from geometry.errors import CaseError
+from loads.case import Case
+from loads.case_file import read_case
+
+LADEN = str(Path(__file__).parent / "four-bar-laden.toml")
+
+
+def _without_part(tmp_path: Path, *overrides: str) -> Case:
+    text = Path(LADEN).read_text(encoding="utf-8").replace('[links.coupler]\npart = "bar"', "[links.coupler]")
+    path = tmp_path / "bare.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_case(str(path), overrides)
+
+
+def test_a_link_that_nothing_weighs_is_refused_unless_it_is_stated_massless(tmp_path: Path) -> None:
+    for override, entry in (
+        ("load_cases.turning.carried=true", "load_cases.turning.own_weight"),
+        ("load_cases.turning.own_weight=false", "load_cases.turning.speed"),
+        ('load_cases={still={}}\nmotion={range=["40 deg","60 deg"],speed="3 rpm",inertia=true}', "motion.inertia"),
+    ):
+        with pytest.raises(
+            CaseError, match=rf"^{entry}: link 'coupler' has neither a part nor a mass.*massless"
+        ) as wrong:
+            _without_part(tmp_path, *override.split("\n"))
+        assert wrong.value.exit_status == 2
+    assert _without_part(tmp_path, "load_cases={still={}}").massless == ()
+    assert _without_part(tmp_path, 'carried.0={link="coupler", at="A", mass="1 g"}').carried[0].mass == 1e-6
+    assert _without_part(tmp_path, 'massless=["coupler"]').massless == ("coupler",)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "sentence"),
+    [
+        (['massless=["base"]'], "massless: 'base' is not a moving link"),
+        (['massless=["crank"]'], "massless: link 'crank' has a part, so it weighs something"),
+        (['carried.0.mass="3"'], r"^carried\.0\.mass \(it is '3'\): the mass needs its unit"),
+        (['carried.1={link="rocker", at="P"}'], r"^carried\.1\.mass: this entry is missing"),
+        (['carried.1={link="rocker", start="O4", mass="1 g"}'], r"^carried\.1\.end: this entry is missing"),
+        (["carried.1=3"], r"^carried\.1 \(it is 3\): it must be a table"),
+    ],
+)
+def test_wrong_masses_end_in_one_sentence(overrides: list[str], sentence: str) -> None:
+    with pytest.raises(CaseError, match=sentence) as wrong:
+        read_case(LADEN, overrides)
+    assert "more problems" not in str(wrong.value)
+
+
+# ---- torques on pins -------------------------------------------------------------------------------------------
+
+
+def test_a_torque_on_a_pin_needs_a_drive_there() -> None:
+    torque = 'load_cases.turning.moments=[{link="%s", at="%s", moment=%s}]'
+    for link, point in (("coupler", "A"), ("rocker", "O4")):
+        with pytest.raises(CaseError, match=rf"moments\.0: the pin at '{point}' turns freely and nothing drives it"):
+            read_case(LADEN, [torque % (link, point, '"2 N*mm"')])
+    read_case(LADEN, [torque % ("crank", "O2", '"2 N*mm"')])  # the drive's own joint
+    read_case(LADEN, [torque % ("rocker", "P", '"2 N*mm"')])  # no pin stands there
+    read_case(LADEN, [torque % ("coupler", "A", '["1 N*mm", "2 N*mm", "0 N*mm"]')])  # about other axes a pin holds
+    read_case(LADEN, [torque % ("rocker", "O4", '"2 N*mm"'), 'joint_model="bonded"'])
