@@ -23,7 +23,7 @@ ROOT = HERE.parent
 BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
     "motion": (True, [], []),
     "solvers": (False, ["--solvers", "auto", "pardiso"], ["--solvers", "auto", "--sizes", "20k", "160k"]),
-    "envelope": (False, [], ["2"]),
+    "envelope": (False, [], ["--sizes", "2"]),
     "growth": (False, [], ["--mesh", "3", "--counts", "30", "5", "5"]),
     "accuracy": (False, ["--largest", "150000"], ["--largest", "20000"]),
     "stages": (False, [], []),

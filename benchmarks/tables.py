@@ -110,13 +110,20 @@ def unknowns(record: Record) -> str:
 
 
 def envelope(record: Record) -> str:
-    """Envelope of 360 poses over one direct solution."""
+    """Envelope of 360 poses over one direct solution, with and without fatigue, in processor and in wall time."""
     rows = []
     for run in record["runs"]:
-        cpu = f"{run['cpu_ratio']:.2f}" if "cpu_ratio" in run else ""
-        absolute = [seconds(run["direct_seconds"]), seconds(run["envelope_seconds"])]
-        rows.append([run["link"], f"{run['unknowns']:,}", f"{run['ratio']:.2f}", cpu, *absolute])
-    header = "link|unknowns|envelope over direct, wall time|processor time|direct|envelope"
+        for what, end in (("", ""), (", with fatigue", "_with_fatigue")):
+            if run[f"envelope{end}"] is not None:
+                factorised, chosen = run[f"ratio_to_factorised{end}"], run[f"ratio_to_chosen{end}"]
+                ratios = [factorised["cpu"], factorised["wall"], chosen["cpu"], chosen["wall"]]
+                absolute = [seconds(run[key]["cpu"]) for key in ("factorised", "chosen", f"envelope{end}")]
+                size = [f"{run['unknowns']:,}", str(run["solutions"])]
+                rows.append([run["link"] + what, *size, *(f"{ratio:.2f}" for ratio in ratios), *absolute])
+    header = (
+        "link|unknowns|solutions|envelope over one factorised solution, processor time|wall time|over one by the "
+        "chosen solver, processor time|wall time|factorised|chosen|envelope"
+    )
     return table(header, rows) + "\n" + stamp(record)
 
 

@@ -61,8 +61,10 @@ class SymmetricBlockMatrix:
         """Multiply with (size,) or (size, k)."""
         if x.ndim == 1:
             return self.product(np.ascontiguousarray(x, dtype=np.float64))
-        columns = [self.product(np.ascontiguousarray(column, dtype=np.float64)) for column in x.T]
-        return np.array(columns).reshape(x.shape[1], self.size).T
+        found = np.empty(x.shape, order="F")
+        for column, out in zip(x.T, found.T, strict=True):
+            out[:] = self.product(np.ascontiguousarray(column, dtype=np.float64))
+        return found
 
     def with_fixed(self, unknowns: NDArray[np.int64]) -> "SymmetricBlockMatrix":
         """Return a copy in which rows and columns of these unknowns are zero but for their diagonal entry."""

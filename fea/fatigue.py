@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.stress import principal, von_mises
+from fea.stress import extreme_principal, von_mises
 from geometry.material import Fatigue, Material
 
 Real = NDArray[np.float64]
@@ -26,8 +26,8 @@ LIFE_FACTOR = 4.0
 
 def signed_stress(stress: Real, *, brittle: bool) -> Real:
     """Signed measure of stress (...) [MPa] of components (..., 6), as the module says."""
-    values = principal(stress)
-    largest = np.where(np.abs(values[..., 0]) >= np.abs(values[..., 2]), values[..., 0], values[..., 2])
+    first, last = extreme_principal(stress)
+    largest = np.where(np.abs(first) >= np.abs(last), first, last)
     return np.asarray(largest if brittle else np.copysign(von_mises(stress), largest))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.band import Band
-from fea.critical import critical_node
+from fea.critical import critical_nodes
 from fea.discretisation import Discretisation, holds, judged
 from fea.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
 from fea.fatigue import fatigue_life, missing_data, strength_at
@@ -241,11 +241,12 @@ def _fatigue(
     repetitions: float | None,
 ) -> LinkFatigue:
     assert material.fatigue is not None
-    every, found = [], []
+    every, found, parts = [], [], []
     for variant in load_case.variants:
         count = int(np.isfinite(variant.stress).sum())
-        part = solved.combination[:, variant.first : variant.first + count]
-        node, history = critical_node(solved.stress, part, material)
+        parts.append(solved.combination[:, variant.first : variant.first + count])
+    critical = critical_nodes(solved.stress, parts, material)
+    for variant, (node, history) in zip(load_case.variants, critical, strict=True):
         closed = closed_history(history, returns=returns)
         life = fatigue_life(closed, material)
         every += [life, *(fatigue_life(factor * closed, material) for factor in series.of_variant(variant))]

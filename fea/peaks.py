@@ -66,7 +66,7 @@ def _squares(parts: Real, combination: Real) -> Real:
 
 def _candidates(parts: Real, combination: Real) -> NDArray[np.int64]:
     """Nodes that may hold the peak under some load, the most stressed first."""
-    own = np.sqrt(np.einsum("kim,kim->km", parts, parts))
+    own = mode_sizes(parts)
     size = np.abs(combination)
     order = np.argsort(-(own @ size.max(axis=1)))
     sample = order[: max(1, len(order) // 200)]
@@ -105,13 +105,23 @@ def principal_peaks(stress: Real, combination: Real) -> Peaks:
     return Peaks(value=value, node=node)
 
 
-def largest_sizes(stress: Real, combination: Real, *, whole: bool) -> Real:
-    """Largest size of the stress of each node (nodes,) under any of the loads [MPa]; other arguments as above.
+def size_parts(stress: Real, *, whole: bool) -> Real:
+    """Numbers (nodes, k, m) whose length over k is the size of stresses (nodes, 6, m) [MPa].
 
     whole   True: the Frobenius norm, which no principal stress exceeds; False: the von Mises stress
     """
-    weights = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
-    parts = stress * np.sqrt(weights)[:, None] if whole else deviator(stress)
+    if not whole:
+        return deviator(stress)
+    return np.asarray(stress * np.sqrt([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])[:, None])
+
+
+def mode_sizes(parts: Real) -> Real:
+    """Sizes (nodes, m) of each mode by itself, of what ``size_parts`` returns."""
+    return np.asarray(np.sqrt(np.einsum("kim,kim->km", parts, parts)))
+
+
+def largest_sizes(parts: Real, combination: Real) -> Real:
+    """Largest size of the stress of each node (nodes,) under any of the loads (m, N) [MPa]."""
     found = np.empty(len(parts))
     step = max(1, _BLOCK // (parts.shape[1] * combination.shape[1]))
     for start in range(0, len(parts), step):

@@ -17,6 +17,7 @@ from fea.solve import Method, factorise
 from fea.space import DisplacementSpace
 from fea.stress import PAIRS, carry_to_nodes
 from fea.supports import isostatic_supports
+from fea.two_level import linear_level
 from fea.unit_loads import UnitLoads
 
 Real = NDArray[np.float64]
@@ -38,7 +39,7 @@ class UnitSolutions:
     reaction      (N,) largest support reaction relative to the load
     imbalance     (N,) resultant of the load vectors relative to the load
     units         number of unit loads that the modes are made of
-    solver        name of the solver
+    solver        name of the solver; why it was chosen; largest relative error of a mode in the energy norm
     """
 
     space: DisplacementSpace
@@ -49,6 +50,8 @@ class UnitSolutions:
     imbalance: Real
     units: int
     solver: str
+    solver_reason: str
+    solver_error: float
 
     def field(self, load: int) -> Real:
         """Displacements (nodes, 3) of one of the loads [mm]."""
@@ -90,11 +93,20 @@ def solve_units(
     rows = np.zeros((space.unknowns, 6))
     rows[supports.unknowns, np.arange(6)] = 1.0
     rows = K @ rows
-    factor = factorise(K.with_fixed(supports.unknowns), right_hand_sides=count, method=method, threads=threads)
-    F = np.asarray(units.vectors @ modes)
-    held = F[supports.unknowns].copy()
+    factor = factorise(
+        K.with_fixed(supports.unknowns),
+        level=linear_level(space, E=E, nu=nu, fixed=supports.unknowns),
+        right_hand_sides=count,
+        method=method,
+        threads=threads,
+    )
+    F = np.empty((space.unknowns, count), order="F")  # as solvers take it
+    for mode, column in zip(modes.T, F.T, strict=True):
+        column[:] = units.vectors @ mode
+    held = F[supports.unknowns]
     F[supports.unknowns] = 0.0
-    U = factor.solve(F)
+    answer = factor.solved(F)
+    U = answer.x
     reaction = np.abs((rows.T @ U - held) @ combination).max(axis=0) / scale
     return UnitSolutions(
         space=space,
@@ -105,6 +117,8 @@ def solve_units(
         imbalance=imbalance,
         units=units.count,
         solver=factor.name,
+        solver_reason=factor.reason,
+        solver_error=answer.error,
     )
 
 
@@ -135,7 +149,7 @@ def nodal_stress(space: DisplacementSpace, displacement: Real, *, E: float, nu: 
     X, _, _, gradient = reference_basis(space, space.order)
     carry = carry_to_nodes(X, space.cells.shape[1])
     m = displacement.shape[1]
-    fields = displacement.reshape(-1, 3, m)
+    fields = np.ascontiguousarray(displacement).reshape(-1, 3 * m)
     sums = np.zeros((len(space.nodes), 6 * m))
     for start in range(0, len(space.cells), _CHUNK):
         cells = space.cells[start : start + _CHUNK]
@@ -143,7 +157,7 @@ def nodal_stress(space: DisplacementSpace, displacement: Real, *, E: float, nu: 
         inverse, _ = jacobians(space.nodes[cells], gradient)
         q = inverse.shape[1]
         slopes = (inverse @ gradient.transpose(0, 2, 1)).reshape(k, 3 * q, b)
-        G = (slopes @ fields[cells].reshape(k, b, 3 * m)).reshape(k, q, 3, 3, m)
+        G = (slopes @ fields[cells]).reshape(k, q, 3, 3, m)
         nodes, row = np.unique(cells, return_inverse=True)
         mean = csr_array(
             (

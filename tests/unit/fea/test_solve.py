@@ -8,7 +8,7 @@ from fea import mkl
 from fea.direct import PardisoFactor
 from fea.elasticity import assemble_stiffness
 from fea.solve import available_methods, factorise
-from fea.solved import ENERGY_TARGET
+from fea.solved import ENERGY_TARGET, refined, sampled_error
 from fea.space import displacement_space
 from fea.supports import isostatic_supports
 from geometry.errors import CannotRunError
@@ -64,6 +64,33 @@ def test_wrong_solution_is_refined_and_a_hopeless_one_refused(system, method):
     factor.solver.apply = lambda b: 2.5 * exact(b)
     with pytest.raises(CannotRunError, match=r"leaves an error of .* of the solution in the energy norm"):
         factor.solve(rhs)
+
+
+@pytest.mark.parametrize("wrong", range(6))
+def test_one_wrong_column_of_many_is_found_without_solving_each_twice(system, wrong):
+    """Two probes and one column stand for all: the error of a single bad column must not hide among good ones."""
+    _, K, _, fixed = system
+    columns = np.random.default_rng(3).normal(size=(K.size, 6)) * np.logspace(-6, 6, 6)
+    columns[fixed] = 0.0
+    factor = factorise(K, method=METHODS[0], threads=1).solver
+    solved = []
+
+    def apply(b):
+        x = factor.apply(b)
+        solved.append(1 if b.ndim == 1 else b.shape[1])
+        if len(solved) == 1:
+            x[:, wrong] *= 1.001
+        return x
+
+    x, error = refined(K, apply, columns)
+    assert solved[:3] == [6, 3, 6], "all columns, the probes, and a refinement since the error is 0.1 %"
+    assert error < ENERGY_TARGET
+    exact = factor.apply(columns)
+    assert (np.abs(x - exact).max(axis=0) < 1e-9 * np.abs(exact).max(axis=0)).all()
+    unrefined = exact.copy()
+    unrefined[:, wrong] *= 1.001
+    residual = columns - K @ unrefined
+    assert sampled_error(residual, factor.apply, columns, unrefined) == pytest.approx(1e-3, rel=1e-3)
 
 
 def test_fallback_where_mkl_is_not_installed(system, monkeypatch):

@@ -3,7 +3,7 @@ import pytest
 import solid_meshes
 
 from fea.space import displacement_space
-from fea.stress import principal, stress_field, von_mises
+from fea.stress import extreme_principal, principal, stress_field, von_mises
 from geometry.errors import CannotRunError
 
 E, NU = 2900.0, 0.38
@@ -72,3 +72,18 @@ def test_peak_is_found_where_it_is(bent):
 def test_section_beside_the_body_is_refused(bent):
     with pytest.raises(CannotRunError, match=r"too coarse for a section of 0\.2 mm at x = 40 mm"):
         bent.section(x=40.0, half_length=0.1, half_y=1.0, half_z=0.6)
+
+
+def test_extreme_principal_stresses_are_the_eigenvalues():
+    rng = np.random.default_rng(5)
+    scale = np.logspace(-6, 6, 4000)
+    sigma = rng.normal(size=(4000, 6)) * scale[:, None]
+    sigma[0] = 0.0
+    sigma[1] = [3.0, 3.0, 3.0, 0.0, 0.0, 0.0]
+    sigma[2] = [5.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    sigma[3] = [0.0, -5.0, 0.0, 0.0, 0.0, 0.0]
+    sigma[4] = [0.0, 0.0, 0.0, 2.0, 0.0, 0.0]
+    exact, (first, last) = principal(sigma), extreme_principal(sigma)
+    size = np.abs(exact).max(axis=1) + 1e-300
+    assert (np.abs(first - exact[:, 0]) < 1e-7 * size).all()
+    assert (np.abs(last - exact[:, 2]) < 1e-7 * size).all()
