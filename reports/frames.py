@@ -1,6 +1,9 @@
 """Which model gave the joint forces, what large displacement changes, and pins: as data and as lines of text."""
 
+import math
 from typing import Any
+
+import numpy as np
 
 from fea.band import Band
 from fea.joint_forces import PINNED_STATICS
@@ -25,6 +28,26 @@ UNITS = {
     "ways_to_hold.displacement": "mm",
     "ways_to_hold.size": "mm",
 }
+
+
+AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+_ROUNDING = 1e-9
+
+
+def shown_components(reactions: Reactions) -> tuple[str, ...]:
+    """Return the components of the joints' wrenches that a table shows: the plane's, and those beyond it that act.
+
+    In the plane these are Fx and Fy. Fz, Mx and My come with loads out of it, Mz with joints that are bonded.
+    """
+    wrenches = np.array([joint.wrench for joint in reactions.joints.values()]).reshape(-1, 6)
+    sizes = np.abs(wrenches).max(axis=0, initial=0.0)
+    force, arm = sizes[:3].max(), reactions.pose.linkage.longest
+    acts = sizes > _ROUNDING * np.array([force] * 3 + [force * arm] * 3)
+    revolute = [reactions.pose.linkage.joints[name].type == "revolute" for name in reactions.joints]
+    turned = np.abs(wrenches[revolute, 5]).max(initial=0.0) > _ROUNDING * force * arm
+    spatial = bool(acts[2:5].any())
+    shown = {"Fx": True, "Fy": True, "Fz": spatial, "Mx": spatial, "My": spatial, "Mz": bool(turned)}
+    return tuple(axis for axis in AXES if shown[axis])
 
 
 def reaction_records(reactions: Reactions) -> list[dict[str, Any]]:

@@ -13,7 +13,8 @@ from geometry.material import Material
 from geometry.pose import NEAR_DEAD_POINT
 from loads.case_file import built_in_cases
 from reports.claims import as_records, count
-from reports.loads import air_record, anchor_record
+from reports.frames import AXES, shown_components
+from reports.loads import air_record, anchor_record, weight_sentence
 from reports.mechanism import design_of
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
 from reports.record import alula_version, worst_load_case
@@ -109,6 +110,9 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         anchors={name: anchor_record(case) for name, case in result.load_cases.items()},
         air={name: found for name in result.load_cases if (found := air_record(result, name))},
         turning=turning,
+        axes=AXES,
+        shown_components=shown_components,
+        weight_sentence=weight_sentence,
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
         links=[_link(result, link, figures) for link in first.links],
         agreement=AGREEMENT,

@@ -1,10 +1,14 @@
 """The air's forces and what the anchor must hold, as data for ``result.json`` and for the page."""
 
+import math
 from typing import Any
 
 from fea.anchor import anchor_loads
 from fea.result import CheckResult, LoadCaseResult
 from loads.aero import shares
+from loads.carried import CarriedSpread
+from loads.case import Case
+from reports.wording import joined, plain
 
 UNITS = {
     "anchor.joints.force": "N",
@@ -24,6 +28,29 @@ UNITS = {
     "air.force": "N",
     "air.spread.share": "1",
 }
+
+
+def weight_sentence(case: Case, name: str) -> str:
+    """Return in one sentence what weighs in a load case and what moves, and which links count as massless."""
+    load_case = case.load_cases[name]
+    if not load_case.own_weight and load_case.speed == 0.0:
+        return "The links count as massless here: what weighs stands among the stated forces"
+    kind = "weight" if load_case.speed == 0.0 else "weight and inertia" if load_case.own_weight else "inertia"
+    told = [f"Links have {kind} by their parts’ volume and density"]
+    if case.carried and load_case.carried:
+        carried = [
+            f"{mass.link} carries {plain(float(f'{mass.mass * 1e6:.4g}'))} g "
+            + (f"spread from {mass.start} to {mass.end}" if isinstance(mass, CarriedSpread) else f"at {mass.at}")
+            for mass in case.carried
+        ]
+        told.append(joined(carried))
+    elif case.carried:
+        told.append("what links carry otherwise is left out")
+    if load_case.speed != 0.0:
+        told.append(f"{case.pose.coordinate} turns at {plain(load_case.speed * 30.0 / math.pi)} rpm")
+    if case.massless:
+        told.append(f"{joined(list(case.massless))} {'counts' if len(case.massless) == 1 else 'count'} as massless")
+    return "; ".join(told)
 
 
 def anchor_record(case: LoadCaseResult) -> dict[str, Any]:

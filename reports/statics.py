@@ -7,6 +7,7 @@ import numpy as np
 
 from fea.check import CaseStatics
 from loads.statics import Reactions, System
+from reports.frames import AXES, shown_components
 
 
 def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
@@ -23,11 +24,15 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
         print(f"  {name:<12} at ({x:10.4f}, {y:10.4f}) mm")
     for title, reactions in statics.reactions.items():
         print(f"\nLoad case {title}")
+        shown = shown_components(reactions)
+        places = [AXES.index(axis) for axis in shown]
+        forces, moments = [i for i in places if i < 3], [i for i in places if i >= 3]
         for joint in reactions.joints.values():
-            fx, fy = joint.force[:2]
+            force = ", ".join(f"{joint.wrench[i]:10.4f}" for i in forces)
+            turned = "".join(f", {AXES[i]} {joint.wrench[i]:.4g}" for i in moments)
             print(
-                f"  {joint.joint:<4} {joint.by} pushes {joint.on} with ({fx:10.4f}, {fy:10.4f}) N,"
-                f" {joint.magnitude:.4f} N"
+                f"  {joint.joint:<4} {joint.by} pushes {joint.on} with ({force}) N, {joint.magnitude:.4f} N"
+                f"{turned}{' N·mm' if turned else ''}"
             )
         if reactions.drive:
             print(f"  drive torque on {reactions.drive.link}: {reactions.drive_torque:.2f} N·mm (counter-clockwise +)")
@@ -78,6 +83,7 @@ def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
                         "by": joint.by,
                         "force": joint.force[:2].tolist(),
                         "magnitude": joint.magnitude,
+                        "wrench": joint.wrench.tolist(),
                     }
                     for joint in reactions.joints.values()
                 ],

@@ -1,0 +1,75 @@
+"""The joints' forces in the report: plain in the plane, with Fz and moments where loads leave it; and what weighs."""
+
+import html
+import json
+import re
+
+import pytest
+from typer.testing import CliRunner
+
+from fea.check import check_case, solve_case_statics
+from loads.case_file import read_case
+from reports.frames import shown_components
+from reports.html import render
+from reports.loads import weight_sentence
+
+WING, FLIGHT = "owl-wing-static", "owl-wing-flight"
+BONDED = 'joint_model="bonded"'
+
+
+def statics_section(name, *overrides):
+    result = check_case(read_case(name, list(overrides)), name=name, fidelity="beam")
+    page = render(result, {})
+    start = page.index('<section id="statics">')
+    text = re.sub(r"<[^>]+>", " ", page[start : page.index("</section>", start)])
+    return result, re.sub(r"\s+", " ", html.unescape(text))
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides", "load_case", "components"),
+    [
+        (WING, [], "weight", "Fx Fy"),
+        (WING, [BONDED], "weight", "Fx Fy Mz"),
+        (FLIGHT, [], "planform", "Fx Fy Fz Mx My"),
+        (FLIGHT, [BONDED], "complete", "Fx Fy Fz Mx My Mz"),
+    ],
+)
+def test_components_are_those_that_act(name, overrides, load_case, components):
+    reactions = solve_case_statics(read_case(name, overrides), name).reactions[load_case]
+    assert " ".join(shown_components(reactions)) == components
+
+
+def test_the_table_of_a_plane_case_stays_plain():
+    _, words = statics_section(WING)
+    assert "Joint forces [N], global axes Joint pushes F x F y magnitude A AG pushes AE 0.5011 0.8095 0.9520" in words
+    assert "The links count as massless here" in words
+
+
+def test_the_table_out_of_the_plane_holds_the_whole_wrench():
+    result, words = statics_section(FLIGHT)
+    assert (
+        "Joint forces [N] and moments about the joint [N·mm], global axes Joint pushes F x F y F z magnitude" in words
+    )
+    wrench = result.load_cases["as-published"].reactions.joints["A"].wrench
+    assert wrench[2] == pytest.approx(-0.1393, abs=5e-5)
+    assert "A AG pushes AE 0.5011 0.8095 −0.1393 0.9621 −7.660 −21.85" in words
+    assert "CF carries 13.9 g spread from F to C and CH carries 11.58 g spread from C to H" in words
+
+
+def test_the_terminal_and_its_json_hold_them_too():
+    from reports.cli import app
+
+    shown = CliRunner().invoke(app, ["statics", FLIGHT]).output
+    assert "-0.1393) N, 0.9621 N, Mx -7.66, My -21.85 N·mm" in shown
+    found = json.loads(CliRunner().invoke(app, ["statics", FLIGHT, "--json"]).output)
+    assert found["load_cases"]["as-published"]["reactions"][0]["wrench"][4] == pytest.approx(-21.85, abs=5e-3)
+
+
+def test_what_weighs_is_said():
+    flapping = read_case("flapping-wing-chosen")
+    assert "; crank turns at 180 rpm" in weight_sentence(flapping, "flapping")
+    assert weight_sentence(flapping, "held").startswith("Links have weight by their parts’ volume and density; ")
+    assert "left out" in weight_sentence(read_case("ornithopter"), "slow")
+    bare = read_case("four-bar-synthesis", ["carried=[]"])
+    stated = bare.model_copy(update={"massless": ("b", "c")})
+    assert weight_sentence(stated, "weight").endswith("; b and c count as massless")
