@@ -5,7 +5,6 @@ Keywords, element types and formats: G. Dhondt, CalculiX CrunchiX User's Manual,
 points in another order.
 """
 
-import os
 import re
 import shutil
 import subprocess
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.space import DisplacementSpace
+from geometry import child
 from geometry.errors import CannotRunError
 
 PROGRAM = "ccx"
@@ -105,26 +105,19 @@ def run(deck: Path, folder: Path, *, threads: int, time_limit: float) -> tuple[P
     if program is None:
         raise CannotRunError(f"CalculiX ({PROGRAM}) is not on PATH")
     shutil.copyfile(deck, folder / f"{_JOB}.inp")
-    environment = os.environ | {"OMP_NUM_THREADS": str(threads), "CCX_NPROC_EQUATION_SOLVER": str(threads)}
+    output = folder / f"{_JOB}.out"
+    environment = child.environment(OMP_NUM_THREADS=str(threads), CCX_NPROC_EQUATION_SOLVER=str(threads))
+    command = child.foreign_command(program, "-i", _JOB)
     try:
-        ended = subprocess.run(
-            [program, "-i", _JOB],
-            cwd=folder,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=time_limit,
-            text=True,
-            errors="replace",
-            check=False,
-        )
+        status, told = child.run(command, environment=environment, time_limit=time_limit, folder=folder, output=output)
+        lines = output.read_text(encoding="utf-8", errors="replace").splitlines()
     except subprocess.TimeoutExpired:
         raise CannotRunError(f"CalculiX took more than {time_limit:g} s") from None
     except OSError as error:
         raise CannotRunError(f"CalculiX could not be started ({error.strerror})") from None
-    said = next((line.strip() for line in ended.stdout.splitlines() if "*ERROR" in line), "")
-    if ended.returncode != 0 or said:
-        raise CannotRunError(f"CalculiX stopped with status {ended.returncode}{': ' if said else ''}{said}")
+    said = next((line.strip() for line in lines if "*ERROR" in line), told if status > 0 else "")
+    if status != 0 or said:
+        raise CannotRunError(f"CalculiX stopped with status {status}{': ' if said else ''}{said}")
     return folder / f"{_JOB}.dat", folder / f"{_JOB}.frd"
 
 

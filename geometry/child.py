@@ -1,7 +1,8 @@
 """Child processes for foreign code that can crash or never end, which no exception reports.
 
 A child is stopped at its time limit and on an interruption. It ends by itself when its parent is killed: its
-standard input is a pipe that only the parent holds open, and the end of that pipe is the end of the parent.
+standard input is a pipe that only the parent holds open, and the end of that pipe is the end of the parent. Programs
+that are not alula's do not look there; the system ends them with their parent (``geometry.leash``).
 """
 
 import os
@@ -25,16 +26,30 @@ def module_command(module: str, *arguments: str) -> list[str]:
     return [sys.executable, "-P", "-m", module, *arguments]
 
 
+def foreign_command(program: str, *arguments: str) -> list[str]:
+    """Return the command that runs a program which is not alula's."""
+    return module_command("geometry.leash", str(os.getpid()), os.path.abspath(program), *arguments)
+
+
 def environment(**more: str) -> dict[str, str]:
     """Return the environment in which a child finds alula's modules."""
     paths = os.pathsep.join(filter(None, [_ROOT, os.environ.get("PYTHONPATH", "")]))
     return os.environ | {"PYTHONPATH": paths, "OMP_NUM_THREADS": "1"} | more
 
 
-def run(command: list[str], *, environment: dict[str, str], time_limit: float) -> tuple[int, str]:
+def run(
+    command: list[str],
+    *,
+    environment: dict[str, str],
+    time_limit: float,
+    folder: Path | None = None,
+    output: Path | None = None,
+) -> tuple[int, str]:
     """Run a child and return its status (negative: the signal that ended it) and the last line of its standard error.
 
     time_limit   seconds
+    folder       in which it works, by default this process's
+    output       file that takes its standard output, which is lost otherwise
 
     Raises ``subprocess.TimeoutExpired`` at the limit, ``OSError`` if it cannot be started, ``CannotRunError``
     after an interruption.
@@ -44,9 +59,10 @@ def run(command: list[str], *, environment: dict[str, str], time_limit: float) -
         with _lock:
             if _stopped.is_set():
                 raise CannotRunError("interrupted")
-            process = subprocess.Popen(
-                command, env=environment, stdin=read, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
-            )
+            with open(output or os.devnull, "wb") as told_out:
+                process = subprocess.Popen(
+                    command, cwd=folder, env=environment, stdin=read, stdout=told_out, stderr=subprocess.PIPE
+                )
             _running.add(process)
         with process:
             try:

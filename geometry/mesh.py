@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry import child
+from geometry import child, child_memory
 from geometry.body_rules import check_body
 from geometry.errors import AlulaError, CannotRunError, CaseError
 from geometry.mesh_settings import COARSE, MeshSettings
@@ -42,6 +42,8 @@ _T = TypeVar("_T")
 
 KERNEL_TIME_LIMIT = 120.0
 """Seconds for tasks of the geometry kernel that mesh nothing."""
+KERNEL_MEMORY_LIMIT = MeshSettings.memory_limit
+"""Bytes for the same."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +69,7 @@ def mesh_body(body: Body, settings: MeshSettings | None = None) -> TaggedMesh:
     """
     settings = settings or MeshSettings()
     check_body(body)
-    mesh: TaggedMesh = _run("mesh", body, settings, time_limit=settings.time_limit)
+    mesh: TaggedMesh = _run("mesh", body, settings, time_limit=settings.time_limit, memory=settings.memory_limit)
     return mesh
 
 
@@ -92,7 +94,7 @@ def mass_properties(body: Body) -> MassProperties:
     Raises ``CaseError`` and ``CannotRunError`` as ``mesh_body`` does.
     """
     check_body(body)
-    volume, centroid, inertia = _run("mass", body, time_limit=KERNEL_TIME_LIMIT)
+    volume, centroid, inertia = _run("mass", body)
     return MassProperties(volume=volume, centroid=centroid, inertia=inertia)
 
 
@@ -102,7 +104,7 @@ def reentrant_edges(body: Body) -> list[ReentrantEdge]:
     Found on the kernel's own edges. Raises ``CaseError`` and ``CannotRunError`` as ``mesh_body`` does.
     """
     check_body(body)
-    edges: list[ReentrantEdge] = _run("reentrant", body, time_limit=KERNEL_TIME_LIMIT)
+    edges: list[ReentrantEdge] = _run("reentrant", body)
     return edges
 
 
@@ -130,7 +132,7 @@ def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:
 
 def _step(body: Body, path: Path) -> None:
     check_body(body)
-    _run("step", body, str(path.resolve()), time_limit=KERNEL_TIME_LIMIT)
+    _run("step", body, str(path.resolve()))
 
 
 def _naming(name: str, task: Callable[..., _T], *arguments: Any) -> _T:
@@ -144,12 +146,17 @@ def _command(folder: Path) -> list[str]:
     return child.module_command("geometry.mesh_worker", str(folder))
 
 
-def _run(task: str, *arguments: Any, time_limit: float) -> Any:
-    """Do a task of ``geometry.mesh_worker`` in a child process and return its result."""
+def _run(task: str, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memory: float = KERNEL_MEMORY_LIMIT) -> Any:
+    """Do a task of ``geometry.mesh_worker`` in a child process and return its result.
+
+    time_limit   seconds
+    memory       bytes that the child may hold
+    """
     try:
         with tempfile.TemporaryDirectory(prefix="alula-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
-            (folder / "request").write_bytes(pickle.dumps((task, *arguments)))
+            memory = child_memory.allowed(memory)
+            (folder / "request").write_bytes(pickle.dumps((memory, task, *arguments)))
             status, told = child.run(_command(folder), environment=child.environment(), time_limit=time_limit)
             try:
                 kind, result = pickle.loads((folder / "answer").read_bytes())
@@ -168,6 +175,10 @@ def _run(task: str, *arguments: Any, time_limit: float) -> Any:
         raise CaseError(result)
     if kind == "cannot":
         raise CannotRunError(result)
+    if kind == "memory":
+        raise CannotRunError(
+            f"the mesher needed more than the {memory / 1e9:.3g} GB of memory that it may take; use a coarser size"
+        )
     return result
 
 

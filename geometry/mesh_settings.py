@@ -24,6 +24,7 @@ class MeshSettings:
                     between; these replace all sizes above but for ``turn_elements``
     time_limit      seconds of wall time for one body
     max_elements    largest number of tetrahedra that is accepted
+    memory_limit    bytes that the mesher may hold; at most half of what the machine has, since two may run at once
     """
 
     size: float = 0.25
@@ -37,6 +38,7 @@ class MeshSettings:
     size_values: NDArray[np.float64] | None = None
     time_limit: float = 300.0
     max_elements: int = 1_500_000
+    memory_limit: float = 6e9
 
     def scaled(self, factor: float) -> "MeshSettings":
         """Return the same settings with every element edge longer by ``factor`` (a turn keeps at least six)."""

@@ -1,7 +1,7 @@
 """The child process in which the geometry kernel and the mesher run: ``python -m geometry.mesh_worker FOLDER``.
 
 Reads ``request`` and writes ``answer`` in the folder, both pickled (the folder is private to parent and
-child). The answer is ("done", result), or ("case", sentence) or ("cannot", sentence) for an error.
+child). The answer is ("done", result), ("case", sentence) or ("cannot", sentence) for an error, or ("memory", "").
 """
 
 import pickle
@@ -11,6 +11,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from geometry import child_memory
 from geometry.child import end_with_parent
 from geometry.errors import CannotRunError, CaseError
 from geometry.mesh_settings import MeshSettings
@@ -67,6 +68,8 @@ def answer(task: str, arguments: tuple[Any, ...]) -> tuple[str, object]:
         return "case", str(error)
     except CannotRunError as error:
         return "cannot", str(error)
+    except MemoryError:
+        return "memory", ""
     except Exception as error:
         # gmsh raises bare Exceptions that carry its last message.
         return "cannot", f"gmsh failed: {error or type(error).__name__}"
@@ -75,11 +78,15 @@ def answer(task: str, arguments: tuple[Any, ...]) -> tuple[str, object]:
 def main(folder: Path) -> None:
     """Answer the request in a folder."""
     end_with_parent(folder)
-    task, *arguments = pickle.loads((folder / "request").read_bytes())
-    result = answer(task, tuple(arguments))
-    # By renaming, so that a crash leaves no half of an answer.
+    limit, task, *arguments = pickle.loads((folder / "request").read_bytes())
+    child_memory.bound(limit, lambda: write(folder, ("memory", "")))
+    write(folder, answer(task, tuple(arguments)))
+
+
+def write(folder: Path, told: tuple[str, object]) -> None:
+    """Write the answer, by renaming, so that a crash leaves no half of one."""
     draft = folder / "draft"
-    draft.write_bytes(pickle.dumps(result))
+    draft.write_bytes(pickle.dumps(told))
     draft.rename(folder / "answer")
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.body_rules import section_width
+from geometry.element_count import SAFETY, Sizes, estimated_elements
 from geometry.element_geometry import element_volumes, flatten, scaled_jacobians, triangle_areas
 from geometry.errors import CannotRunError
 from geometry.mesh_settings import MeshSettings
@@ -37,10 +38,16 @@ _GMSH_TRIANGLE = {1: 2, 2: 9}
 def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
     """Mesh the solid and return the mesh in mm, checked against the kernel's areas and volume.
 
-    Raises ``CannotRunError`` if the mesher fails, if the mesh exceeds ``max_elements``, if an element
+    Raises ``CannotRunError`` if the mesher fails, if the mesh will exceed or exceeds ``max_elements``, if an element
     stays invalid, or if an area or the volume is off by more than the elements' chord error.
     """
     order = 2 if settings.curved else 1
+    estimate = estimated_elements(gmsh, solid, _sizes_at(solid, settings), settings.turn_elements)
+    if estimate > SAFETY * settings.max_elements:
+        raise CannotRunError(
+            f"the mesh would have about {estimate:,.2g} tetrahedra, more than max_elements {settings.max_elements:,} "
+            f"even if that is {SAFETY:g} times too many; use a coarser size or raise the limit"
+        )
     _set_sizes(gmsh, solid, settings)
     options = {"Mesh.Algorithm": 6, "Mesh.Algorithm3D": 1, "Mesh.Optimize": 1, "Mesh.ElementOrder": 1}
     for option, value in options.items():
@@ -54,7 +61,7 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
         raise CannotRunError("the mesher filled no volume")
     if count > settings.max_elements:
         raise CannotRunError(
-            f"the mesh has {count} tetrahedra, more than max_elements {settings.max_elements}; "
+            f"the mesh has {count:,} tetrahedra, more than max_elements {settings.max_elements:,}; "
             "use a coarser size or raise the limit"
         )
     if order == 2:
@@ -141,6 +148,25 @@ def _set_sizes(gmsh: Any, solid: Solid, settings: MeshSettings) -> None:
     smallest = gmsh.model.mesh.field.add("Min")
     gmsh.model.mesh.field.setNumbers(smallest, "FieldsList", fields)
     gmsh.model.mesh.field.setAsBackgroundMesh(smallest)
+
+
+def _sizes_at(solid: Solid, settings: MeshSettings) -> Sizes:
+    """Return the same sizes as a function of points in scaled units."""
+    if settings.size_points is not None and settings.size_values is not None:
+        from scipy.spatial import cKDTree
+
+        nearest, values = cKDTree(settings.size_points / solid.unit), settings.size_values / solid.unit
+        return lambda points: np.asarray(values[nearest.query(points)[1]])
+    texts = [text.replace("^", "**") for text in size_formulas(solid.body, settings)]
+    functions = {"Sqrt": np.sqrt, "Max": np.maximum, "Fabs": np.abs}
+
+    def sizes(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        names = functions | dict(zip("xyz", points.T, strict=True))
+        # Texts of our own, made of numbers: gmsh takes formulas as text alone.
+        found = [np.broadcast_to(eval(text, {"__builtins__": {}}, names), len(points)) for text in texts]
+        return np.asarray(np.min(found, axis=0))
+
+    return sizes
 
 
 def size_formulas(body: Body, settings: MeshSettings) -> list[str]:

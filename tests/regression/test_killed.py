@@ -137,6 +137,8 @@ FINE = ("check", "owl-wing-static", "--fidelity", "solid", "--set", "solid.mesh_
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
 def test_meshers_end_with_the_run(tmp_path: Path, number: signal.Signals) -> None:
+    if signal.getsignal(number) is signal.SIG_IGN:
+        pytest.skip("the tests were started with nohup, which the command respects")
     out, scratch = tmp_path / "out", tmp_path / "scratch"
     with programs.start(*FINE, "-o", str(out), scratch=scratch) as process:
         meshers = _meshing(process)
@@ -150,6 +152,39 @@ def test_meshers_end_with_the_run(tmp_path: Path, number: signal.Signals) -> Non
     assert not out.exists()
     assert programs.hidden(tmp_path) == []
     assert "Traceback" not in told
+
+
+CALCULIX = """
+import signal
+import sys
+from pathlib import Path
+from fea import calculix
+from geometry import child
+def end(number, frame):
+    child.stop_all()
+    raise KeyboardInterrupt
+signal.signal(signal.SIGTERM, end)
+scratch = Path(sys.argv[1])
+(scratch / "model").mkdir()
+(scratch / "deck.inp").write_text("")
+calculix.run(scratch / "deck.inp", scratch / "model", threads=1, time_limit=60.0)
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_calculix_ends_with_the_run(tmp_path: Path, number: signal.Signals) -> None:
+    program = tmp_path / "ccx"
+    program.write_text("#!/bin/sh\nexec /bin/sleep 50\n")
+    program.chmod(0o755)
+    command = [sys.executable, "-c", CALCULIX, str(tmp_path)]
+    with subprocess.Popen(command, env=programs.environment(PATH=str(tmp_path)), stderr=subprocess.PIPE) as process:
+        [solver] = _meshing(process)
+        assert (tmp_path / "model" / "model.out").exists()
+        process.send_signal(number)
+        process.communicate(timeout=30)
+    assert process.returncode != 0
+    assert _all_ended([solver])
 
 
 def test_interrupted_while_it_writes(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import geometry.mesh
+from geometry.child_memory import allowed
 from geometry.element_geometry import TETRA_EDGES, scaled_jacobians, shape_quality, volumes_and_moments
 from geometry.errors import CannotRunError, CaseError
 from geometry.mesh import COARSE, export_step, mass_properties, mesh_bodies, mesh_body, reentrant_edges
@@ -139,8 +140,46 @@ def test_background_sizes_refine_where_they_are_small() -> None:
 
 
 def test_too_many_elements_are_refused() -> None:
-    with pytest.raises(CannotRunError, match="more than max_elements 100; use a coarser size"):
-        mesh_body(bar_body(), dataclasses.replace(COARSE, max_elements=100))
+    count = len(mesh_body(bar_body(), COARSE).cells)
+    with pytest.raises(CannotRunError, match=f"has {count:,} tetrahedra, more than max_elements {count - 1:,}; use a"):
+        mesh_body(bar_body(), dataclasses.replace(COARSE, max_elements=count - 1))
+
+
+def test_far_too_many_elements_are_refused_before_they_are_made() -> None:
+    # 500 million would take a day.
+    with pytest.raises(
+        CannotRunError, match=r"would have about 5\.\de\+08 tetrahedra, more than max_elements 1,500,000"
+    ):
+        mesh_body(bar_body(), dataclasses.replace(COARSE, size=0.005, time_limit=30.0))
+
+
+@pytest.mark.parametrize("settings", ["coarse", "fine", "at points"])
+@pytest.mark.parametrize("shape", ["bar", "tube", "thin tube"])
+def test_the_number_of_elements_is_known_beforehand(shape: str, settings: str) -> None:
+    thin = dataclasses.replace(tube_body(inner_diameter="4.7 mm"), holes=())
+    body = {"bar": bar_body(), "tube": tube_body(), "thin tube": thin}[shape]
+    wanted = dataclasses.replace(COARSE, size=0.2) if settings == "fine" else COARSE
+    if settings == "at points":
+        points = mesh_body(body, COARSE).points
+        wanted = dataclasses.replace(COARSE, size_points=points, size_values=np.full(len(points), 1.0))
+    with pytest.raises(CannotRunError, match="would have about") as refused:
+        mesh_body(body, dataclasses.replace(wanted, max_elements=1))
+    estimate = float(re.findall(r"about (\S+) tetrahedra", str(refused.value))[0])
+    assert 0.67 < estimate / len(mesh_body(body, wanted).cells) < 1.5
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+def test_a_mesher_that_takes_too_much_memory_is_stopped_and_said_so() -> None:
+    with pytest.raises(
+        CannotRunError, match=r"needed more than the 0\.07 GB of memory that it may take; use a coarser"
+    ):
+        mesh_body(bar_body(), dataclasses.replace(COARSE, memory_limit=7e7))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="asks as Unix does")
+def test_a_mesher_may_take_half_of_the_machine_at_most() -> None:
+    assert allowed(1.0) == 1.0
+    assert allowed(1e18) == os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2.0
 
 
 def test_thin_walls_are_meshed_finely_enough() -> None:
