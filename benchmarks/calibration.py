@@ -1,14 +1,12 @@
 """Measures how solid models of links compare with hand calculation; writes the factors of ``fea/calibration.toml``.
 
-    python -m benchmarks.calibration [--shape tube|bar] [--out FILE]
+    python -m benchmarks.calibration
 
 Every part is solved on one moderate mesh under some twenty load cases with every pin pressure and torque transfer.
 The largest von Mises and principal stress within each spot (``fea.spots``) is divided by the spot's estimate.
 """
 
-import argparse
 import datetime
-import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -25,6 +23,7 @@ from fea.stress import stress_field
 from geometry.mesh import MeshSettings, mesh_body
 from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
+FILE = Path(__file__).resolve().parents[1] / "fea" / "calibration.toml"
 SETTINGS = MeshSettings(size=0.45, bore_elements=14, hole_elements=8, turn_elements=8, fillet_size=0.9, growth=0.8)
 YOUNG = 2400.0
 MARGIN = 1.15
@@ -287,23 +286,15 @@ HEADER = """\
 
 
 def main() -> None:
-    """Measure one shape into a file of its own, or write the table from the files of both."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--shape", choices=("tube", "bar"))
-    parser.add_argument("--out", type=Path)
-    parser.add_argument("--only", type=int, nargs="*", help="numbers of the parts, by default all")
-    parser.add_argument("--write", type=Path, nargs=2, help="results of tube and bar, to become calibration.toml")
-    arguments = parser.parse_args()
-    if arguments.write:
-        tables = [table(s, json.loads(p.read_text())) for s, p in zip(("tube", "bar"), arguments.write, strict=True)]
-        Path("fea/calibration.toml").write_text(HEADER + "\n".join(tables))
-        return
-    done = []
-    for number, (body, nu) in enumerate(bodies(arguments.shape)):
-        if arguments.only and number not in arguments.only:
-            continue
-        done.append({"number": number, "proportions": proportions(body, nu), "rows": measure(body, nu)})
-        arguments.out.write_text(json.dumps({"date": str(datetime.date.today()), "parts": done}))
+    """Measure every part of both shapes and write the table."""
+    found: dict[str, dict] = {}
+    for shape in ("tube", "bar"):
+        found[shape] = {"date": str(datetime.date.today()), "parts": []}
+        for number, (body, nu) in enumerate(bodies(shape)):
+            print(f"{shape} {number}: ", end="", flush=True)
+            rows = measure(body, nu)
+            found[shape]["parts"].append({"number": number, "proportions": proportions(body, nu), "rows": rows})
+    FILE.write_text(HEADER + "\n".join(table(shape, rows) for shape, rows in found.items()))
 
 
 if __name__ == "__main__":

@@ -15,12 +15,12 @@ A tree of mappings; its leaves are values with their dimensions, or words. Roots
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
-from fea.check import CaseStatics, check_case, solve_case_statics
+from fea.check import CaseStatics, check_case, effort_of, solve_case_statics
 from fea.result import CheckResult, LoadCaseResult
 from geometry.errors import CannotRunError, CaseError
 from geometry.flapping import FlappingWing
@@ -97,7 +97,9 @@ def case_tree(case: Case, name: str, *, fidelity: str = "solid", threads: int = 
     parts = Tree(
         statics=lambda: solve_case_statics(case, name),
         beam=lambda: check_case(case, name=name, fidelity="beam", threads=threads),
-        solid=lambda: check_case(case, name=name, fidelity="solid", threads=threads),
+        solid=lambda: check_case(
+            case, name=name, fidelity="solid", threads=threads, effort=replace(effort_of(case), stated=True)
+        ),
     )
     branches: dict[str, Callable[[], Any]] = {
         "pose": lambda: _pose(parts["statics"]),
@@ -175,11 +177,12 @@ def _check(result: CheckResult) -> Mapping[str, Any]:
 
 
 def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, Any]:
-    if sharp := [name for name, link in load_case.links.items() if link.safety_factor.unknowable]:
-        raise CannotRunError(
-            f"the peak stress of {', '.join(sharp)} has no limit under ever finer meshes, so no claim on it can be "
-            "judged; state the real fillet_radius"
-        )
+    meshes = {name: link.discretisation for name, link in load_case.links.items()}
+    for name, state in meshes.items():
+        if state is not None and state.status != "converged":
+            raise CannotRunError(
+                f"no claim on stress can be judged, since that of {name} has not converged: {state.sentence}"
+            )
     worst = max(load_case.links.values(), key=lambda link: link.von_mises_max.value)
     points = result.case.links[worst.link].points
     near = min(points, key=lambda point: math.hypot(*(np.array(points[point]) - worst.location[:2])))

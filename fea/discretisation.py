@@ -4,10 +4,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fea.convergence import GridConvergence
-from fea.refinement import MeshRecord, RefinedSolid
-from fea.singular import SharpPeak
+from fea.link_series import NOT_RESOLVED
+from fea.refinement import SERIES, MeshRecord, RefinedSolid
+from fea.singular import LOADED, SharpPeak
 
-Status = Literal["converged", "decided", "far", "not reached", "singular", "growing"]
+Status = Literal["converged", "decided", "far", "not reached", "unresolved", "edge", "singular", "growing"]
+UNKNOWN: tuple[Status, ...] = ("unresolved", "edge", "singular", "growing")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -16,7 +18,9 @@ class Discretisation:
 
     status        "converged": within the accuracy on at least three meshes; "decided": not that narrow, but the
                   verdict is clear; "far": one mesh, every limit far away; "not reached": a limit of the run ended
-                  the refinement first; "singular", "growing": the peak has no limit, and no safety factor
+                  the refinement first. Without safety factor: "unresolved": the mesh is too coarse for any estimate;
+                  "edge": a sharp edge bears much and too few meshes tell whether its stress has a limit; "singular",
+                  "growing": the peak has no limit
     accuracy      that was aimed at, relative
     stress        series of the deciding stress; ``displacement`` of the largest displacement
     meshes        of the link, coarse to fine
@@ -34,20 +38,31 @@ class Discretisation:
 
     @property
     def known(self) -> bool:
-        """False where the peak has no limit, so that no number stands for it."""
-        return self.status not in ("singular", "growing")
+        """False where no number stands for the peak."""
+        return self.status not in UNKNOWN
 
     @property
     def sentence(self) -> str:
         """The state of convergence, for people."""
         series = self.stress
+        count = len(self.meshes)
+        if self.status == "unresolved":
+            return (
+                f"the mesh resolves nothing: its error is estimated at {self.meshes[-1].error:.0%} in the energy norm, "
+                f"and estimates mean nothing above {NOT_RESOLVED:.0%}, so there are no numbers; {self._remedy}"
+            )
         if self.sharp is not None:
             return self.sharp.sentence
-        count = len(self.meshes)
+        if self.status == "edge":
+            return (
+                f"a sharp inner edge bears at least {LOADED:.0%} of the peak, and meshes ({count} of at least {SERIES}) do "
+                "not tell yet whether its stress has a limit, so there is no safety factor; state the real fillet_radius, "
+                f"or refine further: {self._remedy}"
+            )
         if self.status == "growing":
             return (
                 f"the peak stress still grows as fast after {count} meshes as before ({self._values} MPa), so it has "
-                f"no safety factor; {self.stopped or 'refine further'}"
+                f"no safety factor; {self._remedy}"
             )
         if self.status == "far":
             return (
@@ -64,6 +79,10 @@ class Discretisation:
         if self.status == "decided":
             return f"{found}, more than the {self.accuracy:.1%} aimed at, but the verdict is clear"
         return f"{found}, more than the {self.accuracy:.1%} asked for: {self.stopped}"
+
+    @property
+    def _remedy(self) -> str:
+        return f"refinement ended since {self.stopped}" if self.stopped else "refine further"
 
     @property
     def _values(self) -> str:
@@ -83,8 +102,12 @@ def judged(refined: RefinedSolid, number: int, *, brittle: bool) -> Discretisati
     case = refined.precision[number]
     stress = case.principal if brittle else case.von_mises
     status: Status
-    if case.sharp is not None:
+    if case.doubt == "coarse":
+        status = "unresolved"
+    elif case.sharp is not None:
         status = "singular"
+    elif case.doubt == "edge":
+        status = "edge"
     elif stress.kind == "growing":
         status = "growing"
     elif refined.far:

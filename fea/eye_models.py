@@ -1,20 +1,19 @@
-"""A link decided by submodels of the few eyes that matter, every other place being excluded by hand calculation."""
+"""A link decided by submodels of the few eyes and holes that matter, hand calculation excluding every other place."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from fea.band import Band
 from fea.beam import BeamCheck
-from fea.link_series import CasePrecision
+from fea.discretisation import holds
+from fea.link_series import CasePrecision, Quantity
 from fea.refinement import LinkTask, RefinedSolid
+from fea.solid_result import PINNED_HOLDS
 from fea.spots import Spot
 from fea.stress import stress_field
-from fea.submodel import Submodel, submodel
+from fea.submodel import Submodel, eye_submodel, hole_submodel
 
-HOLDS = (
-    "eyes as solids of their own, cut where the section's stress is linear (2 %)",
-    "pin pressure over 180° and over 90°",
-)
+HOLDS = ("eyes and holes as solids of their own, cut where the section's stress is linear (2 %)", *PINNED_HOLDS)
 
 CUT_ERROR = 0.02
 """What the cut changes of the peak at most: tests/verification/test_submodel.py holds it to that."""
@@ -42,18 +41,18 @@ def plan(
     cost       of a submodel, in the unit of ``allowed``
     """
     wanted = [spot for spot in spots if critical(spot)]
-    if any(spot.kind == "section" for spot in wanted):
-        return ()
-    found = []
-    for spot in wanted:
+    found: list[Submodel] = []
+    for spot in sorted(wanted, key=lambda spot: spot.kind):  # eyes first, whose submodels cover holes beside them
+        if any(covers(cut, spot) for cut in found):
+            continue
+        cut = None
         if spot.kind == "eye":
-            pin = next(p.name for p in task.body.pins if p.x == spot.x)
-            cut = submodel(task, beams, pin)
-            if cut is None:
-                return ()
-            found.append(cut)
-    if not all(any(covers(cut, spot) for cut in found) for spot in wanted):
-        return ()
+            cut = eye_submodel(task, beams, next(p.name for p in task.body.pins if p.x == spot.x))
+        elif spot.kind == "hole":
+            cut = hole_submodel(task, beams, spot.x)
+        if cut is None:
+            return ()
+        found.append(cut)
     return tuple(found) if sum(map(cost, found)) <= allowed else ()
 
 
@@ -72,8 +71,7 @@ def peaks(cut: Submodel, refined: RefinedSolid) -> Mapping[str, EyePeaks] | None
     found: dict[str, list[tuple[CasePrecision, bool]]] = {}
     solution = refined.solution
     for case, precision in zip(solution.cases, refined.precision, strict=True):
-        series = (precision.von_mises, precision.principal)
-        if precision.sharp is not None or any(s.kind == "growing" for s in series):
+        if not (precision.known("von_mises") and precision.known("principal")):
             return None
         field = stress_field(solution.space, case.displacement, E=solution.E, nu=solution.nu)
         inside = cut.covered[0] <= field.peak.location[0] <= cut.covered[1]
@@ -84,9 +82,14 @@ def peaks(cut: Submodel, refined: RefinedSolid) -> Mapping[str, EyePeaks] | None
     }
 
 
-def _band(rows: Sequence[tuple[CasePrecision, bool]], quantity: str) -> Band:
-    series = [(getattr(precision, quantity), inside) for precision, inside in rows]
-    value = max(s.value for s, _ in series)
-    low = min(max(s.low, 0.0) if inside else 0.0 for s, inside in series)
-    high = max(value, *(s.high for s, _ in series))
-    return Band(value=value, low=min(low, value) * (1.0 - CUT_ERROR), high=high * (1.0 + CUT_ERROR), holds=HOLDS)
+def _band(rows: Sequence[tuple[CasePrecision, bool]], quantity: Quantity) -> Band:
+    value = max(found.series(quantity).value for found, _ in rows)
+    low = min(found.low(quantity) if inside else 0.0 for found, inside in rows)
+    high = max(value, *(found.high(quantity) for found, _ in rows))
+    meshes = tuple(dict.fromkeys(holds(found.series(quantity)) for found, _ in rows))
+    return Band(
+        value=value,
+        low=min(low, value) * (1.0 - CUT_ERROR),
+        high=high * (1.0 + CUT_ERROR),
+        holds=(*HOLDS, *meshes),
+    )

@@ -21,6 +21,7 @@ from geometry.body_rules import extent, eye_reach, section_height, section_width
 from geometry.errors import CannotRunError
 from geometry.mesh import MeshSettings
 from geometry.part import Body
+from loads.bearing import CONTACT_HOLDS, CONTACT_SHORTFALL
 
 Rung = Literal["beam", "frame", "submodel", "solid"]
 RUNGS: tuple[Rung, ...] = ("beam", "frame", "submodel", "solid")
@@ -113,15 +114,15 @@ def climb(
         cuts[link] = _cuts(
             task, [beams[link][loads.name] for loads in task.loads], bands, forced=fidelity == "submodel"
         )
-    parts = {f"{link} at {cut.pin}": cut.task for link in cuts for cut in cuts[link]}
+    parts = {f"{link}, {cut.name}": cut.task for link in cuts for cut in cuts[link]}
     solved = refine_links(parts, start, effort, threads=threads, progress=progress)
     for link in cuts:
-        refined = [(cut, solved[f"{link} at {cut.pin}"]) for cut in cuts[link]]
+        refined = [(cut, solved[f"{link}, {cut.name}"]) for cut in cuts[link]]
         climbed = _decided_by_submodels(tasks[link], hands[link], refined, reasons[link]) if refined else None
         if climbed is not None:
             found[link] = climbed
         elif refined:
-            reasons[link] += ", and submodels of its eyes did not decide it"
+            reasons[link] += ", and submodels did not decide it"
     rest = {link: task for link, task in tasks.items() if link not in found}
     solids = refine_links(rest, start, effort, threads=threads, progress=progress)
     for link, solid in solids.items():
@@ -178,10 +179,10 @@ def _decided_by_submodels(
     if undecided(task, stresses, [hand.displacement for hand in bands]):
         return None
     band = max(stresses, key=lambda band: band.high)
-    eyes = ", ".join(cut.pin for cut, _ in refined)
+    names = ", ".join(cut.name for cut, _ in refined)
     elements = sum(solid.meshes[-1].elements for _, solid in refined)
     why = (
-        f"{reason}; submodels of the eyes at {eyes}, of {elements:,} elements, put it between {band.low:.3g} and "
+        f"{reason}; submodels of {names}, of {elements:,} elements, put it between {band.low:.3g} and "
         f"{band.high:.3g} MPa, clear of it"
     )
     return Climb(decision=Decision(rung="submodel", why=why, next_cost=cost(task.body, "solid")), hands=combined)
@@ -205,8 +206,8 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     rows = [
         SpotBand(
             spot=spot,
-            von_mises=_band(spot.estimate, calibration.von_mises[spot.kind], holds),
-            principal=_band(spot.estimate, calibration.principal[spot.kind], holds),
+            von_mises=_at_spot(spot, calibration.von_mises[spot.kind], holds),
+            principal=_at_spot(spot, calibration.principal[spot.kind], holds),
         )
         for spot in found
     ]
@@ -300,6 +301,14 @@ def _holds(calibration: Calibration) -> tuple[str, ...]:
         f"hand calculation against solid models of {calibration.parts} parts under {calibration.cases} load cases "
         f"(least and largest factor, widened by {calibration.margin - 1.0:.0%})",
     )
+
+
+def _at_spot(spot: Spot, factors: Factors, holds: tuple[str, ...]) -> Band:
+    """Band of a spot's stress; pin contact adds to what the solids of the calibration bore in their eyes."""
+    if spot.kind != "eye":
+        return _band(spot.estimate, factors, holds)
+    contact = replace(factors, high=factors.high / (1.0 - CONTACT_SHORTFALL))
+    return _band(spot.estimate, contact, (*holds, CONTACT_HOLDS))
 
 
 def _band(estimate: float, factors: Factors, holds: tuple[str, ...]) -> Band:

@@ -7,11 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.band import Band
+from fea.convergence import ALONE
 from fea.critical import critical_nodes
 from fea.discretisation import Discretisation, holds, judged
 from fea.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
+from fea.error_estimate import estimate_error
 from fea.fatigue import fatigue_life, missing_data, strength_at
 from fea.link_history import LinkHistory
+from fea.link_series import Quantity
 from fea.peaks import Peaks, principal_peaks, von_mises_peaks
 from fea.refinement import RefinedSolid
 from fea.solid import IMBALANCE_LIMIT, REACTION_LIMIT, LineReference
@@ -24,11 +27,13 @@ from fea.unit_loads import TRANSFERS, load_scale, unit_loads
 from fea.unit_solutions import UnitSolutions, solve_units
 from geometry.errors import CannotRunError
 from geometry.material import Material
-from loads.bearing import NARROW, WIDE, PressureLaw, Span
+from loads.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw, Span
 
 Real = NDArray[np.float64]
 
 LAWS = (WIDE, NARROW)
+AGREEMENT = 5e-3
+"""To which the peak of a pose by unit loads equals that of a direct solution."""
 
 
 def link_envelope(
@@ -93,6 +98,8 @@ def link_envelope(
         ]
         series = _Series.of(refined, history.load_case, material)
         load_case = _load_case(space.nodes, history.load_case, material, variants, stated, series)
+        if load_case.known and series.was_not_refined_for(load_case.governing):
+            load_case = _estimated(load_case, solved, material, evaluated)
         if not lacking and load_case.known:
             varied = _fatigue(solved, material, load_case, stated, series, returns, repetitions)
             load_case = replace(load_case, fatigue=varied)
@@ -155,6 +162,7 @@ class _Series:
         self.factors: dict[tuple[Span, Transfer | None], tuple[float, float]] = {}
         self.discretisation: Discretisation | None = None
         self.holds: tuple[str, ...] = ("nothing of the discretisation: one mesh",)
+        self._refined: dict[tuple[Span, Transfer | None], float] = {}
 
     @classmethod
     def of(cls, refined: RefinedSolid | None, load_case: str, material: Material) -> "_Series":
@@ -167,11 +175,18 @@ class _Series:
         found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
         found.holds = (f"{holds(found.discretisation.stress)}, at the worst pose",)
         for number, judgement in zip(numbers, judgements, strict=True):
-            case, series = refined.solution.cases[number], judgement.stress
+            case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
+            found._refined[case.span, case.transfer] = series.value
             if judgement.known and series.value > 0.0:
-                low, high = max(series.low, 0.0) / series.value, series.high / series.value
-                found.factors[case.span, case.transfer] = (low, high)
+                measure: Quantity = "principal" if material.brittle else "von_mises"
+                ends = precise.low(measure) / series.value, precise.high(measure) / series.value
+                found.factors[case.span, case.transfer] = ends
         return found
+
+    def was_not_refined_for(self, variant: VariantCurve) -> bool:
+        """True where the motion's peak exceeds that of the pose that the meshes were refined for: it lies elsewhere."""
+        refined = self._refined.get((variant.span, variant.transfer), np.inf)
+        return variant.peak > (1.0 + AGREEMENT) * refined
 
     def of_variant(self, variant: VariantCurve) -> tuple[float, float]:
         """Factors on the stress of a variant: its own, else those of its span without torque, else the widest."""
@@ -197,6 +212,8 @@ def _load_case(
     # Compression makes the ends of a band change places; no tension is no stress that breaks a brittle part.
     ends = np.array([factor * v.stress for v in variants for factor in series.of_variant(v)])
     low, high = np.minimum(ends.min(axis=0), value), np.maximum(ends.max(axis=0), value)
+    if series.discretisation is not None and not series.discretisation.known:
+        value = low = high = np.full_like(value, np.nan)
     if series.discretisation is None or series.discretisation.known:
         peak = Band(
             value=max(governing.peak, 0.0),
@@ -220,6 +237,30 @@ def _load_case(
         fatigue=None,
         discretisation=series.discretisation,
     )
+
+
+def _estimated(
+    load_case: LoadCaseEnvelope, solved: UnitSolutions, material: Material, evaluated: NDArray[np.bool_]
+) -> LoadCaseEnvelope:
+    """Return the envelope with a peak that no mesh was refined for in a band of the estimate on this mesh alone."""
+    governing, pose, space = load_case.governing, load_case.pose, solved.space
+    field = solved.field(governing.first + int(np.count_nonzero(evaluated[:pose])))
+    young, poisson = material.youngs_modulus, material.poissons_ratio
+    estimate = estimate_error(stress_field(space, field, E=young, nu=poisson), field, E=young, nu=poisson)
+    beside = (space.cells == governing.node[pose]).any(axis=1)
+    error = ALONE * float(estimate.stress[beside].max())
+    contact = 1.0 - CONTACT_SHORTFALL if governing.span == NARROW.span else 1.0
+    peak = load_case.stress
+    peak = Band(
+        value=peak.value,
+        low=min(peak.low, max(peak.value - error, 0.0)),
+        high=max(peak.high, (peak.value + error) / contact),
+        holds=(*peak.holds, "at this pose, for which no mesh was refined, fourfold estimate on one mesh"),
+    )
+    low, high = load_case.low.copy(), load_case.high.copy()
+    low[pose], high[pose] = min(low[pose], peak.low), max(high[pose], peak.high)
+    factor = peak.inverse(material.allowable)
+    return replace(load_case, stress=peak, safety_factor=factor, low=low, high=high)
 
 
 def _sources(governing: VariantCurve) -> tuple[str, ...]:

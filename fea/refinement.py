@@ -10,12 +10,13 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from fea.convergence import ALONE, GridConvergence
 from fea.link_loads import LinkLoads
-from fea.link_series import CasePrecision, Level, goals, level_of, precision
+from fea.link_series import CasePrecision, Eye, Level, Quantity, energy_errors, goals, level_of, precision
 from fea.singular import element_exponents
 from fea.solid import SolidSolution, solve_solid
 from fea.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction
@@ -96,7 +97,7 @@ class LinkTask:
 
 @dataclass(frozen=True, kw_only=True)
 class MeshRecord:
-    """Size of one mesh; the worst case's relative estimate in the energy norm; seconds to solve and judge."""
+    """Size of one mesh; the worst case's relative error in the energy norm (``energy_errors``); seconds it took."""
 
     elements: int
     unknowns: int
@@ -188,15 +189,12 @@ class _Link:
             return
         self.solution = solution
         self.levels.append(level_of(solution, mesh.volume))
-        self.meshes.append(
-            MeshRecord(
-                elements=len(solution.space.cells),
-                unknowns=solution.space.unknowns,
-                error=max(figures.estimate.relative for figures in self.levels[-1].figures),
-                seconds=time.perf_counter() - begun,
-            )
-        )
         self._judge()
+        seconds = [*(mesh.seconds for mesh in self.meshes), time.perf_counter() - begun]
+        self.meshes = [
+            MeshRecord(elements=len(level.cells), unknowns=3 * len(level.nodes), error=error, seconds=taken)
+            for level, error, taken in zip(self.levels, energy_errors(self.levels), seconds, strict=True)
+        ]
         if self._settled():
             self.done = True
         elif len(self.levels) >= self.effort.max_meshes:
@@ -243,10 +241,14 @@ class _Link:
         return any(self._deciding(p).kind == "growing" for p in self.precision)
 
     def _judge(self) -> None:
-        self.precision = precision(self.levels, self.edges, section=self.task.section)
+        body = self.task.body
+        eyes = [Eye(x=pin.x, y=pin.y, radius=body.part.eye_diameter / 2.0) for pin in body.pins]
+        self.precision = precision(self.levels, self.edges, section=self.task.section, eyes=eyes)
 
     def _settled(self) -> bool:
         """Whether nothing finer is needed."""
+        if any(p.doubt == "coarse" for p in self.precision):
+            return False
         if len(self.levels) == 1:
             self.far = not self.effort.stated and self._far()
             return self.far
@@ -260,25 +262,33 @@ class _Link:
         narrow = all(max(self._deciding(p).index, p.displacement.index) <= self.effort.accuracy for p in real)
         return narrow or (not self.effort.stated and self._decided())
 
-    def _deciding(self, case: CasePrecision) -> GridConvergence:
-        return case.principal if self.task.brittle else case.von_mises
+    @property
+    def _measure(self) -> Literal["von_mises", "principal"]:
+        """The stress that decides."""
+        return "principal" if self.task.brittle else "von_mises"
 
-    def _limits(self) -> Iterable[tuple[GridConvergence, float]]:
+    def _deciding(self, case: CasePrecision) -> GridConvergence:
+        return case.series(self._measure)
+
+    def _limits(self) -> Iterable[tuple[float, float, float]]:
+        """Ends of every band, and a limit that it must clear."""
+        stated: tuple[tuple[Quantity, tuple[float, ...]], ...] = (
+            (self._measure, self.task.stress_limits),
+            ("displacement", self.task.displacement_limits),
+        )
         for case in self.precision:
-            if case.sharp is not None:
-                continue
-            yield from ((self._deciding(case), limit) for limit in self.task.stress_limits)
-            yield from ((case.displacement, limit) for limit in self.task.displacement_limits)
+            if case.sharp is None:
+                yield from ((case.low(q), case.high(q), limit) for q, limits in stated for limit in limits)
 
     def _decided(self) -> bool:
         """Whether every limit lies outside every band."""
-        return all(not band.low <= limit <= band.high for band, limit in self._limits())
+        return all(not low <= limit <= high for low, high, limit in self._limits())
 
     def _far(self) -> bool:
         """Whether one mesh decides: well resolved, away from sharp edges, every limit far outside the band."""
         if any(self._deciding(p).index > ALONE * ROUGH or p.edge is not None for p in self.precision):
             return False
-        return all(band.high * FAR < limit or band.low > FAR * limit for band, limit in self._limits())
+        return all(high * FAR < limit or low > FAR * limit for low, high, limit in self._limits())
 
     def _refine(self, pool: ThreadPoolExecutor) -> None:
         """Order a mesh that is finer where the peaks are and where the energy of the error is."""

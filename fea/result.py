@@ -1,5 +1,6 @@
 """The records that a check hands to the reports."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -105,6 +106,11 @@ class LinkResult:
     decided_by: str = ""
     why: str = ""
     next_cost: str = ""
+
+    @property
+    def severity(self) -> float:
+        """By which the worst load case is found: the least lower end of the safety factor; one without comes first."""
+        return -math.inf if self.safety_factor.unknowable else self.safety_factor.low
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -62,6 +62,7 @@ class SecondOpinion:
     deck               name of the deck's file
     von_mises          our largest at the integration points [MPa]; ``von_mises_nodal`` at the nodes
     displacement       our largest [mm]
+    known              False where the peak of our mesh is no result: what two programs share then is its mesh alone
     answer             None where CalculiX did not answer; ``reason`` says why
     """
 
@@ -72,6 +73,7 @@ class SecondOpinion:
     von_mises: float
     von_mises_nodal: float
     displacement: float
+    known: bool
     answer: Answer | None
     reason: str = ""
 
@@ -104,7 +106,7 @@ def second_opinions(
     """
     found = []
     for link in next(iter(result.load_cases.values())).links:
-        worst = min(result.load_cases.values(), key=lambda case: case.links[link].safety_factor.low)
+        worst = min(result.load_cases.values(), key=lambda case: case.links[link].severity)
         ours = worst.links[link]
         if ours.solid is None or ours.solid_case is None or ours.stress is None or ours.governing is None:
             continue
@@ -126,6 +128,7 @@ def second_opinions(
                 von_mises=ours.stress.peak_at_points.value,
                 von_mises_nodal=ours.stress.peak.value,
                 displacement=ours.solid_case.displacement_max,
+                known=not ours.safety_factor.unknowable,
                 answer=answer,
                 reason=reason,
             )

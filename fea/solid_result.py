@@ -9,16 +9,18 @@ from fea.compare import compare_sections
 from fea.convergence import GridConvergence
 from fea.discretisation import holds, judged
 from fea.link_loads import LinkLoads
-from fea.link_series import CasePrecision
+from fea.link_series import CasePrecision, Quantity
 from fea.outcomes import displacement_limits, stress_limits
 from fea.refinement import LinkTask, RefinedSolid
 from fea.result import LinkResult, VariantPeak
 from fea.singular import LOADED
 from fea.solid import SolidCase
 from fea.stress import stress_field
+from loads.bearing import CONTACT_HOLDS
 from loads.case import Case
 
-PINNED_HOLDS = ("pin pressure over 180° and over 90°",)
+NO_NUMBER = "nothing: no mesh tells what it is"
+PINNED_HOLDS = ("pin pressure over 180° and over 90°", CONTACT_HOLDS)
 DRIVEN_HOLDS = (*PINNED_HOLDS, "drive torque by eye-faces and by bore-shear")
 
 
@@ -61,17 +63,19 @@ def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: Re
     )
     precision = judged(refined, worst, brittle=material.brittle)
 
-    def band(quantity: str) -> Band:
-        series = [getattr(refined.precision[number], quantity) for number in solved]
-        sharp = quantity != "displacement" and any(refined.precision[number].sharp for number in solved)
-        if sharp or any(s.kind == "growing" for s in series):
-            return Band.unknown("nothing: the peak has no limit")
-        value = max(getattr(refined.precision[number], quantity).value for number in own)
+    def band(quantity: Quantity) -> Band:
+        every = [refined.precision[number] for number in solved]
+        if not all(found.known(quantity) for found in every):
+            return Band.unknown(NO_NUMBER)
+        value = max(refined.precision[number].series(quantity).value for number in own)
         return Band(
             value=value,
-            low=max(min(value, *(s.low for s in series)), 0.0),
-            high=max(value, *(s.high for s in series)),
-            holds=(*sources, holds(getattr(refined.precision[governing], quantity))),
+            low=max(min(value, *(found.low(quantity) for found in every)), 0.0),
+            high=max(value, *(found.high(quantity) for found in every)),
+            holds=(
+                *(text for text in sources if text != CONTACT_HOLDS or quantity != "displacement"),
+                holds(refined.precision[governing].series(quantity)),
+            ),
         )
 
     deciding = band("principal" if material.brittle else "von_mises")
@@ -109,13 +113,13 @@ def _edge_notes(refined: RefinedSolid, solved: Sequence[int]) -> tuple[str, ...]
 def _peak(variant: SolidCase, precision: CasePrecision) -> VariantPeak:
     """Peaks of one variant; NaN for one without limit, which no number stands for."""
 
-    def known(series: GridConvergence) -> float:
-        return math.nan if precision.sharp is not None or series.kind == "growing" else series.value
+    def known(quantity: Quantity) -> float:
+        return precision.series(quantity).value if precision.known(quantity) else math.nan
 
     return VariantPeak(
         span=variant.span,
         transfer=variant.transfer,
-        von_mises=known(precision.von_mises),
-        principal=known(precision.principal),
-        displacement=variant.displacement_max,
+        von_mises=known("von_mises"),
+        principal=known("principal"),
+        displacement=known("displacement"),
     )

@@ -1,4 +1,4 @@
-"""One eye of a link as a solid of its own, cut where the section's stress is linear again, loaded there by the beam.
+"""One eye or hole of a link as a solid of its own, cut where the section's stress is linear, loaded there by the beam.
 
 By Saint-Venant's principle what is left of an eye's or hole's disturbance a diameter or two away is small (Timoshenko &
 Goodier, Theory of Elasticity, 3rd ed., art. 18): the beam's N, V, M and T, spread over the last stretch of the
@@ -24,15 +24,15 @@ PATCH = 1.0
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Submodel:
-    """The part of a link about one pin.
+    """The part of a link about one eye or hole.
 
     task     to be solved like a whole link
-    pin      name of the pin in its middle
+    name     for people: "the eye at B", "the hole at x = 20 mm"
     covered  stations [mm] between which its stress is that of the whole link
     """
 
     task: LinkTask
-    pin: str
+    name: str
     covered: tuple[float, float]
 
     @property
@@ -41,7 +41,7 @@ class Submodel:
         return self.task.body
 
 
-def submodel(task: LinkTask, beams: Sequence[BeamCheck], pin: str, *, clear: float = CLEAR) -> Submodel | None:
+def eye_submodel(task: LinkTask, beams: Sequence[BeamCheck], pin: str, *, clear: float = CLEAR) -> Submodel | None:
     """Cut the eye at a pin out of a link; None where the link leaves no room for a cut, or where weight acts.
 
     beams   of the task's load cases, in their order
@@ -49,11 +49,30 @@ def submodel(task: LinkTask, beams: Sequence[BeamCheck], pin: str, *, clear: flo
 
     Weight and inertia act in the volume, of which the beam knows the section's alone: such a link is solved whole.
     """
+    place = next(p for p in task.body.pins if p.name == pin)
+    return _submodel(task, beams, f"the eye at {pin}", (place,), place.x, eye_reach(task.body, place), clear)
+
+
+def hole_submodel(task: LinkTask, beams: Sequence[BeamCheck], x: float, *, clear: float = CLEAR) -> Submodel | None:
+    """Cut the cross hole at a station out of a link, between two cuts; otherwise like ``eye_submodel``."""
+    radius = max(row.diameter / 2.0 for row in task.body.holes if x in row.positions)
+    return _submodel(task, beams, f"the hole at x = {x:g} mm", (), x, radius, clear)
+
+
+def _submodel(
+    task: LinkTask,
+    beams: Sequence[BeamCheck],
+    name: str,
+    pins: tuple[Pin, ...],
+    middle: float,
+    reach: float,
+    clear: float,
+) -> Submodel | None:
+    """Cut out what reaches that far from a station."""
     body = task.body
-    place = next(p for p in body.pins if p.name == pin)
     if any(loads.bodies for loads in task.loads):
         return None
-    before, after = _cut(body, place, -1, clear), _cut(body, place, 1, clear)
+    before, after = (_cut(body, middle, reach, side, clear) for side in (-1, 1))
     if before is None or after is None:
         return None
     (first, cut_first), (last, cut_last) = before, after
@@ -64,13 +83,15 @@ def submodel(task: LinkTask, beams: Sequence[BeamCheck], pin: str, *, clear: flo
     cuts += [("cut after", last)] if cut_last else []
     ends = tuple(PlainEnd(name=name, x=x, patch=patch) for name, x in cuts)
     kept = tuple(end for end in body.ends if first <= end.x <= last)
-    part = Body(part=body.part, pins=(place,), ends=(*ends, *kept), holes=_rows(body, first, last))
+    part = Body(part=body.part, pins=pins, ends=(*ends, *kept), holes=_rows(body, first, last))
     names = {end.name for end in kept}
+    pinned = {pin.name for pin in pins}
+    sides = [*(f"bore:{pin.name}" for pin in pins), *(f"end:{end.name}" for end in part.ends)]
     loads = tuple(
         LinkLoads(
             name=load.name,
-            pins=tuple(p for p in load.pins if p.name == pin),
-            couples=tuple(c for c in load.couples if c.pin == pin),
+            pins=tuple(p for p in load.pins if p.name in pinned),
+            couples=tuple(c for c in load.couples if c.pin in pinned),
             ends=(*(e for e in load.ends if e.name in names), *_cut_loads(beam, cuts, first)),
             lines=tuple(_clipped(line, first, last) for line in load.lines if line.first < last and line.last > first),
         )
@@ -78,40 +99,37 @@ def submodel(task: LinkTask, beams: Sequence[BeamCheck], pin: str, *, clear: flo
     )
     near = clear / 2.0 * width + patch
     return Submodel(
-        task=replace(
-            task, body=part, loads=loads, line=(f"bore:{pin}", f"end:{part.ends[0].name}"), displacement_limits=()
-        ),
-        pin=pin,
+        task=replace(task, body=part, loads=loads, line=(sides[0], sides[1]), displacement_limits=()),
+        name=name,
         covered=(first + near if cut_first else first, last - near if cut_last else last),
     )
 
 
-def _cut(body: Body, pin: Pin, side: int, clear: float) -> tuple[float, bool] | None:
-    """Return where the submodel ends on one side of a pin and whether by a cut; None where there is no room.
+def _cut(body: Body, middle: float, reach: float, side: int, clear: float) -> tuple[float, bool] | None:
+    """Return where the submodel ends on one side of its middle and whether by a cut; None where there is no room.
 
     A cut is moved on behind holes that come too near to its loaded stretch.
     """
     first, last = extent(body)
     border = last if side > 0 else first
-    if pin.x == border:
+    if middle == border:
         return border, False
     width = section_width(body.part)
     away, patch = clear * width, PATCH * width
-    # Distances from the pin, outwards: (where it begins, where it ends).
-    holes = [(side * (x - pin.x), row.diameter / 2.0) for row in body.holes for x in row.positions]
+    # Distances from the middle, outwards: (where it begins, where it ends).
+    holes = [(side * (x - middle), row.diameter / 2.0) for row in body.holes for x in row.positions]
     features = sorted((at - radius, at + radius) for at, radius in holes if at > 0.0)
-    eyes = [side * (p.x - pin.x) - eye_reach(body, p) for p in body.pins if side * (p.x - pin.x) > 0.0]
-    spans = [patch_span(body, end) for end in body.ends if side * (end.x - pin.x) > 0.0]
-    eyes += [min(side * (low - pin.x), side * (high - pin.x)) for low, high in spans]
-    reach = eye_reach(body, pin)
+    eyes = [side * (p.x - middle) - eye_reach(body, p) for p in body.pins if side * (p.x - middle) > 0.0]
+    spans = [patch_span(body, end) for end in body.ends if side * (end.x - middle) > 0.0]
+    eyes += [min(side * (low - middle), side * (high - middle)) for low, high in spans]
     for low, high in features:
         if low >= reach + away + patch:
             break
         reach = max(reach, high)
     cut = reach + away + patch
-    if cut >= min([*eyes, side * (border - pin.x)]):
+    if cut >= min([*eyes, side * (border - middle)]):
         return None
-    return pin.x + side * cut, True
+    return middle + side * cut, True
 
 
 def _rows(body: Body, first: float, last: float) -> tuple[HoleRow, ...]:

@@ -54,7 +54,10 @@ def write_envelope(
         progress("Drawing the envelope ...")
         (folder / FIGURE).write_bytes(envelope_figure(result))
         progress("Rendering the stress plots ...")
-        scenes = {name: scene_from(link.field, link.displacement) for name, link in result.links.items()}
+        scenes = {
+            name: scene_from(link.field, link.displacement, link.worst.discretisation)
+            for name, link in result.links.items()
+        }
         stations = {name: {p: x for p, (x, _) in result.case.links[name].points.items()} for name in result.links}
         plots, warnings = plots_of(scenes, stations)
         for warning in warnings:

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.discretisation import Discretisation, Status
 from fea.result import LinkResult
 from fea.stress import StressField
 from geometry import child
@@ -30,6 +31,13 @@ Int = NDArray[np.int64]
 TIME_LIMIT = 180.0
 """Seconds for the renderings of one check."""
 COLOURS = "YlOrRd"
+DOUBTS: dict[Status, str] = {
+    "singular": "singular at a sharp edge",
+    "edge": "a sharp edge may be singular",
+    "growing": "still growing with every mesh",
+    "unresolved": "the mesh is too coarse",
+}
+"""Why a link's largest stress is no result, by the state of its meshes."""
 _STRIP_WIDTH = 2200
 _CLOSE_SIZE = 880
 _WORKERS = 2
@@ -76,6 +84,8 @@ class Scene:
     triangles             (k, 3) of the surface
     cells                 (m, 4) tetrahedra near the hottest node
     hottest               number of the hottest node
+    top                   upper end of the colours [MPa]
+    doubt                 why the largest stress is no result, in a few words; "" where it is one
     scale                 factor on the displacements in the picture
     far_side              True where the body hides the hottest node in the strip view
     """
@@ -86,6 +96,8 @@ class Scene:
     triangles: Int
     cells: Int
     hottest: int
+    top: float
+    doubt: str
     scale: float
     far_side: bool
     strip: View
@@ -132,11 +144,16 @@ def scene_of(link: LinkResult) -> Scene:
     """Prepare the plot of a link that ran as a solid."""
     assert link.stress is not None
     assert link.solid_case is not None
-    return scene_from(link.stress, link.solid_case.displacement)
+    return scene_from(link.stress, link.solid_case.displacement, link.discretisation)
 
 
-def scene_from(stress: StressField, displacement: Real) -> Scene:
-    """Prepare the plot of a stress field with its displacements (n, 3) [mm]."""
+def scene_from(stress: StressField, displacement: Real, meshes: Discretisation | None) -> Scene:
+    """Prepare the plot of a stress field with its displacements (n, 3) [mm].
+
+    meshes   what is known of its error. A singular peak does not set the colours: their upper end is the largest
+             stress at a distance from sharp edges.
+    """
+    doubt = "" if meshes is None else DOUBTS.get(meshes.status, "")
     space, values = stress.space, stress.von_mises
     faces = space.boundary
     triangles = faces if faces.shape[1] == 3 else faces[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
@@ -155,6 +172,8 @@ def scene_from(stress: StressField, displacement: Real) -> Scene:
         triangles=triangles,
         cells=cells if cells.shape[1] == 4 else cells[:, list(map(list, _CORNERS_AND_EDGES))].reshape(-1, 4),
         hottest=hottest,
+        top=meshes.sharp.screening if doubt and meshes is not None and meshes.sharp else float(values.max()),
+        doubt=doubt,
         scale=scale,
         far_side=not _seen(space.nodes, triangles, hottest, _TOWARD),
         strip=_strip_view(np.vstack([space.nodes, space.nodes + scale * displacement])),
@@ -180,8 +199,9 @@ def _strip_view(points: Real) -> View:
     right, up = _axes_of(_TOWARD)
     u, v = points @ right, points @ up
     middle = (u.min() + u.max()) / 2.0 * right + (v.min() + v.max()) / 2.0 * up
-    half_width = 0.515 * float(np.ptp(u))
-    half_height = min(max(0.54 * float(np.ptp(v)), half_width / 16.0), half_width / 2.0)
+    # A link as tall as long, such as a disc, stands in the middle of a picture half as tall as wide.
+    half_width = max(0.515 * float(np.ptp(u)), 2.0 * 0.54 * float(np.ptp(v)))
+    half_height = max(0.54 * float(np.ptp(v)), half_width / 16.0)
     size = (_STRIP_WIDTH, round(_STRIP_WIDTH * half_height / half_width))
     return View(right=right, up=up, toward=_TOWARD, focus=middle, half_width=half_width,
                 half_height=half_height, size=size, cut=None)  # fmt: skip
@@ -247,8 +267,7 @@ def _hits(start: Real, direction: Real, a: Real, ab: Real, ac: Real) -> bool:
 
 
 def _limits(scene: Scene) -> tuple[float, float]:
-    top = float(scene.values.max())
-    return 0.0, top if top > 0.0 else 1.0
+    return 0.0, scene.top if scene.top > 0.0 else 1.0
 
 
 def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str, tuple[Real, Real]], str]:
@@ -367,19 +386,20 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
         bar = figure.add_axes(((margin + side + 0.55) / WIDTH, (below + side - 0.45) / height,
                                (WIDTH - margin - side - 1.0) / WIDTH, 0.17 / height))  # fmt: skip
         legend = figure.colorbar(
-            ScalarMappable(norm=Normalize(low, high), cmap=COLOURS), cax=bar, orientation="horizontal"
+            ScalarMappable(norm=Normalize(low, high), cmap=COLOURS),
+            cax=bar,
+            orientation="horizontal",
+            extend="max" if scene.top < scene.values.max() else "neither",
         )
         legend.set_label("von Mises stress [MPa]")
         legend.outline.set_linewidth(0.6)
-        x, y, z = scene.points[scene.hottest]
         largest = float(np.linalg.norm(scene.displacement, axis=1).max())
         figure.text(
             (margin + side + 0.55) / WIDTH,
             (below + side - 1.1) / height,
             "\n".join(
                 (
-                    f"largest: {number(float(scene.values.max()))} MPa (circles)",
-                    f"    at x = {_place(x)}, y = {_place(y)}, z = {_place(z)} mm",
+                    *peak_lines(scene),
                     "    (faint above: on the far side)\n" if scene.far_side else "",
                     f"upper picture: deformed, × {plain(scene.scale)}",
                     f"    largest displacement {number(largest, 3)} mm",
@@ -391,6 +411,18 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
             linespacing=1.45,
         )
         return as_png(figure)
+
+
+def peak_lines(scene: Scene) -> tuple[str, ...]:
+    """What the picture says of the largest stress: its value and place, or why there is no value."""
+    x, y, z = (_place(value) for value in scene.points[scene.hottest])
+    place = f"    at x = {x}, y = {y}, z = {z} mm"
+    if not scene.doubt:
+        return (f"largest: {number(float(scene.values.max()))} MPa (circles)", place)
+    found = [f"largest: no result, {scene.doubt}", f"{place} (circles)"]
+    if scene.top < scene.values.max():
+        found.append("    colours end at the screening stress")
+    return tuple(found)
 
 
 def _place(value: float) -> str:

@@ -153,12 +153,7 @@ def as_json(result: CheckResult) -> str:
 
 def worst_load_case(result: CheckResult, link: str) -> LoadCaseResult:
     """The load case whose band of the safety factor reaches lowest on a link, or is unknown."""
-
-    def least(case: LoadCaseResult) -> float:
-        factor = case.links[link].safety_factor
-        return -math.inf if factor.unknowable else factor.low
-
-    return min(result.load_cases.values(), key=least)
+    return min(result.load_cases.values(), key=lambda case: case.links[link].severity)
 
 
 def _band(band: Band) -> dict[str, Any]:

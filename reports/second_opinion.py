@@ -34,6 +34,11 @@ def with_second_opinions(
     """
     found = second_opinions(result, folder, threads=threads, progress=progress)
     warnings = tuple(opinion.sentence for opinion in found if opinion.sentence)
+    warnings += tuple(
+        f"{opinion.link}: the stresses of the second opinion are those of one mesh, whose peak is no result"
+        for opinion in found
+        if not opinion.known
+    )
     if not found:
         warnings = ("no second opinion: no link has a solid model that CalculiX could be asked about",)
     return replace(result, second_opinions=found, warnings=(*result.warnings, *warnings))
@@ -49,6 +54,7 @@ def opinion_records(opinions: tuple[SecondOpinion, ...]) -> dict[str, Any]:
             "von_mises": opinion.von_mises,
             "von_mises_nodal": opinion.von_mises_nodal,
             "displacement": opinion.displacement,
+            "known": opinion.known,
             "calculix": None
             if opinion.answer is None
             else {
@@ -79,7 +85,7 @@ def opinion_table(opinions: tuple[SecondOpinion, ...]) -> "Table":
     for opinion in opinions:
         theirs = opinion.answer
         table.add_row(
-            opinion.link,
+            opinion.link if opinion.known else f"{opinion.link} (no result)",
             number(opinion.von_mises),
             "-" if theirs is None else number(theirs.von_mises),
             "-" if theirs is None else f"{theirs.stress_gap:.2%}",

@@ -6,7 +6,7 @@ from fea.beam import BeamCheck, check_beam
 from fea.cut_free import beam_loads
 from fea.link_loads import LinkLoads, PinLoad
 from fea.refinement import LinkTask
-from geometry.part import Body, Pin, Tube
+from geometry.part import Body, HoleRow, Pin, Tube
 
 TUBE = Tube(
     shape="tube",
@@ -20,14 +20,17 @@ TUBE = Tube(
 PLACES = {"A": 0.0, "B": 36.0, "C": 72.0}
 
 
-def task(limit: float = 10.0) -> LinkTask:
-    """Three-point bending in the plane with a pull and a torque; ``limit`` on its stress [MPa]."""
+def task(limit: float = 10.0, *, stretch: float = 1.0, holes: tuple[HoleRow, ...] = ()) -> LinkTask:
+    """Three-point bending in the plane with a pull and a torque; ``limit`` on its stress [MPa].
+
+    ``stretch``: factor on its length.
+    """
     forces = {"A": [-6.0, -2.0], "B": [1.0, 4.0], "C": [5.0, -2.0]}
     torques = {"A": -5.0, "B": 0.0, "C": 5.0}
     pins = tuple(
         PinLoad(
             name=name,
-            centre=np.array([x, 0.0, 0.0]),
+            centre=np.array([stretch * x, 0.0, 0.0]),
             diameter=1.5,
             wrench=np.array([*forces[name], 0.0, torques[name], 0.0, 0.0]),
         )
@@ -36,9 +39,9 @@ def task(limit: float = 10.0) -> LinkTask:
     return LinkTask(
         body=Body(
             part=TUBE,
-            pins=tuple(Pin(name=name, x=x, y=0.0, diameter=1.5) for name, x in PLACES.items()),
+            pins=tuple(Pin(name=name, x=stretch * x, y=0.0, diameter=1.5) for name, x in PLACES.items()),
             ends=(),
-            holes=(),
+            holes=holes,
         ),
         loads=(LinkLoads(name="mixed", pins=pins),),
         E=2400.0,

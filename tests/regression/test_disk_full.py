@@ -96,7 +96,7 @@ def test_no_room_for_renderings_costs_one_warning(tmp_path: Path, monkeypatch: p
                         size=(10, 10), cut=None)  # fmt: skip
     faces = figures.np.array([[0, 1, 3]])
     scene = figures.Scene(points=cube, displacement=cube, values=cube[:, 0], triangles=faces, cells=faces, hottest=0,
-                          scale=1.0, far_side=False, strip=view, close=view)  # fmt: skip
+                          top=1.0, doubt="", scale=1.0, far_side=False, strip=view, close=view)  # fmt: skip
     pictures, [warning] = figures.plots_of({"AE": scene}, {"AE": {}})
     assert pictures == {}
     assert warning == "no stress plot of AE: rendering had no room for its files (No space left on device)"

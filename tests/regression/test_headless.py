@@ -20,7 +20,7 @@ def scene() -> figures.Scene:
     )
     return figures.Scene(
         points=FAR, displacement=0.0 * FAR, values=np.arange(4.0), triangles=FACES, cells=np.array([[0, 1, 2, 3]]),
-        hottest=3, scale=1.0, far_side=False, strip=view, close=view,
+        hottest=3, top=3.0, doubt="", scale=1.0, far_side=False, strip=view, close=view,
     )  # fmt: skip
 
 

@@ -6,17 +6,21 @@ import pytest
 from fea.refinement import LinkTask
 from fea.solid import solve_solid
 from fea.stress import stress_field
-from fea.submodel import CLEAR, submodel
+from fea.submodel import CLEAR, eye_submodel, hole_submodel
 from geometry.mesh import MeshSettings, mesh_body
+from geometry.part import HoleRow
 from loads.bearing import WIDE
 
 MESH = MeshSettings(size=0.5, bore_elements=24, turn_elements=12, fillet_size=0.4, growth=0.5)
 
 
-def peak(what: LinkTask, low: float, high: float) -> float:
+ABOUT_A_HOLE = MeshSettings(size=0.6, bore_elements=8, hole_elements=24, turn_elements=8, fillet_size=1.2, growth=0.7)
+
+
+def peak(what: LinkTask, low: float, high: float, mesh: MeshSettings = MESH) -> float:
     """Largest von Mises stress between two stations [MPa]."""
     solution = solve_solid(
-        mesh_body(what.body, MESH),
+        mesh_body(what.body, mesh),
         E=what.E,
         nu=what.nu,
         density=what.density,
@@ -33,7 +37,7 @@ def peak(what: LinkTask, low: float, high: float) -> float:
 def test_an_eye_cut_out_bears_what_it_does_in_the_link():
     whole = eye_link.task()
     beam = eye_link.beam(whole)
-    near, far = (submodel(whole, (beam,), "B", clear=clear) for clear in (CLEAR, 2.0 * CLEAR))
+    near, far = (eye_submodel(whole, (beam,), "B", clear=clear) for clear in (CLEAR, 2.0 * CLEAR))
     assert near is not None
     assert far is not None
     assert far.covered[0] < near.covered[0] < 36.0 < near.covered[1] < far.covered[1]
@@ -42,7 +46,25 @@ def test_an_eye_cut_out_bears_what_it_does_in_the_link():
     assert peak(far.task, *near.covered) == pytest.approx(reference, rel=0.02)
 
 
+@pytest.mark.parametrize("along", ["y", "z"])
+def test_a_hole_cut_out_bears_what_it_does_in_the_link(along):
+    """A cross hole in mid-span, whose submodel has no eye at all."""
+    row = HoleRow(count=1, diameter="1.25 mm", first="27 mm", last="27 mm", along=along)
+    whole = eye_link.task(stretch=1.5, holes=(row,))
+    beam = eye_link.beam(whole)
+    near, far = (hole_submodel(whole, (beam,), 27.0, clear=clear) for clear in (CLEAR, 2.0 * CLEAR))
+    assert near is not None
+    assert far is not None
+    assert (near.body.pins, near.name) == ((), "the hole at x = 27 mm")
+    assert far.covered[0] < near.covered[0] < 26.0 < 28.0 < near.covered[1] < far.covered[1]
+    reference = peak(whole, *near.covered, ABOUT_A_HOLE)
+    assert peak(near.task, *near.covered, ABOUT_A_HOLE) == pytest.approx(reference, rel=0.02)
+    assert peak(far.task, *near.covered, ABOUT_A_HOLE) == pytest.approx(reference, rel=0.02)
+
+
 def test_no_cut_where_there_is_no_room():
     whole = eye_link.task()
     beam = eye_link.beam(whole)
-    assert submodel(whole, (beam,), "B", clear=5.0) is None
+    assert eye_submodel(whole, (beam,), "B", clear=5.0) is None
+    row = HoleRow(count=1, diameter="1 mm", first="10 mm", last="10 mm", along="y")
+    assert hole_submodel(eye_link.task(holes=(row,)), (beam,), 10.0) is None

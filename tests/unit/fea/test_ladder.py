@@ -40,7 +40,7 @@ def test_the_rung_has_the_name_of_the_model_that_gave_the_forces():
 def test_what_one_eye_leaves_open_its_submodel_decides():
     found = climbed(18.0)
     assert (found.decision.rung, found.solid) == ("submodel", None)
-    assert "holds the limit 18; submodels of the eyes at B" in found.decision.why
+    assert "holds the limit 18; submodels of the eye at B" in found.decision.why
     band = found.hands["mixed"].von_mises
     assert band.low < 7.07 < band.high < 18.0  # 7.07 MPa: the whole link on the mesh of test_submodel.py
 

@@ -1,0 +1,92 @@
+"""No picture, table or claim gives the peak of a mesh as a result where it is none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fea.claim_data
+from fea.claim_data import case_tree
+from fea.convergence import grid_convergence
+from fea.discretisation import Discretisation
+from fea.refinement import MeshRecord
+from fea.second_opinion import SecondOpinion
+from fea.singular import SharpPeak
+from geometry.errors import CannotRunError
+from loads.case_file import read_case
+from reports import figures
+from reports.second_opinion import opinion_records, opinion_table
+
+SERIES = grid_convergence([1.0], [5.0], estimate=0.1)
+
+
+def state(status, screening=None):
+    sharp = None
+    if screening is not None:
+        sharp = SharpPeak(
+            place=np.zeros(3), angle=4.7, growth=0.4, theory=0.46, distance=1.0, screening=screening, resolved=True
+        )
+    return Discretisation(
+        status=status, accuracy=0.05, stress=SERIES, displacement=SERIES, sharp=sharp, stopped="it may not go on",
+        meshes=(MeshRecord(elements=100, unknowns=300, error=0.53, seconds=1.0),),
+    )  # fmt: skip
+
+
+@pytest.fixture
+def link(result):
+    return result.load_cases["weight"].links["GF"]
+
+
+def test_a_singular_peak_sets_neither_legend_nor_colours(link):
+    peak = link.stress.peak.value
+    scene = figures.scene_of(replace(link, discretisation=state("singular", screening=0.6 * peak)))
+    assert figures._limits(scene) == (0.0, 0.6 * peak)
+    told = "\n".join(figures.peak_lines(scene))
+    assert "no result, singular at a sharp edge" in told
+    assert "MPa" not in told
+    [picture] = figures.stress_plots(
+        {"GF": replace(link, discretisation=state("singular", screening=0.6 * peak))}, {"GF": {"G": 0.0}}
+    )[0].values()
+    assert picture.startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("status", "words"),
+    [("edge", "may be singular"), ("growing", "still growing"), ("unresolved", "too coarse")],
+)
+def test_other_peaks_that_are_no_results_have_no_number_in_the_legend(link, status, words):
+    [first, *_] = figures.peak_lines(figures.scene_of(replace(link, discretisation=state(status))))
+    assert words in first
+    assert "MPa" not in first
+
+
+@pytest.mark.parametrize("meshes", [None, state("converged"), state("far")])
+def test_a_peak_with_a_band_has_its_number(link, meshes):
+    scene = figures.scene_of(replace(link, discretisation=meshes))
+    assert "MPa (circles)" in figures.peak_lines(scene)[0]
+    assert scene.top == link.stress.peak.value
+
+
+def test_a_second_opinion_on_one_mesh_says_that_its_peak_is_no_result():
+    opinion = SecondOpinion(
+        link="AE", load_case="hover", variant="", deck="AE.inp", von_mises=9.0, von_mises_nodal=9.0, displacement=1.0,
+        known=False, answer=None, reason="none",
+    )  # fmt: skip
+    assert opinion_table((opinion,)).columns[0]._cells == ["AE (no result)"]
+    assert opinion_records((opinion,))["AE"]["known"] is False
+
+
+@pytest.mark.parametrize("status", ["far", "decided", "not reached", "edge", "unresolved"])
+def test_no_claim_is_judged_on_a_stress_that_has_not_converged(monkeypatch, result, link, status):
+    solids = replace(result.load_cases["weight"], links={"GF": replace(link, discretisation=state(status))})
+    asked = []
+
+    def check(case, *, effort, **options):
+        asked.append(effort.stated)
+        return replace(result, load_cases={"weight": solids})
+
+    monkeypatch.setattr(fea.claim_data, "check_case", check)
+    tree = case_tree(read_case("owl-wing-static"), "owl-wing-static")
+    with pytest.raises(CannotRunError, match="that of GF has not converged"):
+        tree["solid"]
+    assert asked == [True]
