@@ -1,6 +1,6 @@
 """Bearing of pins on the eyes: the joint force over the projected area d t, apart from any peak stress.
 
-The nominal bearing stress F/(d t) (Budynas & Nisbett, Shigley's Mechanical Engineering Design, 10th ed., sec. 8-12)
+The nominal bearing stress F/(d t) (Budynas & Nisbett, Shigley's Mechanical Engineering Design, 10th ed., chapter 8)
 is set against the ultimate strength of the softer eye, 3.33 times at least as 14 CFR 23.693 asks of joints that
 turn, 6.67 times as 14 CFR 23.657 asks of hinges that flight depends on. Both mean the ultimate strength in bearing,
 for which the ultimate tensile strength of the card stands; that in bearing is rarely below it.

@@ -1,7 +1,8 @@
-"""Buckling of links in compression: Euler's load over the largest compression anywhere along the link.
+"""Buckling of links in compression, and of the linkage as a whole.
 
-Every link is a straight column of its section, under its largest compression N over its whole length. Both make the
-answer smaller, never larger. The end conditions are the least favourable ones that joints leave:
+A link's factor is Euler's load over the largest compression anywhere along it. Every link is a straight column of its
+section, under its largest compression N over its whole length. Both make the answer smaller, never larger. The end
+conditions are the least favourable ones that joints leave:
 
 pinned ends     a link whose compression lies between its outermost pins turns freely about them in the linkage's
                 plane, k = 1. Out of the plane the pins carry moments, which would give k down to 0.5 between stiff
@@ -11,14 +12,19 @@ built in, free  k = 2 over the whole length, for the driven link (held in its an
                 sway). For an overhang this is a lower bound: the slope v of a column held at x = 0 and x = L and free
                 at L + a has a zero between the pins, on either side of which ∫v'² ≥ (π/2)² ∫v²/(L + a)².
 
-That the joints stay where they are is taken for granted: sway of the whole linkage is what the co-rotational frame
-looks at (``fea.corotational.buckling_factor`` finds its factor).
+That the joints stay where they are is taken for granted: sway of the whole linkage is the other outcome, the lowest
+factor on all loads at which its linear frame becomes unstable (``fea.corotational.buckling_factor``). It leaves out
+how the frame moves before that. Where equilibrium was followed on the deformed shape (``fea.large_displacement``),
+that answer rules: a frame may give way below the linear factor, or stiffen and hold beyond it. The outcome then is the
+share of the load at which it gave way, or at least 1 where it held the whole.
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
-(5.2.1(3)) and for n >= 3 where a factor may stand for it (5.2.2(5)); below 3 stress by linear theory passes no link.
+(5.2.1(3)) and for n >= 3 where a factor may stand for it (section 5.2.2); below 3 stress by linear theory passes no link,
+and no linkage whose deformed shape is not known.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -26,7 +32,8 @@ import numpy as np
 
 from fea.band import Band
 from fea.beam import BeamCheck, euler_load
-from fea.verdict import BUCKLING_FACTOR, CheckOutcome, Verdict, at_least
+from fea.large_displacement import LargeDisplacement
+from fea.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
 from loads.case import Case
 
 NAME = "buckling"
@@ -117,6 +124,54 @@ def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) ->
             verdict=verdict,
             reason=_reason(found, value, verdict),
         )
+
+
+def linkage_outcome(case: Case, title: str, moved: LargeDisplacement) -> Iterator[CheckOutcome]:
+    """Yield the outcome of the linkage as a whole where its frame can buckle under the load case ``title``.
+
+    The band is that of a link, with the least ratio of a stated least modulus to the modulus; where equilibrium was
+    followed on the deformed shape, it is what was found there.
+    """
+    value = moved.buckling
+    if value is None or math.isinf(value):
+        return
+    materials = [case.material_of(link) for link in case.checked_links]
+    softest = min(min((m.youngs_modulus, *(m.youngs_modulus_range or ()))) / m.youngs_modulus for m in materials)
+    factor = f"all links together become unstable at {value:.3g} times the load by linear theory"
+    band = Band(
+        value=value,
+        low=softest * value / LEAST_LINEAR,
+        high=value,
+        holds=("the modulus", "displacement that grows with the load, which linear theory leaves out"),
+    )
+    verdict = at_least(band, 1.0)
+    if moved.followed:
+        verdict = Verdict.PASS if moved.state == "deformed" else Verdict.FAIL
+        at, held = {
+            "deformed": (max(value, 1.0), "the linkage holds the whole load"),
+            "unstable": (min(value, 1.0), "the linkage has buckled before the whole load acts"),
+        }.get(moved.state, (moved.held, f"the linkage gives way at {moved.held:.3g} of the load"))
+        band = Band.exact(at, "equilibrium on the deformed shape, followed from no load")
+        reason = f"{factor}, but large displacement was followed and rules: {held}"
+    elif verdict is Verdict.FAIL:
+        reason = f"{factor}, so the linkage gives way"
+    elif verdict is Verdict.UNDECIDED:
+        reason = f"{factor}; so near to it, joint forces by linear theory do not hold"
+    elif value < SECOND_ORDER:
+        reason = f"{factor}; displacements are up to {1.0 / (1.0 - 1.0 / value):.3g} times those of linear theory"
+    else:
+        reason = factor
+    yield CheckOutcome(
+        name=NAME,
+        link=LINKAGE,
+        load_case=title,
+        quantity=BUCKLING_FACTOR,
+        unit="",
+        value=band,
+        limit=1.0,
+        verdict=verdict,
+        reason=reason,
+    )
 
 
 def _reason(found: Column, factor: float, verdict: Verdict) -> str:

@@ -87,7 +87,7 @@ def reversed_amplitude(cycles: Real, ultimate: float) -> Real:
     """Amplitudes (k,) [MPa] of reversed cycles that harm as much, by Goodman: σa / (1 − σm/Su).
 
     A compressive mean counts as none; infinite where the mean reaches the ultimate strength (Shigley's
-    Mechanical Engineering Design, 10th ed., eq. 6-46).
+    Mechanical Engineering Design, 10th ed., chapter 6).
     """
     amplitude, mean = cycles[:, 0] / 2.0, np.maximum(cycles[:, 1], 0.0)
     with np.errstate(divide="ignore"):

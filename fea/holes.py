@@ -23,7 +23,7 @@ class EyeStress:
 def eye_stress(force: float, eye_diameter: float, hole_diameter: float, thickness: float) -> EyeStress:
     """Net-section tension and bearing of an eye of width D and thickness t under a pin in a hole of diameter d.
 
-    Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., section 8-12. Raises ``CannotRunError``
+    Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., chapter 8. Raises ``CannotRunError``
     where the hole leaves no section.
     """
     if not (0.0 < hole_diameter < eye_diameter and thickness > 0.0):

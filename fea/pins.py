@@ -5,7 +5,7 @@ and the two forces are a = t1/2 + gap + t2/2 apart. Their couple F a is taken by
 on how tightly the pin sits: one eye takes it all (the pin is built in there; largest moment F a) or both take half
 (largest moment F a/2, at mid-gap). The first is the value, both are the band. Bending stress 32 M/(π d³), largest
 shear stress of a solid circle 4 F/(3 A) (Budynas & Nisbett, Shigley's Mechanical Engineering Design, 10th ed.,
-sections 3-10, 3-11 and table 3-2; eyes as point loads, problem 3-40; a pin built in at one eye, problem 3-43).
+chapter 3, for beams in bending and shear; eyes as point loads, or a pin built in at one eye).
 Moments about x and y that the joint carries besides (loads out of the plane) add to the bending moment.
 """
 

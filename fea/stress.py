@@ -38,7 +38,7 @@ _NODES = np.array(
 
 
 def von_mises(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Von Mises stress of components (..., 6) in the order of ``COMPONENTS`` (Shigley, 10th ed., eq. 5-14)."""
+    """Von Mises stress of components (..., 6) in the order of ``COMPONENTS`` (Shigley, 10th ed., chapter 5)."""
     xx, yy, zz, xy, yz, xz = np.moveaxis(sigma, -1, 0)
     direct = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
     return np.asarray(np.sqrt(0.5 * direct + 3.0 * (xy**2 + yz**2 + xz**2)))

@@ -7,7 +7,7 @@ With every direction as a complex number, a point P of the linkage stands at
 where phi_l is the angle of link l, s_j the travel in slot j and a(j) the link that carries the slot.
 C and D follow once from a spanning tree over the joints; each joint outside the tree closes one
 loop, and its closure vector is a row of the same form (Norton, Design of Machinery, 5th ed.,
-section 4.5, with the loops of any number of links). Jacobian and accelerations are exact.
+chapter 4, with the loops of any number of links). Jacobian and accelerations are exact.
 
 All functions take angles of shape (..., links) and slides (..., slots), so that many poses are
 handled at once.

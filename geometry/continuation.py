@@ -6,8 +6,8 @@ driven link. With J the Jacobian, J_f its columns of the other unknowns and J_c 
     J_f q_f' = -J_c,        J_f q_f'' = -Q(q')
 
 where ' is d/dtheta and Q the part of the second derivative that is quadratic in the rates: the
-first- and second-order kinematic coefficients (Norton, Design of Machinery, 5th ed., sections 6.7
-and 7.3, for loops of any number). Each step predicts by Taylor's formula to second order and corrects by
+first- and second-order kinematic coefficients (Norton, Design of Machinery, 5th ed., chapters 6
+and 7, for loops of any number). Each step predicts by Taylor's formula to second order and corrects by
 Newton; it is halved until prediction and correction agree and the determinant keeps its sign
 (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003, chapters 2 and 6).
 """

@@ -52,7 +52,7 @@ def close_dyad(dx: ArrayLike, dy: ArrayLike, first: float, second: float, side: 
     """Close a dyad over the vector (dx, dy) from the first bar's outer pin to the second's.
 
     ``side`` is +1 when the common pin lies to the left of that vector and -1 when it lies to the right.
-    Equivalent to R. L. Norton, Design of Machinery, 5th ed., equations 4.10b and 4.13, without their
+    Equivalent to R. L. Norton, Design of Machinery, 5th ed., chapter 4, without their
     quotient by 2A, which vanishes in regular poses. Shapes of ``dx`` and ``dy`` broadcast.
     """
     dx, dy = np.asarray(dx, dtype=float), np.asarray(dy, dtype=float)

@@ -98,7 +98,7 @@ class TransmissionRange:
 
     @property
     def least_acute(self) -> float:
-        """The smallest acute transmission angle μ (Norton, 5th ed., section 3.3 and 4.10)."""
+        """The smallest acute transmission angle μ (Norton, 5th ed., chapters 3 and 4)."""
         return min(self.minimum, math.pi - self.maximum)
 
     @property
@@ -165,9 +165,9 @@ class FourBar:
     def position(self, theta2: ArrayLike, *, branch: Branch = "open") -> FourBarPosition:
         """Return coupler and output angle for input angles of any shape (rad).
 
-        ``open`` is the minus sign of Norton's equation 4.10b: the pin B lies to the left of the line from
+        ``open`` is the minus sign of Norton's equation for θ4 (chapter 4): the pin B lies to the left of the line from
         the input pin A to O4, and stays there for as long as the linkage does not pass a dead point. Norton,
-        5th ed., equations 4.10b and 4.13, in a form without quotients. A single angle at which the
+        5th ed., chapter 4, in a form without quotients. A single angle at which the
         loop does not close raises CaseError; in arrays such angles are masked.
         """
         theta2 = np.asarray(theta2, dtype=float)
@@ -205,7 +205,7 @@ class FourBar:
     def velocity(self, theta2: ArrayLike, omega2: ArrayLike, *, branch: Branch = "open") -> FourBarVelocity:
         """Return angular speeds for input speeds ω2 in rad/s that broadcast with θ2.
 
-        Norton, 5th ed., equations 6.18a and 6.18b. A single pose at a dead point raises CaseError; in arrays
+        Norton, 5th ed., chapter 6. A single pose at a dead point raises CaseError; in arrays
         such poses are masked.
         """
         theta2, omega2 = np.broadcast_arrays(np.asarray(theta2, dtype=float), np.asarray(omega2, dtype=float))
@@ -222,7 +222,7 @@ class FourBar:
     ) -> FourBarAcceleration:
         """Return angular accelerations for input speeds ω2 (rad/s) and accelerations α2 (rad/s²).
 
-        Norton, 5th ed., equations 7.12a and 7.12b. All three arguments broadcast; dead points as in ``velocity``.
+        Norton, 5th ed., chapter 7. All three arguments broadcast; dead points as in ``velocity``.
         """
         theta2, omega2, alpha2 = np.broadcast_arrays(
             *(np.asarray(value, dtype=float) for value in (theta2, omega2, alpha2))
@@ -245,7 +245,7 @@ class FourBar:
         )
 
     def dead_points(self) -> tuple[DeadPoint, ...]:
-        """Return the lock-up poses of the input: coupler and output collinear (Norton, 5th ed., section 4.11)."""
+        """Return the lock-up poses of the input: coupler and output collinear (Norton, 5th ed., chapter 4)."""
         found: list[DeadPoint] = []
         for kind, reach in self._limits():
             size = _pivot_angle(self.a, self.d, reach)
@@ -311,7 +311,7 @@ class FourBar:
         """Return the extremes of the transmission angle over the input's range.
 
         The angle grows with the distance from the input pin to O4, so its extremes lie at the ends of that
-        distance: θ2 = 0 and 180° where the input turns fully (Norton, 5th ed., section 4.10), dead points elsewhere.
+        distance: θ2 = 0 and 180° where the input turns fully (Norton, 5th ed., chapter 4), dead points elsewhere.
         """
         nearest = max(abs(self.a - self.d), abs(self.b - self.c))
         farthest = min(self.a + self.d, self.b + self.c)

@@ -30,7 +30,7 @@ class Grashof:
     """crank-rocker, double-crank, double-rocker, rocker-crank, change point, parallelogram, kite,
     rhombus or triple-rocker."""
     barker: str
-    """Barker's code for the same (C. R. Barker 1985; Norton, 5th ed., Table 2-4)."""
+    """Barker's code for the same (C. R. Barker 1985; Norton, 5th ed., chapter 2)."""
 
     @property
     def satisfied(self) -> bool:
@@ -56,8 +56,8 @@ def classify(*, a: float, b: float, c: float, d: float, tolerance: float = EQUAL
 
     s + l < p + q: Grashof, the inversion named after the shortest link; equality within ``tolerance``
     times the sum of all lengths: special Grashof (change point); else triple-rocker, Barker's code after
-    the longest link. Source: R. L. Norton, Design of Machinery, 5th ed., section 2.13 (the Grashof
-    condition) and Table 2-4 (Barker's classification).
+    the longest link. Source: R. L. Norton, Design of Machinery, 5th ed., chapter 2 (the Grashof
+    condition and Barker's classification).
     """
     lengths = dict(zip(_LINKS, (a, b, c, d), strict=True))
     order = sorted(_LINKS, key=lambda link: lengths[link])

@@ -128,7 +128,7 @@ class Linkage:
     def mobility(self) -> int:
         """Degrees of freedom after Gruebler/Kutzbach: M = 3(L - 1) - 2 J1 - J2.
 
-        Norton, Design of Machinery, 5th ed., eq. 2.1c. It counts, and can be wrong for special
+        Norton, Design of Machinery, 5th ed., chapter 2. It counts, and can be wrong for special
         dimensions (parallelograms): there the rank of the Jacobian decides.
         """
         half = sum(j.type == "pin-in-slot" for j in self.joints.values())

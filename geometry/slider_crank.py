@@ -1,6 +1,6 @@
 """The slider-crank, in line or offset, in closed form.
 
-Names follow R. L. Norton, Design of Machinery, 5th ed., sections 4.6, 6.7 and 7.3: crank a at angle θ2,
+Names follow R. L. Norton, Design of Machinery, 5th ed., chapters 4, 6 and 7: crank a at angle θ2,
 connecting rod b at angle θ3 (measured at the slider, towards the crank pin), offset c of the slider's line,
 slider position d along that line from the foot of the crank's pivot. Angles are rad, from the line.
 """
@@ -82,7 +82,7 @@ class SliderCrank:
     def position(self, theta2: ArrayLike, *, branch: Branch = "open") -> SliderCrankPosition:
         """Return rod angle and slider position for crank angles of any shape (rad).
 
-        Norton, 5th ed., equations 4.16 and 4.17: ``open`` is 4.17, the slider on the side of +d. A single angle
+        Norton, 5th ed., chapter 4: ``open`` is the slider on the side of +d. A single angle
         at which the rod is too short raises CaseError; in arrays such angles are masked.
         """
         theta2 = np.asarray(theta2, dtype=float)
@@ -107,7 +107,7 @@ class SliderCrank:
     ) -> SliderCrankMotion:
         """Return speeds and accelerations for crank speeds ω2 (rad/s) and accelerations α2 (rad/s²); all broadcast.
 
-        Norton, 5th ed., equations 6.22a, 6.22b and 7.16b, 7.16c. Where the rod stands square to the
+        Norton, 5th ed., chapters 6 and 7. Where the rod stands square to the
         slider's line they have no definite value: CaseError for a single pose, masked in arrays.
         """
         theta2, omega2, alpha2 = np.broadcast_arrays(

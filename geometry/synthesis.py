@@ -248,7 +248,7 @@ def _driven_angle(point: PrecisionPoint, drive: Drive, b_turned: bool, c_turned:
 def _defects(
     four_bar: FourBar, drive: Drive, points: Sequence[PrecisionPoint], b_turned: bool, c_turned: bool
 ) -> list[Finding]:
-    """Return circuit, branch and order defect of one drive (Norton, Design of Machinery, 5th ed., section 4.12)."""
+    """Return circuit, branch and order defect of one drive (Norton, Design of Machinery, 5th ed., chapter 4)."""
     found = []
     name = f"link {drive} (angle {_ANGLE[drive]})"
     branches = [point.branches[drive] for point in points]

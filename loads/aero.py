@@ -2,7 +2,7 @@
 
     q = rho V^2 / 2,    L = q S C_L,    D = q S C_D
 
-(Anderson, Fundamentals of Aerodynamics, 5th ed., section 1.5). Drag acts along the stream, lift normal to it. Spread
+(Anderson, Fundamentals of Aerodynamics, 5th ed., chapter 1). Drag acts along the stream, lift normal to it. Spread
 loads keep the resultant force and its first moment along each link exactly, whatever their shape. The forces act on
 the links' axes: the chordwise distance between a link and the centre of pressure is left out.
 """
@@ -30,8 +30,8 @@ LARGEST_LIFT_COEFFICIENT = 2.0
 """Above this a coefficient is refused; glide measurements of birds give at most 0.8 to 1.6 (Withers, J. Exp. Biol. 90,
 1981, 143-162; Tucker and Heine, J. Exp. Biol. 149, 1990, 469-489)."""
 LARGEST_DRAG_COEFFICIENT = 2.3
-"""Above this a coefficient is refused: a half tube open to the stream has about as much, the most of the plain shapes
-(Hoerner, Fluid-Dynamic Drag, 1965, chapter 3)."""
+"""Above this a coefficient is refused: a half tube open to the stream has as much, the most of the standard shapes; long
+plates across it have 1.98, square ones 1.17 (Matthews, Aeronautical Engineer's Data Book, fig. 5.13b)."""
 LARGEST_LIFT_TO_DRAG = 20.0
 """Above this ratio the run warns; bird wings reach 3 to 17 (Withers 1981)."""
 PIECES = 6

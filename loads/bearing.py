@@ -60,5 +60,5 @@ CONTACT_HOLDS = f"what contact adds to the narrower pin pressure in an eye (up t
 
 
 def bearing_stress(*, force: float, diameter: float, thickness: float) -> float:
-    """Nominal bearing stress F/(d t) [MPa] (Shigley's Mechanical Engineering Design, 10th ed., sec. 8-12)."""
+    """Nominal bearing stress F/(d t) [MPa] (Shigley's Mechanical Engineering Design, 10th ed., chapter 8)."""
     return force / (diameter * thickness)

@@ -1,7 +1,7 @@
 """Inertia and carried masses at one pose, as loads after D'Alembert.
 
 At a constant speed of the pose's coordinate every mass element dm of a link loads it with (g - a) dm, where a
-is its acceleration (Norton, Design of Machinery, 5th ed., sections 10.12 and 11.2).
+is its acceleration (Norton, Design of Machinery, 5th ed., chapters 10 and 11).
 """
 
 from collections.abc import Mapping

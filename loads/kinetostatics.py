@@ -5,7 +5,7 @@ At every pose each link is cut free, and
     sum F = m a_G,      sum (r x F)_z + M_z = (r_G x m a_G)_z + I_G alpha
 
 about the origin of its frame, over joint forces, applied loads and the drive torque (Norton, Design
-of Machinery, 5th ed., sections 11.2 to 11.5): the equations of ``loads/statics.py`` for all poses at
+of Machinery, 5th ed., chapter 11): the equations of ``loads/statics.py`` for all poses at
 once. Joints have no friction.
 """
 
@@ -210,7 +210,7 @@ def torque_by_virtual_work(
     """Drive torque (n,) [N mm] by the principle of virtual work, without any joint force; NaN at dead points.
 
     It needs the motion alone, hence serves redundant linkages too, whose joint forces do not follow
-    from equilibrium (Norton, 5th ed., section 10.14).
+    from equilibrium (Norton, 5th ed., chapter 10).
     """
     bodies = _Bodies(motion)
     weights = [load.load for load in loads if isinstance(load.load, BodyForce)]

@@ -5,7 +5,7 @@ Each link is cut free. With r the arm from the origin of the link's frame to a j
     sum F_x = 0,    sum F_y = 0,    sum (r x F)_z + M_z = 0
 
 over joint forces, applied loads and the drive torque (Norton, Design of Machinery, 5th ed.,
-section 11.4, with accelerations zero). The unknown of a revolute joint is the force that the
+chapter 11, with accelerations zero). The unknown of a revolute joint is the force that the
 joint's first link exerts on its second; a pin in a slot carries a normal force, a slider a normal
 force and a moment.
 """

@@ -3,7 +3,7 @@
 The handbook: Kt = 12.882 − 52.714 (d/W) + 89.762 (d/W)² − 51.667 (d/W)³ on the net section P/((W − d) t), for
 0.15 ≤ d/W ≤ 0.75 and an edge distance of at least W (W. D. Pilkey, Formulas for Stress, Strain, and Structural
 Matrices, 2nd ed., 2005, table 6-1, round pin joint with a closely fitting pin), a fit to Frocht and Hill's
-photoelastic tests (J. Appl. Mech. 7 (1940) A-5), which stand in Shigley, fig. A-15-12, too.
+photoelastic tests (J. Appl. Mech. 7 (1940) A-5), which stand in Shigley's appendix A, too.
 
 Ours: half of a lug of width W with a round head about the hole's centre, the pin's pressure the cosine over 180°
 (p0 = 4 P/(π d t)) or cos 2θ over 90° (3 P/(√2 d t)); plane strain, whose stress in the plane is plane stress's but for

@@ -17,7 +17,7 @@ def test_von_mises_in_closed_form():
 
 
 def test_principal_stresses_keep_their_sign():
-    # Shigley, 10th ed., example 3-4: 80 MPa along x with 50 MPa of clockwise shear give 104 and -24 MPa.
+    # Shigley, 10th ed., chapter 3: 80 MPa along x with 50 MPa of clockwise shear give 104 and -24 MPa.
     np.testing.assert_allclose(principal(np.array([80.0, 0, 0, -50.0, 0, 0])), [104.031, 0.0, -24.031], atol=1e-3)
     np.testing.assert_allclose(principal(np.array([[-3.0, -1.0, -2.0, 0, 0, 0]])), [[-1.0, -2.0, -3.0]])
 
