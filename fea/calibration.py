@@ -11,8 +11,8 @@ from functools import cache
 from importlib.resources import files
 
 from fea.spots import Kind
-from geometry.body_rules import eye_reach, patch_span, section_height, section_width
-from geometry.part import Bar, Body, Tube
+from geometry.body_rules import eye_reach, fillet_radius, patch_span, section_height, section_width
+from geometry.part import Body, Disc, Part, Tube
 
 Interval = tuple[float, float]
 
@@ -48,7 +48,7 @@ class Calibration:
 
     def outside(self, body: Body, nu: float) -> str:
         """Say which proportion of a link lies outside of what was measured; "" where none does."""
-        if body.part.fillet_radius == 0.0:
+        if fillet_radius(body.part) == 0.0:
             return "its junctions are sharp, where stress has no limit"
         if any(pin.y != 0.0 for pin in body.pins):
             return "a pin lies off its axis"
@@ -65,7 +65,7 @@ def proportions(body: Body, nu: float) -> dict[str, float]:
     found = {
         "Poisson's ratio": nu,
         "eye diameter over width": part.eye_diameter / width,
-        "fillet over width": part.fillet_radius / width,
+        "fillet over width": fillet_radius(part) / width,
     }
     if isinstance(part, Tube):
         found["inner over outer diameter"] = part.inner_diameter / width
@@ -104,8 +104,17 @@ def calibrations() -> Mapping[str, Calibration]:
     return {shape: _parsed(entry) for shape, entry in data.items()}
 
 
-def calibration_of(part: Tube | Bar) -> Calibration:
-    """Return the calibration of a part's shape."""
+def uncalibrated(body: Body, nu: float) -> str:
+    """Say why hand calculation is not calibrated for a link; "" where it is."""
+    if isinstance(body.part, Disc):
+        return "a disc is as wide as it is long, where beam theory does not hold"
+    if any(pin.slot > 0.0 for pin in body.pins):
+        return "it has a slot"
+    return calibration_of(body.part).outside(body, nu)
+
+
+def calibration_of(part: Part) -> Calibration:
+    """Return the calibration of a part's shape; a disc has none."""
     return calibrations()[part.shape]
 
 

@@ -8,10 +8,11 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from fea.band import Band
-from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
+from fea.beam import BeamCheck, CantileverCheck, SectionStress, check_beam, deflection, uniform_cantilever
 from fea.bearing_check import bearing_outcomes
 from fea.buckling_check import buckling_outcomes
 from fea.cut_free import beam_loads, link_loads
+from fea.details import Detail, details, remarks
 from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
 from fea.ladder import Climb, HandBands, climb
 from fea.large_displacement import LargeDisplacement, examine
@@ -24,7 +25,9 @@ from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
 from fea.solid_result import link_task, solid_result
+from fea.threads import bounded_run
 from fea.verdict import CheckOutcome, overall
+from geometry.body_rules import hand_section, reference_line
 from geometry.errors import CaseError
 from geometry.material import Material
 from geometry.pose import NEAR_DEAD_POINT, Pose
@@ -119,6 +122,7 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     return CaseStatics(case=case, pose=pose, loads=loads, forces=forces, masses=masses, audit=found)
 
 
+@bounded_run
 def check_case(
     case: Case,
     *,
@@ -218,20 +222,29 @@ def check_case(
 class _Beam:
     check: BeamCheck
     displacement: float
+    details: tuple[Detail, ...]
+    remarks: tuple[str, ...]
+
+    @property
+    def worst(self) -> tuple[float, SectionStress]:
+        """Station and stresses of the plain section or the detail that bears most."""
+        found = [(self.check.worst_x, self.check.worst), *((d.x, d.stress) for d in self.details)]
+        return max(found, key=lambda place: place[1].equivalent)
 
 
 def _beam(case: Case, statics: CaseStatics, link: str, loads: LinkLoads) -> _Beam:
     material, body = case.material_of(link), case.body(link)
-    section = body.part.section
+    section = hand_section(body)
     check = check_beam(beam_loads(loads, body, material.density, statics.masses.get(link)), section, material.allowable)
     bent = deflection(
         check.forces,
         section,
         young=material.youngs_modulus,
         poisson=material.poissons_ratio,
-        line=(body.pins[0].x, body.pins[-1].x),
+        line=reference_line(body),
     )
-    return _Beam(check=check, displacement=bent.largest)
+    found = details(body, loads, check.forces)
+    return _Beam(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))
 
 
 def _acts(loads: LinkLoads) -> bool:
@@ -250,7 +263,7 @@ def _link_result(case: Case, link: str, title: str, beam: _Beam, climbed: Climb 
     decision = climbed.decision
     found = None if climbed.solid is None else solid_result(case, link, title, beam.check, climbed.solid)
     if found is not None:
-        result = found
+        result = replace(found, notes=(*found.notes, *beam.remarks))
     elif climbed.solid is None and title in climbed.hands:
         result = _calibrated(result, material, climbed.hands[title])
     if decision.rung == "submodel":
@@ -272,7 +285,7 @@ def _calibrated(result: LinkResult, material: Material, hand: HandBands) -> Link
 
 
 def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> LinkResult:
-    worst = beam.check.worst
+    x, worst = beam.worst
     stress = Band.exact(worst.equivalent, *BEAM_HOLDS)
     principal = Band.exact(max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0), *BEAM_HOLDS)
     return LinkResult(
@@ -282,7 +295,7 @@ def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> Li
         principal_max=principal,
         safety_factor=(principal if material.brittle else stress).inverse(material.allowable),
         displacement_max=Band.exact(beam.displacement, *BEAM_HOLDS),
-        location=np.array([beam.check.worst_x, 0.0, 0.0]),
+        location=np.array([x, 0.0, 0.0]),
         elements=None,
         unknowns=None,
         beam=beam.check,
@@ -294,8 +307,9 @@ def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> Li
         comparisons=(),
         notes=(
             "nothing acts on this link in this load case"
-            if ran or beam.check.worst.equivalent == 0.0
+            if ran or worst.equivalent == 0.0
             else "beam theory alone: stress concentration at eyes and holes is not in these numbers",
+            *beam.remarks,
         ),
     )
 

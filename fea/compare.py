@@ -5,7 +5,8 @@ import math
 from fea.beam import BeamCheck
 from fea.result import SectionComparison
 from fea.stress import StressField
-from geometry.part import Body, Tube
+from geometry.body_rules import section_width
+from geometry.part import Body, Disc, Tube
 
 BENDS = 0.1
 """A link counts as bending where its largest bending stress is above this share of its axial stress."""
@@ -15,10 +16,15 @@ LARGEST_COUNT = 6
 def clear_sections(body: Body) -> tuple[float, ...]:
     """Stations at least one diameter (or width) away from every eye, hole and loaded end [mm].
 
-    One in the middle of every stretch that is left, the longest stretches first.
+    One in the middle of every stretch that is left, the longest stretches first; none on a disc.
     """
     part, size = body.part, _size(body)
-    blocked = [(p.x - part.eye_diameter / 2, p.x + part.eye_diameter / 2) for p in body.pins]
+    if isinstance(part, Disc):
+        return ()
+    eyes = [pin for pin in body.pins if pin.foot is None]
+    blocked = [(pin.span[0] - part.eye_diameter / 2, pin.span[1] + part.eye_diameter / 2) for pin in eyes]
+    # An arm disturbs the section as far as its own width reaches along the axis.
+    blocked += [(x - part.eye_diameter, x + part.eye_diameter) for x, _ in (pin.foot for pin in body.pins if pin.foot)]
     blocked += [(x - row.diameter / 2, x + row.diameter / 2) for row in body.holes for x in row.positions]
     blocked += [(end.x - end.patch, end.x + end.patch) for end in body.ends]
     margins = sorted((low - size, high + size) for low, high in blocked)
@@ -34,7 +40,7 @@ def clear_sections(body: Body) -> tuple[float, ...]:
 
 def _size(body: Body) -> float:
     part = body.part
-    return part.outer_diameter if isinstance(part, Tube) else max(part.width, part.thickness)
+    return part.outer_diameter if isinstance(part, Tube) else max(section_width(part), part.thickness)
 
 
 def compare_sections(body: Body, beam: BeamCheck, stress: StressField) -> tuple[SectionComparison, ...]:

@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 
 from fea import beam
 from fea.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
-from geometry.part import Body
+from geometry.body_rules import extent, hand_section
+from geometry.errors import CaseError
+from geometry.part import Body, Pin
 from geometry.pose import Pose
 from loads import applied
 from loads.actions import PartMass
@@ -69,15 +71,7 @@ def link_loads(
     drive = reactions.drive
     return LinkLoads(
         name=name,
-        pins=tuple(
-            PinLoad(
-                name=pin.name,
-                centre=np.array([pin.x, pin.y, 0.0]),
-                diameter=pin.diameter,
-                wrench=wrenches.get(pin.name, np.zeros(6)),
-            )
-            for pin in body.pins
-        ),
+        pins=tuple(_pin_load(pose, link, pin, wrenches.get(pin.name, np.zeros(6))) for pin in body.pins),
         couples=(
             (DriveCouple(pin=pose.linkage.point_of(drive.joint, link), torque=torque),) if drive and torque else ()
         ),
@@ -91,11 +85,52 @@ def link_loads(
     )
 
 
+def _pin_load(pose: Pose, link: str, pin: Pin, wrench: Real) -> PinLoad:
+    """Return the load of a pin from its wrench (6,) about its point; in a slot, the wrench about where it stands."""
+    if pin.slot == 0.0:
+        return PinLoad(name=pin.name, centre=np.array([pin.x, pin.y, 0.0]), diameter=pin.diameter, wrench=wrench)
+    centre = np.array([slot_place(pose, link, pin), pin.y, 0.0])
+    point = np.array([*pose.linkage.links[link].points[pin.name], 0.0])
+    moved = np.concatenate([wrench[:3], wrench[3:] - np.cross(centre - point, wrench[:3])])
+    return PinLoad(name=pin.name, centre=centre, diameter=pin.pin_diameter, wrench=moved, slotted=True)
+
+
+def slot_place(pose: Pose, link: str, pin: Pin) -> float:
+    """Return the x at which a pin stands in its slot, in the link's frame [mm]; ``CaseError`` where it ends before."""
+    linkage = pose.linkage
+    joint = next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name)
+    other = linkage.joints[joint].links[1]
+    place = pose.rotation(link).T @ (pose.position(other, linkage.point_of(joint, other)) - pose.origins[link])
+    return float(in_slot(pin, place[:1], link)[0])
+
+
+def in_slot(pin: Pin, x: Real, link: str) -> Real:
+    """Return places x (n,), held to the slot's ends within rounding; ``CaseError`` where one lies beyond them."""
+    low, high = pin.span
+    slack = 1e-6 * pin.slot
+    if x.min() < low - slack or x.max() > high + slack:
+        beyond = x[np.argmax(np.abs(x - pin.x))]
+        raise CaseError(
+            f"links.{link}.slots.{pin.name}: its pin stands at x = {beyond:.6g} mm, but the slot runs from {low:g} to "
+            f"{high:g} mm; lengthen the slot"
+        )
+    return np.asarray(np.clip(x, low, high))
+
+
 def _per_mass(load: BodyLoad, x: float) -> Real:
     """Force per mass (3,) of a body load at the station x of the axis, the centroid's height taken as the axis."""
     along = x - load.about[0]
     turning = np.array([load.angular_speed**2 * along, -load.angular_acceleration * along, 0.0])
     return np.asarray(load.specific_force + turning)
+
+
+def _on_beam(pin: PinLoad, foot: tuple[float, float] | None) -> beam.PointLoad:
+    """Return the load of a pin on the beam; that of a pin on an arm enters where the arm starts."""
+    if foot is None:
+        return beam.PointLoad(point=pin.centre, wrench=pin.wrench)
+    start = np.array([*foot, 0.0])
+    moment = pin.wrench[3:] + np.cross(pin.centre - start, pin.wrench[:3])
+    return beam.PointLoad(point=start, wrench=np.concatenate([pin.wrench[:3], moment]))
 
 
 def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | None) -> beam.BeamLoads:
@@ -105,7 +140,8 @@ def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | No
     (``density`` in tonne/mm³); what eyes, holes and fillets add to the mass, or shift of its
     centroid, stands as a point load at each end.
     """
-    points = [beam.PointLoad(point=pin.centre, wrench=pin.wrench) for pin in loads.pins]
+    feet = {pin.name: pin.foot for pin in body.pins}
+    points = [_on_beam(pin, feet[pin.name]) for pin in loads.pins]
     centres = {pin.name: pin.centre for pin in loads.pins}
     for couple in loads.couples:
         wrench = np.array([0.0, 0.0, 0.0, 0.0, 0.0, couple.torque])
@@ -116,9 +152,8 @@ def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | No
         for line in loads.lines
     ]
     if loads.bodies and mass is not None:
-        stations = [pin.x for pin in body.pins] + [end.x for end in body.ends]
-        first, last = min(stations), max(stations)
-        per_length = body.part.section.area * density
+        first, last = extent(body)
+        per_length = hand_section(body).area * density
         excess = mass.mass - per_length * (last - first)
         moment = mass.mass * mass.centroid[0] - per_length * (last**2 - first**2) / 2.0
         at_last = (moment - excess * first) / (last - first)

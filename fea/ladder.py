@@ -11,13 +11,13 @@ from typing import Literal
 
 from fea.band import Band
 from fea.beam import BeamCheck
-from fea.calibration import Calibration, Factors, calibration_of
+from fea.calibration import Calibration, Factors, calibration_of, uncalibrated
 from fea.eye_models import EyePeaks, covers, peaks, plan
 from fea.link_loads import LinkLoads
 from fea.refinement import Effort, LinkTask, Progress, RefinedSolid, refine_links
 from fea.spots import Spot, displacement_estimate, spots
 from fea.submodel import Submodel
-from geometry.body_rules import extent, eye_reach, section_height, section_width
+from geometry.body_rules import extent, eye_reach, reference_line, section_height, section_width
 from geometry.errors import CannotRunError
 from geometry.mesh import MeshSettings
 from geometry.part import Body
@@ -191,8 +191,7 @@ def _decided_by_submodels(
 def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     """Return the calibrated bands of a link under one load case."""
     body = task.body
-    calibration = calibration_of(body.part)
-    outside = calibration.outside(body, task.nu)
+    outside = uncalibrated(body, task.nu)
     found: tuple[Spot, ...] = ()
     if not outside:
         try:
@@ -202,6 +201,7 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     if outside:
         nothing = Band.unknown("nothing: hand calculation is not calibrated for this link")
         return HandBands(von_mises=nothing, principal=nothing, displacement=nothing, spots=(), outside=outside)
+    calibration = calibration_of(body.part)
     holds = _holds(calibration)
     rows = [
         SpotBand(
@@ -211,7 +211,7 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
         )
         for spot in found
     ]
-    line = (body.pins[0].x, body.pins[-1].x)
+    line = reference_line(body)
     moved = displacement_estimate(body, loads, beam, young=task.E, poisson=task.nu, line=line)
     rows.sort(key=lambda row: row.von_mises.high, reverse=True)
     return HandBands(

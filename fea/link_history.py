@@ -1,14 +1,15 @@
 """What acts on one link over a whole motion, in the link's own frame: every load an array over the poses."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.cut_free import in_slot
 from fea.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
 from geometry.errors import CannotRunError, CaseError
-from geometry.part import Body
+from geometry.part import Body, Pin
 from loads.actions import PartMass, StatedLoad, stated_loads
 from loads.applied import BodyForce, PointLoad
 from loads.carried import CarriedSpread
@@ -34,6 +35,7 @@ class LinkHistory:
     """All loads of one load case on one link at n poses; at every pose together they balance.
 
     pins          pin -> (n, 3) Fx, Fy [N] and Mz [N mm] about its centre, without the drive torque
+    places        pin in a slot -> (n,) x at which it stands [mm], about which its force acts
     couples       pin -> (n,) drive torque on the link [N mm]
     ends          plain end -> (n, 3) Fx, Fy, Mz about its point
     lines         spread loads
@@ -50,6 +52,7 @@ class LinkHistory:
     lines: tuple[LineHistory, ...]
     acceleration: Real
     mass: PartMass | None
+    places: Mapping[str, Real] = field(default_factory=dict)
 
     @property
     def poses(self) -> int:
@@ -72,6 +75,7 @@ class LinkHistory:
             ends={name: loads[poses] for name, loads in self.ends.items()},
             lines=tuple(replace(line, intensity=line.intensity[poses]) for line in self.lines),
             acceleration=self.acceleration[poses],
+            places={name: x[poses] for name, x in self.places.items()},
         )
 
     def at(self, pose: int) -> LinkLoads:
@@ -88,9 +92,10 @@ class LinkHistory:
             pins=tuple(
                 PinLoad(
                     name=pin.name,
-                    centre=np.array([pin.x, pin.y, 0.0]),
-                    diameter=pin.diameter,
+                    centre=np.array([self.places[pin.name][pose] if pin.slot else pin.x, pin.y, 0.0]),
+                    diameter=pin.pin_diameter,
                     wrench=_wrench(self.pins[pin.name][pose]),
+                    slotted=pin.slot > 0.0,
                 )
                 for pin in self.body.pins
             ),
@@ -174,6 +179,10 @@ def _history(moved: CaseMotion, link: str, name: str) -> LinkHistory:
             spin = mass.mass * mass.radius_of_gyration**2 * acceleration[:, 2]
             add(mass.at, force, (np.conj(arm) * force).imag - spin)
     loaded = {point: np.column_stack([_planar(forces[point]), moments[point]]) for point in forces}
+    places = {pin.name: _places(solved, link, pin) for pin in body.pins if pin.slot > 0.0}
+    for slot in places:
+        # A pin free to slide and turn pushes across its slot alone; about its point there was the moment of its travel.
+        loaded[slot][:, [0, 2]] = 0.0
     return LinkHistory(
         load_case=name,
         body=body,
@@ -183,7 +192,19 @@ def _history(moved: CaseMotion, link: str, name: str) -> LinkHistory:
         lines=tuple(lines),
         acceleration=acceleration,
         mass=moved.masses.get(link) if np.any(acceleration) else None,
+        places=places,
     )
+
+
+def _places(solved: Kinetostatics, link: str, pin: Pin) -> Real:
+    """The x (n,) at which a pin stands in its slot [mm]; ``CaseError`` where the slot ends before."""
+    motion, linkage = solved.motion, solved.motion.linkage
+    joint = next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name)
+    other = linkage.joints[joint].links[1]
+    point, (x, y) = next(iter(linkage.links[link].points.items()))
+    arm = motion.position(other, linkage.point_of(joint, other)) - motion.position(link, point)
+    along = np.exp(-1j * motion.angle(link)) * (arm[:, 0] + 1j * arm[:, 1]) + complex(x, y)
+    return in_slot(pin, np.asarray(along.real), link)
 
 
 def _joint_loads(solved: Kinetostatics, link: str) -> list[tuple[str, Complex, Real]]:

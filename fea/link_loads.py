@@ -11,14 +11,16 @@ class PinLoad:
     """What the pin in the hole at ``name`` does to the link.
 
     centre     (3,) point on the pin's axis at the link's mid-plane [mm]
-    diameter   of the hole [mm]
+    diameter   of the hole; of the pin where it stands in a slot [mm]
     wrench     (6,) Fx, Fy, Fz [N] and Mx, My, Mz [N mm] about ``centre``; Mz enters like a drive couple
+    slotted    True for a pin in a slot along x, which can neither push along x nor turn the link
     """
 
     name: str
     centre: NDArray[np.float64]
     diameter: float
     wrench: NDArray[np.float64]
+    slotted: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -23,7 +23,7 @@ from fea.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction
 from geometry.body_rules import section_height, section_width
 from geometry.errors import AlulaError, CaseError
 from geometry.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
-from geometry.part import Bar, Body
+from geometry.part import Bar, Body, Disc
 from geometry.tagged_mesh import TaggedMesh
 
 FAR = 2.0
@@ -91,6 +91,8 @@ class LinkTask:
     def may_be_sharp(self) -> bool:
         """True where the shape may have re-entrant edges: without fillets, or at a step too low for its fillet."""
         part = self.body.part
+        if isinstance(part, Disc):
+            return False
         step = isinstance(part, Bar) and part.thickness < part.eye_thickness
         return part.fillet_radius == 0.0 or step
 
@@ -242,7 +244,7 @@ class _Link:
 
     def _judge(self) -> None:
         body = self.task.body
-        eyes = [Eye(x=pin.x, y=pin.y, radius=body.part.eye_diameter / 2.0) for pin in body.pins]
+        eyes = [Eye(x=pin.x, y=pin.y, radius=body.part.eye_diameter / 2.0, slot=pin.slot) for pin in body.pins]
         self.precision = precision(self.levels, self.edges, section=self.task.section, eyes=eyes)
 
     def _settled(self) -> bool:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from fea.elasticity import assemble_stiffness
 from fea.link_loads import LinkLoads
 from fea.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
+from fea.slot_traction import DEGREE, slot_traction
 from fea.solve import Method, factorise
 from fea.space import DisplacementSpace, displacement_space
 from fea.supports import isostatic_supports, rigid_motions
@@ -127,7 +128,9 @@ def solve_solid(
     vectors = _LoadVectors(space, density)
     names, columns, scales = [], [], []
     for case in loads:
-        torque = any(c.torque != 0.0 for c in case.couples) or any(p.wrench[5] != 0.0 for p in case.pins)
+        torque = any(c.torque != 0.0 for c in case.couples) or any(
+            p.wrench[5] != 0.0 for p in case.pins if not p.slotted
+        )
         scale = vectors.scale(case)
         rest = vectors.spread(case)
         pushed = {law.span: vectors.pins(case, law) for law in laws}
@@ -215,9 +218,10 @@ class _LoadVectors:
         self._volume: Quadrature | None = None
         self._size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
 
-    def surface(self, *names: str) -> SurfaceQuadrature:
+    def surface(self, *names: str, degree: int | None = None) -> SurfaceQuadrature:
         if names not in self._surfaces:
-            self._surfaces[names] = surface_quadrature(self._space, *names)
+            options = {} if degree is None else {"degree": degree}
+            self._surfaces[names] = surface_quadrature(self._space, *names, **options)
         return self._surfaces[names]
 
     @property
@@ -245,8 +249,9 @@ class _LoadVectors:
         count = len(self._space.nodes)
         load = np.zeros(3 * count)
         for pin in case.pins:
-            bore = self.surface(f"bore:{pin.name}")
-            load += bore.load_vector(pin_traction(bore, pin, law), count)
+            bore = self.surface(f"bore:{pin.name}", degree=DEGREE if pin.slotted else None)
+            push = slot_traction if pin.slotted else pin_traction
+            load += bore.load_vector(push(bore, pin, law), count)
             if pin.wrench[2] != 0.0:
                 face = self.surface(f"{'bottom' if pin.wrench[2] > 0.0 else 'top'}:{pin.name}")
                 load += face.load_vector(thrust_traction(face, pin), count)
@@ -256,7 +261,9 @@ class _LoadVectors:
         """Load vector (3n,) of the torques about the pins."""
         count = len(self._space.nodes)
         load = np.zeros(3 * count)
-        torques = [(c.pin, c.torque) for c in case.couples] + [(p.name, float(p.wrench[5])) for p in case.pins]
+        torques = [(c.pin, c.torque) for c in case.couples] + [
+            (p.name, float(p.wrench[5])) for p in case.pins if not p.slotted
+        ]
         centres = {pin.name: pin.centre for pin in case.pins}
         for name, torque in torques:
             if torque != 0.0:

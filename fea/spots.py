@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from fea.beam import BeamCheck, Side, deflection, section_stress
 from fea.holes import eye_stress, tube_hole_factors
 from fea.link_loads import LinkLoads, PinLoad
-from geometry.body_rules import extent, eye_reach, patch_span, section_height, section_width
+from geometry.body_rules import extent, eye_reach, fillet_radius, patch_span, section_height, section_width
 from geometry.part import Body, HoleRow, Pin, Tube
 
 Kind = Literal["eye", "hole", "end", "section"]
@@ -157,7 +157,7 @@ def _junction(body: Body, forces: NDArray[np.float64]) -> float:
     """Stress at the fillet between the section and an eye under the section's forces (6,)."""
     part, width = body.part, section_width(body.part)
     stress = section_stress(part.section, forces)
-    tension, bending, torsion = shoulder_factors(width, (part.eye_diameter - width) / 2.0, part.fillet_radius)
+    tension, bending, torsion = shoulder_factors(width, (part.eye_diameter - width) / 2.0, fillet_radius(part))
     direct = tension * abs(stress.axial) + bending * stress.bending
     return math.hypot(direct, math.sqrt(3.0) * (torsion * stress.torsion + stress.shear))
 

@@ -24,6 +24,8 @@ from numpy.typing import NDArray
 from fea.link_history import LinkHistory
 from fea.link_loads import BodyLoad, LineLoad
 from fea.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
+from fea.slot_traction import DEGREE
+from fea.slot_units import SlotUnits, places_for, unit_pushes
 from fea.space import DisplacementSpace
 from fea.supports import rigid_motions
 from fea.traction import (
@@ -37,7 +39,7 @@ from fea.traction import (
 from geometry.errors import CannotRunError
 from geometry.part import Pin
 from loads.actions import PartMass
-from loads.bearing import PressureLaw
+from loads.bearing import NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
 
@@ -126,6 +128,7 @@ class UnitLoads:
     wrenches: Real
     local: NDArray[np.bool_]
     pins: Mapping[str, PinUnits]
+    slots: Mapping[str, SlotUnits]
     couples: Mapping[tuple[str, Transfer], int]
     ends: Mapping[str, slice]
     lines: Mapping[tuple[float, float], slice]
@@ -149,6 +152,11 @@ class UnitLoads:
                 orders = units.cosine.stop - units.cosine.start
                 found[units.cosine], found[units.sine] = pressure[:orders], pressure[orders:]
                 found[units.force] = force
+        for name, slot in self.slots.items():
+            pushed, rigid = slot.coefficients(history.pins[name][:, 1], history.places[name], law)
+            for side, push in pushed.items():
+                found[slot.pushes[law.span, side]] = push
+            found[slot.rigid] = rigid
         for name, torque in _torques(history).items():
             if np.any(torque != 0.0):
                 found[self.couples[name, transfer or TRANSFERS[0]]] += torque
@@ -189,10 +197,13 @@ def unit_loads(
     Raises ``CannotRunError`` for a surface that the mesh lacks or meshes too coarsely.
     """
     build = _Builder(space)
-    pins = {}
+    pins, slots = {}, {}
     for pin in histories[0].body.pins:
         if any(np.any(history.pins[pin.name][:, :2] != 0.0) for history in histories):
-            pins[pin.name] = build.pin(pin, highest)
+            if pin.slot > 0.0:
+                slots[pin.name] = build.slot(pin, histories)
+            else:
+                pins[pin.name] = build.pin(pin, highest)
     centres = {pin.name: np.array([pin.x, pin.y, 0.0]) for pin in histories[0].body.pins}
     couples = {}
     for name in dict.fromkeys(pin for h in histories for pin, torque in _torques(h).items() if np.any(torque != 0.0)):
@@ -212,6 +223,7 @@ def unit_loads(
         wrenches=np.asarray((vectors.T @ motions.T).T),
         local=np.array(build.local),
         pins=pins,
+        slots=slots,
         couples=couples,
         ends=ends,
         lines=lines,
@@ -284,6 +296,25 @@ class _Builder:
             force=self._add(rigid[:, 0], rigid[:, 1]),
             wrench=wrench,
         )
+
+    def slot(self, pin: Pin, histories: Sequence[LinkHistory]) -> SlotUnits:
+        """Pushes of a pin on the flanks of its slot, freed of their resultants, and the tractions that deliver them."""
+        wall, middle = surface_quadrature(self._space, f"bore:{pin.name}", degree=DEGREE), np.array([pin.x, pin.y, 0.0])
+        forces = np.concatenate([history.pins[pin.name][:, 1] for history in histories])
+        travel = np.concatenate([history.places[pin.name] for history in histories])[forces != 0.0]
+        rigid = [self._vector(wall, wrench_density(wall, middle, np.eye(6)[i])) for i in (1, 5)]
+        pushes, places = {}, {}
+        for law in (WIDE, NARROW):
+            places[law.span] = places_for(pin, law, float(travel.min()), float(travel.max()))
+            for side in (float(s) for s in np.unique(np.sign(forces[forces != 0.0]))):
+                freed = [
+                    self._vector(wall, push) - side * (rigid[0] + (x - pin.x) * rigid[1])
+                    for x, push in zip(
+                        places[law.span], unit_pushes(wall, pin, law, side, places[law.span]), strict=True
+                    )
+                ]
+                pushes[law.span, side] = self._add(*freed, local=True)
+        return SlotUnits(pin=pin, pushes=pushes, places=places, rigid=self._add(*rigid))
 
     def couple(self, name: str, centre: Real, transfer: Transfer) -> int:
         """Unit torque about a pin."""

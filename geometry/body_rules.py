@@ -4,23 +4,71 @@ import itertools
 import math
 
 from geometry.errors import CaseError
-from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from geometry.part import Bar, Body, Disc, HoleRow, Part, Pin, PlainEnd, Section, Tube, rectangle
+
+ON_AXIS = 1e-9
+"""Share of a slot's or arm's size by which it may lie off the link's axis."""
+LEAST_ARM_ANGLE = math.radians(30.0)
+"""Between an arm and the link's axis: below it, bar and arm run into one another."""
+_CHORDS = 200
 
 
 def extent(body: Body) -> tuple[float, float]:
-    """Return the least and greatest x of the body's pins and ends: where its tube or bar begins and ends [mm]."""
-    stations = [p.x for p in body.pins] + [e.x for e in body.ends]
+    """Return the least and greatest x of the body's pins and ends: where its tube or bar begins and ends [mm].
+
+    The pins on arms have no say; those of a disc tell what lies between its holes.
+    """
+    stations = [x for p in body.pins if p.foot is None for x in p.span] + [e.x for e in body.ends]
     return min(stations), max(stations)
 
 
-def section_width(part: Tube | Bar) -> float:
+def section_width(part: Part) -> float:
     """Return the section's size along y, in the linkage's plane [mm]."""
+    if isinstance(part, Disc):
+        return part.diameter
     return part.outer_diameter if isinstance(part, Tube) else part.width
 
 
-def section_height(part: Tube | Bar) -> float:
+def section_height(part: Part) -> float:
     """Return the section's size along z, along the pins [mm]."""
     return part.outer_diameter if isinstance(part, Tube) else part.thickness
+
+
+def fillet_radius(part: Part) -> float:
+    """Return the fillet where the section meets an eye [mm]; a disc has no such place."""
+    return 0.0 if isinstance(part, Disc) else part.fillet_radius
+
+
+def hand_section(body: Body) -> Section:
+    """Return the section of which hand calculation takes the link to be made.
+
+    A tube's or bar's own between the eyes. Of a disc the narrowest net section between its holes, the chord
+    2 √(R² - x²) less what the holes cut out of it: an estimate, since a disc is as wide as long and no beam.
+    """
+    part = body.part
+    if not isinstance(part, Disc):
+        return part.section
+    first, last = extent(body)
+    stations = [first + (last - first) * i / _CHORDS for i in range(_CHORDS + 1)]
+    return rectangle(min(_net_chord(body, part, x) for x in stations), part.thickness)
+
+
+def _net_chord(body: Body, part: Disc, x: float) -> float:
+    cut = sum(2.0 * math.sqrt(max((p.diameter / 2.0) ** 2 - (x - p.x) ** 2, 0.0)) for p in body.pins)
+    return 2.0 * math.sqrt(max((part.diameter / 2.0) ** 2 - x**2, 0.0)) - cut
+
+
+def reference_line(body: Body) -> tuple[float, float]:
+    """Return the two stations through which the line runs that hand calculation's displacements refer to [mm].
+
+    The first and last pin on the axis; where there is but one, its eye holds the direction, as does an arm on it.
+    """
+    on_axis = [pin.x for pin in body.pins if pin.foot is None]
+    if len(on_axis) > 1 and on_axis[0] != on_axis[-1]:
+        return on_axis[0], on_axis[-1]
+    first, last = extent(body)
+    half = body.part.eye_diameter / 2.0
+    return on_axis[0], on_axis[0] + (half if last - on_axis[0] >= on_axis[0] - first else -half)
 
 
 def patch_span(body: Body, end: PlainEnd) -> tuple[float, float]:
@@ -36,25 +84,47 @@ def patch_span(body: Body, end: PlainEnd) -> tuple[float, float]:
 def eye_reach(body: Body, pin: Pin) -> float:
     """Return half the length of x that an eye with its fillet takes up on the tube or bar [mm].
 
-    The fillet's centre lies at the radii's sum from the pin and at one fillet radius off the surface.
+    The fillet's centre lies at the radii's sum from the pin and at one fillet radius off the surface. Where an arm
+    starts, the fillet between its side and the bar's reaches further if the angle between them is small.
     """
-    part = body.part
-    radius, fillet = part.eye_diameter / 2.0, part.fillet_radius
-    across = max(0.0, abs(pin.y) - section_width(part) / 2.0)
-    return math.sqrt(max((radius + fillet) ** 2 - across**2, 0.0))
+    part, fillet = body.part, fillet_radius(body.part)
+    if isinstance(part, Disc):
+        return part.eye_diameter / 2.0
+    if pin.foot is not None:
+        return 0.0
+    radius, width = part.eye_diameter / 2.0, section_width(part)
+    across = max(0.0, abs(pin.y) - width / 2.0)
+    corners = [
+        (width / 2.0 + fillet) / math.tan(_arm_angle(arm) / 2.0) for arm in body.pins if arm.foot == (pin.x, pin.y)
+    ]
+    return max([math.sqrt(max((radius + fillet) ** 2 - across**2, 0.0)), *corners]) + pin.slot / 2.0
+
+
+def _arm_angle(pin: Pin) -> float:
+    """Return the angle between an arm and the link's axis, at most a right one [rad]."""
+    assert pin.foot is not None
+    return math.atan2(abs(pin.y - pin.foot[1]), abs(pin.x - pin.foot[0]))
+
+
+def apart(one: Pin, other: Pin) -> float:
+    """Return the distance between the centres of two holes, or the centre lines of slots [mm]."""
+    along = max(abs(one.x - other.x) - (one.slot + other.slot) / 2.0, 0.0)
+    return math.hypot(along, one.y - other.y)
 
 
 def check_body(body: Body) -> None:
     """Raise ``CaseError`` naming the entry, the value, the rule and the remedy if the body cannot be built."""
+    if not any(pin.foot is None for pin in body.pins) and len(body.ends) < 2:
+        raise CaseError("the link has 0 pins, but a part needs at least 1 on its axis; give it a pin")
     first, last = extent(body)
-    if not body.pins:
-        raise CaseError("the link has 0 pins, but a part needs at least 1; give it a pin")
+    if isinstance(body.part, Disc):
+        _check_disc(body, body.part)
     if not last > first:
         raise CaseError(f"the link's pins and ends all lie at x = {first:g} mm, so it has no length; move them apart")
     for pin in body.pins:
         _check_pin(body, pin, first, last)
     for one, other in itertools.combinations(body.pins, 2):
-        if math.hypot(one.x - other.x, one.y - other.y) <= (one.diameter + other.diameter) / 2.0:
+        if apart(one, other) <= (one.diameter + other.diameter) / 2.0:
             raise CaseError(
                 f"the pin holes at {one.name} and {other.name} run into each other; move the pins apart "
                 "or make their holes smaller"
@@ -72,8 +142,15 @@ def _check_pin(body: Body, pin: Pin, first: float, last: float) -> None:
             f"the pin hole at {pin.name} has a diameter of {pin.diameter:g} mm, but must be positive and less than "
             f"eye_diameter {part.eye_diameter:g} mm to leave a wall; make the hole smaller or the eye wider"
         )
+    if pin.slot > 0.0:
+        _check_slot(body, pin)
+    if isinstance(part, Disc):
+        return
+    if pin.foot is not None:
+        _check_arm(body, pin, pin.foot)
+        return
     width = section_width(part)
-    at_end = pin.x in (first, last)
+    at_end = pin.span[0] == first or pin.span[1] == last
     reach = (part.eye_diameter - width) / 2.0 if at_end else part.eye_diameter / 2.0
     if abs(pin.y) >= reach:
         what = "cover the whole end of the" if at_end else "reach past the axis of the"
@@ -81,6 +158,61 @@ def _check_pin(body: Body, pin: Pin, first: float, last: float) -> None:
             f"pin {pin.name} lies {pin.y:g} mm off the link's axis, but its eye must {what} {part.shape}, which "
             f"allows less than {reach:g} mm; move the pin towards the axis or widen eye_diameter"
         )
+
+
+def _check_slot(body: Body, pin: Pin) -> None:
+    if not isinstance(body.part, Bar):
+        raise CaseError(f"the slot at {pin.name} needs a part of shape bar, not {body.part.shape}; give the link a bar")
+    if abs(pin.y) > ON_AXIS * pin.diameter:
+        raise CaseError(
+            f"the slot at {pin.name} lies {pin.y:g} mm off the link's axis, but a slot runs along it; "
+            "let the axis run through the slot"
+        )
+
+
+def _check_arm(body: Body, pin: Pin, foot: tuple[float, float]) -> None:
+    part = body.part
+    if not isinstance(part, Bar):
+        raise CaseError(f"the arm to {pin.name} needs a part of shape bar, not {part.shape}; give the link a bar")
+    if not any((p.x, p.y) == foot and p.slot == 0.0 and p.foot is None for p in body.pins) or foot[1] != 0.0:
+        raise CaseError(
+            f"the arm to {pin.name} must start at a pin hole on the link's axis (y = 0); name such a point in arms"
+        )
+    if _arm_angle(pin) < LEAST_ARM_ANGLE:
+        raise CaseError(
+            f"the arm to {pin.name} stands at {math.degrees(_arm_angle(pin)):.3g} degrees to the link's axis, but "
+            f"needs at least {math.degrees(LEAST_ARM_ANGLE):g} to be clear of the bar; let it start nearer to the pin"
+        )
+    clear = abs(pin.y) - part.eye_diameter / 2.0 - part.width / 2.0
+    if clear <= 2.0 * part.fillet_radius:
+        raise CaseError(
+            f"the eye at {pin.name}, at the end of an arm, is {max(clear, 0.0):g} mm from the bar along the link's "
+            f"axis, but needs more than 2 fillet_radius = {2.0 * part.fillet_radius:g} mm; make the arm longer"
+        )
+
+
+def _check_disc(body: Body, disc: Disc) -> None:
+    if body.ends:
+        raise CaseError(
+            f"{body.ends[0].name} is no pin, but every point of a disc needs to be one; make it a joint, or give the "
+            "link a bar"
+        )
+    if body.holes:
+        raise CaseError("a disc has no rows of holes along an axis; leave out holes, or give the link a bar")
+    for pin in body.pins:
+        reach = math.hypot(pin.x, pin.y) + disc.eye_diameter / 2.0
+        if pin.foot is not None or reach >= disc.diameter / 2.0:
+            raise CaseError(
+                f"the ring about the hole at {pin.name} reaches {reach:g} mm from the disc's centre, the origin of the "
+                f"link's frame, but the disc ends at {disc.diameter / 2.0:g} mm; widen the disc, narrow eye_diameter "
+                "or move the pin"
+            )
+    for one, other in itertools.combinations(body.pins, 2):
+        if apart(one, other) <= disc.eye_diameter:
+            raise CaseError(
+                f"the rings about the holes at {one.name} and {other.name} run into each other; "
+                "move the pins apart or make eye_diameter smaller"
+            )
 
 
 def _check_end(body: Body, end: PlainEnd) -> None:

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from geometry.errors import CaseError
 from geometry.model import CaseModel, Name
-from geometry.part import HoleRow
+from geometry.part import HoleRow, Slot
 from geometry.units import NOT_NEGATIVE, POSITIVE, Angle, Length
 
 
@@ -25,6 +25,10 @@ class Link(CaseModel):
     """The part (shape and material) that the link is made of; none for a link that is not checked."""
     holes: Annotated[tuple[HoleRow, ...], Field(max_length=10)] = ()
     """Rows of cross holes, such as those that hold feathers."""
+    slots: Annotated[dict[Name, Slot], Field(max_length=10)] = {}
+    """Slots of the part, by the point of the joint (pin in slot) whose pin slides in it."""
+    arms: Annotated[dict[Name, Name], Field(max_length=10)] = {}
+    """Pins far off the axis: point -> the pin on the axis from which an arm of the bar's section reaches to it."""
     end_patch: Annotated[Length, POSITIVE] = 5.0
     """Length over which a load at a plain end (a point without pin) enters the part."""
 

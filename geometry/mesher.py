@@ -14,10 +14,12 @@ from geometry.element_count import SAFETY, Sizes, estimated_elements
 from geometry.element_geometry import element_volumes, flatten, scaled_jacobians, triangle_areas
 from geometry.errors import CannotRunError
 from geometry.mesh_settings import MeshSettings
-from geometry.part import Bar, Body, Tube
+from geometry.part import Body, Disc, Part, Pin, Tube
 from geometry.solid_model import SECTION_UNITS, Solid
 from geometry.tagged_mesh import TaggedMesh
 
+SLOT_ELEMENTS = 1.5
+"""Element edges along a slot to those round a hole of its width: a pin pushes on a shorter stretch of a flank."""
 LEAST_JACOBIAN = 0.1
 """Least over greatest Jacobian determinant below which a curved element is flattened.
 
@@ -178,24 +180,53 @@ def size_formulas(body: Body, settings: MeshSettings) -> list[str]:
     part, growth = body.part, settings.growth
     general = _wall_size(part, settings.size * SECTION_UNITS)
     texts = [f"{general:.12g}"]
-    holes = [(p.diameter, settings.bore_elements, f"Sqrt((x-({p.x:.12g}))^2+(y-({p.y:.12g}))^2)") for p in body.pins]
+    holes = [(p.diameter, settings.bore_elements * (SLOT_ELEMENTS if p.slot else 1.0), _from_pin(p)) for p in body.pins]
     for row in body.holes:
         across = "y" if row.along == "z" else "z"
         holes += [(row.diameter, settings.hole_elements, f"Sqrt((x-({x:.12g}))^2+{across}^2)") for x in row.positions]
     for diameter, elements, distance in holes:
         size = min(math.pi * diameter / elements, general)
         texts.append(f"{size:.12g}+{growth:g}*Max({distance}-{diameter / 2.0:.12g},0)")
+    if isinstance(part, Disc):
+        # A narrow ring about a hole keeps its area only with elements as small as it is wide.
+        for pin in body.pins:
+            size = min((part.eye_diameter - pin.diameter) / 2.0, general)
+            texts.append(f"{size:.12g}+{growth:g}*Fabs({_from_pin(pin)}-{part.eye_diameter / 2.0:.12g})")
+        return texts
     fillet = part.fillet_radius if part.fillet_radius > 0.0 else general
     size = min(fillet * settings.fillet_size, general)
     half = section_width(part) / 2.0
+    to_bar = f"(Sqrt(y^2+z^2)-{half:.12g})" if part.shape == "tube" else f"(Fabs(y)-{half:.12g})"
     for pin in body.pins:
-        to_eye = f"(Sqrt((x-({pin.x:.12g}))^2+(y-({pin.y:.12g}))^2)-{part.eye_diameter / 2.0:.12g})"
-        to_side = f"(Sqrt(y^2+z^2)-{half:.12g})" if part.shape == "tube" else f"(Fabs(y)-{half:.12g})"
-        texts.append(f"{size:.12g}+{growth:g}*Max(Sqrt({to_eye}^2+{to_side}^2)-{part.fillet_radius:.12g},0)")
+        to_eye = f"({_from_pin(pin)}-{part.eye_diameter / 2.0:.12g})"
+        sides = [(to_eye, to_bar)]
+        if pin.foot is not None:
+            arm, foot = (
+                f"(Fabs({_across(pin)})-{half:.12g})",
+                _from_pin(Pin(name="", x=pin.foot[0], y=0.0, diameter=0.0)),
+            )
+            sides = [(to_eye, arm), (f"({foot}-{part.eye_diameter / 2.0:.12g})", arm), (arm, to_bar)]
+        texts += [f"{size:.12g}+{growth:g}*Max(Sqrt({a}^2+{b}^2)-{part.fillet_radius:.12g},0)" for a, b in sides]
     return texts
 
 
-def _wall_size(part: Tube | Bar, size: float) -> float:
+def _from_pin(pin: Pin) -> str:
+    """Return the distance from a pin's axis or a slot's centre line as an expression."""
+    along = f"(x-({pin.x:.12g}))"
+    if pin.slot > 0.0:
+        along = f"Max(Fabs{along}-{pin.slot / 2.0:.12g},0)"
+    return f"Sqrt({along}^2+(y-({pin.y:.12g}))^2)"
+
+
+def _across(pin: Pin) -> str:
+    """Return the distance from an arm's axis, to its left, as an expression."""
+    assert pin.foot is not None
+    dx, dy = pin.x - pin.foot[0], pin.y - pin.foot[1]
+    length = math.hypot(dx, dy)
+    return f"(y-({pin.foot[1]:.12g}))*({dx / length:.12g})-(x-({pin.foot[0]:.12g}))*({dy / length:.12g})"
+
+
+def _wall_size(part: Part, size: float) -> float:
     """Return the size, lessened in a thin-walled tube so that the chords of one side stay clear of the other."""
     if not isinstance(part, Tube):
         return size

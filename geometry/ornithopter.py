@@ -19,10 +19,21 @@ from pydantic_core import PydanticCustomError
 from geometry.dyad import FloatArray
 from geometry.errors import CaseError
 from geometry.model import CaseModel
+from geometry.part import Bar, Body, Disc, Part, Pin, PlainEnd
 from geometry.periodic import periodic_maximum, periodic_minimum
 from geometry.slider_crank import SliderCrank
 from geometry.units import NOT_NEGATIVE, POSITIVE, Angle, Length
 
+MARGIN = 0.2
+"""By which the slot goes on at either end of the pin's travel [mm]: the printer's tolerance."""
+NECK = 0.4
+"""By which rod and lever are narrower than their eyes [mm]."""
+STUB, SOCKET = 6.0, 2.0
+"""How far the lever reaches beyond its pivot to hold the wing, and over which length it does [mm]."""
+FILLET = 0.3
+"""Where bars meet their eyes [mm]."""
+RING = 0.6
+"""Width of the rings about the crank's holes on which a torque enters, as a share of the wall about the pin's hole."""
 _SAMPLES = 3600
 """Crank positions from which extremes are refined; the refinement leaves some 1e-9 of them."""
 
@@ -141,6 +152,49 @@ class OrnithopterRules(CaseModel):
             link_thickness=2.0,
             lever_thickness=motor.shaft_height,
         )
+
+    def bodies(self, material: str) -> dict[str, Body]:
+        """Return the moving parts as solids: "crank", "rod" and "lever" (both levers are alike).
+
+        The crank is a disc with the shaft's hole and the pin's; rod and lever are flat bars with eyes, the lever with
+        the slot of the rod's pin. Of the source are the thicknesses, holes, walls about them, the disc's radius and
+        the pin's travel in the slot; ``MARGIN``, ``NECK``, ``STUB``, ``SOCKET``, ``FILLET`` and ``RING`` are assumed.
+        """
+        sizes, hole = self.dimensions(), self.dimensions().hole_diameter
+
+        def bar(wall: float, thickness: float) -> Bar:
+            eye = hole + 2 * wall
+            return Bar.model_construct(
+                shape="bar",
+                material=material,
+                width=eye - NECK,
+                thickness=thickness,
+                eye_diameter=eye,
+                eye_thickness=thickness,
+                fillet_radius=FILLET,
+            )
+
+        def pin(name: str, x: float, diameter: float = hole, slot: float = 0.0) -> Pin:
+            return Pin(name=name, x=x, y=0.0, diameter=diameter, slot=slot)
+
+        disc = Disc.model_construct(
+            shape="disc",
+            material=material,
+            diameter=2 * sizes.crank_disc_radius,
+            thickness=sizes.gear_thickness,
+            eye_diameter=hole + 2 * RING * sizes.thick_wall,
+        )
+        first, last = -sizes.slot_reach - MARGIN, -sizes.pivot_offset + MARGIN
+        found: dict[str, tuple[Part, tuple[Pin, ...], tuple[PlainEnd, ...]]] = {
+            "crank": (disc, (pin("O", 0.0, motors()[self.motor].shaft_diameter), pin("A", self.throw)), ()),
+            "rod": (bar(sizes.thick_wall, sizes.link_thickness), (pin("A", 0.0), pin("C", sizes.link_length)), ()),
+            "lever": (
+                bar(sizes.thin_wall, sizes.lever_thickness),
+                (pin("slot", (first + last) / 2, slot=last - first), pin("pivot", 0.0)),
+                (PlainEnd(name="W", x=STUB, patch=SOCKET),),
+            ),
+        }
+        return {name: Body(part=part, pins=pins, ends=ends, holes=()) for name, (part, pins, ends) in found.items()}
 
     def drive(self) -> "WingDrive":
         """Return the wing drive of these dimensions, with the rule's link length from pin to pin."""

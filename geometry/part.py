@@ -48,6 +48,21 @@ class Section:
         return 6.0 * (1.0 + nu) * (1.0 + m2) ** 2 / ((7.0 + 6.0 * nu) * (1.0 + m2) ** 2 + (20.0 + 12.0 * nu) * m2)
 
 
+def rectangle(width: float, thickness: float) -> Section:
+    """Return a rectangle, its width in the linkage's plane; J after Roark, 8th ed., table 10.7, case 4."""
+    a, b = max(width, thickness) / 2.0, min(width, thickness) / 2.0
+    ratio = b / a
+    return Section(
+        area=width * thickness,
+        i_y=width * thickness**3 / 12.0,
+        i_z=thickness * width**3 / 12.0,
+        torsion=a * b**3 * (16.0 / 3.0 - 3.36 * ratio * (1.0 - ratio**4 / 12.0)),
+        half_y=width / 2.0,
+        half_z=thickness / 2.0,
+        round=False,
+    )
+
+
 class Tube(CaseModel):
     """A round tube (hollow, or solid with inner diameter 0) with a cylindrical eye at every pin.
 
@@ -135,21 +150,42 @@ class Bar(CaseModel):
 
     @property
     def section(self) -> Section:
-        """Cross-section of the bar; torsion constant after Roark, 8th ed., table 10.7, case 4."""
-        a, b = max(self.width, self.thickness) / 2.0, min(self.width, self.thickness) / 2.0
-        ratio = b / a
-        return Section(
-            area=self.width * self.thickness,
-            i_y=self.width * self.thickness**3 / 12.0,
-            i_z=self.thickness * self.width**3 / 12.0,
-            torsion=a * b**3 * (16.0 / 3.0 - 3.36 * ratio * (1.0 - ratio**4 / 12.0)),
-            half_y=self.width / 2.0,
-            half_z=self.thickness / 2.0,
-            round=False,
-        )
+        """Cross-section of the bar."""
+        return rectangle(self.width, self.thickness)
 
 
-Part = Annotated[Tube | Bar, Field(discriminator="shape")]
+class Disc(CaseModel):
+    """A round plate, such as a crank disc, about the origin of its link's frame, with a hole for every pin."""
+
+    shape: Literal["disc"]
+    material: Name
+    diameter: Annotated[Length, POSITIVE]
+    thickness: Annotated[Length, POSITIVE]
+    eye_diameter: Annotated[Length, POSITIVE]
+    """Diameter of the rings about the holes on whose faces a torque or a thrust enters, as under a washer or boss."""
+
+    @model_validator(mode="after")
+    def _sizes(self) -> "Disc":
+        if self.eye_diameter >= self.diameter:
+            raise PydanticCustomError(
+                "wide_eye",
+                "eye_diameter {eye} mm must be less than diameter {disc} mm; make the rings about the holes smaller",
+                {"eye": f"{self.eye_diameter:g}", "disc": f"{self.diameter:g}"},
+            )
+        return self
+
+    @property
+    def eye_thickness(self) -> float:
+        """Length of the holes: the disc's thickness [mm]."""
+        return self.thickness
+
+    @property
+    def section(self) -> Section:
+        """Cross-section through the middle of the disc, without its holes."""
+        return rectangle(self.diameter, self.thickness)
+
+
+Part = Annotated[Tube | Bar | Disc, Field(discriminator="shape")]
 
 
 class HoleRow(CaseModel):
@@ -173,14 +209,56 @@ class HoleRow(CaseModel):
         return tuple(self.first + i * step for i in range(self.count))
 
 
+class Slot(CaseModel):
+    """A through slot along the link's axis, with round ends, in which a pin slides."""
+
+    first: Length
+    """x of the centre of one round end in the link's frame: how far the pin's centre may travel."""
+    last: Length
+    """x of the centre of the other round end."""
+    clearance: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """How much wider the slot is than the pin."""
+
+    @model_validator(mode="after")
+    def _order(self) -> "Slot":
+        if not self.first < self.last:
+            raise PydanticCustomError(
+                "no_slot",
+                "a slot from first = {first} mm to last = {last} mm has no length; state first < last",
+                {"first": f"{self.first:g}", "last": f"{self.last:g}"},
+            )
+        return self
+
+
 @dataclass(frozen=True, kw_only=True)
 class Pin:
-    """A pin hole of a link: name of the point, position in the link's frame [mm], hole diameter [mm]."""
+    """A pin hole of a link, or a slot: a hole drawn out along x.
+
+    name       of the point
+    x, y       of the middle in the link's frame [mm]
+    diameter   of the hole, or width of the slot [mm]
+    slot       distance of the centres of a slot's round ends [mm]; 0 for a hole
+    clearance  how much wider than the pin the slot is [mm]
+    foot       (x, y) on the link's axis from which an arm reaches to this pin [mm]; None for a pin on the axis
+    """
 
     name: str
     x: float
     y: float
     diameter: float
+    slot: float = 0.0
+    clearance: float = 0.0
+    foot: tuple[float, float] | None = None
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The x of the centres of a slot's round ends; twice that of a hole's centre [mm]."""
+        return self.x - self.slot / 2.0, self.x + self.slot / 2.0
+
+    @property
+    def pin_diameter(self) -> float:
+        """Diameter of the pin in it [mm]."""
+        return self.diameter - self.clearance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,7 +274,7 @@ class PlainEnd:
 class Body:
     """All that shapes one link: what the mesher and the mass properties need."""
 
-    part: Tube | Bar
+    part: Part
     pins: tuple[Pin, ...]
     ends: tuple[PlainEnd, ...]
     holes: tuple[HoleRow, ...]

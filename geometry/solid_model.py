@@ -9,7 +9,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from geometry.body_rules import extent, patch_span, section_height, section_width
 from geometry.errors import CannotRunError, CaseError
-from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from geometry.part import Bar, Body, Disc, HoleRow, Part, Pin, PlainEnd, Tube
 
 Entity = tuple[int, int]
 
@@ -75,7 +75,18 @@ def scaled(body: Body, unit: float) -> Body:
     lengths = {name: s(value) for name, value in part.model_dump().items() if name not in {"shape", "material"}}
     return Body(
         part=part.model_copy(update=lengths),
-        pins=tuple(Pin(name=p.name, x=s(p.x), y=s(p.y), diameter=s(p.diameter)) for p in body.pins),
+        pins=tuple(
+            replace(
+                p,
+                x=s(p.x),
+                y=s(p.y),
+                diameter=s(p.diameter),
+                slot=s(p.slot),
+                clearance=s(p.clearance),
+                foot=None if p.foot is None else (s(p.foot[0]), s(p.foot[1])),
+            )
+            for p in body.pins
+        ),
         ends=tuple(PlainEnd(name=e.name, x=s(e.x), patch=s(e.patch)) for e in body.ends),
         holes=tuple(
             HoleRow.model_construct(
@@ -94,7 +105,11 @@ def build(gmsh: Any, body: Body) -> Solid:
     unit = mm_per_unit(body)
     small = scaled(body, unit)
     gmsh.model.add("body")
-    solid = _tube(gmsh, small, body) if isinstance(small.part, Tube) else _bar(gmsh, small, body)
+    if isinstance(small.part, Disc):
+        height = small.part.thickness
+        solid = (3, gmsh.model.occ.addCylinder(0, 0, -height / 2.0, 0, 0, height, small.part.diameter / 2.0))
+    else:
+        solid = _tube(gmsh, small, body) if isinstance(small.part, Tube) else _bar(gmsh, small, body)
     solid = _cut(gmsh, solid, _pin_holes(gmsh, small) + _hole_rows(gmsh, small))
     solid = _imprint(gmsh, small, solid)
     gmsh.model.occ.synchronize()
@@ -112,8 +127,23 @@ def _stations(body: Body) -> list[float]:
 
 
 def _eyes(gmsh: Any, body: Body) -> list[Entity]:
-    thickness, radius = body.part.eye_thickness, body.part.eye_diameter / 2.0
-    return [(3, gmsh.model.occ.addCylinder(p.x, p.y, -thickness / 2.0, 0, 0, thickness, radius)) for p in body.pins]
+    part = body.part
+    return [e for p in body.pins for e in _upright(gmsh, p, part.eye_diameter, part.eye_thickness)]
+
+
+def _upright(gmsh: Any, pin: Pin, diameter: float, height: float) -> list[Entity]:
+    """Return a cylinder along the pin about the mid-plane; about a slot, the pieces of one drawn out along x."""
+    occ, low = gmsh.model.occ, -height / 2.0
+    pieces = [(3, occ.addCylinder(x, pin.y, low, 0, 0, height, diameter / 2.0)) for x in sorted(set(pin.span))]
+    if pin.slot > 0.0:
+        pieces.append((3, occ.addBox(pin.span[0], pin.y - diameter / 2.0, low, pin.slot, diameter, height)))
+    return pieces
+
+
+def _from_pin(pin: Pin, x: NDArray[np.float64] | float, y: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    """Return the distance of places from a pin's axis, or from a slot's centre line."""
+    along = np.maximum(np.abs(np.asarray(x) - pin.x) - pin.slot / 2.0, 0.0)
+    return np.asarray(np.hypot(along, np.asarray(y) - pin.y))
 
 
 def _tube(gmsh: Any, body: Body, named: Body) -> Entity:
@@ -136,7 +166,7 @@ def _tube(gmsh: Any, body: Body, named: Body) -> Entity:
 
 def _on_an_eye(body: Body, p: NDArray[np.float64]) -> bool:
     radius = body.part.eye_diameter / 2.0
-    return any(abs(math.hypot(p[0] - pin.x, p[1] - pin.y) - radius) < ON_SURFACE for pin in body.pins)
+    return any(abs(_from_pin(pin, p[0], p[1]) - radius) < ON_SURFACE for pin in body.pins)
 
 
 def hollow_spans(body: Body) -> list[tuple[float, float]]:
@@ -191,40 +221,62 @@ def _bar(gmsh: Any, body: Body, named: Body) -> Entity:
     occ, part = gmsh.model.occ, body.part
     assert isinstance(part, Bar)
     first, last = extent(body)
-    box = (3, occ.addBox(first, -part.width / 2.0, -part.thickness / 2.0, last - first, part.width, part.thickness))
+    # Where each straight piece starts, its direction and its length: the bar itself, and its arms.
+    pieces = [((first, 0.0), 0.0, last - first)]
+    for pin in body.pins:
+        if pin.foot is not None:
+            along = pin.x - pin.foot[0], pin.y - pin.foot[1]
+            pieces.append((pin.foot, math.atan2(along[1], along[0]), math.hypot(*along)))
+    boxes: list[Entity] = []
+    for (x, y), angle, length in pieces:
+        boxes.append(
+            (3, occ.addBox(x, y - part.width / 2.0, -part.thickness / 2.0, length, part.width, part.thickness))
+        )
+        occ.rotate(boxes[-1:], x, y, 0, 0, 0, 1, angle)
     # Eye and bar of one thickness must share one flat face while the corners between them are filleted.
     gmsh.option.setNumber("Geometry.OCCUnionUnify", 1)
-    solid = _fuse(gmsh, [box, *_eyes(gmsh, body)])
+    solid = _fuse(gmsh, [*boxes, *_eyes(gmsh, body)])
     gmsh.option.setNumber("Geometry.OCCUnionUnify", 0)
     # The kernel fails on a fillet that just touches the eye's rim: such a step stays sharp.
     step_filleted = part.eye_thickness > part.thickness + 2.05 * part.fillet_radius
 
-    def at_eye(p: NDArray[np.float64]) -> bool:
-        on_side = abs(abs(p[1]) - part.width / 2.0) < ON_SURFACE and abs(p[2]) < part.thickness / 2.0 + ON_SURFACE
-        on_top = abs(abs(p[2]) - part.thickness / 2.0) < ON_SURFACE and abs(p[1]) < part.width / 2.0 + ON_SURFACE
-        return _on_an_eye(body, p) and (on_side or (on_top and step_filleted))
+    def on_piece(p: NDArray[np.float64], start: tuple[float, float], angle: float, length: float) -> tuple[bool, bool]:
+        """Whether a point lies on a side of a straight piece, and on its top or bottom."""
+        x, y = p[0] - start[0], p[1] - start[1]
+        u, v = x * math.cos(angle) + y * math.sin(angle), y * math.cos(angle) - x * math.sin(angle)
+        within = -ON_SURFACE < u < length + ON_SURFACE
+        on_side = abs(abs(v) - part.width / 2.0) < ON_SURFACE and abs(p[2]) < part.thickness / 2.0 + ON_SURFACE
+        on_top = abs(abs(p[2]) - part.thickness / 2.0) < ON_SURFACE and abs(v) < part.width / 2.0 + ON_SURFACE
+        return within and on_side, within and on_top
 
-    return _fillet(gmsh, solid, _curves(gmsh, at_eye), part.fillet_radius, named)
+    def to_fillet(p: NDArray[np.float64]) -> bool:
+        """Whether a point lies where a piece meets an eye, or an arm's side the bar's."""
+        found = [on_piece(p, *piece) for piece in pieces]
+        sides = sum(on_side for on_side, _ in found)
+        at_eye = sides > 0 or (step_filleted and any(on_top for _, on_top in found))
+        return sides > 1 or (at_eye and _on_an_eye(body, p))
+
+    return _fillet(gmsh, solid, _curves(gmsh, to_fillet), part.fillet_radius, named)
 
 
 def _imprint(gmsh: Any, body: Body, solid: Entity) -> Entity:
-    """Split a bar's faces along the borders of the surfaces that carry names.
+    """Split the faces of a bar or disc along the borders of the surfaces that carry names.
 
     These are the discs of the eyes where they lie flush with the bar, and the loaded patches.
     """
     occ, part = gmsh.model.occ, body.part
-    if not isinstance(part, Bar):
+    if isinstance(part, Tube):
         return solid
     discs: list[Entity] = []
+    width = section_width(part)
     if part.eye_thickness - part.thickness < ON_SURFACE:
-        radius = part.eye_diameter / 2.0
         for side in (-0.5, 0.5):
-            discs += [(2, occ.addDisk(p.x, p.y, side * part.thickness, radius, radius)) for p in body.pins]
+            discs += [_flat_eye(gmsh, p, part.eye_diameter, side * part.thickness) for p in body.pins]
     for end in body.ends:
         low, high = patch_span(body, end)
         for side in (-0.5, 0.5):
-            flat = occ.addRectangle(low, -part.width / 2.0, side * part.thickness, high - low, part.width)
-            upright = occ.addRectangle(low, -part.thickness / 2.0, side * part.width, high - low, part.thickness)
+            flat = occ.addRectangle(low, -width / 2.0, side * part.thickness, high - low, width)
+            upright = occ.addRectangle(low, -part.thickness / 2.0, side * width, high - low, part.thickness)
             occ.rotate([(2, upright)], 0, 0, 0, 1, 0, 0, math.pi / 2.0)
             discs += [(2, flat), (2, upright)]
     if not discs:
@@ -236,9 +288,34 @@ def _imprint(gmsh: Any, body: Body, solid: Entity) -> Entity:
     return _only([p for p in pieces if p[0] == 3])
 
 
+def _flat_eye(gmsh: Any, pin: Pin, diameter: float, z: float) -> Entity:
+    """Return the outline of an eye as a face at a height."""
+    occ, radius = gmsh.model.occ, diameter / 2.0
+    if pin.slot == 0.0:
+        return 2, occ.addDisk(pin.x, pin.y, z, radius, radius)
+    low, high = pin.span
+    corners = [
+        occ.addPoint(x, pin.y + side * radius, z)
+        for x, side in ((low, -1.0), (high, -1.0), (high, 0.0), (high, 1.0), (low, 1.0), (low, 0.0))
+    ]
+    # The middles of the arcs lie outwards.
+    middles = [occ.addPoint(x, pin.y, z) for x in (high, low)]
+    occ.translate([(0, corners[2])], radius, 0, 0)
+    occ.translate([(0, corners[5])], -radius, 0, 0)
+    border = [
+        occ.addLine(corners[0], corners[1]),
+        occ.addCircleArc(corners[1], middles[0], corners[2]),
+        occ.addCircleArc(corners[2], middles[0], corners[3]),
+        occ.addLine(corners[3], corners[4]),
+        occ.addCircleArc(corners[4], middles[1], corners[5]),
+        occ.addCircleArc(corners[5], middles[1], corners[0]),
+    ]
+    occ.remove([(0, middle) for middle in middles])
+    return 2, occ.addPlaneSurface([occ.addCurveLoop(border)])
+
+
 def _pin_holes(gmsh: Any, body: Body) -> list[Entity]:
-    height = body.part.eye_thickness
-    return [(3, gmsh.model.occ.addCylinder(p.x, p.y, -height, 0, 0, 2.0 * height, p.diameter / 2.0)) for p in body.pins]
+    return [e for p in body.pins for e in _upright(gmsh, p, p.diameter, 2.0 * body.part.eye_thickness)]
 
 
 def _hole_rows(gmsh: Any, body: Body) -> list[Entity]:
@@ -275,9 +352,10 @@ def _only(solids: list[Entity]) -> Entity:
 
 
 def _fillet(gmsh: Any, solid: Entity, curves: list[int], radius: float, named: Body) -> Entity:
-    if radius == 0.0:
+    if radius == 0.0 or not named.pins:  # what is cut out about a hole has no eye
         return solid
     part = named.part
+    assert not isinstance(part, Disc)
     try:
         solids = gmsh.model.occ.fillet([solid[1]], curves, [radius])
     except Exception as error:
@@ -285,6 +363,7 @@ def _fillet(gmsh: Any, solid: Entity, curves: list[int], radius: float, named: B
             f"fillet_radius {part.fillet_radius:g} mm does not fit where the {part.shape} meets its eyes of "
             f"{part.eye_diameter:g} mm by {part.eye_thickness:g} mm; "
             "make the fillet smaller, the eyes thicker or wider, or the distance between pins longer"
+            + (", or turn an arm further from bar and arms beside it" if any(p.foot for p in named.pins) else "")
         ) from error
     return _only(solids)
 
@@ -320,14 +399,17 @@ def _named_faces(gmsh: Any, body: Body) -> dict[str, list[int]]:
         points = _points_on_face(gmsh, tag)
         centre = np.asarray(gmsh.model.occ.getCenterOfMass(2, tag))
         flat = gmsh.model.getType(2, tag) == "Plane"
-        pin = min(body.pins, key=lambda p: math.hypot(centre[0] - p.x, centre[1] - p.y))
-        off = math.hypot(centre[0] - pin.x, centre[1] - pin.y)
-        for side, height in (("top", part.eye_thickness / 2.0), ("bottom", -part.eye_thickness / 2.0)):
-            if flat and np.abs(points[:, 2] - height).max() < ON_SURFACE and off < part.eye_diameter / 2.0:
-                faces[f"{side}:{pin.name}"].append(tag)
+        for pin in sorted(body.pins, key=lambda p: float(_from_pin(p, centre[0], centre[1])))[:1]:
+            # The middle of a large face with a hole may lie in an eye as well, but not its borders.
+            box = gmsh.model.getBoundingBox(2, tag)
+            corners = (max(_from_pin(pin, x, pin.y) for x in box[0::3]), max(abs(y - pin.y) for y in box[1::3]))
+            off = max(_from_pin(pin, centre[0], centre[1]), *(corner - 1e-3 for corner in corners))
+            for side, height in (("top", part.eye_thickness / 2.0), ("bottom", -part.eye_thickness / 2.0)):
+                if flat and np.abs(points[:, 2] - height).max() < ON_SURFACE and off < part.eye_diameter / 2.0:
+                    faces[f"{side}:{pin.name}"].append(tag)
         for pin in body.pins:
-            distance = np.hypot(points[:, 0] - pin.x, points[:, 1] - pin.y)
-            if not flat and np.abs(distance - pin.diameter / 2.0).max() < ON_SURFACE:
+            distance = _from_pin(pin, points[:, 0], points[:, 1])
+            if (pin.slot > 0.0 or not flat) and np.abs(distance - pin.diameter / 2.0).max() < ON_SURFACE:
                 faces[f"bore:{pin.name}"].append(tag)
         for end in body.ends:
             low, high = patch_span(body, end)
@@ -339,8 +421,9 @@ def _named_faces(gmsh: Any, body: Body) -> dict[str, list[int]]:
     return faces
 
 
-def _on_outside(part: Tube | Bar, points: NDArray[np.float64]) -> bool:
+def _on_outside(part: Part, points: NDArray[np.float64]) -> bool:
     """Whether a face belongs to the outer surface of the tube or to the four sides of the bar."""
+    assert not isinstance(part, Disc)
     if isinstance(part, Tube):
         radius = np.hypot(points[:, 1], points[:, 2])
         return bool(np.abs(radius - part.outer_diameter / 2.0).max() < ON_SURFACE)

@@ -126,7 +126,7 @@ class LoadCase(CaseModel):
 
     title: Text = ""
     own_weight: bool = False
-    """True: every link with a part weighs what its volume and density say. False: links are
+    """True: every link weighs what its part's volume and density say and what it carries. False: links are
     massless, and a stated total weight stands among the forces."""
     gravity: Annotated[Acceleration, NOT_NEGATIVE] = 9810.0
     gravity_direction: Angle = -math.pi / 2
@@ -267,6 +267,8 @@ class Case(CaseModel):
                 )
             if link.part is not None:
                 _check_body(f"links.{name}", self.body(name))
+            elif link.slots or link.arms:
+                raise CaseError(f"links.{name}: it has slots or arms, but no part that they shape; name its part")
         for i, mass in enumerate(self.carried):
             _check_carried(self, f"carried.{i}", mass)
         for name, load_case in self.load_cases.items():
@@ -378,9 +380,11 @@ class Case(CaseModel):
     def body(self, link: str) -> Body:
         """Everything that shapes a link: part, pins, plain ends, holes.
 
-        Raises ``CaseError`` where a pin has no diameter, or a plain end does not lie on the axis.
+        Raises ``CaseError`` where a pin has no diameter, a plain end does not lie on the axis, or a slot or arm does
+        not fit its joints.
         """
         record = self.links[link]
+        _check_slots(self, link)
         pinned: dict[str, str] = {}
         for joint in self.linkage.joints_of(link):
             first = pinned.setdefault(self.linkage.point_of(joint, link), joint)
@@ -398,7 +402,7 @@ class Case(CaseModel):
                         f"joints.{pinned[name]}.pin_diameter: link '{link}' has a part, so this pin needs a diameter; "
                         'state it, for example "1.5 mm"'
                     )
-                pins.append(Pin(name=name, x=x, y=y, diameter=diameter))
+                pins.append(_pin(self, link, name, diameter))
             elif abs(y) > 1e-9 * self.linkage.longest:
                 raise CaseError(
                     f"links.{link}.points.{name}: a load point without pin must lie on the link's axis (y = 0), "
@@ -494,12 +498,17 @@ def _check_loads(case: Case, where: str, load_case: LoadCase) -> None:
                     raise CaseError(
                         f"{entry}: link '{load.link}' has no point '{point}'; its points are {', '.join(points)}"
                     )
+            if kind != "spread":
+                _check_no_slot(case, entry, load.link, load.at)
             if kind == "spread" and np.isclose(points[load.start][0], points[load.end][0]):
                 raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
+            if kind == "moments" and load.moment[2] != 0.0:
+                _check_torque(case, entry, load)
     for i, air in enumerate(load_case.air):
         check_air(air, f"{where}.air.{i}", case.link_points)
-    if load_case.own_weight and not (case.checked_links or case.carried):
-        raise CaseError(f"{where}.own_weight: no moving link has a part, so nothing has a weight; add a part")
+        for patch in air.spread:
+            if patch.at is not None:
+                _check_no_slot(case, f"{where}.air.{i}", patch.link, patch.at)
     if load_case.speed != 0.0 and case.pose.coordinate is None:
         raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
 
@@ -579,8 +588,70 @@ def _check_carried(case: Case, entry: str, mass: Carried) -> None:
     for point in named:
         if point not in points:
             raise CaseError(f"{entry}: link '{mass.link}' has no point '{point}'; its points are {', '.join(points)}")
+    if not isinstance(mass, CarriedSpread):
+        _check_no_slot(case, entry, mass.link, mass.at)
     if isinstance(mass, CarriedSpread) and np.isclose(points[mass.start][0], points[mass.end][0]):
         raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
+
+
+def _check_no_slot(case: Case, entry: str, link: str, point: str) -> None:
+    if point in case.links[link].slots:
+        raise CaseError(
+            f"{entry}: point '{point}' of link '{link}' is a slot, where the pin alone can push; name another point"
+        )
+
+
+def _check_slots(case: Case, link: str) -> None:
+    """Check that a link's slots and arms are where pins are, and that every pin that slides in it has a slot."""
+    record, linkage = case.links[link], case.linkage
+    sliding = {linkage.point_of(name, link): name for name in linkage.joints_of(link)
+               if linkage.joints[name].type == "pin-in-slot" and linkage.joints[name].links[0] == link}  # fmt: skip
+    for point in record.slots:
+        joints = [name for name in linkage.joints_of(link) if linkage.point_of(name, link) == point]
+        if point not in sliding or len(joints) != 1:
+            raise CaseError(
+                f"links.{link}.slots.{point}: a slot belongs to a point with one joint, a pin in slot with "
+                f"'{link}' first, but this point has {', '.join(joints) or 'none'}; name another point"
+            )
+        if case.drive is not None and case.drive.joint in joints:
+            raise CaseError(
+                f"links.{link}.slots.{point}: its joint '{joints[0]}' is driven, but no torque enters a part at a "
+                "slot; drive the linkage at another joint"
+            )
+        if abs(math.sin(linkage.joints[joints[0]].direction)) > 1e-9:
+            raise CaseError(
+                f"links.{link}.slots.{point}: a part's slot runs along its link's axis, but joint '{joints[0]}' slides "
+                f"in another direction, {math.degrees(linkage.joints[joints[0]].direction):g} deg; state 0 deg and "
+                "turn the link's frame"
+            )
+    for point, name in sliding.items():
+        if point not in record.slots:
+            raise CaseError(
+                f"links.{link}.slots: the pin of joint '{name}' slides in this link, whose part needs a slot for it; "
+                f'add slots.{point} = {{ first = "...", last = "..." }}, how far the pin travels along x'
+            )
+    for point, foot in record.arms.items():
+        if point not in record.points or foot not in record.points:
+            raise CaseError(
+                f"links.{link}.arms: an arm from '{foot}' to '{point}' needs two points of the link; "
+                f"its points are {', '.join(record.points)}"
+            )
+        if not {point, foot} <= {linkage.point_of(name, link) for name in linkage.joints_of(link)}:
+            raise CaseError(
+                f"links.{link}.arms: an arm from '{foot}' to '{point}' needs a pin at both; make them joints"
+            )
+
+
+def _pin(case: Case, link: str, name: str, diameter: float) -> Pin:
+    """Return the hole or slot at a point of a link for a pin of that diameter."""
+    record = case.links[link]
+    (x, y), slot = record.points[name], record.slots.get(name)
+    if slot is not None:
+        middle, length = (slot.first + slot.last) / 2.0, slot.last - slot.first
+        width = diameter + slot.clearance
+        return Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.clearance)
+    foot = record.arms.get(name)
+    return Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot])
 
 
 def gravity(load_case: LoadCase) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
