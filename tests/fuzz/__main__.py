@@ -1,7 +1,7 @@
 """Fuzz all that reads a case: ``python -m fuzz [--share 1.0] [--seed 1] [--output out/fuzz]`` (``make fuzz``).
 
 Exit status 1 if any input failed. Every engine runs in a process of its own, so that a crash of the interpreter is
-a finding as well; two run at once.
+a finding as well; two run at once, unless told otherwise.
 """
 
 import argparse
@@ -14,9 +14,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 PLAN = (
-    ("guided", "case_bytes", 60_000),
-    ("mutations", "case_tables", 70_000),
-    ("mutations", "case_bytes", 40_000),
+    ("guided", "case_bytes", 40_000),
+    ("mutations", "case_tables", 60_000),
+    ("mutations", "case_bytes", 30_000),
     ("properties", "case_tables", 10_000),
     ("properties", "override", 20_000),
     ("guided", "override", 90_000),
@@ -51,6 +51,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m fuzz", description=__doc__)
     parser.add_argument("--share", type=float, default=1.0, help="factor on every number of inputs")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=2, help="engines that run at once")
     parser.add_argument("--output", type=Path, default=Path("out/fuzz"))
     options = parser.parse_args()
     plan = [(engine, target, max(1, round(inputs * options.share))) for engine, target, inputs in PLAN]
@@ -70,7 +71,7 @@ def main() -> int:
         )
         return found
 
-    with ThreadPoolExecutor(max_workers=2) as pool:
+    with ThreadPoolExecutor(max_workers=options.processes) as pool:
         records = list(pool.map(one, plan))
     tried, accepted = (sum(int(str(record[key])) for record in records) for key in ("tried", "accepted"))
     faults = [(record, place) for record in records for place in record["faults"]]  # type: ignore[attr-defined]

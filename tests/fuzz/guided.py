@@ -8,6 +8,7 @@ import random
 import shutil
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import atheris
 with atheris.instrument_imports(include=["geometry", "loads", "tomllib"]):
     from fuzz import targets
 
-from fuzz import guard, mutate
+from fuzz import grammar, guard, mutate
 from fuzz.findings import Findings
 
 _WORDS = {
@@ -50,6 +51,15 @@ def _seeded(name: str) -> list[bytes]:
     return [word.encode() for word in _WORDS[name]]
 
 
+def _kept(rng: random.Random, data: bytes) -> bytes:
+    """Return a case changed within its grammar; one that is none no longer gives way to a whole one."""
+    try:
+        tables = tomllib.loads(data.decode())
+        return grammar.case(rng, tables) if tables else data
+    except (ValueError, RecursionError):
+        return rng.choice(list(targets.seeds().values())).encode()
+
+
 def main(name: str, inputs: str, start: str, folder: str) -> None:
     """Try, and write what was found."""
     targets.warm()
@@ -78,9 +88,15 @@ def main(name: str, inputs: str, start: str, folder: str) -> None:
 
     def mutated(data: bytes, max_size: int, number: int) -> bytes:
         rng = random.Random(number)
-        if rng.random() < 0.3:
+        kind = rng.random()
+        if kind < 0.2:
             return bytes(atheris.Mutate(data, max_size))
-        return mutate.text(rng, data)[:max_size]
+        if name == "case_bytes":
+            return (mutate.text(rng, data) if kind < 0.4 else _kept(rng, data))[:max_size]
+        if name == "override" and kind < 0.6:
+            return grammar.override(rng, targets.starter_tables()).encode("utf-8", "surrogateescape")[:max_size]
+        text = data.decode("utf-8", "surrogateescape")
+        return grammar.text(rng, text).encode("utf-8", "surrogateescape")[:max_size]
 
     for i, seed in enumerate(_seeded(name)):
         (Path(corpus) / str(i)).write_bytes(seed)
@@ -96,10 +112,7 @@ def main(name: str, inputs: str, start: str, folder: str) -> None:
         f"-artifact_prefix={folder}/",
     ]
     arguments = [sys.argv[0], *options, corpus]
-    if name == "case_bytes":
-        atheris.Setup(arguments, one, custom_mutator=mutated)
-    else:
-        atheris.Setup(arguments, one)
+    atheris.Setup(arguments, one, custom_mutator=mutated)
     atheris.Fuzz()
 
 

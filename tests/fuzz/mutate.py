@@ -106,7 +106,7 @@ _UNITS = (
     "m/s^2 W degC kelvin V A mA percent parsec yottameter dB octet mm*deg mm^-4 N*m*s"
 )
 UNITS = tuple(_UNITS.split(" "))
-_QUANTITY = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+QUANTITY = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 _TOKENS = (
     "[",
     "]",
@@ -189,20 +189,22 @@ def tables(rng: random.Random, seed: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _places(node: Any, at: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
+def places(node: Any) -> list[tuple[Any, Any]]:
+    """Return (table or array, key) of every entry at any depth."""
     entries = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    found: list[tuple[Any, Any]] = []
     for key, value in entries:
-        at.append((node, key))
-        _places(value, at)
-    return at
+        found.append((node, key))
+        found += places(value)
+    return found
 
 
 def _change(rng: random.Random, root: dict[str, Any]) -> None:
-    places = _places(root, [])
-    if not places:
+    there = places(root)
+    if not there:
         root["schema_version"] = 1
         return
-    holder, key = rng.choice(places)
+    holder, key = rng.choice(there)
     value = holder[key]
     kind = rng.randrange(10)
     if kind == 0:
@@ -210,17 +212,17 @@ def _change(rng: random.Random, root: dict[str, Any]) -> None:
     elif kind == 1:
         holder[key] = any_value(rng)
     elif kind == 2 and isinstance(holder, dict):
-        holder[rng.choice((*HOSTILE_TEXT, *(k for h, k in places if isinstance(k, str))))] = holder.pop(key)
+        holder[rng.choice((*HOSTILE_TEXT, *(k for h, k in there if isinstance(k, str))))] = holder.pop(key)
     elif kind == 3:
-        other, place = rng.choice(places)
+        other, place = rng.choice(there)
         holder[key], other[place] = deepcopy(other[place]), deepcopy(value)
     elif kind == 4:
-        holder[key] = deepcopy(_value(rng.choice(places)))
+        holder[key] = deepcopy(_value(rng.choice(there)))
     elif kind == 5 and isinstance(holder, list):
-        holder.insert(rng.randrange(len(holder) + 1), deepcopy(_value(rng.choice(places))))
+        holder.insert(rng.randrange(len(holder) + 1), deepcopy(_value(rng.choice(there))))
     elif kind == 6 and isinstance(value, dict):
-        value[rng.choice(HOSTILE_TEXT)] = deepcopy(_value(rng.choice(places)))
-    elif isinstance(value, str) and (match := _QUANTITY.fullmatch(value)):
+        value[rng.choice(HOSTILE_TEXT)] = deepcopy(_value(rng.choice(there)))
+    elif isinstance(value, str) and (match := QUANTITY.fullmatch(value)):
         number, unit = match.groups()
         if rng.random() < 0.8:
             scale = rng.choice((-1.0, 0.0, 0.5, 2.0, 1.0 + 1e-12, 10.0 ** rng.uniform(-12, 12), rng.gauss(1.0, 0.3)))
@@ -228,7 +230,7 @@ def _change(rng: random.Random, root: dict[str, Any]) -> None:
         else:
             holder[key] = f"{number} {rng.choice(UNITS)}"
     elif isinstance(value, str):
-        holder[key] = rng.choice((*HOSTILE_TEXT, *(v for p in places if isinstance(v := _value(p), str))))
+        holder[key] = rng.choice((*HOSTILE_TEXT, *(v for p in there if isinstance(v := _value(p), str))))
     elif isinstance(value, bool):
         holder[key] = not value
     elif isinstance(value, int | float):

@@ -1,4 +1,6 @@
-"""Inputs by structure-aware mutation of every case that ships, without guidance: fast, and repeatable by its seed.
+"""Inputs by mutation of every case that ships, without guidance: fast, and repeatable by its seed.
+
+Every second one keeps to the grammar (``fuzz.grammar``), the others do not (``fuzz.mutate``).
 
 python -m fuzz.mutations TARGET INPUTS SEED FOLDER
 """
@@ -7,8 +9,9 @@ import random
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
-from fuzz import guard, mutate, targets
+from fuzz import grammar, guard, mutate, targets
 from fuzz.findings import Findings
 
 
@@ -19,7 +22,11 @@ def try_many(name: str, inputs: int, start: int, findings: Findings) -> None:
     tables = [tomllib.loads(text.decode()) for text in texts]
     while findings.tried < inputs and not findings.full:
         findings.tried += 1
-        data = mutate.tables(rng, rng.choice(tables)) if name == "case_tables" else mutate.text(rng, rng.choice(texts))
+        i, keeping = rng.randrange(len(tables)), rng.random() < 0.5
+        if name == "case_tables":
+            data: Any = (grammar if keeping else mutate).tables(rng, tables[i])
+        else:
+            data = grammar.case(rng, tables[i]) if keeping else mutate.text(rng, texts[i])
         try:
             findings.accepted += targets.TARGETS[name](data)
         except KeyboardInterrupt:

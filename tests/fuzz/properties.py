@@ -3,11 +3,13 @@
 python -m fuzz.properties TARGET INPUTS SEED FOLDER
 """
 
+import random
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
-from fuzz import guard, mutate, targets
+from fuzz import grammar, guard, mutate, targets
 from fuzz.findings import Findings
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
@@ -91,6 +93,9 @@ _literals = st.one_of(
     st.sampled_from(("[]", "{}", "[[[[", "{a=1}", "1\nb=2", "[1,2]", '"""', "[" * 2000)),
 )
 
+_CASES = tuple(tomllib.loads(text) for text in targets.seeds().values())
+_random = st.integers(0, 2**32).map(random.Random)
+
 STRATEGIES: dict[str, st.SearchStrategy[Any]] = {
     "expression": _expressions,
     "quantity": _quantities,
@@ -100,8 +105,10 @@ STRATEGIES: dict[str, st.SearchStrategy[Any]] = {
             "{}={}".format, st.one_of(st.sampled_from(_PATHS), st.lists(_keys, max_size=4).map(".".join)), _literals
         ),
         st.text(max_size=60),
+        st.builds(grammar.override, _random, st.builds(targets.starter_tables)),
     ),
     "case_tables": st.one_of(
+        st.builds(grammar.tables, _random, st.sampled_from(_CASES)),
         st.dictionaries(_keys, _values, max_size=6).map(lambda tables: {"schema_version": 1} | tables),
         st.builds(lambda key, value: targets.starter_tables() | {key: value}, st.sampled_from(_KEYS[:13]), _values),
     ),
