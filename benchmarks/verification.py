@@ -4,6 +4,10 @@ import importlib
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from solid_problems import Benchmark, Study
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "verification.md"
@@ -30,23 +34,48 @@ def known_rows() -> Iterator[str]:
                 )
 
 
-def band_rows() -> Iterator[str]:
-    yield (
-        "| problem | quantity | densities | true error of the finest | band about the target | kind | observed order "
-        "| estimated over true error in energy |\n|---|---|---|--:|---|---|--:|---|\n"
-    )
+def studies() -> "list[tuple[Benchmark, Study]]":
+    found = []
     for module in map(importlib.import_module, KNOWN):
         for benchmark in module.BENCHMARKS:
             print(f"{benchmark}: bands", file=sys.stderr, flush=True)
-            for study in benchmark.studies():
-                ends = sorted((study.band.low / study.target - 1.0, study.band.high / study.target - 1.0))
-                order = "-" if study.band.order is None else f"{study.band.order:.2f}"
-                ratios = ", ".join(f"{ratio:.2f}" for ratio in study.estimates) or "-"
-                yield (
-                    f"| {benchmark} | {study.quantity} | {', '.join(map(str, benchmark.series))} "
-                    f"| {percent(study.error)} | {percent(ends[0])} to {percent(ends[1])} "
-                    f"| {study.band.kind} | {order} | {ratios} |\n"
-                )
+            found += [(benchmark, study) for study in benchmark.studies()]
+    return found
+
+
+def band_rows(found: "list[tuple[Benchmark, Study]]") -> Iterator[str]:
+    yield (
+        "| problem | quantity | true error of the finest | band about the target "
+        "| estimated over true error in energy, each mesh alone | with the energies |\n|---|---|--:|---|---|---|\n"
+    )
+    for benchmark, study in found:
+        ends = sorted((study.band.low / study.target - 1.0, study.band.high / study.target - 1.0))
+        alone, ratios = (
+            ", ".join(f"{ratio:.2f}" for ratio in ratios) or "-" for ratios in (study.alone, study.estimates)
+        )
+        yield (
+            f"| {benchmark} | {study.quantity} | {percent(study.error)} "
+            f"| {percent(ends[0])} to {percent(ends[1])} | {alone} | {ratios} |\n"
+        )
+
+
+def convergence_rows(found: "list[tuple[Benchmark, Study]]") -> Iterator[str]:
+    yield (
+        "| problem | quantity | relative sizes | unknowns | values | kind | observed order | factor "
+        "| grid convergence index |\n|---|---|---|--:|--:|---|--:|--:|--:|\n"
+    )
+    for benchmark, study in found:
+        band = study.band
+        sizes, unknowns, values = (
+            ", ".join(f"{size / band.sizes[-1]:.3g}" for size in band.sizes),
+            ", ".join(f"{count:,}" for count in study.unknowns),
+            ", ".join(f"{value:.6g}" for value in band.values),
+        )
+        order = "-" if band.order is None else f"{band.order:.2f}"
+        yield (
+            f"| {benchmark} | {study.quantity} | {sizes} | {unknowns} | {values} | {band.kind} | {order} "
+            f"| {band.factor:g} | {100.0 * band.index:.2g} % |\n"
+        )
 
 
 def handbook_rows() -> Iterator[str]:
@@ -63,10 +92,12 @@ def percent(share: float) -> str:
 
 def main() -> None:
     sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "validation")]
+    found = studies()
     measured = "\n".join(
         (
             "### Known answers\n\n" + "".join(known_rows()),
-            "### Error bands and estimates\n\n" + "".join(band_rows()),
+            "### Convergence\n\n" + "".join(convergence_rows(found)),
+            "### Error bands and estimates\n\n" + "".join(band_rows(found)),
             "### Handbook factors\n\n" + "".join(handbook_rows()),
         )
     )

@@ -243,6 +243,7 @@ class Study:
     """A quantity on three meshes: what the program says of its error, and the truth.
 
     trust       share of the target by which it may itself be off
+    unknowns    of the three meshes
     band        of the grid convergence, on the finest of the three
     alone       estimated over true error in the energy norm, mesh by mesh, each by itself
     estimates   the same with the factor that the energies of two meshes give
@@ -251,6 +252,7 @@ class Study:
     quantity: str
     target: float
     trust: float
+    unknowns: tuple[int, ...]
     band: GridConvergence
     alone: tuple[float, ...]
     estimates: tuple[float, ...]
@@ -344,6 +346,7 @@ class Benchmark:
                         quantity=quantity,
                         target=self.targets[quantity][0],
                         trust=self.trust.get(quantity, 0.0),
+                        unknowns=tuple(mesh[case][0].unknowns for mesh in meshes),
                         band=band,
                         alone=alone,
                         estimates=tuple(a * f for a, f in zip(alone, factors, strict=False)),
