@@ -30,7 +30,7 @@ LARGEST_LIFT_COEFFICIENT = 2.0
 """Above this a coefficient is refused; glide measurements of birds give at most 0.8 to 1.6 (Withers, J. Exp. Biol. 90,
 1981, 143-162; Tucker and Heine, J. Exp. Biol. 149, 1990, 469-489)."""
 LARGEST_DRAG_COEFFICIENT = 2.3
-"""Above this a coefficient is refused: a half tube open to the stream has as much, the most of the standard shapes; long
+"""Above this a coefficient is refused: a half tube open to the stream has as much, the most of the usual shapes; long
 plates across it have 1.98, square ones 1.17 (Matthews, Aeronautical Engineer's Data Book, fig. 5.13b)."""
 LARGEST_LIFT_TO_DRAG = 20.0
 """Above this ratio the run warns; bird wings reach 3 to 17 (Withers 1981)."""

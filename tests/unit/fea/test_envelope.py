@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
+from result_paths import compare
 
 from fea.check import solve_case_statics
 from fea.cut_free import link_loads
@@ -288,6 +289,7 @@ def test_curves_and_record_tell_the_same(result, tmp_path):
     rows = list(csv.DictReader((tmp_path / "curves.csv").read_text(encoding="utf-8").splitlines()))
     assert len(rows) == 50
     told = json.loads(json.dumps(record(result), allow_nan=False))
+    compare("envelope", told)
     for name, load_case in told["links"]["rocker"]["load_cases"].items():
         stress = [float(row["rocker von Mises stress [MPa]"]) for row in rows if row["load case"] == name]
         assert max(stress) == pytest.approx(load_case["stress"]["value"])

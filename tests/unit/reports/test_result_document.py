@@ -1,0 +1,37 @@
+"""``docs/result.md`` and what the commands write name the same keys, of the same types."""
+
+import pytest
+from result_paths import compare, documented
+
+from geometry.errors import CaseError
+from loads.case_file import read_case
+from loads.case_motion import solve_case_motion
+from reports.motion import record as motion_record
+from reports.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
+from reports.synthesis import record as synthesis_record
+
+
+def moved(name, *overrides):
+    return motion_record(solve_case_motion(read_case(name, overrides)), name)
+
+
+def test_a_motion():
+    wing = moved("flapping-wing-chosen", "motion.poses=19", "load_cases.held.own_weight=false")
+    compare("motion", wing, moved("owl-wing-static", "motion.poses=19"))
+
+
+def test_a_synthesis():
+    compare("synth", synthesis_record(read_synthesis(PUBLISHED_POINTS, PUBLISHED_GROUND)))
+
+
+def test_the_comparison_can_fail():
+    record = synthesis_record(read_synthesis(PUBLISHED_POINTS, PUBLISHED_GROUND))
+    with pytest.raises(AssertionError, match="more is not described"):
+        compare("synth", record | {"more": 1})
+    with pytest.raises(AssertionError, match="described, but in none"):
+        compare("synth", {key: value for key, value in record.items() if key != "condition"})
+    with pytest.raises(AssertionError, match=r"condition is 'x', described as number"):
+        compare("synth", record | {"condition": "x"})
+    assert documented("envelope")["checks.value"] == {"band"}
+    with pytest.raises(CaseError):
+        read_synthesis(PUBLISHED_POINTS[:2], PUBLISHED_GROUND)
