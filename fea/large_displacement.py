@@ -2,7 +2,9 @@
 
 Where the linear frame moves by more than 5 % of the linkage's span, equilibrium on the undeformed pose is no longer
 a good answer: joint forces then come from the co-rotational frame (``fea.corotational``), and each link is loaded by
-what acts on it on the deformed shape, along the chord through its first and last station.
+what acts on it on the deformed shape, along the chord through its first and last station. So it is where the frame's
+buckling factor is below 3: displacements grow to 1/(1 - 1/n) of the linear ones (Timoshenko & Gere, Theory of Elastic
+Stability, 2nd ed., section 1.11), by half and more.
 """
 
 import itertools
@@ -13,7 +15,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.corotational import CorotationalSolution, NoEquilibriumError, solve_large_displacement
+from fea.corotational import (
+    CorotationalSolution,
+    NoEquilibriumError,
+    buckling_factor,
+    solve_large_displacement,
+)
 from fea.cut_free import link_loads
 from fea.frame import FrameSolution, solve_frame
 from fea.joint_forces import JointForces
@@ -31,10 +38,16 @@ Real = NDArray[np.float64]
 
 LARGE = 0.05
 """Share of the span above which a displacement is large."""
+LEAST_FACTOR = 3.0
+"""Buckling factor below which equilibrium is sought on the deformed shape, however little the frame moves."""
 SUBDIVISIONS = 2
+COARSE, FINE, NEAR = 2, 8, 30.0
+"""Elements per beam for the buckling factor, and the factor by the coarse ones below which the fine ones are used."""
 LEAST_STEP = 1.0 / 512.0
 MOST_ITERATIONS = 15
 _ALONG = (0.25, 0.5, 0.75)
+NOTHING = 1e-7
+"""Share of the whole load below which what acts on a link is taken for the iteration's rest."""
 LARGEST_SHIFT = 0.05
 """Moment or force that bending of a link under spread loads may leave unbalanced, as a share of the load."""
 
@@ -51,6 +64,8 @@ class LargeDisplacement:
     span        largest distance between two points of the pose [mm]
     linear      largest displacement by the linear frame [mm], at ``where``; 0 where there is no frame
     held        share of the load up to which equilibrium was found; 1 for all of it
+    buckling    lowest factor on all loads at which the linear frame becomes unstable; infinite where it never does,
+                None where there is no frame
     points      (link, point) -> displacement (3,) on the deformed shape [mm]; the linear one where small
     reactions   on the deformed shape, in global axes; None unless deformed
     links       loads of each link on the deformed shape, in its chord's frame; empty unless deformed
@@ -62,6 +77,7 @@ class LargeDisplacement:
     linear: float = 0.0
     where: str = ""
     held: float = 1.0
+    buckling: float | None = None
     points: Mapping[tuple[str, str], Real]
     reactions: Reactions | None = None
     links: Mapping[str, LinkLoads]
@@ -71,6 +87,11 @@ class LargeDisplacement:
     def share(self) -> float:
         """Largest linear displacement over the span."""
         return self.linear / self.span
+
+    @property
+    def followed(self) -> bool:
+        """True where equilibrium was sought on the deformed shape, so that its answer rules."""
+        return self.state in ("deformed", "unstable", "no equilibrium")
 
 
 def span(pose: Pose) -> float:
@@ -86,28 +107,33 @@ def examine(
     loads: Sequence[Load],
     masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
-    """Solve the linear frame of a load case and, where it moves far, its equilibrium on the deformed shape."""
+    """Solve the linear frame of a load case and, where it moves far or is near to buckling, its deformed shape."""
     pose = forces.reactions.pose
     size = span(pose)
 
-    def left(state: State, sentence: str) -> LargeDisplacement:
-        return LargeDisplacement(state=state, span=size, points={}, links={}, sentence=sentence)
+    def left(state: State, why: str, factor: float | None = None) -> LargeDisplacement:
+        sentence = f"large displacement was not looked into{why}"
+        return LargeDisplacement(state=state, span=size, buckling=factor, points={}, links={}, sentence=sentence)
 
-    if case.large_displacement == "off":
-        return left("off", "large displacement was not looked into, as the case says (large_displacement = off)")
+    off = case.large_displacement == "off"
+    as_said = ", as the case says (large_displacement = off)"
     frame, solution = forces.frame, forces.solution
     try:
         if frame is None or solution is None:
             frame = build_frame(case, pose, loads, held=case.pinned_drive)
             solution = solve_frame(frame.model)
+        factor = linkage_factor(frame)
     except (CaseError, CannotRunError) as error:
-        return left("unknown", f"large displacement was not looked into: {error}")
+        return left("off", as_said) if off else left("unknown", f": {error}")
+    if off:
+        return left("off", as_said, factor)
     linear, where = _largest(frame, solution)
     small = LargeDisplacement(
         state="small",
         span=size,
         linear=linear,
         where=where,
+        buckling=factor,
         points=frame.at_points(solution.displacements),
         links={},
         sentence=(
@@ -115,9 +141,15 @@ def examine(
             f"{size:.4g} mm: the undeformed pose is good enough (limit {LARGE:.0%})"
         ),
     )
-    if linear <= LARGE * size:
+    if linear <= LARGE * size and factor >= LEAST_FACTOR:
         return small
     return _deformed(case, title, frame, small, loads, masses)
+
+
+def linkage_factor(frame: LinkageFrame) -> float:
+    """Return the factor on all loads at which the linear frame becomes unstable; infinite where it never does."""
+    factor = buckling_factor(frame.model, COARSE)
+    return buckling_factor(frame.model, FINE) if factor < NEAR else factor
 
 
 def _deformed(
@@ -128,10 +160,10 @@ def _deformed(
     loads: Sequence[Load],
     masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
-    lead = (
-        f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {small.share:.2%} of the span of "
-        f"{small.span:.4g} mm, above {LARGE:.0%}: the linear answer is not valid; in large displacement "
-    )
+    far = f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {small.share:.2%} of the span of "
+    near = f"the linear frame buckles at {small.buckling:.3g} times the load, below {LEAST_FACTOR:g}"
+    lead = f"{far}{small.span:.4g} mm, above {LARGE:.0%}" if small.share > LARGE else near
+    lead = f"{lead}: the linear answer is not valid; in large displacement "
     try:
         found = solve_large_displacement(
             frame.model, SUBDIVISIONS, least_step=LEAST_STEP, most_iterations=MOST_ITERATIONS
@@ -158,6 +190,7 @@ def _deformed(
             link: balanced(
                 _on_deformed_shape(frame, found, reactions, link, title, case.body(link), loads),
                 masses.get(link),
+                frame.model.load_scale,
             )
             for link in case.checked_links
         },
@@ -235,11 +268,12 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
     )
 
 
-def balanced(loads: LinkLoads, mass: PartMass | None) -> LinkLoads:
+def balanced(loads: LinkLoads, mass: PartMass | None, whole: float = 0.0) -> LinkLoads:
     """Return the loads of a link with what they leave unbalanced taken by the pin with the largest force.
 
-    Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Raises
-    ``CannotRunError`` where that is more than ``LARGEST_SHIFT`` of the load.
+    Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Where all on the link
+    is but ``NOTHING`` of the ``whole`` load [N], it is what the iteration left, and nothing acts. Raises
+    ``CannotRunError`` where more than ``LARGEST_SHIFT`` of the link's load is unbalanced.
     """
     total = np.zeros(6)
     acting = [(p.centre, p.wrench) for p in loads.pins] + [(e.point, e.wrench) for e in loads.ends]
@@ -264,6 +298,12 @@ def balanced(loads: LinkLoads, mass: PartMass | None) -> LinkLoads:
             force[5] = -mass.inertia * body.angular_acceleration
             total += shifted(force, body.about)
             size += float(np.linalg.norm(force[:3]))
+    if size <= NOTHING * whole:
+        return replace(
+            loads,
+            pins=tuple(replace(pin, wrench=np.zeros(6)) for pin in loads.pins),
+            ends=tuple(replace(end, wrench=np.zeros(6)) for end in loads.ends),
+        )
     left = max(float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:])) / reach if reach else 0.0)
     if left > LARGEST_SHIFT * size:
         raise CannotRunError(

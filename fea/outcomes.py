@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from fea.band import Band
+from fea.buckling_check import linkage_outcome
 from fea.large_displacement import LargeDisplacement
 from fea.pins import PinStress
 from fea.result import LinkResult
@@ -22,9 +23,9 @@ def outcomes(
     pins: Mapping[str, PinStress],
     moved: LargeDisplacement,
 ) -> tuple[CheckOutcome, ...]:
-    """Return the outcome of every check of a load case called ``title``, but for motors and bearing.
+    """Return the outcome of every check of a load case called ``title``, but for motors, bearing and links' buckling.
 
-    These are in ``fea.motor_check`` and ``fea.bearing_check``.
+    These are in ``fea.motor_check``, ``fea.bearing_check`` and ``fea.buckling_check``.
 
     Raises ``CaseError`` where neither check nor material states a limit.
     """
@@ -35,6 +36,7 @@ def outcomes(
         elif not isinstance(check, MotorCheck | BearingCheck):
             found += [_link(case, name, check, title, links[link]) for link in check.links or case.checked_links]
     found += _large_displacement(title, moved)
+    found += linkage_outcome(case, title, moved)
     return tuple(found)
 
 
@@ -95,7 +97,7 @@ def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str,
 
 
 def _large_displacement(title: str, moved: LargeDisplacement) -> Iterator[CheckOutcome]:
-    if moved.state not in ("deformed", "unstable", "no equilibrium"):
+    if not moved.followed:
         return
     yield CheckOutcome(
         name=LARGE_DISPLACEMENT,

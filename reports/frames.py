@@ -76,6 +76,7 @@ def frame_record(case: LoadCaseResult) -> dict[str, Any]:
             "linear": moved.linear,
             "where": moved.where,
             "held": moved.held,
+            "buckling": None if moved.buckling is None or math.isinf(moved.buckling) else moved.buckling,
             "sentence": moved.sentence,
             "points": [
                 {"link": link, "point": point, "displacement": [float(x) for x in d]}

@@ -1,5 +1,7 @@
 """When a displacement is large, and what acts on each link on the deformed shape."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -120,7 +122,8 @@ def test_a_bent_strut_has_the_moment_of_its_axial_force():
     """P = 10 N compression, middle 2 mm above and 1 mm beside the chord: M = P e in the middle, about both axes."""
     straight = bar(("a", 0, [10, 0, 0, 0, 0, 0]), ("b", 40, [0] * 6), ("c", 100, [-10, 0, 0, 0, 0, 0]))
     moved = {"a": np.zeros(3), "b": np.array([0.0, 2.0, 1.0]), "c": np.zeros(3)}
-    on_axis = beam_loads(bent(straight, moved), type("Body", (), {"pins": (), "ends": ()})(), 0.0, None)
+    body = SimpleNamespace(pins=[SimpleNamespace(name=name, foot=None) for name in moved], ends=())
+    on_axis = beam_loads(bent(straight, moved), body, 0.0, None)
     found = internal_forces(on_axis).at(40.0)
     # Cut at the middle: the force at a, 2 mm below the cut, has the moment 2 x 10 about z on the part before it.
     assert found[5] == pytest.approx(-20.0)

@@ -1,0 +1,160 @@
+"""Buckling of a linkage as a whole: closed form, the deformed shape as second way, and the outcome of the check."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from fea.check import check_case
+from fea.corotational import NoEquilibriumError, buckling_factor, solve_large_displacement
+from fea.linkage_frame import build_frame
+from fea.verdict import LINKAGE, Verdict
+from loads.applied import PointLoad
+from loads.case import Case
+from loads.case_file import read_case, validate
+
+HEIGHT, WIDTH = 120.0, 90.0
+
+
+def parallelogram(load: float, **more: object) -> Case:
+    """Two cranks stand on the ground under a coupler; the drive holds the left one, the right one leans on it."""
+    data = {
+        "schema_version": 1,
+        "title": "parallelogram",
+        "links": {
+            "ground": {"ground": True, "points": {"A": ["0 mm", "0 mm"], "D": [f"{WIDTH} mm", "0 mm"]}},
+            "left": {"part": "rod", "points": {"A": ["0 mm", "0 mm"], "B": [f"{HEIGHT} mm", "0 mm"]}},
+            "top": {"part": "rod", "points": {"B": ["0 mm", "0 mm"], "C": [f"{WIDTH} mm", "0 mm"]}},
+            "right": {"part": "rod", "points": {"D": ["0 mm", "0 mm"], "C": [f"{HEIGHT} mm", "0 mm"]}},
+        },
+        "joints": {
+            name: {"links": links, "pin_diameter": "1 mm"}
+            for name, links in {
+                "A": ["ground", "left"],
+                "B": ["left", "top"],
+                "C": ["top", "right"],
+                "D": ["ground", "right"],
+            }.items()
+        },
+        "pose": {"coordinate": "left", "angle": "90 deg", "near": {"top": "0 deg", "right": "90 deg"}},
+        "drive": {"link": "left", "joint": "A"},
+        "parts": {
+            "rod": {
+                "shape": "tube",
+                "material": "pvc-paredes-2018",
+                "outer_diameter": "2 mm",
+                "inner_diameter": "1 mm",
+                "eye_diameter": "3 mm",
+                "eye_thickness": "3 mm",
+                "fillet_radius": "0.2 mm",
+            }
+        },
+        "load_cases": {
+            "weight": {
+                "forces": [
+                    {"link": link, "at": point, "force": ["0 N", f"{-load!r} N"]}
+                    for link, point in (("left", "B"), ("right", "C"))
+                ]
+            }
+        },
+    }
+    return validate(data | more)
+
+
+def critical() -> float:
+    """A built-in column beside a leaning one under the same load: tan(k h) = 2 k h (see test_frame_sway)."""
+    case = parallelogram(1.0)
+    kh = brentq(lambda x: np.sin(x) - 2.0 * x * np.cos(x), 0.5, 1.5)
+    stiffness = case.material_of("left").youngs_modulus * case.part_of("left").section.i_z
+    return stiffness * (kh / HEIGHT) ** 2
+
+
+def outcome(case: Case):
+    result = check_case(case, fidelity="beam").load_cases["weight"]
+    (found,) = [check for check in result.checks if (check.name, check.link) == ("buckling", LINKAGE)]
+    return result.large_displacement, found
+
+
+def test_the_factor_of_a_parallelogram_is_that_of_the_closed_form() -> None:
+    """Far from it the undeformed pose is good enough; no link alone is anywhere near to its own Euler load."""
+    moved, found = outcome(parallelogram(0.2 * critical()))
+    assert moved.state == "small"
+    # Shear of the column takes a little more than lengthening gives.
+    assert found.value.value == pytest.approx(5.0, rel=3e-3)
+    assert found.value.low == pytest.approx(found.value.value / 3.0)
+    assert (found.verdict, found.limit, found.at_least) == (Verdict.PASS, 1.0, True)
+    assert "displacements are up to 1.25 times" in found.reason
+    links = check_case(parallelogram(0.2 * critical()), fidelity="beam").load_cases["weight"].checks
+    alone = {c.link: c.value.value for c in links if c.name == "buckling" and c.link != LINKAGE}
+    assert min(alone.values()) > found.value.value
+
+
+@pytest.mark.parametrize(
+    ("share", "state", "verdict"),
+    [(0.5, "deformed", Verdict.PASS), (0.97, "deformed", Verdict.PASS), (1.03, "unstable", Verdict.FAIL)],
+)
+def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, state, verdict) -> None:
+    moved, found = outcome(parallelogram(share * critical()))
+    assert moved.share < 1e-3
+    assert (moved.state, found.verdict) == (state, verdict)
+    assert moved.buckling == pytest.approx(1.0 / share, rel=3e-3)
+    assert "the linear frame buckles at" in moved.sentence
+    assert "large displacement was followed and rules" in found.reason
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(0.3, Verdict.PASS), (0.5, Verdict.UNDECIDED), (1.03, Verdict.FAIL)])
+def test_where_the_case_leaves_large_displacement_out_the_factor_decides(share, verdict) -> None:
+    moved, found = outcome(parallelogram(share * critical(), large_displacement="off"))
+    assert moved.state == "off"
+    assert found.verdict is verdict
+    assert found.value.value == pytest.approx(1.0 / share, rel=3e-3)
+
+
+def test_pulled_it_never_buckles() -> None:
+    case = parallelogram(-0.2 * critical())
+    result = check_case(case, fidelity="beam").load_cases["weight"]
+    assert result.large_displacement.buckling == np.inf
+    assert not [check for check in result.checks if (check.name, check.link) == ("buckling", LINKAGE)]
+
+
+COMPRESSION = {"AB": 2.0, "BE": 1.0, "GF": 1.5, "FB": 1.2, "BC": 0.7, "CD": 0.9, "DH": 0.4, "ED": 1.1}
+
+
+def axial_wing() -> tuple[Case, tuple[PointLoad, ...]]:
+    """The owl wing under forces at its pins that press every stretch along its axis and bend none."""
+    case = read_case("owl-wing-static")
+    pose = case.solve_pose()
+    owner = {"A": "AE", "B": "AE", "E": "AE", "F": "GF", "G": "GF", "C": "CH", "D": "CH", "H": "CH"}
+    force = {point: np.zeros(2) for point in owner}
+    for (a, b), size in COMPRESSION.items():
+        along = pose.points[b] - pose.points[a]
+        along = along / np.linalg.norm(along)
+        force[a] += size * along  # the stretch pushes on both of its ends; these forces hold them
+        force[b] -= size * along
+    loads = tuple(
+        PointLoad(link=owner[p], point=p, wrench=np.array([*f, 0, 0, 0, 0])) for p, f in force.items() if p not in "AG"
+    )
+    return case, loads
+
+
+def test_the_wings_factor_is_where_its_deformed_shape_becomes_unstable() -> None:
+    case, loads = axial_wing()
+    pose = case.solve_pose()
+    frame = build_frame(case, pose, loads, held=case.pinned_drive)
+    factor = buckling_factor(frame.model)
+
+    def at(share: float):
+        more = tuple(replace(p, wrench=share * factor * p.wrench) for p in frame.model.loads)
+        return solve_large_displacement(replace(frame.model, loads=more))
+
+    below = at(0.95)
+    assert below.stable
+    assert np.abs(below.displacements).max() < 5e-3 * frame.model.size
+    # Uneven shortening bends the path away where it would fork: it ends there, or goes on unstable.
+    try:
+        beyond = at(1.05)
+    except NoEquilibriumError as ended:
+        assert 1.05 * ended.reached > 0.95
+    else:
+        assert not beyond.stable
