@@ -19,9 +19,9 @@ from fea.outcomes import least_safety_factor, reason_for
 from fea.refinement import START, Effort, refine_links
 from fea.solid_result import link_task
 from fea.space import DisplacementSpace, displacement_space
-from fea.threads import bounded
+from fea.threads import bounded_run
 from fea.verdict import SAFETY_FACTOR, CheckOutcome, Verdict, at_least, overall
-from geometry.errors import CannotRunError, CaseError
+from geometry.errors import AlulaError, CannotRunError, CaseError
 from geometry.mesh import mesh_bodies
 from loads.case import Case
 from loads.case_motion import CaseMotion, solve_case_motion
@@ -37,6 +37,7 @@ FATIGUE_LIFE = "fatigue, life"
 """Fatigue strength over stress, and life over the repetitions that are wanted."""
 
 
+@bounded_run
 def envelope_case(
     case: Case,
     *,
@@ -74,7 +75,7 @@ def envelope_case(
     timings = {"motion": time.perf_counter() - begin}
 
     def over_motion(link: str, space: DisplacementSpace, **options: Any) -> LinkEnvelope:
-        with bounded(threads):
+        try:
             return link_envelope(
                 space,
                 link=link,
@@ -86,6 +87,8 @@ def envelope_case(
                 threads=threads,
                 **options,
             )
+        except AlulaError as error:
+            raise type(error)(f"{link}: {error}") from None
 
     begin = time.perf_counter()
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)

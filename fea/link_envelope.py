@@ -83,7 +83,7 @@ def link_envelope(
         nu=material.poissons_ratio,
         threads=threads,
     )
-    _balanced(link, solved)
+    _balanced(solved)
     peaks = (principal_peaks if material.brittle else von_mises_peaks)(solved.stress, solved.combination)
     lacking = missing_data(material) if fatigue else "it was not asked for"
     if not lacking and not evaluated.all():
@@ -127,7 +127,7 @@ def link_envelope(
     )
 
 
-def _balanced(link: str, solved: UnitSolutions) -> None:
+def _balanced(solved: UnitSolutions) -> None:
     """Refuse loads that do not balance and supports that react."""
     for what, values, limit in (
         ("the loads leave a resultant", solved.imbalance, IMBALANCE_LIMIT),
@@ -135,8 +135,7 @@ def _balanced(link: str, solved: UnitSolutions) -> None:
     ):
         if not values.max() <= limit:
             raise CannotRunError(
-                f"{link}: {what} of {values.max():.2%} of the load (at most {limit:.1%}): load and stress do not "
-                "balance"
+                f"{what} of {values.max():.2%} of the load (at most {limit:.1%}): load and stress do not balance"
             )
 
 

@@ -2,6 +2,8 @@
 
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 
 from geometry.errors import CannotRunError
@@ -9,6 +11,20 @@ from geometry.errors import CannotRunError
 _PROC = Path("/proc")
 _CGROUP = Path("/sys/fs/cgroup")
 _GIGA = 1e9
+_limit: ContextVar[float | None] = ContextVar("memory limit", default=None)
+
+
+@contextmanager
+def limited(limit: float | None) -> Iterator[None]:
+    """Let this process hold at most so many bytes [B] in what follows; None leaves what stands."""
+    if limit is None:
+        yield
+        return
+    token = _limit.set(limit)
+    try:
+        yield
+    finally:
+        _limit.reset(token)
 
 
 def resident() -> float:
@@ -57,13 +73,18 @@ def _allowances() -> Iterator[float]:
 
 
 def room(limit: float | None) -> float:
-    """Memory that may still be taken [bytes], if the whole process may hold ``limit`` bytes."""
+    """Memory that may still be taken [bytes], if the whole process may hold ``limit`` bytes, or what is ``limited``."""
+    limit = _stated(limit)
     return available() if limit is None else max(min(limit - resident(), available()), 0.0)
+
+
+def _stated(limit: float | None) -> float | None:
+    return min((one for one in (limit, _limit.get()) if one is not None), default=None)
 
 
 def require(needed: float, task: str, limit: float | None) -> None:
     """Raise ``CannotRunError`` if ``needed`` bytes for ``task`` exceed the room; says estimate, room and remedy."""
-    left = room(limit)
+    left, limit = room(limit), _stated(limit)
     if needed > left:
         raise CannotRunError(
             f"{task} needs about {needed / _GIGA:.2g} GB of memory and {left / _GIGA:.2g} GB are left"

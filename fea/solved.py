@@ -82,6 +82,8 @@ def sampled_error(
     (1989) 1059-1076), never below the largest column's; it finds columns whose small residual is a large error.
     """
     work = np.abs(np.einsum("ij,ij->j", rhs, x))
+    if np.any((work == 0.0) & np.any(residual != 0.0, axis=0)):
+        return float("inf")
     scaled = 1.0 / np.sqrt(np.where(work > 0.0, work, np.inf))
     worst = np.zeros(len(scaled))
     number = int(np.argmax(np.linalg.norm(residual, axis=0) * scaled))
@@ -100,7 +102,12 @@ def energy_error(
     """Largest relative error of the columns of x in the energy norm."""
     work = np.abs(np.sum(rhs * x, axis=0))
     defect = np.abs(np.sum(residual * correction, axis=0))
-    return float(np.sqrt(np.max(np.where(work > 0.0, defect / np.where(work > 0.0, work, 1.0), 0.0))))
+    return float(np.sqrt(np.max(np.where(work > 0.0, defect, _lost(defect)) / np.where(work > 0.0, work, 1.0))))
+
+
+def _lost(defect: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Error of columns that do no work: none where nothing is left over, else no bound."""
+    return np.where(defect > 0.0, np.inf, defect)
 
 
 def accept(error: float, solver: str) -> None:

@@ -81,7 +81,7 @@ def solve_units(
     count = modes.shape[1]
     memory.require(
         8.0 * count * (2.0 * space.unknowns + 6.0 * len(space.nodes)),
-        f"the stresses of {count} unit loads at {len(space.nodes):,} nodes",
+        f"the stress of {count} unit loads at {len(space.nodes):,} nodes",
         None,
     )
     size = np.linalg.norm(np.ptp(space.nodes, axis=0))

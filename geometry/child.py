@@ -10,6 +10,8 @@ import shutil
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 from geometry.errors import CannotRunError
@@ -18,6 +20,19 @@ _ROOT = str(Path(__file__).resolve().parents[1])
 _lock = threading.RLock()
 _running: set[subprocess.Popen[bytes]] = set()
 _stopped = threading.Event()
+_SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "VTK_SMP_MAX_THREADS", "LP_NUM_THREADS"), "1")
+"""One thread for a child's libraries, VTK and Mesa's software renderer: children run beside each other instead."""
+
+
+class _Places:
+    """How many children may run at once, and who may; None for any number."""
+
+    def __init__(self, count: int | None) -> None:
+        self.count = count
+        self.free = nullcontext() if count is None else threading.BoundedSemaphore(count)
+
+
+_places = _Places(None)
 
 
 def module_command(module: str, *arguments: str) -> list[str]:
@@ -34,7 +49,20 @@ def foreign_command(program: str, *arguments: str) -> list[str]:
 def environment(**more: str) -> dict[str, str]:
     """Return the environment in which a child finds alula's modules."""
     paths = os.pathsep.join(filter(None, [_ROOT, os.environ.get("PYTHONPATH", "")]))
-    return os.environ | {"PYTHONPATH": paths, "OMP_NUM_THREADS": "1"} | more
+    return os.environ | {"PYTHONPATH": paths} | _SINGLE | more
+
+
+@contextmanager
+def at_most(children: int) -> Iterator[None]:
+    """Let so many children run at once, never more than already stated; others wait, their time limit not begun."""
+    global _places
+    before = _places
+    if before.count is None or children < before.count:
+        _places = _Places(children)
+    try:
+        yield
+    finally:
+        _places = before
 
 
 def run(
@@ -54,6 +82,16 @@ def run(
     Raises ``subprocess.TimeoutExpired`` at the limit, ``OSError`` if it cannot be started, ``CannotRunError``
     after an interruption.
     """
+    with _places.free:
+        status, told = _communicate(command, environment, time_limit, folder, output)
+    lines = told.decode(errors="replace").strip().splitlines()
+    return status, (lines or ["it left no message"])[-1]
+
+
+def _communicate(
+    command: list[str], environment: dict[str, str], time_limit: float, folder: Path | None, output: Path | None
+) -> tuple[int, bytes]:
+    """Status of a child and its standard error."""
     read, write = os.pipe()
     try:
         with _lock:
@@ -75,8 +113,7 @@ def run(
     finally:
         os.close(read)
         os.close(write)
-    lines = told.decode(errors="replace").strip().splitlines()
-    return process.returncode, (lines or ["it left no message"])[-1]
+    return process.returncode, told
 
 
 def stop_all() -> None:

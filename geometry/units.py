@@ -35,6 +35,7 @@ INTERNAL_UNITS = {
     "temperature": "degC",
     "voltage": "V",
     "current": "A",
+    "memory": "B",
 }
 EXAMPLES = {
     "length": "125 mm",
@@ -56,6 +57,7 @@ EXAMPLES = {
     "temperature": "23 degC",
     "voltage": "6 V",
     "current": "170 mA",
+    "memory": "4 GB",
 }
 _LONGEST_TEXT = 64
 _UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?[1-4])?"

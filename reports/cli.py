@@ -1,19 +1,19 @@
 """The command ``alula``. Heavy libraries are imported by the command that needs them."""
 
-import contextlib
-import errno
-import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from geometry.errors import AlulaError
+from reports.ending import end_if_stopped, run
 
-INTERRUPTED = 130
-CRASHED = 4
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from fea.verdict import Verdict
 
 app = typer.Typer(
     name="alula",
@@ -32,90 +32,31 @@ SetOption = Annotated[
     typer.Option("--set", help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".'),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
+ThreadsOption = Annotated[
+    int,
+    typer.Option(min=1, max=256, help="Threads that each library may use, and child processes that may run at once."),
+]
+MemoryOption = Annotated[
+    str | None,
+    typer.Option(
+        help='Memory that the solver\'s process may hold, such as "4 GB"; without it: what the system leaves.',
+        show_default=False,
+    ),
+]
+AccuracyOption = Annotated[
+    str | None,
+    typer.Option(
+        help='Error of the meshes to reach in every link, such as "5 %"; without it: a clear verdict or 5 %.',
+        show_default=False,
+    ),
+]
+UnknownsOption = Annotated[int, typer.Option(min=1000, help="Largest system that is solved to reach the accuracy.")]
+TimeOption = Annotated[float, typer.Option(min=0.0, help="Seconds after which no finer mesh is begun.")]
 
 
 def main() -> NoReturn:
-    """Run the command line; every way to end has its exit status and at most one sentence."""
-    _end_cleanly_on_signals()
-    try:
-        try:
-            app()
-        except SystemExit as stop:
-            if _pipe_was_closed(stop):
-                raise BrokenPipeError from None
-            _end_if_stopped()
-            sys.stdout.flush()  # here, where a full disk can still be explained
-            raise
-        except BaseException:
-            with contextlib.suppress(OSError):
-                sys.stdout.flush()
-            raise
-    except AlulaError as error:
-        _stop(str(error), error.exit_status)
-    except KeyboardInterrupt:
-        _stop("interrupted", INTERRUPTED)
-    except MemoryError:
-        _stop("memory ran out; use a coarser mesh (solid.mesh_size) or fewer links", CRASHED)
-    except BrokenPipeError:
-        sys.stderr.close()
-        sys.exit(CRASHED)
-    except OSError as error:
-        _abandon_output()
-        where = f"'{error.filename}'" if error.filename else "standard output"
-        _stop(f"{where} failed ({error.strerror or error}); free space on the disk or choose another place", CRASHED)
-    except Exception as error:
-        if os.environ.get("ALULA_TRACEBACK"):
-            raise
-        _stop(
-            f"a fault of alula's own, not of the case: {type(error).__name__}: {error}; "
-            "set ALULA_TRACEBACK=1 to see where, and please report it",
-            CRASHED,
-        )
-    sys.exit(0)
-
-
-def _end_cleanly_on_signals() -> None:
-    """Let a signal to end do what Ctrl-C does: stop the children, remove half-written folders, end with 130."""
-    import signal
-
-    def end(number: int, frame: object) -> None:
-        for other in ending:
-            signal.signal(other, signal.SIG_IGN)  # a second one would cut the cleaning short
-        from geometry.child import stop_all
-
-        stop_all()
-        raise KeyboardInterrupt
-
-    names = ("SIGINT", "SIGTERM", "SIGHUP")
-    found = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    # One that is ignored stays so: nohup says that the end of the terminal is to be survived.
-    ending = [number for number in found if signal.getsignal(number) is not signal.SIG_IGN]
-    for number in ending:
-        signal.signal(number, end)
-
-
-def _end_if_stopped() -> None:
-    from geometry.child import stopped
-
-    if stopped():
-        raise KeyboardInterrupt
-
-
-def _pipe_was_closed(stop: SystemExit) -> bool:
-    """Return True if typer took a closed pipe for the end, with the status that means a failed check."""
-    cause = stop.__context__
-    return isinstance(cause, OSError) and cause.errno == errno.EPIPE
-
-
-def _abandon_output() -> None:
-    """Keep the interpreter from trying once more to write what could not be written."""
-    with contextlib.suppress(OSError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _stop(sentence: str, status: int) -> NoReturn:
-    print(f"alula: {' '.join(sentence.split())}", file=sys.stderr)
-    sys.exit(status)
+    """Run the command line."""
+    run(app)
 
 
 def _version(wanted: bool) -> None:
@@ -146,18 +87,11 @@ def check(
     fidelity: Annotated[
         str, typer.Option(help="Model that decides: auto (the cheapest that can), beam, frame, submodel or solid.")
     ] = "auto",
-    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
-    accuracy: Annotated[
-        str | None,
-        typer.Option(
-            help='Error of the meshes to reach in every link, such as "5 %"; without it: a clear verdict or 5 %.',
-            show_default=False,
-        ),
-    ] = None,
-    max_unknowns: Annotated[
-        int, typer.Option(min=1000, help="Largest system that is solved to reach the accuracy.")
-    ] = 600_000,
-    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds after which no finer mesh is begun.")] = 600.0,
+    threads: ThreadsOption = 2,
+    memory: MemoryOption = None,
+    accuracy: AccuracyOption = None,
+    max_unknowns: UnknownsOption = 600_000,
+    time_limit: TimeOption = 600.0,
     second_opinion: Annotated[
         bool,
         typer.Option(
@@ -170,36 +104,27 @@ def check(
     """Check a case and end in a verdict."""
     from fea.check import check_case, effort_of
     from loads.case_file import read_case
+    from reports.console import print_result
+    from reports.limits import limited
+    from reports.record import as_json
 
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that beam theory decides has no mesh that CalculiX could be given
-    parsed = read_case(case, overrides or ())
-    effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
-    if second_opinion and fidelity == "auto":
-        fidelity = "solid"  # of which there is a second opinion alone
-    result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)
-    with TemporaryDirectory(prefix="alula-") as decks:
-        if second_opinion:
-            from reports.second_opinion import with_second_opinions
+    with limited(threads, memory):
+        parsed = read_case(case, overrides or ())
+        effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
+        result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)
+        with TemporaryDirectory(prefix="alula-") as decks:
+            if second_opinion:
+                from reports.second_opinion import with_second_opinions
 
-            result = with_second_opinions(result, Path(decks), threads=threads, progress=_progress)
-        if output is not None:
-            from reports.folder import write_report
+                result = with_second_opinions(result, Path(decks), threads=threads, progress=_progress)
+            if output is not None:
+                from reports.folder import write_report
 
-            write_report(result, output, decks=Path(decks), progress=_progress)
-    if json:
-        from reports.record import as_json
-
-        print(as_json(result))
-    else:
-        from rich.console import Console
-
-        from reports.console import print_result
-
-        print_result(result, Console())
-        if output is not None:
-            print(f"Report: {output / 'report.html'}")
-    raise SystemExit(result.verdict.exit_status)
+                write_report(result, output, decks=Path(decks), progress=_progress)
+    written = f"Report: {output / 'report.html'}" if output else ""
+    _end(result, as_json if json else None, print_result, written)
 
 
 @app.command()
@@ -226,18 +151,21 @@ def motion(
     ] = None,
     json: JsonOption = False,
     overrides: SetOption = None,
+    threads: ThreadsOption = 2,
 ) -> None:
     """Move a linkage: directions, paths, joint forces and drive torque over its range."""
     from loads.case_file import read_case
     from loads.case_motion import solve_case_motion
+    from reports.limits import limited
     from reports.motion import print_motion, write_motion
 
-    result = solve_case_motion(read_case(case, overrides or ()))
-    if output is not None:
-        from reports.output import write_folder
+    with limited(threads):
+        result = solve_case_motion(read_case(case, overrides or ()))
+        if output is not None:
+            from reports.output import write_folder
 
-        _progress("Drawing figures and the animation ...")
-        write_folder(output, lambda folder: write_motion(result, folder, case))
+            _progress("Drawing figures and the animation ...")
+            write_folder(output, lambda folder: write_motion(result, folder, case))
     print_motion(result, case, json=json)
     if output is not None and not json:
         print(f"\nTables and figures: {output}")
@@ -263,47 +191,34 @@ def envelope(
         float,
         typer.Option(min=1.0, help="Growth of the drive torque towards a dead point, beyond which poses are left out."),
     ] = 20.0,
-    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
-    accuracy: Annotated[
-        str | None,
-        typer.Option(
-            help='Error of the meshes to reach in every link, such as "5 %"; without it: a clear verdict or 5 %.',
-            show_default=False,
-        ),
-    ] = None,
-    max_unknowns: Annotated[
-        int, typer.Option(min=1000, help="Largest system that is solved to reach the accuracy.")
-    ] = 600_000,
-    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds after which no finer mesh is begun.")] = 600.0,
+    threads: ThreadsOption = 2,
+    memory: MemoryOption = None,
+    accuracy: AccuracyOption = None,
+    max_unknowns: UnknownsOption = 600_000,
+    time_limit: TimeOption = 600.0,
 ) -> None:
     """Check every link over the whole motion: least safety factor, where and when, and fatigue."""
     from fea.check import effort_of
     from fea.envelope import envelope_case
     from loads.case_file import read_case
     from reports.envelope import as_json, print_envelope, write_envelope
+    from reports.limits import limited
 
-    parsed = read_case(case, overrides or ())
-    effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
-    result = envelope_case(
-        parsed,
-        name=case,
-        threads=threads,
-        repetitions=repetitions,
-        growth=growth,
-        effort=effort,
-        progress=_progress,
-    )
-    if output is not None:
-        write_envelope(result, output, progress=_progress)
-    if json:
-        print(as_json(result))
-    else:
-        from rich.console import Console
-
-        print_envelope(result, Console())
+    with limited(threads, memory):
+        parsed = read_case(case, overrides or ())
+        result = envelope_case(
+            parsed,
+            name=case,
+            threads=threads,
+            repetitions=repetitions,
+            growth=growth,
+            effort=effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit),
+            progress=_progress,
+        )
         if output is not None:
-            print(f"Curves, pictures and fields: {output}")
-    raise SystemExit(result.verdict.exit_status)
+            write_envelope(result, output, progress=_progress)
+    written = f"Curves, pictures and fields: {output}" if output else ""
+    _end(result, as_json if json else None, print_envelope, written)
 
 
 @app.command()
@@ -322,20 +237,23 @@ def claims(
     markdown: Annotated[bool, typer.Option("--markdown", help="Print a page of Markdown.")] = False,
     overrides: SetOption = None,
     fidelity: Annotated[str, typer.Option(help="Model for claims on stress: solid or beam.")] = "solid",
-    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads that the solver may use.")] = 2,
+    threads: ThreadsOption = 2,
+    memory: MemoryOption = None,
 ) -> None:
     """Re-derive published figures and say which of them hold."""
     from fea.claims import check_all, check_claims
     from geometry.errors import CaseError
     from loads.claim import read_source, sources
     from reports.claims import as_json, as_markdown, as_text
+    from reports.limits import limited
 
-    if case is None:
-        if overrides:
-            raise CaseError("--set: no case is named whose entries could be set anew; name one")
-        found = check_all(fidelity=fidelity, threads=threads)
-    else:
-        found = {case: check_claims(case, overrides=overrides or (), fidelity=fidelity, threads=threads)}
+    if case is None and overrides:
+        raise CaseError("--set: no case is named whose entries could be set anew; name one")
+    with limited(threads, memory):
+        if case is None:
+            found = check_all(fidelity=fidelity, threads=threads)
+        else:
+            found = {case: check_claims(case, overrides=overrides or (), fidelity=fidelity, threads=threads)}
     results = [result for group in found.values() for result in group]
     if json:
         print(as_json(results))
@@ -438,6 +356,25 @@ def export(
         print(path)
 
 
+def _end(
+    result: Any,
+    as_json: Callable[[Any], str] | None,
+    show: Callable[[Any, "Console"], None],
+    written: str,
+) -> NoReturn:
+    """Print a result, as JSON or for people with where it was ``written``, and end with its verdict's status."""
+    if as_json is not None:
+        print(as_json(result))
+    else:
+        from rich.console import Console
+
+        show(result, Console())
+        if written:
+            print(written)
+    verdict: Verdict = result.verdict
+    raise SystemExit(verdict.exit_status)
+
+
 def _progress(message: str) -> None:
-    _end_if_stopped()
+    end_if_stopped()
     print(message, file=sys.stderr, flush=True)

@@ -207,8 +207,8 @@ def test_interrupted_while_it_writes(tmp_path: Path) -> None:
 def test_an_interruption_that_a_library_swallows_still_ends_the_run(tmp_path: Path) -> None:
     """Exceptions in callbacks and destructors are ignored; the earlier result must not be replaced all the same."""
     text = (
-        "import signal, reports.cli\n"
-        "reports.cli._end_cleanly_on_signals()\n"
+        "import signal, reports.ending\n"
+        "reports.ending.end_cleanly_on_signals()\n"
         "def swallowing(folder):\n"
         "    fill('new')(folder)\n"
         "    try:\n"

@@ -60,3 +60,13 @@ def test_refusal_says_estimate_room_and_remedy(system):
 def test_this_machine():
     assert memory.available() > 1e6
     assert memory.resident() > 1e7
+
+
+def test_a_limit_holds_for_all_that_is_called_within(system):
+    with memory.limited(2.0**30):
+        assert memory.room(None) == 2**30 - 2**20
+        assert memory.room(2.0**29) == 2**29 - 2**20
+        assert memory.room(2.0**31) == 2**30 - 2**20
+        with memory.limited(None), pytest.raises(CannotRunError, match=r"of the limit of 1\.07 GB.*raise the limit"):
+            memory.require(2e9, "the solution", None)
+    assert memory.room(None) == 3 * 2**30

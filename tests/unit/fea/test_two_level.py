@@ -129,6 +129,18 @@ def test_iteration_without_convergence_is_an_error(monkeypatch):
         _iterated(K, level, rhs)
 
 
+@pytest.mark.parametrize("share", [0.0, 0.9, float("nan")])
+def test_a_solution_that_the_iteration_only_believes_to_be_one_is_an_error(monkeypatch, share):
+    """What an iteration ends with is measured anew; none that is 10 % off, nothing or no number is handed on."""
+    K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)))
+    exact = factorise(K, threads=1).solve(rhs).T
+    monkeypatch.setattr(
+        two_level.TwoLevelFactor, "_conjugate_gradients", lambda self, b, target: (share * exact[: len(b)], 7)
+    )
+    with pytest.raises(CannotRunError, match=r"leaves an error of .* of the solution in the energy norm"):
+        _iterated(K, level, rhs)
+
+
 def test_nearly_incompressible_body_is_refused():
     K, level, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), nu=0.49999)
     with pytest.raises(CannotRunError, match=r"did not converge.*Poisson's ratio"):

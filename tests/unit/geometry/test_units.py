@@ -53,6 +53,8 @@ KNOWN = [
     ("temperature", "-40 degF", -40.0),
     ("voltage", "6 V", 6.0),
     ("current", "170 mA", 0.17),
+    ("memory", "4 GB", 4e9),
+    ("memory", "1.5 GiB", 1.5 * 2**30),
 ]
 
 

@@ -82,3 +82,14 @@ def test_a_case_without_motion_is_bad_input(path: str) -> None:
     done = envelope(str(still))
     assert done.returncode == 2
     assert done.stderr.startswith("alula: motion: the case does not say what moves")
+
+
+def test_too_little_memory_is_refused_before_solving_with_estimate_and_remedy(path: str) -> None:
+    done = envelope(path, "--memory", "50 MB")
+    assert done.returncode == 4
+    assert done.stdout == ""
+    last = done.stderr.strip().splitlines()[-1]
+    assert "the stress of 10 unit loads" in last
+    assert "GB of memory and 0 GB are left of the limit of 0.05 GB" in last
+    assert "use a coarser mesh, raise the limit" in last
+    assert "Solving" not in done.stderr

@@ -1,0 +1,98 @@
+"""How the program ends: every way has its exit status and at most one sentence on standard error."""
+
+import contextlib
+import errno
+import os
+import sys
+from collections.abc import Callable
+from typing import NoReturn
+
+from geometry.errors import AlulaError
+
+INTERRUPTED = 130
+CRASHED = 4
+
+
+def run(app: Callable[[], object]) -> NoReturn:
+    """Run the command line to its end."""
+    end_cleanly_on_signals()
+    try:
+        try:
+            app()
+        except SystemExit as stop:
+            if _pipe_was_closed(stop):
+                raise BrokenPipeError from None
+            end_if_stopped()
+            sys.stdout.flush()  # here, where a full disk can still be explained
+            raise
+        except BaseException:
+            with contextlib.suppress(OSError):
+                sys.stdout.flush()
+            raise
+    except AlulaError as error:
+        _stop(str(error), error.exit_status)
+    except KeyboardInterrupt:
+        _stop("interrupted", INTERRUPTED)
+    except MemoryError:
+        _stop("memory ran out; use a coarser mesh (solid.mesh_size) or fewer links", CRASHED)
+    except BrokenPipeError:
+        sys.stderr.close()
+        sys.exit(CRASHED)
+    except OSError as error:
+        _abandon_output()
+        where = f"'{error.filename}'" if error.filename else "standard output"
+        _stop(f"{where} failed ({error.strerror or error}); free space on the disk or choose another place", CRASHED)
+    except Exception as error:
+        if os.environ.get("ALULA_TRACEBACK"):
+            raise
+        _stop(
+            f"a fault of alula's own, not of the case: {type(error).__name__}: {error}; "
+            "set ALULA_TRACEBACK=1 to see where, and please report it",
+            CRASHED,
+        )
+    sys.exit(0)
+
+
+def end_cleanly_on_signals() -> None:
+    """Let a signal to end do what Ctrl-C does: stop the children, remove half-written folders, end with 130."""
+    import signal
+
+    def end(number: int, frame: object) -> None:
+        for other in ending:
+            signal.signal(other, signal.SIG_IGN)  # a second one would cut the cleaning short
+        from geometry.child import stop_all
+
+        stop_all()
+        raise KeyboardInterrupt
+
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    found = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    # One that is ignored stays so: nohup says that the end of the terminal is to be survived.
+    ending = [number for number in found if signal.getsignal(number) is not signal.SIG_IGN]
+    for number in ending:
+        signal.signal(number, end)
+
+
+def end_if_stopped() -> None:
+    """End where a signal was to end the process but a library swallowed it."""
+    from geometry.child import stopped
+
+    if stopped():
+        raise KeyboardInterrupt
+
+
+def _pipe_was_closed(stop: SystemExit) -> bool:
+    """Return True if typer took a closed pipe for the end, with the status that means a failed check."""
+    cause = stop.__context__
+    return isinstance(cause, OSError) and cause.errno == errno.EPIPE
+
+
+def _abandon_output() -> None:
+    """Keep the interpreter from trying once more to write what could not be written."""
+    with contextlib.suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _stop(sentence: str, status: int) -> NoReturn:
+    print(f"alula: {' '.join(sentence.split())}", file=sys.stderr)
+    sys.exit(status)

@@ -1,0 +1,42 @@
+"""No path through the program reports a number from an iteration that has not converged."""
+
+from functools import partial
+
+import pytest
+
+from fea import solve, two_level
+from fea.check import check_case
+from fea.envelope import envelope_case
+from fea.refinement import Effort
+from geometry.errors import CannotRunError
+from loads.case import Case
+from loads.case_file import read_case
+
+NAME = "owl-wing-static"
+MOTION = ("drive.link=GF", "drive.joint=G", "motion.poses=3", "solid.mesh_size=3")
+
+
+@pytest.fixture
+def case() -> Case:
+    return read_case(NAME, MOTION)
+
+
+@pytest.fixture
+def iterative(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Have every system iterated; returns the sizes of those that were."""
+    sizes: list[int] = []
+
+    def chosen(K, level, *rest):
+        sizes.append(K.size)
+        return "two-level", "chosen by this test"
+
+    monkeypatch.setattr(solve, "_chosen", chosen)
+    return sizes
+
+
+@pytest.mark.parametrize("run", [partial(check_case, fidelity="solid"), envelope_case], ids=["check", "envelope"])
+def test_an_iteration_without_convergence_ends_the_run(case, iterative, monkeypatch, run):
+    monkeypatch.setattr(two_level, "MOST_ITERATIONS", 4)
+    with pytest.raises(CannotRunError, match=r"^\w\w: .*did not converge in 4 iterations.*choose a direct solver"):
+        run(case, name=NAME, threads=1, effort=Effort(max_meshes=1))
+    assert len(iterative) == 1, "the first system that does not converge ends it"
