@@ -1,0 +1,97 @@
+"""A pin that travels in its slot over a motion: stress by unit loads against direct solutions at single poses."""
+
+import numpy as np
+import pytest
+
+from fea.link_envelope import link_envelope
+from fea.link_history import LinkHistory, link_histories
+from fea.solid import solve_solid
+from fea.space import displacement_space
+from fea.stress import stress_field
+from fea.unit_loads import load_scale, unit_loads
+from fea.unit_solutions import solve_units
+from geometry.errors import CaseError
+from geometry.mesh import MeshSettings, mesh_body
+from loads.bearing import NARROW, WIDE
+from loads.case_file import read_case
+from loads.case_motion import solve_case_motion
+
+LINK, LAWS = "lever-right", (WIDE, NARROW)
+EXACT = 5e-3
+"""Largest difference of stress, of the largest on the link."""
+
+
+@pytest.fixture(scope="module")
+def case():
+    return read_case("ornithopter", ["motion.poses=61"])
+
+
+@pytest.fixture(scope="module")
+def history(case) -> LinkHistory:
+    found = {h.load_case: h for h in link_histories(solve_case_motion(case), LINK)}
+    return found["wings-12"]
+
+
+@pytest.fixture(scope="module")
+def mesh(case):
+    return mesh_body(case.body(LINK), MeshSettings().scaled(2.0))
+
+
+def direct(mesh, history: LinkHistory, pose: int, material):
+    solution = solve_solid(
+        mesh, E=material.youngs_modulus, nu=material.poissons_ratio, density=material.density,
+        loads=[history.at(pose)], line=("bore:slot", "bore:R"), laws=LAWS, threads=1,
+    )  # fmt: skip
+    assert max(one.imbalance for one in solution.cases) < 1e-4
+    return [
+        stress_field(solution.space, one.displacement, E=material.youngs_modulus, nu=material.poissons_ratio)
+        for one in solution.cases
+    ]
+
+
+def test_the_pin_travels_and_pushes_either_flank(history: LinkHistory) -> None:
+    place, force = history.places["slot"], history.pins["slot"]
+    assert np.ptp(place) == pytest.approx(7.67791399574 - 7.06755709747, abs=0.01)
+    assert place.min() == pytest.approx(-7.67791399574, abs=1e-9)
+    assert force[:, 1].min() < 0.0 < force[:, 1].max()
+    assert np.all(force[:, [0, 2]] == 0.0)
+
+
+def test_stress_at_every_place_of_the_pin_equals_a_direct_solution(case, mesh, history: LinkHistory) -> None:
+    material, space = case.material_of(LINK), displacement_space(mesh)
+    units = unit_loads(space, [history], density=material.density)
+    columns = np.hstack([units.coefficients(history, law, None) for law in LAWS])
+    solved = solve_units(
+        units, columns, np.tile(load_scale(history, 14.0), 2),
+        E=material.youngs_modulus, nu=material.poissons_ratio, threads=1,
+    )  # fmt: skip
+    assert solved.imbalance.max() < 1e-9
+    assert solved.reaction.max() < 1e-6
+    places = units.slots["slot"].places[NARROW.span]
+    for pose in (4, 9, 12, 21, 33):
+        gap = np.abs(places - history.places["slot"][pose]).min()
+        assert gap > 1e-4  # between the places of the unit loads, not at one of them
+        for number, field in enumerate(direct(mesh, history, pose, material)):
+            whole = np.einsum("nim,m->ni", solved.stress, solved.combination[:, number * history.poses + pose])
+            slotted = space.nodes[: len(whole), 0] < -5.5
+            for where in (slotted, ~slotted):
+                off = np.abs(whole - field.nodal)[where].max()
+                assert off < EXACT * np.abs(field.nodal)[where].max(), (pose, number)
+
+
+def test_the_envelope_of_a_slotted_link_has_its_direct_peaks(case, mesh, history: LinkHistory) -> None:
+    material = case.material_of(LINK)
+    found = link_envelope(
+        displacement_space(mesh), link=LINK, material=material, histories=[history],
+        evaluated=np.ones(history.poses, dtype=bool), stated="eye-faces", returns=True, fatigue=False, threads=1,
+    )  # fmt: skip
+    for pose in (found.worst.pose, 9, 21):
+        for field, variant in zip(direct(mesh, history, pose, material), found.worst.variants, strict=True):
+            assert variant.transfer is None
+            assert variant.stress[pose] == pytest.approx(float(field.principal.max()), rel=EXACT)
+
+
+def test_a_slot_that_ends_before_the_pin_is_named() -> None:
+    short = read_case("ornithopter", ['links.lever-right.slots.slot.last="-7.2 mm"', "motion.poses=13"])
+    with pytest.raises(CaseError, match=r"links.lever-right.slots.slot: its pin stands at x = -7.08\d* mm.*lengthen"):
+        link_histories(solve_case_motion(short), LINK)
