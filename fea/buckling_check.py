@@ -20,8 +20,8 @@ share of the load at which it gave way, or at least 1 where it held the whole.
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
-(5.2.1(3)) and for n >= 3 where a factor may stand for it (section 5.2.2); below 3 stress by linear theory passes no link,
-and no linkage whose deformed shape is not known.
+(5.2.1(3)) and for n >= 3 where a factor may stand for it (section 5.2.2); below 3 stress by linear theory passes no
+link, and no linkage whose deformed shape is not known.
 """
 
 import math
@@ -68,25 +68,40 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
     forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
     if compression <= NO_COMPRESSION * forces:
         return None
-    points, linkage = case.links[link].points, case.linkage
-    pins = sorted({points[linkage.point_of(joint, link)] for joint in linkage.joints_of(link)})
-    first, last = pins[0], pins[-1]
     start, end = (float(x) for x in beam.forces.breaks[[0, -1]])
+    first, last = outermost_pins(case, link)
     slack = 1e-9 * (end - start)
     outside = (beam.x < first[0] - slack) | (beam.x > last[0] + slack)
-    whole = max(end, last[0]) - min(start, first[0])
+    beyond = bool(np.any(-beam.n[outside] > NO_COMPRESSION * forces))
+    length, effective, ends = held(case, link, (start, end), beyond=beyond)
+    return Column(compression=compression, length=length, effective_length=effective, ends=ends)
+
+
+def outermost_pins(case: Case, link: str) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the places of a link's first and last pin along its axis, in its frame [mm]."""
+    points, linkage = case.links[link].points, case.linkage
+    pins = sorted({points[linkage.point_of(joint, link)] for joint in linkage.joints_of(link)})
+    return pins[0], pins[-1]
+
+
+def held(case: Case, link: str, extent: tuple[float, float], *, beyond: bool) -> tuple[float, float, str]:
+    """Return length [mm] and effective length (as its multiple) of a link as a column, and for people how it is held.
+
+    extent  first and last x of what acts on the link [mm]
+    beyond  whether it is compressed beyond its outermost pins
+    """
+    first, last = outermost_pins(case, link)
     reasons = {
         "driven": case.drive is not None and case.drive.link == link,
         "bonded": case.joint_model == "bonded",
-        "compressed beyond its pins": bool(np.any(-beam.n[outside] > NO_COMPRESSION * forces)),
-        "on one pin": len(pins) < 2,
+        "compressed beyond its pins": beyond,
+        "on one pin": first == last,
     }
     why = [reason for reason, holds in reasons.items() if holds]
     if why:
-        ends = f"built in and free, since it is {' and '.join(why)}"
-        return Column(compression=compression, length=whole, effective_length=BUILT_IN, ends=ends)
-    length = float(np.hypot(last[0] - first[0], last[1] - first[1]))
-    return Column(compression=compression, length=length, effective_length=PINNED, ends="pinned at both ends")
+        whole = max(extent[1], last[0]) - min(extent[0], first[0])
+        return whole, BUILT_IN, f"built in and free, since it is {' and '.join(why)}"
+    return float(np.hypot(last[0] - first[0], last[1] - first[1])), PINNED, "pinned at both ends"
 
 
 def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) -> Iterator[CheckOutcome]:
