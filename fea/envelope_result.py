@@ -104,6 +104,7 @@ class LinkEnvelope:
     measure   the decisive stress: "von Mises" or "largest principal"
     strength  what it is set against [MPa]
     units, modes  unit loads, and solutions that span the motion's loads
+    solver, solver_reason, solver_error  name, why it was chosen, largest relative error of a solution (energy norm)
     field, displacement  stress and displacements (nodes, 3) [mm] of the worst pose under the worst load case
     no_fatigue  why there is no fatigue calculation; empty where there is one
     """
@@ -117,6 +118,8 @@ class LinkEnvelope:
     units: int
     modes: int
     solver: str
+    solver_reason: str
+    solver_error: float
     reaction: float
     imbalance: float
     field: StressField

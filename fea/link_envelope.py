@@ -118,6 +118,8 @@ def link_envelope(
         units=solved.units,
         modes=len(solved.combination),
         solver=solved.solver,
+        solver_reason=solved.solver_reason,
+        solver_error=solved.solver_error,
         reaction=float(solved.reaction.max()),
         imbalance=float(solved.imbalance.max()),
         field=stress_field(space, raw, E=material.youngs_modulus, nu=material.poissons_ratio),

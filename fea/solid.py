@@ -74,6 +74,7 @@ class SolidSolution:
     cases            every load case under every variant
     solver           name of the solver
     solver_reason    why it was chosen
+    solver_error     largest relative error that it left in a case, in the energy norm (``fea.solved``)
     rank_margin      smallest singular value of the rigid-body motions at the supports
     notes            what the report has to say about this solution
     timings          stage -> seconds
@@ -86,6 +87,7 @@ class SolidSolution:
     cases: tuple[SolidCase, ...]
     solver: str
     solver_reason: str
+    solver_error: float
     rank_margin: float
     notes: tuple[str, ...]
     timings: dict[str, float]
@@ -158,7 +160,8 @@ def solve_solid(
     clock("factorisation")
     free = F.copy()
     free[supports.unknowns] = 0.0
-    U = factor.solve(free)
+    answer = factor.solved(free)
+    U = answer.x
     clock("solution")
     reaction = np.abs((K @ U - F)[supports.unknowns]).max(axis=0) / size
     notes = _reaction_notes(reaction, names)
@@ -189,6 +192,7 @@ def solve_solid(
         cases=cases,
         solver=factor.name,
         solver_reason=factor.reason,
+        solver_error=answer.error,
         rank_margin=supports.rank_margin,
         notes=(*mesh.notes, *notes),
         timings=timings,

@@ -39,7 +39,7 @@ class UnitSolutions:
     reaction      (N,) largest support reaction relative to the load
     imbalance     (N,) resultant of the load vectors relative to the load
     units         number of unit loads that the modes are made of
-    solver        name of the solver; why it was chosen; largest relative error of a mode in the energy norm
+    solver, solver_reason, solver_error  name, why it was chosen, largest relative error of a mode (energy norm)
     """
 
     space: DisplacementSpace

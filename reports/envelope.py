@@ -16,6 +16,7 @@ from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.verdict import SAFETY_FACTOR
 from geometry.material import Material
 from reports.console import COLOURS
+from reports.meshes import solver_record
 from reports.output import MARK, write_folder
 from reports.wording import band, fixed, number, plain
 
@@ -160,7 +161,7 @@ def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
         "unknowns": link.unknowns,
         "unit_loads": link.units,
         "solutions": link.modes,
-        "solver": link.solver,
+        **solver_record(link),
         "support_reaction": link.reaction,
         "imbalance": link.imbalance,
         "notes": list(link.notes),

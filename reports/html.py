@@ -16,6 +16,7 @@ from reports.claims import as_records, count
 from reports.frames import AXES, shown_components
 from reports.loads import air_record, anchor_record, weight_sentence
 from reports.mechanism import design_of
+from reports.meshes import solver_sentence
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
 from reports.record import alula_version, worst_load_case
 from reports.wording import AGREEMENT, band, checks_of, fixed, headline, joined, number, percent, plain, turning
@@ -88,6 +89,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         "band": band,
         "percent": percent,
         "joined": joined,
+        "solved": solver_sentence,
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
     first = next(iter(result.load_cases.values()))

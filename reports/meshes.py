@@ -4,7 +4,11 @@ from typing import Any
 
 from fea.convergence import GridConvergence
 from fea.discretisation import Discretisation
+from fea.envelope_result import LinkEnvelope
+from fea.solid import SolidSolution
 
+LEAST_TOLD = 1e-9
+"""Error of a solver below which its size says nothing to anybody."""
 UNITS = {
     "links.*.discretisation.stress.sizes": "mm",
     "links.*.discretisation.stress.values": "MPa",
@@ -14,6 +18,7 @@ UNITS = {
     "links.*.discretisation.sharp.place": "mm",
     "links.*.discretisation.sharp.distance": "mm",
     "links.*.discretisation.sharp.screening": "MPa",
+    "links.*.solver_error": "share of the solution, in the energy norm",
 }
 
 
@@ -42,6 +47,19 @@ def discretisation_record(found: Discretisation | None) -> dict[str, Any] | None
         },
         "sentence": found.sentence,
     }
+
+
+def solver_record(answer: SolidSolution | LinkEnvelope | None) -> dict[str, Any]:
+    """Return which solver gave a link's displacements, why it was chosen and the error it left; None where none ran."""
+    if answer is None:
+        return dict.fromkeys(("solver", "solver_reason", "solver_error"))
+    return {"solver": answer.solver, "solver_reason": answer.solver_reason, "solver_error": answer.solver_error}
+
+
+def solver_sentence(answer: SolidSolution) -> str:
+    """Return the same for people."""
+    error = max(answer.solver_error, LEAST_TOLD)
+    return f"Solved by {answer.solver} ({answer.solver_reason}), with a relative error below {error:.0e}"
 
 
 def _series(series: GridConvergence) -> dict[str, Any]:

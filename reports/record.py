@@ -17,7 +17,7 @@ from reports.loads import UNITS as LOAD_UNITS
 from reports.loads import air_record, anchor_record
 from reports.mechanism import design_record
 from reports.meshes import UNITS as MESH_UNITS
-from reports.meshes import discretisation_record
+from reports.meshes import discretisation_record, solver_record
 from reports.second_opinion import UNITS as OPINION_UNITS
 from reports.second_opinion import opinion_records
 
@@ -232,6 +232,7 @@ def _link(result: LinkResult) -> dict[str, Any]:
         },
         "notes": list(result.notes),
         "discretisation": discretisation_record(result.discretisation),
+        **solver_record(result.solid),
     }
 
 

@@ -102,6 +102,7 @@ def test_it_stands_without_pictures(result):
         "the pose is close to a dead point",
         "The load at H enters over the last 5 mm of the tube.",
         "solid models 1.5 s",
+        "right-hand sides: small enough for a factorisation), with a relative error below 1e-09",
     ],
 )
 def test_what_a_reader_needs_is_there(page, words):
