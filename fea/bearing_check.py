@@ -33,6 +33,27 @@ def bearing_stress(force: float, diameter: float, thickness: float) -> float:
     return force / (diameter * thickness)
 
 
+def weakest_eye(case: Case, name: str, joint: str, force: float) -> tuple[str, Band]:
+    """Return the link whose eye a joint's pin loads worst, and its safety factor, under a force [N] across the pin.
+
+    Raises ``CaseError`` for a joint without pin diameter, which the check ``name`` needs.
+    """
+    record = case.joints[joint]
+    if record.pin_diameter is None:
+        raise CaseError(
+            f'joints.{joint}.pin_diameter: checks.{name} needs it for bearing; state it, for example "1.5 mm"'
+        )
+    factors = {}
+    for link in record.links:
+        if link in case.checked_links:
+            material = case.material_of(link)
+            strength = material.ultimate_strength or material.allowable
+            stress = bearing_stress(force, record.pin_diameter, case.part_of(link).eye_thickness)
+            factors[link] = Band.exact(stress, *HOLDS).inverse(strength)
+    weakest = min(factors, key=lambda link: factors[link].value)
+    return weakest, factors[weakest]
+
+
 def bearing_outcomes(
     case: Case, title: str, name: str, check: BearingCheck, reactions: Reactions
 ) -> Iterator[CheckOutcome]:
@@ -41,29 +62,16 @@ def bearing_outcomes(
     Raises ``CaseError`` for a joint without pin diameter.
     """
     for joint in check.joints or case.pinned_joints:
-        record = case.joints[joint]
-        if record.pin_diameter is None:
-            raise CaseError(
-                f'joints.{joint}.pin_diameter: checks.{name} needs it for bearing; state it, for example "1.5 mm"'
-            )
-        force = float(np.hypot(*reactions.joints[joint].wrench[:2]))
-        factors = {}
-        for link in record.links:
-            if link in case.checked_links:
-                material = case.material_of(link)
-                strength = material.ultimate_strength or material.allowable
-                stress = bearing_stress(force, record.pin_diameter, case.part_of(link).eye_thickness)
-                factors[link] = Band.exact(stress, *HOLDS).inverse(strength)
-        weakest = min(factors, key=lambda link: factors[link].value)
-        verdict = at_least(factors[weakest], check.limit)
+        eye, factor = weakest_eye(case, name, joint, float(np.hypot(*reactions.joints[joint].wrench[:2])))
+        verdict = at_least(factor, check.limit)
         yield CheckOutcome(
             name=name,
             link=f"{PIN}{joint}",
             load_case=title,
             quantity=SAFETY_FACTOR,
             unit="",
-            value=factors[weakest],
+            value=factor,
             limit=check.limit,
             verdict=verdict,
-            reason=f"bearing on the eye of {weakest}: {reason_for(factors[weakest], check.limit, verdict)}",
+            reason=f"bearing on the eye of {eye}: {reason_for(factor, check.limit, verdict)}",
         )

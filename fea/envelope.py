@@ -2,39 +2,33 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.band import Band
 from fea.check import effort_of
+from fea.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.envelope_result import EnvelopeResult, LinkEnvelope
-from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.link_envelope import link_envelope
 from fea.link_history import link_histories
-from fea.outcomes import least_safety_factor, reason_for
 from fea.refinement import START, Effort, refine_links
 from fea.solid_result import link_task
 from fea.space import DisplacementSpace, displacement_space
 from fea.threads import bounded_run
-from fea.verdict import SAFETY_FACTOR, CheckOutcome, Verdict, at_least, overall
+from fea.verdict import overall
 from geometry.errors import AlulaError, CannotRunError, CaseError
 from geometry.mesh import mesh_bodies
 from loads.case import Case
 from loads.case_motion import CaseMotion, solve_case_motion
-from loads.check_spec import SafetyFactorCheck
 
 Real = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 TORQUE_GROWTH = 20.0
 """Of the drive torque towards a dead point, beside that at the best leverage, beyond which poses are left out."""
-FATIGUE_STRESS = "fatigue, stress"
-FATIGUE_LIFE = "fatigue, life"
-"""Fatigue strength over stress, and life over the repetitions that are wanted."""
 
 
 @bounded_run
@@ -110,8 +104,7 @@ def envelope_case(
         progress(f"Solving {link} over the motion: {len(space.cells)} elements, {int(evaluated.sum())} poses ...")
         links[link] = over_motion(link, space, repetitions=repetitions, refined=solid, notes=solid.solution.notes)
     timings["motion of the solids"] = time.perf_counter() - begin
-    complete = bool(evaluated.all())
-    checks = tuple(_outcomes(case, links, complete=complete))
+    checks = (*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, loaded, evaluated))
     return EnvelopeResult(
         name=name,
         case=case,
@@ -144,58 +137,6 @@ def evaluated_poses(moved: CaseMotion, growth: float = TORQUE_GROWTH) -> NDArray
     return good
 
 
-def _outcomes(case: Case, links: Mapping[str, LinkEnvelope], *, complete: bool) -> list[CheckOutcome]:
-    found = []
-    for name, check in case.all_checks.items():
-        if isinstance(check, SafetyFactorCheck):
-            for link in (x for x in check.links or case.checked_links if x in links):
-                limit = least_safety_factor(name, check.minimum, case.material_of(link), link)
-                for title, load_case in links[link].load_cases.items():
-                    outcome = _outcome(
-                        name, link, title, SAFETY_FACTOR, load_case.safety_factor, limit, complete=complete
-                    )
-                    if not load_case.known and load_case.discretisation is not None:
-                        outcome = replace(outcome, reason=load_case.discretisation.sentence)
-                    found.append(outcome)
-    for link, envelope in links.items():
-        for title, load_case in envelope.load_cases.items():
-            fatigue = load_case.fatigue
-            if fatigue is None:
-                continue
-            if fatigue.strength is not None:
-                factor = fatigue.stress.inverse(fatigue.strength)
-                found.append(_outcome("fatigue", link, title, FATIGUE_STRESS, factor, STRESS_FACTOR))
-            if fatigue.repetitions is not None:
-                share = _scaled(fatigue.repetitions, 1.0 / fatigue.wanted)
-                found.append(_outcome("fatigue", link, title, FATIGUE_LIFE, share, LIFE_FACTOR))
-    return found
-
-
-def _scaled(band: Band, factor: float) -> Band:
-    return Band(value=factor * band.value, low=factor * band.low, high=factor * band.high, holds=band.holds)
-
-
-def _outcome(
-    name: str, link: str, load_case: str, quantity: str, value: Band, limit: float, *, complete: bool = True
-) -> CheckOutcome:
-    verdict = at_least(value, limit)
-    reason = reason_for(value, limit, verdict)
-    if verdict is Verdict.PASS and not complete:
-        verdict = Verdict.UNDECIDED
-        reason = "poses near a dead point of the driven link were left out, where its torque grows without bound"
-    return CheckOutcome(
-        name=name,
-        link=link,
-        load_case=load_case,
-        quantity=quantity,
-        unit="",
-        value=value,
-        limit=limit,
-        verdict=verdict,
-        reason=reason,
-    )
-
-
 def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growth: float) -> list[str]:
     found = []
     left_out = int(np.count_nonzero(~evaluated))
@@ -208,7 +149,7 @@ def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growt
         )
     elif left_out:
         found.append(f"{left_out} of {len(evaluated)} poses are left out, since no drive torque holds them")
-    others = [name for name, check in case.all_checks.items() if not isinstance(check, SafetyFactorCheck)]
+    others = [name for name, check in case.all_checks.items() if not isinstance(check, FOLLOWED)]
     if others:
         found.append(f"checks {', '.join(others)} are about single poses or the motor: alula check decides them")
     if case.large_displacement != "off":

@@ -76,9 +76,16 @@ def lever(case: Case, joint: str) -> float:
 
 def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
     """Return the stresses of a joint's pin under its reaction; raises ``CaseError`` for a pin without diameter."""
+    wrench = reaction.wrench
+    return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
+
+
+def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:
+    """Return the stresses of a joint's pin under a force [N] across it and a moment about x or y [N mm].
+
+    Raises ``CaseError`` for a pin without diameter.
+    """
     record = case.joints[joint]
     if record.pin_diameter is None:
         raise CaseError(f'joints.{joint}.pin_diameter: the check of its pin needs it; state it, for example "1.5 mm"')
-    wrench = reaction.wrench
-    across, moment = float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5]))
-    return pin_stress(across, record.pin_diameter, lever(case, joint), moment)
+    return pin_stress(force, record.pin_diameter, lever(case, joint), moment)

@@ -10,17 +10,23 @@ import pytest
 import solid_meshes
 from result_paths import compare
 
+from fea.band import Band
+from fea.beam import check_beam
+from fea.bearing_check import bearing_outcomes
+from fea.buckling_check import buckling_outcomes
 from fea.check import solve_case_statics
-from fea.cut_free import link_loads
-from fea.envelope import FATIGUE_LIFE, FATIGUE_STRESS, envelope_case, evaluated_poses
+from fea.cut_free import beam_loads, link_loads
+from fea.envelope import envelope_case, evaluated_poses
+from fea.envelope_outcomes import FATIGUE_LIFE, FATIGUE_STRESS, envelope_outcomes
 from fea.link_envelope import closed_history
 from fea.link_history import link_histories
 from fea.peaks import deviator, largest_sizes, principal_peaks, size_parts, von_mises_peaks
+from fea.pins import stress_at
 from fea.refinement import Effort
 from fea.space import displacement_space
 from fea.stress import principal, stress_field, von_mises
 from fea.unit_solutions import nodal_stress
-from fea.verdict import SAFETY_FACTOR, Verdict
+from fea.verdict import BUCKLING_FACTOR, SAFETY_FACTOR, Verdict
 from geometry.errors import CannotRunError, CaseError
 from loads.case_file import read_case
 from loads.case_motion import solve_case_motion
@@ -248,7 +254,8 @@ def test_the_envelope_says_how_little_when_and_where(result):
 
 def test_every_load_case_is_checked_for_strength_and_fatigue(result):
     asked = {(check.load_case, check.quantity) for check in result.checks}
-    assert asked == {(n, q) for n in ("spin", "push") for q in (SAFETY_FACTOR, FATIGUE_STRESS, FATIGUE_LIFE)}
+    every = (SAFETY_FACTOR, FATIGUE_STRESS, FATIGUE_LIFE, BUCKLING_FACTOR)
+    assert asked == {(n, q) for n in ("spin", "push") for q in every}
     for check in result.checks:
         fatigue = result.links["rocker"].load_cases[check.load_case].fatigue
         if check.quantity == FATIGUE_LIFE:
@@ -257,6 +264,56 @@ def test_every_load_case_is_checked_for_strength_and_fatigue(result):
         if check.quantity == FATIGUE_STRESS:
             assert check.limit == 2.0
             assert check.value.value == pytest.approx(10.9 / fatigue.life.stress)
+
+
+def test_buckling_is_that_of_the_pose_with_the_least_factor(path, moved, result):
+    (history,) = (h for h in link_histories(moved, "rocker") if h.load_case == "push")
+    (found,) = (c for c in result.checks if (c.load_case, c.quantity) == ("push", BUCKLING_FACTOR))
+    case, factors = read_case(path), []
+    for pose in range(history.poses):
+        loads = beam_loads(history.at(pose), history.body, case.material_of("rocker").density, history.mass)
+        beam = check_beam(loads, history.body.part.section, 1.0)
+        factors += [(c.value.value, c.value.low, pose) for c in buckling_outcomes(case, "push", {"rocker": beam})]
+    value, low, pose = min(factors)
+    assert 0 < pose < history.poses - 1
+    assert found.value.value == pytest.approx(value, rel=2e-3)  # the beam is sampled at stations
+    assert found.value.low == pytest.approx(low, rel=2e-3)
+    assert found.verdict is Verdict.PASS
+    assert f"at crank = {40.0 + 15.0 * pose:.5g} deg" in found.reason
+
+
+def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, moved):
+    """Against the statics of every pose by itself."""
+    checks = ['checks.shear={type="pins", minimum=2.0}', 'checks.eyes={type="bearing"}']
+    motion = solve_case_motion(read_case(path, checks))
+    found = {
+        (c.name, c.link): c for c in envelope_outcomes(motion, {}, np.ones(25, dtype=bool)) if c.load_case == "push"
+    }
+    assert set(found) == {(name, f"pin {joint}") for name in ("shear", "eyes") for joint in ("B", "O4")}
+    least: dict[tuple[str, str], list[Band]] = {key: [] for key in found}
+    for pose in range(24):
+        angles = {link: np.degrees(moved.motion.angle(link)[pose]) for link in ("crank", "coupler", "rocker")}
+        near = [f'pose.near.{link}="{angles[link]} deg"' for link in ("coupler", "rocker")]
+        case = read_case(path, [*checks, f'pose.angle="{angles["crank"]} deg"', *near])
+        reactions = solve_case_statics(case).reactions["push"]
+        for joint in ("B", "O4"):
+            stress = stress_at(case, joint, reactions.joints[joint]).equivalent
+            least["shear", f"pin {joint}"].append(stress.inverse(case.pin_material(joint).allowable))
+        for outcome in bearing_outcomes(case, "push", "eyes", case.checks["eyes"], reactions):
+            least["eyes", outcome.link].append(outcome.value)
+    for key, bands in least.items():
+        pose = int(np.argmin([band.value for band in bands]))
+        value = found[key].value
+        assert (value.value, value.low) == pytest.approx((bands[pose].value, bands[pose].low), rel=1e-6)
+        assert f"at crank = {40.0 + 15.0 * pose:.5g} deg" in found[key].reason
+
+
+def test_no_joint_passes_where_poses_were_left_out(path):
+    moved = solve_case_motion(read_case(path, ['checks.eyes={type="bearing", minimum=0.001}']))
+    every = np.ones(25, dtype=bool)
+    assert {c.verdict for c in envelope_outcomes(moved, {}, every)} == {Verdict.PASS}
+    every[3] = False
+    assert {c.verdict for c in envelope_outcomes(moved, {}, every)} == {Verdict.UNDECIDED}
 
 
 def test_a_dead_point_of_the_drive_leaves_the_verdict_open(path):
@@ -300,6 +357,8 @@ def test_curves_and_record_tell_the_same(result, tmp_path):
         )
         assert crank == pytest.approx(40.0)
     assert told["verdict"] == result.verdict.value
+    assert "small enough for a factorisation" in told["links"]["rocker"]["solver_reason"]
+    assert 0.0 <= told["links"]["rocker"]["solver_error"] < 1e-8
 
 
 def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch):

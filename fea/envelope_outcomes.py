@@ -1,0 +1,144 @@
+"""From a motion to verdicts: links and their fatigue, pins, bearing and buckling, each at its worst pose."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.band import Band
+from fea.bearing_check import weakest_eye
+from fea.buckling_check import LEAST_LINEAR, SECOND_ORDER
+from fea.buckling_check import NAME as BUCKLING
+from fea.buckling_history import factors_over_motion
+from fea.envelope_result import LinkEnvelope
+from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from fea.link_history import LinkHistory
+from fea.outcomes import least_safety_factor, reason_for
+from fea.pins import stress_of
+from fea.verdict import BUCKLING_FACTOR, PIN, SAFETY_FACTOR, CheckOutcome, Verdict, at_least
+from loads.case_motion import CaseMotion
+from loads.check_spec import BearingCheck, PinCheck, SafetyFactorCheck
+
+FATIGUE_STRESS = "fatigue, stress"
+FATIGUE_LIFE = "fatigue, life"
+"""Fatigue strength over stress, and life over the repetitions that are wanted."""
+FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck)
+"""Checks of the case that are decided over the motion."""
+
+
+def envelope_outcomes(
+    moved: CaseMotion, links: Mapping[str, LinkEnvelope], evaluated: NDArray[np.bool_]
+) -> list[CheckOutcome]:
+    """Return the outcomes of links, pins, bearing and fatigue; no link or joint passes where poses were left out.
+
+    Raises ``CaseError`` where neither check nor material states a limit, or a pin has no diameter.
+    """
+    case, complete = moved.case, bool(evaluated.all())
+    found = []
+    for name, check in case.all_checks.items():
+        if isinstance(check, SafetyFactorCheck):
+            for link in (x for x in check.links or case.checked_links if x in links):
+                limit = least_safety_factor(name, check.minimum, case.material_of(link), link)
+                for title, load_case in links[link].load_cases.items():
+                    outcome = _outcome(
+                        name, link, title, SAFETY_FACTOR, load_case.safety_factor, limit, complete=complete
+                    )
+                    if not load_case.known and load_case.discretisation is not None:
+                        outcome = replace(outcome, reason=load_case.discretisation.sentence)
+                    found.append(outcome)
+        elif isinstance(check, PinCheck | BearingCheck):
+            found += _joints(moved, name, check, evaluated)
+    for link, envelope in links.items():
+        for title, load_case in envelope.load_cases.items():
+            fatigue = load_case.fatigue
+            if fatigue is None:
+                continue
+            if fatigue.strength is not None:
+                factor = fatigue.stress.inverse(fatigue.strength)
+                found.append(_outcome("fatigue", link, title, FATIGUE_STRESS, factor, STRESS_FACTOR))
+            if fatigue.repetitions is not None:
+                share = _scaled(fatigue.repetitions, 1.0 / fatigue.wanted)
+                found.append(_outcome("fatigue", link, title, FATIGUE_LIFE, share, LIFE_FACTOR))
+    return found
+
+
+def _joints(
+    moved: CaseMotion, name: str, check: PinCheck | BearingCheck, evaluated: NDArray[np.bool_]
+) -> Iterator[CheckOutcome]:
+    """Outcome of every joint at the pose of its largest force: all its stresses are in proportion to that force."""
+    case, complete = moved.case, bool(evaluated.all())
+    for joint in check.joints or case.pinned_joints:
+        for title, solved in moved.forces.items():
+            size = np.where(evaluated, np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
+            pose = int(np.argmax(size))
+            force = float(size[pose])
+            if isinstance(check, BearingCheck):
+                eye, factor = weakest_eye(case, name, joint, force)
+                limit, where = check.limit, f"bearing on the eye of {eye} under {force:.3g} N"
+            else:
+                material = case.pin_material(joint)
+                factor = stress_of(case, joint, force).equivalent.inverse(material.allowable)
+                limit = least_safety_factor(name, check.minimum, material, f"{PIN}{joint}")
+                where = f"under {force:.3g} N"
+            outcome = _outcome(name, f"{PIN}{joint}", title, SAFETY_FACTOR, factor, limit, complete=complete)
+            yield replace(outcome, reason=f"{where} at {_when(moved, pose)}: {outcome.reason}")
+
+
+def column_outcomes(
+    moved: CaseMotion, loaded: Mapping[str, Sequence[LinkHistory]], evaluated: NDArray[np.bool_]
+) -> Iterator[CheckOutcome]:
+    """Yield the least buckling factor of every link that is compressed at some pose, and where it is."""
+    case, complete = moved.case, bool(evaluated.all())
+    for link, histories in loaded.items():
+        material = case.material_of(link)
+        softest = min((material.youngs_modulus, *(material.youngs_modulus_range or ()))) / material.youngs_modulus
+        for history in histories:
+            factors = np.where(evaluated, factors_over_motion(case, link, history), np.inf)
+            pose = int(np.argmin(factors))
+            factor = float(factors[pose])
+            if math.isinf(factor):
+                continue
+            band = Band(
+                value=factor,
+                low=softest * factor / LEAST_LINEAR,
+                high=factor,
+                holds=("the modulus", "bending that grows with compression, which linear stress leaves out"),
+            )
+            outcome = _outcome(BUCKLING, link, history.load_case, BUCKLING_FACTOR, band, 1.0, complete=complete)
+            reason = f"{factor:.3g} times the compression at {_when(moved, pose)} buckles it"
+            if outcome.verdict is Verdict.UNDECIDED:
+                reason += f"; {outcome.reason}"
+            elif factor < SECOND_ORDER and outcome.verdict is Verdict.PASS:
+                reason += f"; bending is up to {1.0 / (1.0 - 1.0 / factor):.3g} times that of linear theory"
+            yield replace(outcome, reason=reason)
+
+
+def _when(moved: CaseMotion, pose: int) -> str:
+    return f"{moved.motion.coordinate} = {math.degrees(float(moved.motion.angles[pose])):.5g} deg"
+
+
+def _scaled(band: Band, factor: float) -> Band:
+    return Band(value=factor * band.value, low=factor * band.low, high=factor * band.high, holds=band.holds)
+
+
+def _outcome(
+    name: str, link: str, load_case: str, quantity: str, value: Band, limit: float, *, complete: bool = True
+) -> CheckOutcome:
+    verdict = at_least(value, limit)
+    reason = reason_for(value, limit, verdict)
+    if verdict is Verdict.PASS and not complete:
+        verdict = Verdict.UNDECIDED
+        reason = "poses near a dead point of the driven link were left out, where its torque grows without bound"
+    return CheckOutcome(
+        name=name,
+        link=link,
+        load_case=load_case,
+        quantity=quantity,
+        unit="",
+        value=value,
+        limit=limit,
+        verdict=verdict,
+        reason=reason,
+    )
