@@ -21,7 +21,7 @@ from fea.corotational import (
     buckling_factor,
     solve_large_displacement,
 )
-from fea.cut_free import link_loads
+from fea.cut_free import in_slot, link_loads
 from fea.frame import FrameSolution, solve_frame
 from fea.joint_forces import JointForces
 from fea.link_loads import LinkLoads
@@ -137,8 +137,8 @@ def examine(
         points=frame.at_points(solution.displacements),
         links={},
         sentence=(
-            f"the linear frame moves by at most {linear:.3g} mm ({where}), {linear / size:.2%} of the span of "
-            f"{size:.4g} mm: the undeformed pose is good enough (limit {LARGE:.0%})"
+            f"the linear frame moves by at most {linear:.3g} mm ({where}), {100.0 * linear / size:.3g} % of the span "
+            f"of {size:.4g} mm: the undeformed pose is good enough (limit {100.0 * LARGE:g} %)"
         ),
     )
     if linear <= LARGE * size and factor >= LEAST_FACTOR:
@@ -160,9 +160,11 @@ def _deformed(
     loads: Sequence[Load],
     masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
-    far = f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {small.share:.2%} of the span of "
+    far = (
+        f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {100.0 * small.share:.3g} % of the span of "
+    )
     near = f"the linear frame buckles at {small.buckling:.3g} times the load, below {LEAST_FACTOR:g}"
-    lead = f"{far}{small.span:.4g} mm, above {LARGE:.0%}" if small.share > LARGE else near
+    lead = f"{far}{small.span:.4g} mm, above {100.0 * LARGE:g} %" if small.share > LARGE else near
     lead = f"{lead}: the linear answer is not valid; in large displacement "
     try:
         found = solve_large_displacement(
@@ -236,7 +238,26 @@ def _on_deformed_shape(
         point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
         for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
     }
-    return bent(link_loads(title, link, body, reactions, loads, axes), moved)
+    return in_slots(bent(link_loads(title, link, body, reactions, loads, axes), moved), body, link)
+
+
+def in_slots(loads: LinkLoads, body: Body, link: str) -> LinkLoads:
+    """Return the loads with every pin in a slot at the place to which it has slid, pushing across the slot alone.
+
+    On a bent link a slot is not parallel to the chord; what the pin's force has along it is left to ``balanced``.
+    Raises ``CaseError`` where a pin has slid out of its slot.
+    """
+    pins = []
+    for pin in loads.pins:
+        if pin.slotted:
+            across, moment = pin.wrench[1], pin.wrench[5]
+            slid = moment / across if abs(across) > NOTHING * float(np.linalg.norm(pin.wrench[:3])) else 0.0
+            own = next(p for p in body.pins if p.name == pin.name)
+            x = in_slot(own, np.array([pin.centre[0] + slid]), link)[0]
+            wrench = np.array([0.0, across, 0.0, pin.wrench[3], 0.0, 0.0])
+            pin = replace(pin, centre=np.array([x, *pin.centre[1:]]), wrench=wrench)
+        pins.append(pin)
+    return replace(loads, pins=tuple(pins))
 
 
 def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
@@ -269,7 +290,7 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
 
 
 def balanced(loads: LinkLoads, mass: PartMass | None, whole: float = 0.0) -> LinkLoads:
-    """Return the loads of a link with what they leave unbalanced taken by the pin with the largest force.
+    """Return the loads of a link with what they leave unbalanced taken by the pin (in no slot) with the largest force.
 
     Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Where all on the link
     is but ``NOTHING`` of the ``whole`` load [N], it is what the iteration left, and nothing acts. Raises
@@ -311,7 +332,8 @@ def balanced(loads: LinkLoads, mass: PartMass | None, whole: float = 0.0) -> Lin
             f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
             "stiffen the link"
         )
-    strongest = max(range(len(loads.pins)), key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
+    takes = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
+    strongest = max(takes, key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
     pins = list(loads.pins)
     taken = shifted(-total, -pins[strongest].centre)
     pins[strongest] = replace(pins[strongest], wrench=pins[strongest].wrench + taken)

@@ -1,5 +1,6 @@
 """When a displacement is large, and what acts on each link on the deformed shape."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,11 +11,12 @@ from fea.check import check_case
 from fea.corotational import solve_large_displacement
 from fea.cut_free import beam_loads
 from fea.joint_forces import joint_forces
-from fea.large_displacement import LARGE, SUBDIVISIONS, balanced, bent, examine, span
+from fea.large_displacement import LARGE, SUBDIVISIONS, balanced, bent, examine, in_slots, span
 from fea.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
 from fea.linkage_frame import build_frame
 from fea.verdict import Verdict
-from geometry.errors import CannotRunError
+from geometry.errors import CannotRunError, CaseError
+from geometry.part import Pin
 from loads.actions import actions
 from loads.case_file import read_case
 
@@ -162,3 +164,19 @@ def test_what_has_no_frame_is_not_looked_into():
     found = examine(case.model_copy(update={"joints": case.joints | {"B": slot}}), "weight", forces, loads, {})
     assert (found.state, found.held) == ("unknown", 1.0)
     assert "the frame is a mechanism" in found.sentence
+
+
+def test_a_pin_that_has_slid_pushes_across_its_slot():
+    """8 N across, 4 N mm about where it stood: it has slid by 0.5 mm, and the other pin takes the 0.2 N along."""
+    slot = PinLoad(
+        name="s", centre=np.array([30.0, 0, 0]), diameter=2.0, wrench=np.array([0.2, 8, 0, 1, 0, 4.0]), slotted=True
+    )
+    other = bar(("a", 0, [-0.2, -8, 0, -1, 0, -244])).pins
+    body = SimpleNamespace(pins=[Pin(name="s", x=30.0, y=0.0, diameter=2.0, slot=3.0)], ends=())
+    found = in_slots(LinkLoads(name="one", pins=(*other, slot)), body, "lever")
+    assert found.pins[0] is other[0]
+    assert found.pins[1].centre == pytest.approx([30.5, 0, 0])
+    assert found.pins[1].wrench == pytest.approx([0, 8, 0, 1, 0, 0])
+    assert balanced(found, None).pins[0].wrench == pytest.approx([0, -8, 0, -1, 0, -244])
+    with pytest.raises(CaseError, match="lengthen the slot"):
+        in_slots(LinkLoads(name="one", pins=(replace(slot, wrench=np.array([0, 1.0, 0, 0, 0, 4])),)), body, "lever")
