@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from fea.check import check_case
+from fea.link_history import link_histories
 from fea.motor_check import motor_outcomes
 from fea.verdict import Verdict
-from geometry.ornithopter import OrnithopterRules
+from geometry.ornithopter import OrnithopterRules, variants
 from geometry.pose import freedom
 from geometry.wing_power import electrical_power, inertial_power, rod_inertia
 from loads.actions import PartMass
@@ -17,6 +18,7 @@ from loads.case_motion import solve_case_motion
 from loads.inertia import acting_loads, with_carried
 from loads.kinetostatics import solve_kinetostatics
 from loads.masses import part_masses
+from loads.ornithopter_case import ornithopter_case
 from loads.statics import solve_statics
 
 RPM = math.pi / 30.0
@@ -41,6 +43,38 @@ def test_dimensions_follow_the_rules_of_the_source(case) -> None:
     assert case.parts["lever"].thickness == sizes.lever_thickness
     assert case.parts["rod"].thickness == sizes.link_thickness
     assert case.parts["rod"].eye_diameter == sizes.hole_diameter + 2.0 * sizes.thick_wall
+
+
+def test_the_moving_parts_are_those_of_the_rules(case) -> None:
+    """Crank disc, rod and slotted levers; the case's slots end at hundredths of a millimetre."""
+    for name, link in {"crank": "crank", "rod": "rod", "lever": "lever-left"}.items():
+        ours, rule = case.body(link), OrnithopterRules().bodies("resin-405nm")[name]
+        assert ours.part == rule.part
+        for pin, wanted in zip(ours.pins, rule.pins, strict=True):
+            assert (pin.x, pin.slot, pin.diameter) == pytest.approx((wanted.x, wanted.slot, wanted.diameter), abs=0.011)
+        assert ours.ends == rule.ends
+
+
+@pytest.mark.parametrize("name", sorted(variants()))
+def test_the_three_variants_run_at_both_speeds(name: str) -> None:
+    """Check by hand, motion and joint forces of the variants that the source shows, with their own parts."""
+    rules = variants()[name]
+    variant = ornithopter_case(rules)
+    assert variant.body("lever-right").part == rules.bodies("resin-405nm")["lever"].part
+    assert variant.body("crank").part.diameter == 2.0 * rules.dimensions().crank_disc_radius
+    turned = solve_case_motion(variant)
+    closed = rules.drive().motion(turned.motion.angles - math.pi / 2.0, 150.0 * RPM)
+    np.testing.assert_allclose(-turned.motion.angle("lever-right"), closed.wing_angle, atol=1e-9)
+    for link in ("lever-right", "lever-left"):
+        histories = {history.load_case: history for history in link_histories(turned, link)}
+        np.testing.assert_allclose(-histories["slow"].places["slot"], closed.slot_position, atol=1e-9)
+        slow, fast = (np.abs(histories[speed].pins["slot"][:, 1]).max() for speed in ("slow", "fast"))
+        assert fast > 20.0 * slow
+    result = check_case(variant, fidelity="beam")
+    for load_case in ("slow", "fast"):
+        assert all(link.safety_factor.low > 6.0 for link in result.load_cases[load_case].links.values())
+        said = " ".join(result.load_cases[load_case].links["lever-right"].notes)
+        assert "by hand the slot at slot bears" in said
 
 
 def test_half_joints_leave_one_freedom(case) -> None:
