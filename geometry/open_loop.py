@@ -12,6 +12,9 @@ Real = NDArray[np.float64]
 
 _CLOSED = 1e-6
 """Largest gap of a loop that counts as closed here, as a share of the longest link."""
+_ITERATIONS = 40
+"""Of one search. Those that get anywhere take fewer; where the constraints leave no freedom the line search stalls, and
+then every iteration costs eleven evaluations."""
 
 
 def open_loop(closure: LoopClosure, free: NDArray[np.bool_], attempts: Sequence[Real]) -> tuple[str, float] | None:
@@ -67,7 +70,7 @@ def _narrowed(
         jac=True,
         method="SLSQP",
         constraints=[constraint] if closed else [],
-        options={"ftol": 1e-15, "maxiter": 200},
+        options={"ftol": 1e-15, "maxiter": _ITERATIONS},
     )
     if closed and np.max(np.abs(rows(found.x, closed)[0])) > _CLOSED:
         return None

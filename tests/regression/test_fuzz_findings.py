@@ -1,5 +1,6 @@
 """What fuzzing found: symptom, cause, and a stable control beside each."""
 
+import time
 import tomllib
 
 import numpy as np
@@ -53,3 +54,15 @@ def test_a_published_zero_with_a_huge_exponent(digits: str) -> None:
     found = read_printed("0e3 N")
     assert found is not None
     assert (found.number, found.half) == (0.0, 500.0)
+
+
+def test_why_a_linkage_does_not_close_is_found_in_a_moment() -> None:
+    """A slot made a plain joint left no freedom: the search for the open loop took 26,000 evaluations, 1.4 s.
+
+    The bound on the search's iterations leaves a third of that.
+    """
+    begun = time.process_time()
+    overrides = ['joints.slot-right.type="revolute"', 'links.crank.points.A=["0 mm", "0 mm"]']
+    with pytest.raises(CaseError, match="mobility 0"):
+        read_case("ornithopter", overrides)
+    assert time.process_time() - begun < 1.0
