@@ -32,8 +32,8 @@ def internal_force_diagram(beam: BeamCheck, points: dict[str, float]) -> bytes:
     moment = max(float(np.abs(v).max()) for v in (beam.t, beam.m_y, beam.m_z))
     scale = max(force, moment / length)
     for kind, label, values, size in (
-        ("V", "V out of plane [N]", beam.v_z, scale),
-        ("M", "M out of plane [N·mm]", beam.m_y, scale * length),
+        ("V", "V out of\nplane [N]", beam.v_z, scale),
+        ("M", "M out of\nplane [N·mm]", beam.m_y, scale * length),
         ("T", "torque [N·mm]", beam.t, scale * length),
     ):
         if np.abs(values).max() > _NIL * size:

@@ -19,7 +19,19 @@ from reports.mechanism import design_of
 from reports.meshes import solver_sentence
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
 from reports.record import alula_version, worst_load_case
-from reports.wording import AGREEMENT, band, checks_of, fixed, headline, joined, number, percent, plain, turning
+from reports.wording import (
+    AGREEMENT,
+    band,
+    checks_of,
+    fixed,
+    headline,
+    joined,
+    number,
+    percent,
+    plain,
+    sentence,
+    turning,
+)
 
 MEANING = {
     Verdict.PASS: "In this pose and under these loads every checked link keeps the margin that was asked for, "
@@ -89,6 +101,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         "band": band,
         "percent": percent,
         "joined": joined,
+        "sentence": sentence,
         "solved": solver_sentence,
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
@@ -133,10 +146,10 @@ def data_uri(picture: bytes) -> str:
 
 
 def _bands(result: CheckResult) -> tuple[str, ...]:
-    """What the bands of this result hold, each once."""
+    """What the bands of this result hold, each once and without particulars."""
     return tuple(
         dict.fromkeys(
-            held
+            held.partition(" (")[0]
             for case in result.load_cases.values()
             for link in case.links.values()
             for held in link.safety_factor.holds

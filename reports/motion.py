@@ -146,7 +146,7 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
             else "without inertia"
         )
         print(f"\nLoad case {load_case} ({how})")
-        print(f"  drive torque on {drive['link']} at {drive['joint']}: {_line(row['drive_torque'], 'N mm')}")
+        print(f"  drive torque on {drive['link']} at {drive['joint']}: {_line(row['drive_torque'], 'N·mm')}")
         if row["joints"] is None:
             print("  joint forces do not follow from equilibrium, since the linkage is redundant")
             continue

@@ -67,7 +67,7 @@ def angles_figure(result: CaseMotion) -> Figure:
 def torque_figure(result: CaseMotion) -> Figure:
     """Drive torque over the coordinate's angle, one line per load case."""
     motion = result.motion
-    figure, axes = _over_angle(motion, f"drive torque on {result.drive.link} [N mm]")
+    figure, axes = _over_angle(motion, f"drive torque on {result.drive.link} [N·mm]")
     for i, (load_case, torque) in enumerate(result.torque.items()):
         _line(axes, motion, _broken(result, torque), load_case, i)
     axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)

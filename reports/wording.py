@@ -4,7 +4,7 @@ import math
 
 from fea.band import Band
 from fea.result import CheckResult
-from fea.verdict import CheckOutcome, Verdict
+from fea.verdict import LOAD_SHARE, CheckOutcome, Verdict
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _ROUNDING = 1e-12
@@ -52,7 +52,8 @@ def band(value: Band, digits: int = 3) -> str:
 
 def percent(ratio: float) -> str:
     """Return a ratio as a signed percentage."""
-    return f"{100.0 * ratio:+.1f} %".replace("-", "−")
+    text = f"{100.0 * ratio:+.1f}"
+    return f"{text[1:] if float(text) == 0.0 else text} %".replace("-", "−")
 
 
 def joined(words: tuple[str, ...] | list[str]) -> str:
@@ -95,17 +96,27 @@ def headline(result: CheckResult) -> str:
         nearest = _nearest(result, worst, "Nearest to its limit")
         return f"Pass: {total} {kept} met over the whole of every error band. {nearest}"
     broken = [c for c in checks if c.verdict is result.verdict]
-    names = joined(list(dict.fromkeys(f"{c.quantity} of {c.link}" for c in broken)))
+    names = joined(list(dict.fromkeys(_named(c) for c in broken)))
     if result.verdict is Verdict.FAIL:
         missed = (
             "is missed over its whole error band" if len(broken) == 1 else "are missed over their whole error bands"
         )
+        worst = min(broken, key=tightness)
         return f"Fail: {len(broken)} of {len(checks)} checks {missed}: {names}. {_nearest(result, worst, 'Worst')}"
     verb = "is" if len(broken) == 1 else "are"
     return (
         f"Undecided: {len(broken)} of {len(checks)} checks {verb} left open: {names}. "
         f"{broken[0].quantity.capitalize()} of {broken[0].link}: {broken[0].reason}."
     )
+
+
+def _named(check: CheckOutcome) -> str:
+    return f"{check.quantity} {'by' if check.quantity == LOAD_SHARE else 'of'} {check.link}"
+
+
+def sentence(text: str) -> str:
+    """Return a text that begins with a capital and ends with a full stop."""
+    return f"{text[:1].upper()}{text[1:].rstrip('.')}."
 
 
 def _nearest(result: CheckResult, check: CheckOutcome, lead: str) -> str:

@@ -146,7 +146,7 @@ def test_forces_out_of_the_plane_get_panels_of_their_own(result, sheets):
     )
     diagrams.internal_force_diagram(check_beam(loads, section, 40.0), {"A": 0.0})
     labels = [axes.get_ylabel() for axes in sheets[0].axes]
-    assert labels[3:] == ["V out of plane [N]", "M out of plane [N·mm]", "torque [N·mm]"]
+    assert labels[3:] == ["V out of\nplane [N]", "M out of\nplane [N·mm]", "torque [N·mm]"]
 
 
 def test_the_worst_load_case_is_drawn(result):

@@ -99,7 +99,7 @@ def test_it_stands_without_pictures(result):
         "Poisson's ratio ν 0.38 assumed",
         "The bands here hold: pin pressure over 180° and over 90°",
         "2 elements were straightened",
-        "the pose is close to a dead point",
+        "The pose is close to a dead point",
         "The load at H enters over the last 5 mm of the tube.",
         "solid models 1.5 s",
         "right-hand sides: small enough for a factorisation), with a relative error below 1e-09",

@@ -180,7 +180,7 @@ def test_a_dead_point_of_the_drive_is_told(wing, capsys):
     print_motion(wing, "owl-wing-static", json=False)
     out = capsys.readouterr().out
     assert "AE turns back at GF = 213.5068 deg" in out
-    assert "drive torque on AE at A: -130.6 -> -19.9 N mm" in out
+    assert "drive torque on AE at A: -130.6 -> -19.9 N·mm" in out
     found = record(wing, "owl-wing-static")
     assert found["load_cases"]["weight"]["drive_torque"]["largest"] is None
     assert found["drive"]["dead_points"] == pytest.approx([213.50682849])

@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import pytest
@@ -72,6 +73,22 @@ def test_the_headline_of_a_fail_names_what_is_missed(result, changed):
     assert (
         "Worst: the displacement of link CH under load case weight is 12.5 mm, where at most 10 mm is asked for" in text
     )
+
+
+def test_the_worst_of_a_fail_is_one_that_failed(result, changed):
+    def change(check):
+        unknown = Band(value=math.nan, low=math.nan, high=math.nan, holds=())
+        if check.link == "AE":
+            return replace(check, value=unknown, verdict=Verdict.UNDECIDED, reason="its peak has no limit")
+        missed = check.link == "CH" and check.quantity == "displacement" and check.load_case == "weight"
+        return replace(check, value=Band.exact(12.5), verdict=Verdict.FAIL) if missed else check
+
+    assert "Worst: the displacement of link CH" in wording.headline(changed(change))
+
+
+def test_percentages_and_sentences():
+    assert [wording.percent(x) for x in (0.0123, -0.0123, -1e-5, 1e-5)] == ["+1.2 %", "−1.2 %", "0.0 %", "0.0 %"]
+    assert wording.sentence("load case a: it holds") == wording.sentence("Load case a: it holds.")
 
 
 def test_the_headline_of_an_open_answer_gives_the_reason(result, changed):
