@@ -132,7 +132,7 @@ def test_flanks_carry_the_mean_moment_as_a_pair_of_forces(solved, x: float, plac
 
 @pytest.mark.parametrize("x", PLACES)
 def test_how_wide_the_pin_pushes_is_worth_little(solved, x: float) -> None:
-    """Towards a line the tension grows with the square of what is left of the width: the narrow law is within 0.5 %."""
+    """Towards a line the tension grows with the square of what is left of the width: the narrow law is within 0.7 %."""
     half, quarter, eighth = (
         tension_at_slot(solved[f"{x:g}", *law])
         for law in ((PressureLaw, 180), (PressureLaw, 90), (Eighth, 90))
