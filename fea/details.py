@@ -48,7 +48,7 @@ def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
     """Say what hand calculation found at the details, and where its section is but an estimate."""
     said = [f"by hand {d.name} bears {d.stress.equivalent:.3g} MPa at x = {d.x:.3g} mm ({d.remark})" for d in found]
     if any(pin.slot > 0.0 for pin in body.pins):
-        said.append("in a solid a pin in a slot pushes on half, and for the band on a quarter of its diameter of a flank")
+        said.append("as a solid a pin pushes on half, and for the band on a quarter of its diameter, of a slot's flank")
     if isinstance(body.part, Disc):
         said.append(
             "hand calculation takes the disc for a beam of its narrowest net section between its holes: an estimate, "
