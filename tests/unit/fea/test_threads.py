@@ -8,9 +8,14 @@ import time
 import numpy as np
 import pytest
 from threadpoolctl import threadpool_info
+from typer.testing import CliRunner
 
+from fea.check import check_case
 from fea.threads import VARIABLES, bounded, bounded_run
 from geometry import child
+from geometry.errors import CaseError
+from loads.case_file import read_case
+from reports.cli import app
 
 
 def threads_of_libraries() -> set[int]:
@@ -52,6 +57,38 @@ def test_a_whole_run_is_bounded_by_its_keyword_or_default(options, seen):
         return os.environ["OMP_NUM_THREADS"]
 
     assert run(**options) == seen
+
+
+@pytest.mark.parametrize(
+    ("stage", "arguments"),
+    [
+        ("fea.check.solve_case_statics", ("check", "--threads", "1")),
+        ("fea.envelope.solve_case_motion", ("envelope", "--threads", "1")),
+        ("loads.case_motion.solve_case_motion", ("motion", "--threads", "1")),
+        ("fea.claims.check_claims", ("claims", "--threads", "1")),
+    ],
+)
+def test_commands_are_bounded_as_a_whole(monkeypatch, stage, arguments):
+    """Their first stages already are; the solver is the last of them."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "4")
+    seen = []
+
+    def first_stage(*_, **__):
+        seen.append((os.environ["OMP_NUM_THREADS"], threads_of_libraries()))
+        raise CaseError("enough seen")
+
+    monkeypatch.setattr(stage, first_stage)
+    ended = CliRunner().invoke(app, [arguments[0], "owl-wing-static", *arguments[1:]])
+    assert isinstance(ended.exception, CaseError)
+    assert seen == [("1", {1})]
+
+
+def test_a_check_is_bounded_without_the_command(monkeypatch):
+    seen = []
+    monkeypatch.setattr("fea.check.solve_case_statics", lambda *_: seen.append(threads_of_libraries()) or 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        check_case(read_case("owl-wing-static"), threads=1)
+    assert seen == [{1}]
 
 
 def test_a_failed_run_gives_back_its_bound():
