@@ -1,5 +1,6 @@
 """Cutting a link free: all that acts on it, in its own frame, for the beam and for the solid."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ from fea import beam
 from fea.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
 from geometry.body_rules import extent, hand_section
 from geometry.errors import CaseError
-from geometry.part import Body, Pin
+from geometry.part import Body, Disc, Pin
 from geometry.pose import Pose
 from loads import applied
 from loads.actions import PartMass
@@ -133,12 +134,29 @@ def _on_beam(pin: PinLoad, foot: tuple[float, float] | None) -> beam.PointLoad:
     return beam.PointLoad(point=start, wrench=np.concatenate([pin.wrench[:3], moment]))
 
 
+def _eyes(body: Body, density: float, per_length: float) -> list[tuple[float, float]]:
+    """What each eye on the axis weighs more than the tube or bar that it stands for: station [mm], mass [tonne]."""
+    part = body.part
+    if isinstance(part, Disc):
+        return []
+    first, last = extent(body)
+    radius, found = part.eye_diameter / 2.0, []
+    for pin in body.pins:
+        if pin.y == 0.0:
+            volume = (math.pi * radius**2 + part.eye_diameter * pin.slot) * part.eye_thickness
+            volume -= (math.pi * pin.diameter**2 / 4.0 + pin.diameter * pin.slot) * part.eye_thickness
+            reach = radius + pin.slot / 2.0
+            replaced = min(pin.x + reach, last) - max(pin.x - reach, first)
+            found.append((pin.x, density * volume - per_length * replaced))
+    return found
+
+
 def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | None) -> beam.BeamLoads:
     """The same loads on the link's axis.
 
     A body force is spread along the tube or bar between the link's ends by its mass per length
-    (``density`` in tonne/mm³); what eyes, holes and fillets add to the mass, or shift of its
-    centroid, stands as a point load at each end.
+    (``density`` in tonne/mm³); what an eye adds stands as a point load at its pin, and what holes and
+    fillets change of the mass, or of its centroid, as one at each end.
     """
     feet = {pin.name: pin.foot for pin in body.pins}
     points = [_on_beam(pin, feet[pin.name]) for pin in loads.pins]
@@ -154,20 +172,23 @@ def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | No
     if loads.bodies and mass is not None:
         first, last = extent(body)
         per_length = hand_section(body).area * density
-        excess = mass.mass - per_length * (last - first)
+        lumps = _eyes(body, density, per_length)
+        excess = mass.mass - per_length * (last - first) - sum(lump for _, lump in lumps)
         moment = mass.mass * mass.centroid[0] - per_length * (last**2 - first**2) / 2.0
+        moment -= sum(x * lump for x, lump in lumps)
         at_last = (moment - excess * first) / (last - first)
+        lumps += [(first, excess - at_last), (last, at_last)]
         for load in loads.bodies:
             ends = [_per_mass(load, x) for x in (first, last)]
             lines.append(beam.LineLoad(start=first, end=last, first=per_length * ends[0], last=per_length * ends[1]))
-            for x, lump, force in ((first, excess - at_last, ends[0]), (last, at_last, ends[1])):
-                wrench = np.concatenate([lump * force, np.zeros(3)])
+            for x, lump in lumps:
+                wrench = np.concatenate([lump * _per_mass(load, x), np.zeros(3)])
                 points.append(beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=wrench))
             # The centroid's distance from the axis is felt as a moment, and so is the width of eyes and tube.
             off_axis = np.cross([0.0, mass.centroid[1], 0.0], mass.mass * load.specific_force)
             spread = per_length * (last - first) ** 3 / 12.0
             on_line = spread + per_length * (last - first) * ((first + last) / 2.0 - mass.centroid[0]) ** 2
-            on_line += (excess - at_last) * (first - mass.centroid[0]) ** 2 + at_last * (last - mass.centroid[0]) ** 2
+            on_line += sum(lump * (x - mass.centroid[0]) ** 2 for x, lump in lumps)
             off_axis[2] -= (mass.inertia - on_line) * load.angular_acceleration
             points.append(
                 beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=np.concatenate([np.zeros(3), off_axis]))

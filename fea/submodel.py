@@ -2,7 +2,8 @@
 
 By Saint-Venant's principle what is left of an eye's or hole's disturbance a diameter or two away is small (Timoshenko &
 Goodier, Theory of Elasticity, 3rd ed., art. 18): the beam's N, V, M and T, spread over the last stretch of the
-submodel, then stand for the rest of the link.
+submodel, then stand for the rest of the link. Of weight and inertia the beam knows those of its section, with the rest
+of eyes and holes as lumps at its ends; what the true mass of the piece leaves open the last cut balances.
 """
 
 from collections.abc import Sequence
@@ -13,8 +14,11 @@ import numpy as np
 from fea.beam import BeamCheck
 from fea.link_loads import EndLoad, LineLoad, LinkLoads
 from fea.refinement import LinkTask
+from fea.resultant import resultant
 from geometry.body_rules import extent, eye_reach, patch_span, section_width
+from geometry.mesh import MassProperties, mass_properties
 from geometry.part import Body, HoleRow, Pin, PlainEnd
+from loads.applied import shifted
 
 CLEAR = 1.5
 """Widths of plain section between an eye or hole and the loaded stretch at a cut."""
@@ -42,12 +46,10 @@ class Submodel:
 
 
 def eye_submodel(task: LinkTask, beams: Sequence[BeamCheck], pin: str, *, clear: float = CLEAR) -> Submodel | None:
-    """Cut the eye at a pin out of a link; None where the link leaves no room for a cut, or where weight acts.
+    """Cut the eye at a pin out of a link; None where the link leaves no room for a cut.
 
     beams   of the task's load cases, in their order
     clear   widths between the eye and the loaded stretch of a cut
-
-    Weight and inertia act in the volume, of which the beam knows the section's alone: such a link is solved whole.
     """
     place = next(p for p in task.body.pins if p.name == pin)
     return _submodel(task, beams, f"the eye at {pin}", (place,), place.x, eye_reach(task.body, place), clear)
@@ -70,8 +72,6 @@ def _submodel(
 ) -> Submodel | None:
     """Cut out what reaches that far from a station."""
     body = task.body
-    if any(loads.bodies for loads in task.loads):
-        return None
     before, after = (_cut(body, middle, reach, side, clear) for side in (-1, 1))
     if before is None or after is None:
         return None
@@ -93,16 +93,29 @@ def _submodel(
             pins=tuple(p for p in load.pins if p.name in pinned),
             couples=tuple(c for c in load.couples if c.pin in pinned),
             ends=(*(e for e in load.ends if e.name in names), *_cut_loads(beam, cuts, first)),
+            bodies=load.bodies,
             lines=tuple(_clipped(line, first, last) for line in load.lines if line.first < last and line.last > first),
         )
         for load, beam in zip(task.loads, beams, strict=True)
     )
+    if any(load.bodies for load in loads):
+        solid = mass_properties(part)
+        loads = tuple(_balanced(load, solid, task.density, cuts[-1][0]) for load in loads)
     near = clear / 2.0 * width + patch
     return Submodel(
         task=replace(task, body=part, loads=loads, line=(sides[0], sides[1]), displacement_limits=()),
         name=name,
         covered=(first + near if cut_first else first, last - near if cut_last else last),
     )
+
+
+def _balanced(loads: LinkLoads, solid: MassProperties, density: float, cut: str) -> LinkLoads:
+    """Return the loads with what they lack of balance added at a cut."""
+    rest = -resultant(loads, solid, density)
+    ends = tuple(
+        replace(end, wrench=end.wrench + shifted(rest, -end.point)) if end.name == cut else end for end in loads.ends
+    )
+    return replace(loads, ends=ends)
 
 
 def _cut(body: Body, middle: float, reach: float, side: int, clear: float) -> tuple[float, bool] | None:

@@ -1,14 +1,22 @@
 """An eye cut out of a link bears what it bears in the whole link, and what it bears when cut twice as far out."""
 
+from dataclasses import replace
+
 import eye_link
+import numpy as np
 import pytest
 
+from fea.beam import check_beam
+from fea.cut_free import beam_loads
+from fea.link_loads import BodyLoad, LinkLoads
 from fea.refinement import LinkTask
+from fea.resultant import resultant
 from fea.solid import solve_solid
 from fea.stress import stress_field
 from fea.submodel import CLEAR, eye_submodel, hole_submodel
-from geometry.mesh import MeshSettings, mesh_body
+from geometry.mesh import MeshSettings, mass_properties, mesh_body
 from geometry.part import HoleRow
+from loads.actions import PartMass
 from loads.bearing import WIDE
 
 MESH = MeshSettings(size=0.5, bore_elements=24, turn_elements=12, fillet_size=0.4, growth=0.5)
@@ -44,6 +52,31 @@ def test_an_eye_cut_out_bears_what_it_does_in_the_link():
     reference = peak(whole, *near.covered)
     assert peak(near.task, *near.covered) == pytest.approx(reference, rel=0.02)
     assert peak(far.task, *near.covered) == pytest.approx(reference, rel=0.02)
+
+
+def test_an_eye_under_weight_and_inertia_bears_what_it_does_in_the_link():
+    """Borne at both ends, swung about the first: the middle eye, cut on both sides, bends under the link's own mass."""
+    whole = eye_link.task()
+    solid = mass_properties(whole.body)
+    swung = BodyLoad(
+        specific_force=np.array([2e6, -9e7, 1e7]), about=np.zeros(3), angular_acceleration=8e5, angular_speed=900.0
+    )
+    acts = LinkLoads(name="swung", bodies=(swung,))
+    force, moment = np.split(resultant(acts, solid, whole.density), 2)
+    at_c = np.array([0.0, -moment[2] / 72.0, moment[1] / 72.0])
+    wrenches = {"A": np.array([*(-force - at_c), -moment[0], 0.0, 0.0]), "C": np.array([*at_c, 0.0, 0.0, 0.0])}
+    loads = replace(acts, pins=tuple(replace(p, wrench=wrenches.get(p.name, np.zeros(6))) for p in whole.loads[0].pins))
+    assert resultant(loads, solid, whole.density) == pytest.approx(np.zeros(6), abs=1e-9 * np.abs(moment).max())
+    mass = PartMass(
+        mass=solid.volume * whole.density, centroid=solid.centroid[:2], inertia=solid.inertia[2, 2] * whole.density
+    )
+    whole = replace(whole, loads=(loads,))
+    beam = check_beam(beam_loads(loads, whole.body, whole.density, mass), whole.body.part.section, 1.0)
+    cut = eye_submodel(whole, (beam,), "B")
+    assert cut is not None
+    own = resultant(cut.task.loads[0], mass_properties(cut.body), whole.density)
+    assert own == pytest.approx(np.zeros(6), abs=1e-9 * np.abs(moment).max())
+    assert peak(cut.task, *cut.covered) == pytest.approx(peak(whole, *cut.covered), rel=0.02)
 
 
 @pytest.mark.parametrize("along", ["y", "z"])

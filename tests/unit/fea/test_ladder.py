@@ -7,10 +7,12 @@ import eye_link
 import pytest
 
 from fea.calibration import calibrations
+from fea.eye_models import plan
 from fea.ladder import climb, decided_by_hand, hand_bands
 from fea.refinement import START, Effort
 from fea.spots import shoulder_factors, spots
 from geometry.part import HoleRow
+from loads.bearing import CONTACT_SHORTFALL
 
 
 def climbed(limit, **options):
@@ -43,6 +45,31 @@ def test_what_one_eye_leaves_open_its_submodel_decides():
     assert "holds the limit 18; submodels of the eye at B" in found.decision.why
     band = found.hands["mixed"].von_mises
     assert band.low < 7.07 < band.high < 18.0  # 7.07 MPa: the whole link on the mesh of test_submodel.py
+
+
+def test_holes_are_cut_out_unless_an_eyes_submodel_covers_them():
+    row = HoleRow(count=1, diameter="1 mm", first="27 mm", last="27 mm", along="y")
+    beside = HoleRow(count=1, diameter="1 mm", first="48 mm", last="48 mm", along="y")
+    task = eye_link.task(stretch=1.5, holes=(row, beside))
+    beam = eye_link.beam(task)
+    found = spots(task.body, task.loads[0], beam)
+
+    def cuts(*names, allowed=1e9):
+        return [c.name for c in plan(task, (beam,), found, lambda s: s.name in names, lambda cut: 1e3, allowed)]
+
+    assert cuts("hole at x = 27 mm of row 1") == ["the hole at x = 27 mm"]
+    assert cuts("hole at x = 48 mm of row 2", "the eye at B") == ["the eye at B"]
+    assert cuts("hole at x = 27 mm of row 1", "the plain section") == []
+    assert cuts("hole at x = 27 mm of row 1", "the eye at B", allowed=1.5e3) == []
+
+
+def test_contact_widens_the_hand_bands_of_eyes_alone():
+    task = eye_link.task()
+    band = hand_bands(task, task.loads[0], eye_link.beam(task))
+    factors = calibrations()["tube"].von_mises
+    for row in band.spots:
+        contact = 1.0 / (1.0 - CONTACT_SHORTFALL) if row.spot.kind == "eye" else 1.0
+        assert row.von_mises.high == pytest.approx(contact * factors[row.spot.kind].high * row.spot.estimate)
 
 
 def test_a_limit_within_the_band_is_not_decided_by_hand():
