@@ -2,7 +2,8 @@
 
 Every link with a part is a beam of its section along the x axis of its frame, at z = 0; a pin off the axis sits on
 a rigid arm. Links without a part are rigid. The link that the drive holds keeps its angle to the other link at the
-drive's joint, where the moment about z is the drive torque. In bonded linkages every pin carries all six components.
+drive's joint, where the moment about z is the drive torque; at a slider it keeps its place, and the force along the
+guide is the drive force. In bonded linkages every pin carries all six components.
 
 A pin in a slot stands at a station of its own of the slotted link. It presses on the slot's flanks: they take a force
 normal to the slot in the linkage's plane, and the moment about the slot of a pin that would tilt between them. It is
@@ -73,7 +74,7 @@ class LinkageFrame:
         joints = {}
         for name, joint in self.pose.linkage.joints.items():
             wrench = on_link[name].copy()
-            if self.held is not None and name == self.held.joint:
+            if self.held is not None and name == self.held.joint and not self.held.pushes(self.pose.linkage):
                 torque = float(wrench[5]) * (1.0 if joint.links[1] == self.held.link else -1.0)
                 wrench[5] = 0.0
             joints[name] = JointReaction(
@@ -84,13 +85,20 @@ class LinkageFrame:
         for name in joints:
             value[f"N{name}"] = float(slot_normal(self.pose, name) @ joints[name].wrench[:3])
             value[f"M:{name}"] = float(joints[name].wrench[5])
+        push = 0.0
+        if self.held is not None and self.held.pushes(self.pose.linkage):
+            across = slot_normal(self.pose, self.held.joint)
+            force = joints[self.held.joint].wrench
+            push = self.held.sign(self.pose.linkage) * float(across[1] * force[0] - across[0] * force[1])
+        value |= {"T": torque, "P": push}
         return Reactions(
             pose=self.pose,
             drive=self.held,
             system=system,
-            unknowns=np.array([torque if column == "T" else value[column] for column in system.columns]),
+            unknowns=np.array([value[column] for column in system.columns]),
             joints=joints,
             drive_torque=torque,
+            drive_force=push,
             residual=residual,
         )
 
@@ -142,7 +150,8 @@ def build_frame(
     places = np.array(builder.places)
     for name, joint in case.joints.items():
         held_here = held is not None and name == held.joint
-        dofs = ALL_DOFS if bonded else JOINT_DOFS[joint.type] | (TURNS if held_here else frozenset())
+        keeps = ALL_DOFS if joint.type == "slider" else TURNS
+        dofs = ALL_DOFS if bonded else JOINT_DOFS[joint.type] | (keeps if held_here else frozenset())
         first, second = builder.pins[name]
         if first is not None and second is not None:
             places[second] = places[first]

@@ -1,7 +1,8 @@
 """Following one branch of a linkage from a start pose, step by step, and refining poses in batches.
 
 The unknowns q of the loop closure G(q) = 0 become functions of one of them, the angle theta of the
-driven link. With J the Jacobian, J_f its columns of the other unknowns and J_c the driven one's,
+driven link (or the travel of a driven slider, measured in the longest link). With J the Jacobian,
+J_f its columns of the other unknowns and J_c the driven one's,
 
     J_f q_f' = -J_c,        J_f q_f'' = -Q(q')
 
@@ -28,7 +29,7 @@ Real = NDArray[np.float64]
 
 LONGEST_STEP = 0.1
 SHORTEST_STEP = 1e-8
-"""Steps of the driven angle [rad]; below the shortest one the branch has come to its end."""
+"""Steps of the driven angle [rad], or travel [longest link]; below the shortest one the branch has come to its end."""
 _AGREEMENT = 1e-3
 _SHARE = 0.1
 _ROUNDING = 1e-12
@@ -44,7 +45,7 @@ _RANK_TOLERANCE = 1e-12
 
 
 class DeadPointError(CaseError):
-    """The driven link cannot go on (or not in one way only) at ``angle`` [rad]."""
+    """The driven link cannot go on (or not in one way only) at ``angle`` [rad], or travel [mm] of a slider."""
 
     def __init__(self, sentence: str, angle: float) -> None:
         super().__init__(sentence)
@@ -53,15 +54,26 @@ class DeadPointError(CaseError):
 
 @dataclass(frozen=True)
 class DrivenClosure:
-    """The loop closure with the angle of one moving link prescribed."""
+    """The loop closure with the angle of one moving link prescribed, or (``slides``) the travel of a slider or slot."""
 
     closure: LoopClosure
     coordinate: str
+    slides: bool = False
 
     @cached_property
     def column(self) -> int:
-        """Column of the driven angle among the unknowns."""
-        return self.closure.linkage.moving.index(self.coordinate)
+        """Column of the driven angle or travel among the unknowns."""
+        moving = self.closure.linkage.moving
+        return len(moving) + self.closure.slots.index(self.coordinate) if self.slides else moving.index(self.coordinate)
+
+    @property
+    def size(self) -> float:
+        """Size by which the driven unknown is measured: 1 rad, or the longest link [mm]."""
+        return float(self.sizes[self.column])
+
+    def told(self, value: float) -> str:
+        """Return a driven angle or travel for people."""
+        return f"{_plain(value)} mm" if self.slides else f"{_plain(math.degrees(value))} deg"
 
     @cached_property
     def _free(self) -> NDArray[np.intp]:
@@ -100,7 +112,7 @@ class DrivenClosure:
         Raises ``numpy.linalg.LinAlgError`` exactly at a dead point.
         """
         matrix = self.jacobian(q)
-        first = self._solve(matrix, -matrix[..., self.column])
+        first = self._solve(matrix, -matrix[..., self.column]) / self.size
         first[..., self.column] = 1.0
         quadratic = self.closure.quadratic(q, first) / self.closure.linkage.longest
         return first, self._solve(matrix, -quadratic)
@@ -157,7 +169,8 @@ class Track:
             refined, settled = self.driven.correct(guess)
             if not settled or np.max(np.abs((refined - guess) / self.driven.sizes), initial=0.0) > _AGREEMENT:
                 raise CannotRunError(
-                    f"motion: a pose between {_deg(wanted[block].min())} and {_deg(wanted[block].max())} deg of "
+                    f"motion: a pose between {self.driven.told(wanted[block].min())} and "
+                    f"{self.driven.told(wanted[block].max())} of "
                     f"{self.driven.coordinate} could not be closed on the branch; keep the range away from dead points"
                 )
             out[block] = refined
@@ -203,7 +216,8 @@ def _chain(driven: DrivenClosure, start: Real, end: float) -> list[Node]:
     """Nodes from the start to the driven angle ``end``, in the order in which they are passed."""
     column = driven.column
     nodes = [_node(driven, start, end)]
-    step = LONGEST_STEP
+    longest, shortest = LONGEST_STEP * driven.size, SHORTEST_STEP * driven.size
+    step = longest
     while (left := end - nodes[-1][0][column]) != 0.0:
         here = nodes[-1]
         size = min(step, abs(left))
@@ -211,8 +225,8 @@ def _chain(driven: DrivenClosure, start: Real, end: float) -> list[Node]:
         new = _advance(driven, here, angle)
         if new is not None:
             nodes.append(new)
-            step = min(1.6 * size, LONGEST_STEP)
-        elif size > SHORTEST_STEP:
+            step = min(1.6 * size, longest)
+        elif size > shortest:
             step = size / 2.0
         else:
             raise _stopped(driven, nodes, end)
@@ -263,8 +277,9 @@ def _stopped(driven: DrivenClosure, nodes: Sequence[Node], end: float) -> DeadPo
     here = float(last[0][column])
     sense = math.copysign(1.0, end - here)
     fastest = int(np.argmax(np.abs(last[1] / driven.sizes)))
-    before = next((n for n in reversed(nodes) if abs(here - float(n[0][column])) > _PROBE), nodes[0])
-    beyond = _taylor(before, 2.0 * (here - float(before[0][column])) + sense * _PROBE)
+    probe = _PROBE * driven.size
+    before = next((n for n in reversed(nodes) if abs(here - float(n[0][column])) > probe), nodes[0])
+    beyond = _taylor(before, 2.0 * (here - float(before[0][column])) + sense * probe)
     try:
         q, settled = driven.correct(beyond)
         crossed = settled and float(np.max(np.abs((q - beyond) / driven.sizes))) < _AGREEMENT
@@ -273,18 +288,19 @@ def _stopped(driven: DrivenClosure, nodes: Sequence[Node], end: float) -> DeadPo
     if crossed:
         return _error(driven, here, end, "stands where two branches cross, so that the links may go on in two ways,")
     distance = last[1][fastest] / (2.0 * last[2][fastest]) if last[2][fastest] != 0.0 else 0.0
-    if not abs(distance) < 10.0 * SHORTEST_STEP:
+    if not abs(distance) < 10.0 * SHORTEST_STEP * driven.size:
         distance = 0.0
     return _error(driven, here + float(distance), end, "comes to a dead point")
 
 
 def _error(driven: DrivenClosure, angle: float, end: float, what: str) -> DeadPointError:
     return DeadPointError(
-        f"motion: driven by {driven.coordinate}, the linkage {what} at {driven.coordinate} = {_deg(angle)} deg "
-        f"before it reaches {_deg(end)} deg; keep the range on one side of that angle or drive another link",
+        f"motion: driven by {driven.coordinate}, the linkage {what} at {driven.coordinate} = {driven.told(angle)} "
+        f"before it reaches {driven.told(end)}; keep the range on one side of that "
+        f"{'travel' if driven.slides else 'angle'} or drive another link",
         angle,
     )
 
 
-def _deg(angle: float) -> str:
-    return f"{round(math.degrees(angle), 6) + 0.0:.6f}".rstrip("0").rstrip(".")
+def _plain(value: float) -> str:
+    return f"{round(value, 6) + 0.0:.6f}".rstrip("0").rstrip(".")

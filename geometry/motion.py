@@ -24,12 +24,12 @@ _BLOCK = 1024
 class Motion:
     """A linkage at n poses of one branch.
 
-    coordinate  the link whose angle is prescribed
-    angles      (n,) its angle [rad]
-    speed       (n,) its angular speed [rad/s]
-    acceleration  (n,) its angular acceleration [rad/s²]
+    coordinate  the link whose angle is prescribed; where ``slides``, the slider or slot whose travel is
+    angles      (n,) its angle [rad], or travel [mm]
+    speed       (n,) its angular speed [rad/s], or speed [mm/s]
+    acceleration  (n,) its angular acceleration [rad/s²], or acceleration [mm/s²]
     q           (n, unknowns) angles of the moving links [rad] and travels in the slots [mm]
-    first       (n, unknowns) dq / d angle, the first-order kinematic coefficients
+    first       (n, unknowns) dq / d angle (or travel), the first-order kinematic coefficients
     second      (n, unknowns) d²q / d angle²
     residual    largest closure residual as a share of the longest link
     track       the branch from which the poses were taken
@@ -50,6 +50,11 @@ class Motion:
     def closure(self) -> LoopClosure:
         """The loop equations that every pose fulfils."""
         return self.track.driven.closure
+
+    @property
+    def slides(self) -> bool:
+        """True where a travel is prescribed and not an angle."""
+        return self.track.driven.slides
 
     @cached_property
     def qdot(self) -> Real:
@@ -150,15 +155,33 @@ class Motion:
 
     def pose(self, index: int) -> Pose:
         """Return one of the poses."""
-        return Pose(linkage=self.linkage, q=self.q[index], coordinate=self.coordinate, residual=self.residual)
+        return Pose(
+            linkage=self.linkage,
+            q=self.q[index],
+            coordinate=self.coordinate,
+            residual=self.residual,
+            slides=self.slides,
+        )
+
+    def travel_rate(self, joint: str) -> Real:
+        """Rate of the travel in a slot (n,) [mm/s]."""
+        return self.qdot[:, len(self.linkage.moving) + self.closure.slots.index(joint)]
+
+    def stopping_points(self, joint: str) -> tuple[float, ...]:
+        """Values of the coordinate [rad, mm] at which the travel in a slot or slider turns back, rising."""
+        return self._zeros([len(self.linkage.moving) + self.closure.slots.index(joint)], np.ones(1))
 
     def turning_points(self, link: str, against: str | None = None) -> tuple[float, ...]:
-        """Angles of the coordinate [rad] at which ``link`` turns back relative to ``against`` (the ground).
+        """Values of the coordinate [rad, mm] at which ``link`` turns back relative to ``against`` (the ground).
 
         There the link cannot drive: a dead point of that link. Within the range of the motion, rising.
         """
         columns = [self.linkage.moving.index(n) for n in (link, against) if n not in (None, self.linkage.ground)]
         signs = np.array([1.0, -1.0][: len(columns)]) if link != self.linkage.ground else np.array([-1.0])
+        return self._zeros(columns, signs)
+
+    def _zeros(self, columns: list[int], signs: Real) -> tuple[float, ...]:
+        """Values of the coordinate at which a combination of the unknowns turns back."""
         low, high = float(self.angles.min()), float(self.angles.max())
         nodes = self.track.angles
         nodes = np.concatenate([[low], nodes[(nodes > low) & (nodes < high)], [high]])
@@ -172,7 +195,7 @@ class Motion:
                 a, b = (x, b) if value * rate[i] > 0.0 else (a, x)
                 step = -value / slope if slope != 0.0 else math.inf
                 new = x + step if a <= x + step <= b else 0.5 * (a + b)
-                if abs(new - x) <= 1e-14 * max(1.0, abs(x)):
+                if abs(new - x) <= 1e-14 * max(self.track.driven.size, abs(x)):
                     break
                 x = new
             found.append(float(x))
@@ -195,6 +218,7 @@ def solve_motion(
     speed: ArrayLike = 0.0,
     acceleration: ArrayLike = 0.0,
     coordinate: str | None = None,
+    slides: bool = False,
 ) -> Motion:
     """Move a linkage from a start pose along its branch to every one of the given angles.
 
@@ -204,23 +228,25 @@ def solve_motion(
     speed         angular speed [rad/s] of that link, one or (n,)
     acceleration  angular acceleration [rad/s²] of that link, one or (n,)
     coordinate    the link whose angle is prescribed; the pose's coordinate when left out
+    slides        True where ``coordinate`` is a slider or slot, whose travels [mm] stand for the angles and whose
+                  speed [mm/s] and acceleration [mm/s²] for theirs
 
     Raises ``DeadPointError`` (a ``CaseError``) where a dead point, or a crossing of two branches,
     lies on the way, with its angle to some 1e-9 rad; ``CaseError`` for a link that does not move.
     """
     name = coordinate or pose.coordinate
-    if name is None or name not in pose.linkage.moving:
-        raise CaseError(
-            f"motion.coordinate: '{name}' is not a moving link; choose one of {', '.join(pose.linkage.moving)}"
-        )
+    slides = slides if coordinate else pose.slides
+    known, what = (pose.closure.slots, "slider or slot") if slides else (pose.linkage.moving, "moving link")
+    if name is None or name not in known:
+        raise CaseError(f"motion.coordinate: '{name}' is not a {what}; choose one of {', '.join(known) or 'none'}")
     wanted = np.asarray(angles, dtype=float)
     if wanted.ndim != 1 or not len(wanted) or not np.all(np.isfinite(wanted)):
         raise CaseError("motion: the angles must be a list of at least one finite number; give the poses' angles")
-    driven = DrivenClosure(pose.closure, name)
+    driven = DrivenClosure(pose.closure, name, slides)
     low, high = float(wanted.min()), float(wanted.max())
     start = pose.q.copy()
     here = float(start[driven.column])
-    turns = round((0.5 * (low + high) - here) / (2.0 * math.pi))
+    turns = 0 if slides else round((0.5 * (low + high) - here) / (2.0 * math.pi))
     start[driven.column] = here + 2.0 * math.pi * turns
     track = follow(driven, start, low, high)
     q = track.at(wanted)

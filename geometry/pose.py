@@ -40,12 +40,14 @@ class Pose:
     q             (unknowns,) angles of the moving links [rad] and travels in the slots [mm]
     coordinate    the link whose angle fixes the pose; None where nothing moves
     residual      largest closure residual as a share of the longest link
+    slides        True where the coordinate is a slider or slot, whose travel fixes the pose
     """
 
     linkage: Linkage
     q: Real
     coordinate: str | None
     residual: float
+    slides: bool = False
 
     @cached_property
     def closure(self) -> LoopClosure:
@@ -70,6 +72,11 @@ class Pose:
         values = self.closure.positions(self.q)
         return {key: np.array([z.real, z.imag]) for key, z in zip(self.closure.point_names, values, strict=True)}
 
+    @cached_property
+    def travels(self) -> Mapping[str, float]:
+        """Travel of the pin in every slot and slider [mm]."""
+        return dict(zip(self.closure.slots, map(float, self.q[len(self.linkage.moving) :]), strict=True))
+
     def position(self, link: str, point: str) -> Real:
         """Position of a link's point in global axes (2,) [mm]."""
         return self._positions[link, point]
@@ -89,14 +96,16 @@ class Pose:
         c, s = math.cos(self.angles[link]), math.sin(self.angles[link])
         return np.array([[c, -s], [s, c]])
 
-    def dead_point_distance(self, driven: str) -> float:
+    def dead_point_distance(self, driven: str, *, slides: bool = False) -> float:
         """How far the pose is from a dead point of the given driven link (0 at the dead point).
 
         Smallest singular value of the scaled constraint Jacobian with that link held: coordinates
         are (x, y, L phi) of every moving link with L the longest link, so all entries are pure
-        numbers. Where it vanishes the linkage moves although the link is held.
+        numbers. Where it vanishes the linkage moves although the link is held. With ``slides`` it
+        is a slider or slot of that name that is held.
         """
-        matrix = np.vstack([constraint_jacobian(self), _held(self.linkage, driven)])
+        held = _joint_motion(self, driven)[0][None] if slides else _held(self.linkage, driven)
+        matrix = np.vstack([constraint_jacobian(self), held])
         return float(np.linalg.svd(matrix, compute_uv=False)[-1])
 
 
@@ -107,37 +116,36 @@ def constraint_jacobian(pose: Pose) -> Real:
     angle). García de Jalón & Bayo, Kinematic and Dynamic Simulation of Multibody Systems, 1994,
     section 2.3 (reference-point coordinates).
     """
-    linkage, scale = pose.linkage, pose.linkage.longest
+    linkage = pose.linkage
     rows: list[Real] = []
+    for name, joint in linkage.joints.items():
+        along, across, turn = _joint_motion(pose, name)
+        rows += [along, across] if joint.type == "revolute" else [across]
+        if joint.type == "slider":
+            rows.append(turn)
+    return np.array(rows)
 
-    def motion(link: str, at: Real) -> Real:
-        """Motion (2, coordinates) of the point of ``link`` that stands at ``at``."""
-        out = np.zeros((2, 3 * len(linkage.moving)))
+
+def _joint_motion(pose: Pose, name: str) -> tuple[Real, Real, Real]:
+    """Motion of a joint's second link against its first: along and across its direction, and turning.
+
+    Rows (coordinates,) by (x, y, L phi) of every moving link; along x and y for a revolute joint.
+    """
+    linkage, joint = pose.linkage, pose.linkage.joints[name]
+    at = pose.position(joint.links[1], linkage.joint_points(name)[1])
+    relative, turn = np.zeros((2, 3 * len(linkage.moving))), np.zeros(3 * len(linkage.moving))
+    for link, sign in zip(joint.links, (-1.0, 1.0), strict=True):
         if link != linkage.ground:
             k = 3 * linkage.moving.index(link)
             arm = at - pose.origins[link]
-            out[:, k : k + 2] = np.eye(2)
-            out[:, k + 2] = np.array([-arm[1], arm[0]]) / scale
-        return out
-
-    def turn(link: str) -> Real:
-        out = np.zeros(3 * len(linkage.moving))
-        if link != linkage.ground:
-            out[3 * linkage.moving.index(link) + 2] = 1.0
-        return out
-
-    for name, joint in linkage.joints.items():
-        first, second = joint.links
-        at = pose.position(second, linkage.joint_points(name)[1])
-        relative = motion(second, at) - motion(first, at)
-        if joint.type == "revolute":
-            rows.extend(relative)
-            continue
-        along = pose.angles[first] + joint.direction
-        rows.append(np.array([-math.sin(along), math.cos(along)]) @ relative)
-        if joint.type == "slider":
-            rows.append(turn(second) - turn(first))
-    return np.array(rows)
+            relative[:, k : k + 2] = sign * np.eye(2)
+            relative[:, k + 2] = sign * np.array([-arm[1], arm[0]]) / linkage.longest
+            turn[k + 2] = sign
+    if joint.type == "revolute":
+        return relative[0], relative[1], turn
+    along = pose.angles[joint.links[0]] + joint.direction
+    c, s = math.cos(along), math.sin(along)
+    return np.array([c, s]) @ relative, np.array([-s, c]) @ relative, turn
 
 
 def _held(linkage: Linkage, link: str) -> Real:
@@ -147,9 +155,16 @@ def _held(linkage: Linkage, link: str) -> Real:
 
 
 def solve_pose(
-    linkage: Linkage, *, coordinate: str | None, angle: float = 0.0, near: Mapping[str, float] | None = None
+    linkage: Linkage,
+    *,
+    coordinate: str | None,
+    angle: float = 0.0,
+    near: Mapping[str, float] | None = None,
+    travel: float | None = None,
 ) -> Pose:
     """Assemble the linkage with ``coordinate`` at ``angle`` [rad], on the branch that ``near`` states.
+
+    With a ``travel`` [mm] the coordinate is the slider or slot of that name, at that travel.
 
     ``near`` gives rough directions of links [rad]; the branch is the one assembly in which each of
     these links lies within 90° of its stated direction. Where ``near`` names all links, it is the
@@ -162,16 +177,17 @@ def solve_pose(
     """
     near = dict(near or {})
     drives = 0 if coordinate is None else 1
-    for name in [*near, *([coordinate] if coordinate else [])]:
+    for name in [*near, *([coordinate] if coordinate and travel is None else [])]:
         if name not in linkage.moving:
             raise CaseError(f"pose: '{name}' is not a moving link; the moving links are {', '.join(linkage.moving)}")
+    held = None if coordinate is None else _Held.of(linkage, coordinate, angle, travel)
     if linkage.mobility > drives:
         raise CaseError(
             f"pose: the linkage has mobility {linkage.mobility} (Gruebler) but {drives} pose coordinate(s); "
             "they must be equal, so add or remove joints or links, or state pose.coordinate"
         )
     try:
-        pose = _assemble(linkage, coordinate, angle, near)
+        pose = _assemble(linkage, held, near)
         fits = linkage.mobility == drives or freedom(pose) == drives
     except CaseError:
         if linkage.mobility == drives:
@@ -194,61 +210,84 @@ def freedom(pose: Pose) -> int:
     return pose.closure.unknowns - int(np.linalg.matrix_rank(matrix, tol=_RANK_TOLERANCE))
 
 
-def _assemble(linkage: Linkage, coordinate: str | None, angle: float, near: dict[str, float]) -> Pose:
+@dataclass(frozen=True, kw_only=True)
+class _Held:
+    """The unknown that fixes the pose: its name, its column and its value [rad, mm]."""
+
+    name: str
+    column: int
+    value: float
+    slides: bool
+
+    @classmethod
+    def of(cls, linkage: Linkage, name: str, angle: float, travel: float | None) -> "_Held":
+        if travel is None:
+            return cls(name=name, column=linkage.moving.index(name), value=angle, slides=False)
+        slots = LoopClosure(linkage).slots
+        if name not in slots:
+            raise CaseError(
+                f"pose.coordinate: '{name}' is no slider or slot, but a travel is stated for it; choose among "
+                f"{', '.join(slots) or 'none'}, or state the angle of a link"
+            )
+        return cls(name=name, column=len(linkage.moving) + slots.index(name), value=travel, slides=True)
+
+    def __str__(self) -> str:
+        value = f"a travel of {self.value:.6g} mm" if self.slides else f"{math.degrees(self.value):.6g} deg"
+        return f"{self.name} at {value}"
+
+
+def _assemble(linkage: Linkage, held: _Held | None, near: dict[str, float]) -> Pose:
     closure = LoopClosure(linkage)
-    fixed = {} if coordinate is None else {coordinate: angle}
-    free = [link for link in linkage.moving if link not in fixed]
+    free = [link for link in linkage.moving if held is None or held.slides or link != held.name]
 
     unstated = [link for link in free if link not in near]
     if not unstated:
-        q, gaps = _newton(closure, fixed, near | fixed)
+        q, gaps = _newton(closure, held, near)
         if _is_assembled(closure, gaps) and not _astray(closure, q, near):
-            pose = _pose(closure, q, coordinate, gaps)
-            _refuse_rough(pose, fixed, near, free)
+            pose = _pose(closure, q, held, gaps)
+            _refuse_rough(pose, held, near, free)
             return pose
-    found, attempts = _assemblies(closure, fixed, near, free)
+    found, attempts = _assemblies(closure, held, near, free)
     if not found:
-        raise CaseError(_explain_open(closure, attempts, fixed))
+        raise CaseError(_explain_open(closure, attempts, held))
     kept = [(q, gaps) for q, gaps in found if not _astray(closure, q, near)]
     if len(kept) == 1:
-        return _pose(closure, *_first(kept, coordinate))
+        return _pose(closure, kept[0][0], held, kept[0][1])
     listed = "; ".join(_describe(closure, q, free) for q, _ in (kept or found))
     if kept:
         raise CaseError(f"pose.near: {len(kept)} assemblies fit it; state more directions to choose one of: {listed}")
     raise CaseError(f"pose.near: no assembly lies within 90 deg of all its directions; there are: {listed}")
 
 
-def _refuse_rough(pose: Pose, fixed: Mapping[str, float], near: Mapping[str, float], free: list[str]) -> None:
+def _refuse_rough(pose: Pose, held: _Held | None, near: Mapping[str, float], free: list[str]) -> None:
     """Refuse directions that are further from the pose than another assembly is: they do not tell the two apart.
 
     Looked for only next to a dead point of the coordinate, where assemblies come close to each other.
     """
-    if pose.coordinate is None or pose.dead_point_distance(pose.coordinate) > NEAR_DEAD_POINT:
+    if held is None or pose.dead_point_distance(held.name, slides=held.slides) > NEAR_DEAD_POINT:
         return
     columns = [pose.linkage.moving.index(link) for link in free]
     off = float(np.max(_turned(pose.q[columns] - np.array([near[link] for link in free])), initial=0.0))
     if off <= _SAME:
         return
-    others, _ = _assemblies(pose.closure, fixed, near, free)
+    others, _ = _assemblies(pose.closure, held, near, free)
     apart = [q for q, _ in others if _SAME < float(np.max(_turned(q[columns] - pose.q[columns]))) <= off]
     if apart:
         listed = "; ".join(_describe(pose.closure, q, free) for q in (pose.q, *apart))
         raise CaseError(
             "pose.near: its directions do not tell apart assemblies that lie close together next to a dead point of "
-            f"'{pose.coordinate}': {listed}; state them to better than {math.degrees(off):.2g} deg or change the angle"
+            f"'{pose.coordinate}': {listed}; state them to better than {math.degrees(off):.2g} deg or change the "
+            f"{'travel' if held.slides else 'angle'}"
         )
 
 
-def _first(kept: list[tuple[Real, Real]], coordinate: str | None) -> tuple[Real, str | None, Real]:
-    return kept[0][0], coordinate, kept[0][1]
-
-
-def _pose(closure: LoopClosure, q: Real, coordinate: str | None, gaps: Real) -> Pose:
+def _pose(closure: LoopClosure, q: Real, held: _Held | None, gaps: Real) -> Pose:
     return Pose(
         linkage=closure.linkage,
         q=q,
-        coordinate=coordinate,
+        coordinate=None if held is None else held.name,
         residual=float(np.max(np.abs(gaps), initial=0.0)) / closure.linkage.longest,
+        slides=held is not None and held.slides,
     )
 
 
@@ -256,14 +295,16 @@ def _is_assembled(closure: LoopClosure, gaps: Real) -> bool:
     return bool(np.max(np.abs(gaps), initial=0.0) <= CLOSED * closure.linkage.longest)
 
 
-def _newton(closure: LoopClosure, fixed: Mapping[str, float], start: Mapping[str, float]) -> tuple[Real, Real]:
+def _newton(closure: LoopClosure, held: _Held | None, start: Mapping[str, float]) -> tuple[Real, Real]:
     """Newton with the exact Jacobian and halved steps; returns unknowns and closure residual.
 
     Every step solves by least squares, so that a singular or redundant system is no special case.
     """
     moving, scale = closure.linkage.moving, closure.linkage.longest
     q = np.array([start.get(link, 0.0) for link in moving] + [0.0] * len(closure.slots))
-    free = _free(closure, fixed)
+    if held is not None:
+        q[held.column] = held.value
+    free = _free(closure, held)
     weights = np.array([1.0] * len(moving) + [scale] * len(closure.slots))[free]
     gaps = closure.residual(q)
     for _ in range(_ITERATIONS):
@@ -285,12 +326,12 @@ def _newton(closure: LoopClosure, fixed: Mapping[str, float], start: Mapping[str
     return q, gaps
 
 
-def _free(closure: LoopClosure, fixed: Mapping[str, float]) -> NDArray[np.bool_]:
-    return np.array([link not in fixed for link in closure.linkage.moving] + [True] * len(closure.slots))
+def _free(closure: LoopClosure, held: _Held | None) -> NDArray[np.bool_]:
+    return np.array([held is None or column != held.column for column in range(closure.unknowns)])
 
 
 def _assemblies(
-    closure: LoopClosure, fixed: Mapping[str, float], near: Mapping[str, float], free: list[str]
+    closure: LoopClosure, held: _Held | None, near: Mapping[str, float], free: list[str]
 ) -> tuple[list[tuple[Real, Real]], list[tuple[Real, Real]]]:
     """Look for every assembly from many starts; also return all attempts."""
     quarter = [0.3, 0.3 + math.pi / 2, 0.3 + math.pi, 0.3 + 1.5 * math.pi]
@@ -302,7 +343,7 @@ def _assemblies(
     found: list[tuple[Real, Real]] = []
     attempts: list[tuple[Real, Real]] = []
     for start in starts:
-        q, gaps = _newton(closure, fixed, dict(zip(free, start, strict=True)) | dict(fixed))
+        q, gaps = _newton(closure, held, dict(zip(free, start, strict=True)))
         attempts.append((q, gaps))
         if _is_assembled(closure, gaps) and not any(_same(closure, q, other) for other, _ in found):
             found.append((q, gaps))
@@ -328,11 +369,12 @@ def _describe(closure: LoopClosure, q: Real, free: list[str]) -> str:
     return ", ".join(f"{link} {math.degrees(angles[link]) % 360.0:.1f} deg" for link in free)
 
 
-def _explain_open(closure: LoopClosure, attempts: list[tuple[Real, Real]], fixed: Mapping[str, float]) -> str:
+def _explain_open(closure: LoopClosure, attempts: list[tuple[Real, Real]], held: _Held | None) -> str:
     nearest = sorted(attempts, key=lambda attempt: float(np.linalg.norm(attempt[1])))[:_LOOKED_INTO]
-    worst = open_loop(closure, _free(closure, fixed), [q for q, _ in nearest])
+    worst = open_loop(closure, _free(closure, held), [q for q, _ in nearest])
     where = "its joints cannot be brought together"
     if worst is not None:
         where = f"loop {'-'.join(closure.loop_path(worst[0]))} stays open by {worst[1]:.4g} mm"
-    at = "".join(f" with {link} at {math.degrees(angle):.6g} deg" for link, angle in fixed.items())
-    return f"pose: the linkage cannot be assembled{at}: {where}; change the angle or the links' lengths"
+    at = "" if held is None else f" with {held}"
+    change = "travel" if held is not None and held.slides else "angle"
+    return f"pose: the linkage cannot be assembled{at}: {where}; change the {change} or the links' lengths"

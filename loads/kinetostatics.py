@@ -37,9 +37,11 @@ class Kinetostatics:
 
     forces    joint -> (n, 2) force of the joint's first link on its second, global axes [N]
     moments   slider -> (n,) moment of its first link on its second about the joint's point [N mm]
-    torque    (n,) drive torque on the driven link, counter-clockwise positive [N mm]
+    torque    (n,) drive torque on the driven link, counter-clockwise positive [N mm]; zero where the drive pushes
+    push      (n,) drive force on the driven link along its guide [N]; zero where the drive turns. The slider's force
+              holds it
     leverage  (n,) speed of the driven angle, times the longest link, over the size of all speeds of the
-              linkage: 0 at a dead point of the driven link, at most 1
+              linkage (of the driven travel, over it): 0 at a dead point of the driven link, at most 1
     residual  (n,) largest unbalanced force or moment over the longest link, as a share of the load
     power     the terms of the energy balance
 
@@ -52,19 +54,23 @@ class Kinetostatics:
     forces: Mapping[str, Real]
     moments: Mapping[str, Real]
     torque: Real
+    push: Real
     leverage: Real
     residual: Real
     power: "Power"
 
     @cached_property
     def dead_points(self) -> tuple[float, ...]:
-        """Angles of the motion's coordinate [rad] at which the driven link turns back, so that it cannot drive."""
-        return self.motion.turning_points(self.drive.link, _counterpart(self.motion.linkage, self.drive))
+        """Values of the motion's coordinate [rad, mm] at which the driven link turns back, so that it cannot drive."""
+        return dead_points(self.motion, self.drive)
 
     @cached_property
     def drive_power(self) -> Real:
         """Power of the drive (n,) [N mm/s]."""
-        other = _counterpart(self.motion.linkage, self.drive)
+        linkage = self.motion.linkage
+        if self.drive.pushes(linkage):
+            return np.asarray(self.push * self.drive.sign(linkage) * self.motion.travel_rate(self.drive.joint))
+        other = _counterpart(linkage, self.drive)
         relative = self.motion.angular_speed(self.drive.link) - self.motion.angular_speed(other)
         return np.asarray(self.torque * relative)
 
@@ -181,8 +187,8 @@ def solve_kinetostatics(
     held = leverage >= NEARLY_SINGULAR
     if not np.any(held):
         raise CaseError(
-            f"drive.link: '{drive.link}' does not turn about joint '{drive.joint}' during this motion, "
-            "so no torque there can drive it; drive a link that turns"
+            f"drive.link: '{drive.link}' does not move at joint '{drive.joint}' during this motion, "
+            "so nothing there can drive it; drive a link that moves"
         )
     weights = [load.load for load in loads if isinstance(load.load, BodyForce)]
     others = [load for load in loads if not isinstance(load.load, BodyForce)]
@@ -192,12 +198,17 @@ def solve_kinetostatics(
     equations = _Equations(bodies, drive)
     unknowns, residual = equations.solve(demand, held)
     forces, moments = equations.joints(unknowns)
+    driven, still = unknowns[:, -1], np.where(held, 0.0, np.nan)
+    pushes = drive.pushes(linkage)
+    if pushes:
+        forces[drive.joint] = forces[drive.joint] + drive.sign(linkage) * equations.along(driven)
     return Kinetostatics(
         motion=motion,
         drive=drive,
         forces=forces,
         moments=moments,
-        torque=unknowns[:, -1] * linkage.longest,
+        torque=still if pushes else driven * linkage.longest,
+        push=driven if pushes else still,
         leverage=leverage,
         residual=residual,
         power=_power(bodies, weights, applied, masses or {}),
@@ -207,7 +218,7 @@ def solve_kinetostatics(
 def torque_by_virtual_work(
     motion: Motion, drive: Drive, loads: Sequence[StatedLoad], masses: Mapping[str, PartMass] | None = None
 ) -> Real:
-    """Drive torque (n,) [N mm] by the principle of virtual work, without any joint force; NaN at dead points.
+    """Drive torque (n,) [N mm], or force [N], by the principle of virtual work alone; NaN at dead points.
 
     It needs the motion alone, hence serves redundant linkages too, whose joint forces do not follow
     from equilibrium (Norton, 5th ed., chapter 10).
@@ -220,7 +231,7 @@ def torque_by_virtual_work(
     moment = inertia.moment - weight.moment - applied.moment
     work = np.sum((np.conj(force) * bodies.virtual_shift).real + moment * bodies.virtual_turn, axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        torque = work / _relative_turn(motion, drive)
+        torque = work / _relative_motion(motion, drive)
     return np.where(_leverage(bodies, drive) >= NEARLY_SINGULAR, torque, np.nan)
 
 
@@ -230,7 +241,7 @@ def is_determinate(linkage: Linkage) -> bool:
 
 
 def _unknowns(linkage: Linkage) -> int:
-    """Force components of all joints, and the drive torque."""
+    """Force components of all joints, and the drive's torque or force."""
     return sum(1 if joint.type == "pin-in-slot" else 2 for joint in linkage.joints.values()) + 1
 
 
@@ -240,7 +251,18 @@ def _counterpart(linkage: Linkage, drive: Drive) -> str:
     return second if first == drive.link else first
 
 
-def _relative_turn(motion: Motion, drive: Drive) -> Real:
+def dead_points(motion: Motion, drive: Drive) -> tuple[float, ...]:
+    """Return the values of a motion's coordinate [rad, mm] at which the driven link turns back."""
+    if drive.pushes(motion.linkage):
+        return motion.stopping_points(drive.joint)
+    return motion.turning_points(drive.link, _counterpart(motion.linkage, drive))
+
+
+def _relative_motion(motion: Motion, drive: Drive) -> Real:
+    """Turn of the driven link against its counterpart, or its way along the guide [mm], by the coordinate."""
+    if drive.pushes(motion.linkage):
+        column = len(motion.linkage.moving) + motion.closure.slots.index(drive.joint)
+        return drive.sign(motion.linkage) * motion.first[:, column]
     turn = motion.first[:, motion.linkage.moving.index(drive.link)]
     other = _counterpart(motion.linkage, drive)
     if other != motion.linkage.ground:
@@ -255,8 +277,9 @@ def _leverage(bodies: _Bodies, drive: Drive) -> Real:
     equilibrium matrix are normal to, so that this is an upper bound of its smallest singular value.
     """
     longest = bodies.motion.linkage.longest
+    unit = 1.0 if drive.pushes(bodies.motion.linkage) else longest
     size = np.sqrt(np.sum(np.abs(bodies.virtual_shift) ** 2 + (longest * bodies.virtual_turn) ** 2, axis=-1))
-    return np.asarray(longest * np.abs(_relative_turn(bodies.motion, drive)) / size)
+    return np.asarray(unit * np.abs(_relative_motion(bodies.motion, drive)) / size)
 
 
 def _weight(bodies: _Bodies, weights: Sequence[BodyForce]) -> _Wrenches:
@@ -353,7 +376,7 @@ class _Equations:
     """The scaled equilibrium equations of all moving links: moments and torque over the longest link.
 
     Rows are Fx, Fy, Mz of each link; columns two per revolute joint (x, y), one per pin in slot
-    (normal), two per slider (normal, moment), and the torque.
+    (normal), two per slider (normal, moment), and the drive's torque or force.
     """
 
     def __init__(self, bodies: _Bodies, drive: Drive) -> None:
@@ -401,7 +424,21 @@ class _Equations:
                 matrix[:, 3 * k + 2, c] = sign * (x * normal.imag - y * normal.real)
                 if joint.type == "slider":
                     matrix[:, 3 * k + 2, c + 1] = sign
-        for link in self.linkage.joints[self.drive.joint].links:
+        driven = self.linkage.joints[self.drive.joint]
+        if self.drive.pushes(self.linkage):
+            along = self.drive.sign(self.linkage) * -1j * self._normal(self.drive.joint, block)
+            at = self.motion.points[
+                block, self.motion.column(driven.links[1], self.linkage.joint_points(self.drive.joint)[1])
+            ]
+            for link, sign in zip(driven.links, (-1.0, 1.0), strict=True):
+                if link != self.linkage.ground:
+                    k = self.linkage.moving.index(link)
+                    arm = (at - self.bodies.origin[block, k]) / longest
+                    matrix[:, 3 * k, -1] = sign * along.real
+                    matrix[:, 3 * k + 1, -1] = sign * along.imag
+                    matrix[:, 3 * k + 2, -1] = sign * (np.conj(arm) * along).imag
+            return matrix
+        for link in driven.links:
             if link != self.linkage.ground:
                 sign = 1.0 if link == self.drive.link else -1.0
                 matrix[:, 3 * self.linkage.moving.index(link) + 2, -1] = sign
@@ -424,6 +461,11 @@ class _Equations:
             unknowns[block][good] = found
             residual[block][good] = np.max(left, axis=-1) / size
         return unknowns, residual
+
+    def along(self, force: Real) -> Real:
+        """Force (n, 2) of a size (n,) along the guide of the drive's joint, global axes."""
+        along = -1j * self._normal(self.drive.joint, slice(None))
+        return np.asarray(force[:, None] * np.stack([along.real, along.imag], axis=-1))
 
     def joints(self, unknowns: Real) -> tuple[dict[str, Real], dict[str, Real]]:
         """Force of each joint (n, 2) and moment of each slider (n,)."""

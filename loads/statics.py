@@ -35,10 +35,21 @@ ROUNDING = 1e-13
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """The drive: it turns ``link`` about ``joint`` against the other link there (often the ground)."""
+    """The drive: it turns ``link`` about ``joint`` against the other link there (often the ground).
+
+    Where the joint is a slider it pushes the link along the guide instead.
+    """
 
     link: str
     joint: str
+
+    def pushes(self, linkage: Linkage) -> bool:
+        """Whether the drive is a force along a guide, and no torque."""
+        return linkage.joints[self.joint].type == "slider"
+
+    def sign(self, linkage: Linkage) -> float:
+        """Return 1 where the driven link is the joint's second, so that its motion is that of the joint; else -1."""
+        return 1.0 if linkage.joints[self.joint].links[1] == self.link else -1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +120,9 @@ class System:
 class Reactions:
     """Joint reactions and drive torque of one pose under one set of loads.
 
-    drive_torque  N mm, counter-clockwise positive, on the driven link; 0 without drive
+    drive_torque  N mm, counter-clockwise positive, on the driven link; 0 without drive and where it pushes
+    drive_force   N, along the guide's direction, on the driven link; 0 unless the drive pushes. The slider's own
+                  reaction holds it
     residual      largest unbalanced force or moment over the longest link, as a share of the load
     unknowns      (columns,) the solution vector [R]
     """
@@ -121,6 +134,7 @@ class Reactions:
     joints: Mapping[str, JointReaction]
     drive_torque: float
     residual: float
+    drive_force: float = 0.0
 
     def on_link(self, link: str) -> tuple[tuple[str, Real], ...]:
         """(point, wrench (6,) about it in global axes) of every joint reaction that acts on a link.
@@ -140,7 +154,7 @@ class Reactions:
 
     def torque_on(self, link: str) -> float:
         """Drive torque that acts on a link [N mm]: on the driven link, and its reaction on the other."""
-        if self.drive is None:
+        if self.drive is None or self.drive.pushes(self.pose.linkage):
             return 0.0
         if link == self.drive.link:
             return self.drive_torque
@@ -157,7 +171,9 @@ def assemble(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> System:
     entries: list[tuple[str, Real]] = []
     for name in linkage.joints:
         entries.extend(_columns(pose, name))
-    if drive is not None:
+    if drive is not None and drive.pushes(linkage):
+        entries.append(("P", _column(pose, drive.joint, drive.sign(linkage) * _directions(pose, drive.joint)[0], 0.0)))
+    elif drive is not None:
         torque = np.zeros(3 * len(linkage.moving))
         for link in linkage.joints[drive.joint].links:
             if link != linkage.ground:
@@ -179,31 +195,36 @@ def assemble(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> System:
 
 def _columns(pose: Pose, name: str) -> list[tuple[str, Real]]:
     """Columns of a joint's unknowns: what each unit of it does to the rows of both links."""
+    along, across = _directions(pose, name)
+    if pose.linkage.joints[name].type == "revolute":
+        return [(f"R{name}x", _column(pose, name, along, 0.0)), (f"R{name}y", _column(pose, name, across, 0.0))]
+    columns = [(f"N{name}", _column(pose, name, across, 0.0))]
+    if pose.linkage.joints[name].type == "slider":
+        columns.append((f"M:{name}", _column(pose, name, np.zeros(2), 1.0)))
+    return columns
+
+
+def _directions(pose: Pose, name: str) -> tuple[Real, Real]:
+    """Directions (2,) along and across a joint's slot, global axes; x and y for a revolute joint."""
+    joint = pose.linkage.joints[name]
+    along = 0.0 if joint.type == "revolute" else pose.angles[joint.links[0]] + joint.direction
+    c, s = math.cos(along), math.sin(along)
+    return np.array([c, s]), np.array([-s, c])
+
+
+def _column(pose: Pose, name: str, force: Real, moment: float) -> Real:
+    """What a force (2,) and a moment of a joint's first link on its second at the pin do to the rows of both links."""
     linkage = pose.linkage
     joint = linkage.joints[name]
     at = pose.position(joint.links[1], linkage.joint_points(name)[1])
-
-    def column(force: Real, moment: float) -> Real:
-        out = np.zeros(3 * len(linkage.moving))
-        for link, sign in zip(joint.links, (-1.0, 1.0), strict=True):
-            if link != linkage.ground:
-                k = 3 * linkage.moving.index(link)
-                arm = at - pose.origins[link]
-                out[k : k + 2] = sign * force
-                out[k + 2] = sign * (arm[0] * force[1] - arm[1] * force[0] + moment)
-        return out
-
-    if joint.type == "revolute":
-        return [
-            (f"R{name}x", column(np.array([1.0, 0.0]), 0.0)),
-            (f"R{name}y", column(np.array([0.0, 1.0]), 0.0)),
-        ]
-    along = pose.angles[joint.links[0]] + joint.direction
-    normal = np.array([-math.sin(along), math.cos(along)])
-    columns = [(f"N{name}", column(normal, 0.0))]
-    if joint.type == "slider":
-        columns.append((f"M:{name}", column(np.zeros(2), 1.0)))
-    return columns
+    out = np.zeros(3 * len(linkage.moving))
+    for link, sign in zip(joint.links, (-1.0, 1.0), strict=True):
+        if link != linkage.ground:
+            k = 3 * linkage.moving.index(link)
+            arm = at - pose.origins[link]
+            out[k : k + 2] = sign * force
+            out[k + 2] = sign * (arm[0] * force[1] - arm[1] * force[0] + moment)
+    return out
 
 
 def check_drive(linkage: Linkage, drive: Drive | None) -> None:
@@ -216,11 +237,6 @@ def check_drive(linkage: Linkage, drive: Drive | None) -> None:
         raise CaseError(
             f"drive.joint: '{drive.joint}' is no joint of link '{drive.link}'; "
             f"choose one of {', '.join(linkage.joints_of(drive.link))}"
-        )
-    if linkage.joints[drive.joint].type == "slider":
-        raise CaseError(
-            f"drive.joint: '{drive.joint}' is a slider, where no link can turn, so a torque moves nothing there; "
-            "drive a link about a revolute joint"
         )
 
 
@@ -260,8 +276,9 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
         drive=drive,
         system=system,
         unknowns=unknowns,
-        joints={name: _reaction(pose, name, system, unknowns) for name in linkage.joints},
-        drive_torque=float(unknowns[system.columns.index("T")]) if drive else 0.0,
+        joints={name: _reaction(pose, name, system, unknowns, drive) for name in linkage.joints},
+        drive_torque=float(unknowns[system.columns.index("T")]) if "T" in system.columns else 0.0,
+        drive_force=float(unknowns[system.columns.index("P")]) if "P" in system.columns else 0.0,
         residual=float(np.max(np.abs(leftover / row_scale))) / load_size,
     )
 
@@ -270,15 +287,17 @@ def _scaled_rhs(system: System) -> Real:
     return np.asarray(system.rhs / np.array([system.scale if kind == "Mz" else 1.0 for _, kind in system.rows]))
 
 
-def _reaction(pose: Pose, name: str, system: System, unknowns: Real) -> JointReaction:
+def _reaction(pose: Pose, name: str, system: System, unknowns: Real, drive: Drive | None) -> JointReaction:
     joint = pose.linkage.joints[name]
     value = dict(zip(system.columns, unknowns, strict=True))
     wrench = np.zeros(6)
     if joint.type == "revolute":
         wrench[:2] = value[f"R{name}x"], value[f"R{name}y"]
     else:
-        along = pose.angles[joint.links[0]] + joint.direction
-        wrench[:2] = value[f"N{name}"] * np.array([-math.sin(along), math.cos(along)])
+        along, across = _directions(pose, name)
+        wrench[:2] = value[f"N{name}"] * across
+        if drive is not None and drive.joint == name:
+            wrench[:2] += drive.sign(pose.linkage) * value.get("P", 0.0) * along
         wrench[5] = value.get(f"M:{name}", 0.0)
     return JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=travelled(pose, name))
 

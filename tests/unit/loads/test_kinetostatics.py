@@ -208,7 +208,7 @@ def test_redundant_linkages_have_a_torque_but_no_joint_forces():
 def test_a_link_that_does_not_turn_cannot_drive():
     pose, drive = wing_pose(), Drive(link="AE", joint="A")
     [dead] = solve_motion(pose, WING).turning_points("AE")
-    with pytest.raises(CaseError, match=r"drive\.link: 'AE' does not turn about joint 'A'"):
+    with pytest.raises(CaseError, match=r"drive\.link: 'AE' does not move at joint 'A'"):
         solve_kinetostatics(solve_motion(pose, [dead]), drive, [])
 
 

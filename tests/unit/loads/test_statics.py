@@ -306,11 +306,6 @@ def test_drives_that_do_not_fit(drive: Drive, words: str) -> None:
         check_drive(six_bar(), drive)
 
 
-def test_no_torque_can_drive_a_slider() -> None:
-    with pytest.raises(CaseError, match=r"drive.joint: 'S' is a slider.*revolute"):
-        check_drive(slider_crank(40, 120, 0), Drive(link="block", joint="S"))
-
-
 def test_inputs_are_left_unchanged() -> None:
     pose = wing()
     loads = random_loads(pose)
