@@ -10,7 +10,8 @@ curved     radii 4.12 and 4.32, 90°, thickness 0.1, E 1e7, ν 0.25. In its plan
            form of a curved bar under a radial force (Timoshenko-Goodier, 3rd ed., art. 33) gives 0.088566, the
            recomputed value is 0.0885. Out of the plane: printed 0.5022, recomputed 0.4981.
 twisted    12 × 1.1 × 0.32, twisted by 90°, E 29e6, ν 0.22: 0.005424 in the plane, 0.001754 out of it, by beam theory
-           (D. Zupan, M. Saje, Finite Elem. Anal. Des. 40 (2004) 1445, treat it too); the clamped solid's limit is 0.04 % lower there.
+           (D. Zupan, M. Saje, Finite Elem. Anal. Des. 40 (2004) 1445, treat it too); the clamped solid's limit is
+           0.04 % lower there.
 
 The clamped face meets the free sides in edges at which the stress is singular. Nearly all the error of the straight
 beam sits there, where recovered stresses are too smooth: the estimate reaches 0.44 to 0.54 of the true error in the
