@@ -1,5 +1,6 @@
 """The linkage: links with their points, joints between them, and its mobility."""
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,6 +32,12 @@ class Link(CaseModel):
     """Pins far off the axis: point -> the pin on the axis from which an arm of the bar's section reaches to it."""
     end_patch: Annotated[Length, POSITIVE] = 5.0
     """Length over which a load at a plain end (a point without pin) enters the part."""
+
+    @property
+    def pieces(self) -> tuple[tuple[Name, Name], ...]:
+        """The straight pieces of the link, by the points at their ends: between neighbours in order, and the arms."""
+        chain = [point for point in self.points if point not in self.arms]
+        return (*itertools.pairwise(chain), *((foot, point) for point, foot in self.arms.items()))
 
 
 class Joint(CaseModel):

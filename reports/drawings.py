@@ -1,7 +1,6 @@
 """The drawing of the linkage in its pose with joint forces, loads and drive torque (matplotlib, PNG)."""
 
 import io
-import itertools
 import math
 from typing import Any
 
@@ -145,8 +144,7 @@ class _Sheet:
         thickness = 0.011 * self.size
         obstacles: list[Real] = []
         for link, record in self.linkage.links.items():
-            places = [self.points[link, point] for point in record.points]
-            for a, b in itertools.pairwise(places):
+            for a, b in ((self.points[link, one], self.points[link, other]) for one, other in record.pieces):
                 if np.linalg.norm(b - a) <= 1e-9 * self.size:
                     continue
                 if link == self.linkage.ground:
@@ -178,8 +176,8 @@ class _Sheet:
             obstacles.append(torque[1])
         names = [(at[None], name, INK) for name, at in self.pose.points.items()]
         for link in self.linkage.moving:
-            places = [self.points[link, point] for point in self.linkage.links[link].points]
-            a, b = max(itertools.pairwise(places), key=lambda ab: float(np.linalg.norm(ab[1] - ab[0])))
+            pieces = [(self.points[link, a], self.points[link, b]) for a, b in self.linkage.links[link].pieces]
+            a, b = max(pieces, key=lambda ab: float(np.linalg.norm(ab[1] - ab[0])))
             names.append((np.array([0.5 * a + 0.5 * b, 0.7 * a + 0.3 * b, 0.3 * a + 0.7 * b]), f"link {link}", GROUND))
         place_labels(axes, [*names, *labels], np.vstack(obstacles), fontsize=8.5)
 

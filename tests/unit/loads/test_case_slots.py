@@ -32,6 +32,8 @@ def test_an_arm_starts_at_its_foot() -> None:
     pins = {pin.name: pin for pin in flapping().body("outer-right").pins}
     assert pins["QR"].foot == (0.0, 0.0)
     assert pins["DR"].foot is None
+    assert flapping().links["outer-right"].pieces == (("DR", "ER"), ("DR", "QR"))
+    assert flapping().links["inner-right"].pieces == (("BR", "O4R"), ("O4R", "DR"))
 
 
 @pytest.mark.parametrize(
