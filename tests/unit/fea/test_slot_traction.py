@@ -52,7 +52,7 @@ def test_force_and_moment_are_exact(wall: SurfaceQuadrature, law: PressureLaw, x
 def test_it_pushes_one_flank_about_the_pin_alone(wall: SurfaceQuadrature, law: PressureLaw, side: float) -> None:
     density = slot_traction(wall, pin(0.0, 3.0 * side, 0.0, 0.0, 0.0, 0.0), law)
     pushed = np.abs(density).max(axis=2) > 1e-12
-    assert np.abs(wall.x[pushed][:, 0] - 6.5).max() <= law.patch(2.0) / 2.0
+    assert 0.9 * law.patch(2.0) / 2.0 < np.abs(wall.x[pushed][:, 0] - 6.5).max() <= law.patch(2.0) / 2.0
     assert (side * wall.x[pushed][:, 1] > 0.9).all()
     assert (side * density[..., 1] >= 0.0).all()
     assert np.abs(density[..., [0, 2]]).max() == 0.0
