@@ -285,5 +285,5 @@ def test_counts(findings):
         for source, results in findings.items()
     }
     assert counts["flapping-wing-tables"] == (439, 5, 0, 0)
-    assert counts["four-bar-synthesis"] == (12, 4, 3, 0)
+    assert counts["four-bar-synthesis"] == (16, 4, 3, 0)
     assert all(sum(count) == len(findings[source]) for source, count in counts.items())

@@ -1,4 +1,5 @@
 import json
+import re
 from importlib.resources import files
 
 import pytest
@@ -61,6 +62,13 @@ def test_json_is_a_list_of_findings():
 def test_the_page_in_the_documentation_is_the_one_that_the_command_prints(request):
     page = (request.config.rootpath / "docs" / "claims.md").read_text(encoding="utf-8")
     assert run("--markdown").stdout == page, "make it anew: alula claims --markdown > docs/claims.md"
+
+
+def test_the_readme_counts_as_the_page_does(request):
+    texts = [(request.config.rootpath / name).read_text(encoding="utf-8") for name in ("docs/claims.md", "README.md")]
+    page, readme = (re.findall(r"^\|[^|]+\| (\d+) \| (\d+) \| (\d+) \| (\d+) \| (\d+) \|$", t, re.M) for t in texts)
+    assert sorted(page) == sorted(readme)
+    assert f"re-derives {sum(int(row[0]) for row in page)} figures" in texts[1]
 
 
 @pytest.mark.parametrize(
