@@ -15,10 +15,7 @@ Sizes are factors on the mesher's own element sizes.
 """
 
 import argparse
-import json
 import math
-import os
-import platform
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -26,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from record import save
 
 from fea.link_envelope import link_envelope
 from fea.link_history import link_histories
@@ -42,7 +40,7 @@ from loads.case_motion import solve_case_motion
 
 POSES = 360
 REPEATS = 3
-RESULTS = Path(__file__).parent / "results" / "envelope.json"
+SIZES = {"AE": (2.0, 1.0), "crank": (2.0, 1.0, 0.6)}
 OWL_WING = ("owl-wing-static", ["drive.link=GF", "drive.joint=G", f"motion.poses={POSES}"])
 CRANK_ROCKER = f"""
 schema_version = 1
@@ -72,7 +70,7 @@ fillet_radius = "2 mm"
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sizes", nargs="+", type=float, default=[2.0, 1.0, 0.6])
+    parser.add_argument("--sizes", nargs="+", type=float, help="instead of those of each link")
     parser.add_argument("--threads", type=int, default=2)
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
@@ -80,18 +78,15 @@ def main() -> None:
         path.write_text(CRANK_ROCKER, encoding="utf-8")
         cases = {"AE": read_case(*OWL_WING), "crank": read_case(str(path))}
     with bounded(asked.threads):
-        runs = [run for link, case in cases.items() for run in _runs(case, link, asked.sizes, asked.threads)]
+        runs = [r for link, case in cases.items() for r in _runs(case, link, asked.sizes or SIZES[link], asked.threads)]
     record = {
         "benchmark": f"envelope over {POSES} poses beside one direct static solution",
         "limit_ratio": 3.0,
         "runs": runs,
         "threads": asked.threads,
-        "machine": f"{platform.machine()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}",
-        "versions": f"Python {platform.python_version()}, numpy {np.__version__}",
     }
-    RESULTS.parent.mkdir(exist_ok=True)
-    RESULTS.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
-    print(json.dumps(record, indent=2))
+    path = save("envelope", record)
+    print(path.read_text(encoding="utf-8"))
 
 
 def _runs(case: Case, link: str, sizes: Sequence[float], threads: int) -> list[dict[str, Any]]:
