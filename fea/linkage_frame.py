@@ -1,9 +1,10 @@
 """A linkage as a spatial frame: links as Timoshenko beams, pins that carry all moments but the one about themselves.
 
 Every link with a part is a beam of its section along the x axis of its frame, at z = 0; a pin off the axis sits on
-a rigid arm. Links without a part are rigid. The link that the drive holds keeps its angle to the other link at the
-drive's joint, where the moment about z is the drive torque; at a slider it keeps its place, and the force along the
-guide is the drive force. In bonded linkages every pin carries all six components.
+a rigid arm, or where the link states an arm to it, on a beam of the same section. Links without a part are rigid. The
+link that the drive holds keeps its angle to the other link at the drive's joint, where the moment about z is the drive
+torque; at a slider it keeps its place, and the force along the guide is the drive force. In bonded linkages every pin
+carries all six components.
 
 A pin in a slot stands at a station of its own of the slotted link. It presses on the slot's flanks: they take a force
 normal to the slot in the linkage's plane, and the moment about the slot of a pin that would tilt between them. It is
@@ -247,7 +248,8 @@ class _Builder:
         return len(self.places) - 1
 
     def _beam(self, link: str, loads: Sequence[Load]) -> None:
-        points, contacts = self.case.links[link].points, self._contacts(link)
+        record, contacts = self.case.links[link], self._contacts(link)
+        points = {name: place for name, place in record.points.items() if name not in record.arms}
         wanted = [x for x, _ in (*points.values(), *contacts.values())]
         wanted += [x for load in loads if isinstance(load, LineLoad) for x in (load.start, load.end)]
         xs: list[float] = []
@@ -298,6 +300,11 @@ class _Builder:
                     load_last=at_end,
                 )
             )
+        for name, foot in record.arms.items():
+            tip = self.points[link, name] = self._node(link, *record.points[name], name)
+            ends = (self.points[link, foot], tip)
+            young, poisson = material.youngs_modulus, material.poissons_ratio
+            self.elements.append(FrameElement(nodes=ends, section=section, young=young, poisson=poisson))
 
     def _spread(self, link: str, load: BodyForce) -> LineLoad:
         """Spread a body force along the beam; what the spread leaves out enters at the station next to the centroid."""
