@@ -34,6 +34,7 @@ from fea.band import Band
 from fea.beam import BeamCheck, euler_load
 from fea.large_displacement import LargeDisplacement
 from fea.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
+from geometry.material import Material
 from loads.case import Case
 
 NAME = "buckling"
@@ -104,29 +105,33 @@ def held(case: Case, link: str, extent: tuple[float, float], *, beyond: bool) ->
     return float(np.hypot(last[0] - first[0], last[1] - first[1])), PINNED, "pinned at both ends"
 
 
+def factor_band(material: Material, factor: float) -> Band:
+    """Return the band of a link's buckling factor.
+
+    From a third of the factor of the least modulus, since linear stress is not relied on below 3, to the factor.
+    """
+    least = min((material.youngs_modulus, *(material.youngs_modulus_range or ()))) / material.youngs_modulus
+    return Band(
+        value=factor,
+        low=least * factor / LEAST_LINEAR,
+        high=factor,
+        holds=("the modulus", "bending that grows with compression, which linear stress leaves out"),
+    )
+
+
 def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) -> Iterator[CheckOutcome]:
     """Yield the outcome of every link that is compressed under the load case ``title``.
 
-    The band runs from a third of the factor of the least modulus, since linear stress is not relied on below 3, to
-    the factor: a link fails where its compression exceeds Euler's load, whatever its stress says.
+    A link fails where its compression exceeds Euler's load, whatever its stress says.
     """
     for link, beam in beams.items():
         found = column(case, link, beam)
         if found is None:
             continue
-        material = case.material_of(link)
-        least = min((material.youngs_modulus, *(material.youngs_modulus_range or ())))
-        inertia = min(beam.section.i_y, beam.section.i_z)
-        value, low = (
-            euler_load(young, inertia, found.length, found.effective_length) / found.compression
-            for young in (material.youngs_modulus, least)
-        )
-        band = Band(
-            value=value,
-            low=low / LEAST_LINEAR,
-            high=value,
-            holds=("the modulus", "bending that grows with compression, which linear stress leaves out"),
-        )
+        material, inertia = case.material_of(link), min(beam.section.i_y, beam.section.i_z)
+        load = euler_load(material.youngs_modulus, inertia, found.length, found.effective_length)
+        value = load / found.compression
+        band = factor_band(material, value)
         verdict = at_least(band, 1.0)
         yield CheckOutcome(
             name=NAME,

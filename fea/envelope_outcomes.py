@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from fea.band import Band
 from fea.bearing_check import weakest_eye
-from fea.buckling_check import LEAST_LINEAR, SECOND_ORDER
 from fea.buckling_check import NAME as BUCKLING
+from fea.buckling_check import SECOND_ORDER, factor_band
 from fea.buckling_history import factors_over_motion
 from fea.envelope_result import LinkEnvelope
 from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
@@ -92,20 +92,13 @@ def column_outcomes(
     """Yield the least buckling factor of every link that is compressed at some pose, and where it is."""
     case, complete = moved.case, bool(evaluated.all())
     for link, histories in loaded.items():
-        material = case.material_of(link)
-        softest = min((material.youngs_modulus, *(material.youngs_modulus_range or ()))) / material.youngs_modulus
         for history in histories:
             factors = np.where(evaluated, factors_over_motion(case, link, history), np.inf)
             pose = int(np.argmin(factors))
             factor = float(factors[pose])
             if math.isinf(factor):
                 continue
-            band = Band(
-                value=factor,
-                low=softest * factor / LEAST_LINEAR,
-                high=factor,
-                holds=("the modulus", "bending that grows with compression, which linear stress leaves out"),
-            )
+            band = factor_band(case.material_of(link), factor)
             outcome = _outcome(BUCKLING, link, history.load_case, BUCKLING_FACTOR, band, 1.0, complete=complete)
             reason = f"{factor:.3g} times the compression at {_when(moved, pose)} buckles it"
             if outcome.verdict is Verdict.UNDECIDED:
