@@ -34,7 +34,7 @@ def bearing_stress(force: float, diameter: float, thickness: float) -> float:
 
 
 def weakest_eye(case: Case, name: str, joint: str, force: float) -> tuple[str, Band]:
-    """Return the link whose eye a joint's pin loads worst, and its safety factor, under a force [N] across the pin.
+    """Return the link whose eye or slot a joint's pin loads worst, and its safety factor, under a force [N] across it.
 
     Raises ``CaseError`` for a joint without pin diameter, which the check ``name`` needs.
     """
@@ -44,7 +44,8 @@ def weakest_eye(case: Case, name: str, joint: str, force: float) -> tuple[str, B
             f'joints.{joint}.pin_diameter: checks.{name} needs it for bearing; state it, for example "1.5 mm"'
         )
     factors = {}
-    for link in record.links:
+    # A pin in a slot shares its hole in the second link with others: that slot's force is not all that bears there.
+    for link in record.links[:1] if record.type == "pin-in-slot" else record.links:
         if link in case.checked_links:
             material = case.material_of(link)
             strength = material.ultimate_strength or material.allowable
@@ -61,7 +62,7 @@ def bearing_outcomes(
 
     Raises ``CaseError`` for a joint without pin diameter.
     """
-    for joint in check.joints or case.pinned_joints:
+    for joint in check.joints or case.bearing_joints:
         eye, factor = weakest_eye(case, name, joint, float(np.hypot(*reactions.joints[joint].wrench[:2])))
         verdict = at_least(factor, check.limit)
         yield CheckOutcome(

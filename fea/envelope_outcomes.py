@@ -69,7 +69,8 @@ def _joints(
 ) -> Iterator[CheckOutcome]:
     """Outcome of every joint at the pose of its largest force: all its stresses are in proportion to that force."""
     case, complete = moved.case, bool(evaluated.all())
-    for joint in check.joints or case.pinned_joints:
+    asked = case.bearing_joints if isinstance(check, BearingCheck) else case.pinned_joints
+    for joint in check.joints or asked:
         for title, solved in moved.forces.items():
             size = np.where(evaluated, np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
             pose = int(np.argmax(size))

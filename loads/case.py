@@ -370,6 +370,16 @@ class Case(CaseModel):
             if joint.type == "revolute" and set(joint.links) & set(self.checked_links)
         )
 
+    @property
+    def bearing_joints(self) -> tuple[str, ...]:
+        """The joints whose pin bears on a part: those of ``pinned_joints``, and pins in slots of links with a part."""
+        slotted = [
+            name
+            for name, joint in self.joints.items()
+            if joint.type == "pin-in-slot" and joint.links[0] in self.checked_links
+        ]
+        return (*self.pinned_joints, *slotted)
+
     def part_of(self, link: str) -> Part:
         """The part of a link; raises ``CaseError`` where it has none."""
         name = self.links[link].part
@@ -543,11 +553,13 @@ def _check_masses(case: Case) -> None:
 
 
 def _check_pins(case: Case, name: str, check: PinCheck | BearingCheck) -> None:
+    bearing = isinstance(check, BearingCheck)
+    known = case.bearing_joints if bearing else case.pinned_joints
     for joint in check.joints:
-        if joint not in case.pinned_joints:
+        if joint not in known:
             raise CaseError(
-                f"checks.{name}.joints: '{joint}' is no revolute joint of a link with a part; "
-                f"choose among {', '.join(case.pinned_joints) or 'none'}"
+                f"checks.{name}.joints: '{joint}' is no revolute joint{' or slot' if bearing else ''} of a link with a "
+                f"part; choose among {', '.join(known) or 'none'}"
             )
     if isinstance(check, BearingCheck):
         return

@@ -52,7 +52,7 @@ class BearingCheck(CaseModel):
     flight_depends: bool = False
     """True for hinges that flight depends on."""
     joints: tuple[Name, ...] = ()
-    """The joints to check; all whose pin joins a link with a part when left out."""
+    """The joints to check; all whose pin joins a link with a part, or slides in its slot, when left out."""
 
     @property
     def limit(self) -> float:

@@ -7,7 +7,7 @@ from fea.bearing_check import bearing_stress
 from fea.check import check_case
 from fea.verdict import Verdict
 from geometry.errors import CaseError
-from loads.case_file import validate
+from loads.case_file import read_case, validate
 
 
 def bearing(lines, force=-2.0):
@@ -46,6 +46,18 @@ def test_limits_and_verdict():
     assert found["pin B"].value.value == pytest.approx(52.0 * 6.0 / 92.0)
     assert found["pin B"].verdict is Verdict.FAIL
     assert bearing("minimum = 3.0", force=-46.0)["pin B"].verdict is Verdict.PASS
+
+
+def test_a_pin_bears_on_the_flank_of_its_slot():
+    """F/(d t) with the lever's 3.5 mm and the pin's 2 mm; the rod's hole, which slots share, is left to solids."""
+    case = read_case("ornithopter", ['checks.bearing={type="bearing"}'])
+    result = check_case(case, fidelity="beam").load_cases["wings-12"]
+    found = {check.link: check for check in result.checks if check.name == "bearing"}
+    assert set(found) == {"pin O", "pin A", "pin R", "pin L", "pin slot-right", "pin slot-left"}
+    force = result.reactions.joints["slot-right"].magnitude
+    strength = case.material_of("lever-right").ultimate_strength
+    assert found["pin slot-right"].value.value == pytest.approx(strength / (force / (2.0 * 3.5)))
+    assert "eye of lever-right" in found["pin slot-right"].reason
 
 
 def test_joint_that_does_not_exist():
