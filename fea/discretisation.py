@@ -56,8 +56,8 @@ class Discretisation:
         if self.status == "edge":
             return (
                 f"a sharp inner edge bears at least {LOADED:.0%} of the peak, and meshes ({count}, where at least "
-                f"{SERIES} are needed) do not tell yet whether its stress has a limit, so there is no safety factor; state the "
-                f"real fillet_radius; {self._remedy}"
+                f"{SERIES} are needed) do not tell yet whether its stress has a limit, so there is no safety factor; "
+                f"state the real fillet_radius; {self._remedy}"
             )
         if self.status == "growing":
             return (
