@@ -60,6 +60,12 @@ class LinearLevel:
     nu: float
     fixed: NDArray[np.int64]
 
+    @property
+    def slenderness(self) -> float:
+        """Longest over second-longest extent of the body along the axes."""
+        extents = np.sort(np.ptp(self.space.nodes, axis=0))
+        return float(extents[2] / extents[1])
+
     def stiffness(self) -> SymmetricBlockMatrix:
         """Stiffness of the linear displacements, with what is fixed of them."""
         K = assemble_stiffness(self.space, E=self.E, nu=self.nu, order=1)

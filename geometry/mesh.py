@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from geometry import child, child_memory
 from geometry.body_rules import check_body
 from geometry.errors import AlulaError, CannotRunError, CaseError
+from geometry.locks import scratch_beside
 from geometry.mesh_settings import COARSE, MeshSettings
 from geometry.part import Body
 from geometry.reentrant import ReentrantEdge
@@ -111,15 +112,15 @@ def reentrant_edges(body: Body) -> list[ReentrantEdge]:
 def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:
     """Write each body as ``<name>.step`` (in mm) into an existing folder and return the paths.
 
-    A file appears whole or not at all. Raises as ``mesh_body`` does, with the body's name before the
-    sentence; ``CannotRunError`` too if the folder cannot be written.
+    A file appears whole or not at all; what a killed run left is removed. Raises as ``mesh_body`` does, with the body's
+    name before the sentence; ``CannotRunError`` too if the folder cannot be written.
     """
     paths: list[Path] = []
     for name, body in bodies.items():
         path = folder / f"{name}.step"
         try:
-            with tempfile.TemporaryDirectory(dir=folder, prefix=".step-") as scratch:
-                draft = Path(scratch) / "part.step"
+            with scratch_beside(folder, ".alula-step-") as scratch:
+                draft = scratch / "part.step"
                 _naming(name, _step, body, draft)
                 draft.replace(path)
         except OSError as error:

@@ -1,10 +1,13 @@
 """What all records of the case file have in common."""
 
 import unicodedata
+from collections.abc import Iterable
 from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError
+
+from geometry.errors import CaseError
 
 
 class CaseModel(BaseModel):
@@ -37,3 +40,15 @@ def _text(text: str) -> str:
 
 Name = Annotated[str, AfterValidator(_name)]
 Text = Annotated[str, AfterValidator(_text)]
+
+
+def check_file_names(entry: str, names: Iterable[str]) -> None:
+    """Raise ``CaseError`` for two names whose files some disks take for one: alike but for case or composition."""
+    seen: dict[str, str] = {}
+    for name in names:
+        other = seen.setdefault(unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold()), name)
+        if other != name:
+            raise CaseError(
+                f"{entry}: '{other}' and '{name}' differ in case alone, and some disks take the files named after them "
+                "for one; rename one of them"
+            )

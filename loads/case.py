@@ -12,7 +12,7 @@ from geometry.body_rules import check_body
 from geometry.errors import CaseError
 from geometry.linkage import Joint, Link, Linkage
 from geometry.material import Material, library
-from geometry.model import CaseModel, Name, Text
+from geometry.model import CaseModel, Name, Text, check_file_names
 from geometry.part import Body, Part, Pin, PlainEnd
 from geometry.pose import Pose, solve_pose
 from geometry.units import (
@@ -234,6 +234,8 @@ class Case(CaseModel):
 
     def model_post_init(self, context: object) -> None:
         """Check that all names fit together; raises ``CaseError``."""
+        check_file_names("links", self.links)
+        check_file_names("load_cases", self.load_cases)
         check_drive(self.linkage, self.pinned_drive)
         if self.linkage.mobility > 0 and self.drive is None and self.joint_model == "pinned":
             raise CaseError(

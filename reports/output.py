@@ -11,6 +11,7 @@ from pathlib import Path
 
 from geometry import child
 from geometry.errors import CannotRunError, CaseError
+from geometry.locks import locked
 
 MARK = "result.json"
 """The file by which alula knows a folder as its own."""
@@ -31,7 +32,7 @@ def write_folder(target: Path, fill: Callable[[Path], None]) -> None:
         with _alone_in(target.parent):
             _clear(target)
             fresh = Path(tempfile.mkdtemp(prefix=_prefix(target), dir=target.parent))
-            mine = _locked(fresh)
+            mine = locked(fresh)
     except OSError as error:
         raise CannotRunError(
             f"output: '{target}' cannot be written ({error.strerror}); choose another folder"
@@ -60,28 +61,10 @@ def _prefix(target: Path) -> str:
     return f".{target.name}.alula-"
 
 
-def _locked(folder: Path, *, wait: bool = True) -> int | None:
-    """Lock a folder and return the descriptor that holds the lock; None where that is not to be had.
-
-    The system takes the lock from a process that ends, however it ends. Programs that do not ask are not kept out.
-    """
-    try:
-        import fcntl
-    except ImportError:  # not a Unix
-        return None
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:  # held by another, or a network disk without locks
-        os.close(descriptor)
-        return None
-    return descriptor
-
-
 @contextmanager
 def _alone_in(parent: Path) -> Iterator[None]:
     """Keep other runs from changing names in a folder meanwhile."""
-    held = _locked(parent)
+    held = locked(parent)
     try:
         yield
     finally:
@@ -95,7 +78,7 @@ def _clear(target: Path) -> None:
     A run that was killed between its two renames left the earlier result in such a folder: it is put back.
     """
     for left in target.parent.glob(glob.escape(_prefix(target)) + "*"):
-        held = _locked(left, wait=False) if left.is_dir() and not left.is_symlink() else None
+        held = locked(left, wait=False) if left.is_dir() and not left.is_symlink() else None
         if held is None:
             continue
         earlier = left / target.name

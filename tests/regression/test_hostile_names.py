@@ -57,6 +57,17 @@ def test_the_longest_name_makes_file_names_that_every_disk_takes() -> None:
     assert len(f"linkage-{next(iter(case.load_cases))}.png".encode()) <= 255
 
 
+@pytest.mark.parametrize("table", ["links", "load_cases"])
+@pytest.mark.parametrize(("one", "other"), [("a", "A"), ("straße", "STRASSE"), ("\u212b", "\u00c5")])
+def test_names_that_some_disks_take_for_one_are_refused(table: str, one: str, other: str) -> None:
+    """Files are named after links and load cases: one would overwrite the other's."""
+    tables = _tables()
+    entry = next(iter(tables[table].values()))
+    tables[table] |= {one: entry, other: entry}
+    with pytest.raises(CaseError, match=f"^{table}: .* in case alone"):
+        validate(tables)
+
+
 class _Page(html.parser.HTMLParser):
     """Collects what a browser would run or load."""
 

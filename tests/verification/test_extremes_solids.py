@@ -3,11 +3,16 @@
 Figures and tables over the whole range: docs/stability.md.
 """
 
+import time
+
 import numpy as np
+import programs
 import pytest
+import slender_tube
 from known_solutions import NU, kirsch, solved
 from solid_meshes import bar, box, ring
 
+from fea.check import check_case
 from fea.elasticity import assemble_stiffness
 from fea.error_estimate import estimate_error
 from fea.frame import FrameElement, FrameModel, NodeLoad, Support, solve_frame
@@ -166,3 +171,28 @@ def test_frame_of_two_materials(ratio):
     found = solve_frame(model)
     assert -found.reactions[0, 0] == pytest.approx(1.0 / (1.0 + ratio), rel=1e-10)
     assert found.residual < 1e-14
+
+
+def test_a_tube_of_a_thousand_diameters_is_refused_where_it_is_too_fine(tmp_path):
+    path = tmp_path / "tube.toml"
+    path.write_text(slender_tube.text(1000, solid="mesh_size = 0.1"))
+    begun = time.monotonic()
+    done = programs.run("check", str(path), "--fidelity", "solid", scratch=tmp_path / "scratch")
+    assert done.returncode == 4
+    assert "the mesh would have about" in done.stderr
+    assert "use a coarser size" in done.stderr
+    assert time.monotonic() - begun < 60.0
+
+
+@pytest.mark.parametrize("ratio", [100, 1000])
+@pytest.mark.converged
+def test_a_slender_tube_through_the_whole_program(ratio):
+    case = slender_tube.case(ratio)
+    material, section = case.material_of("tube"), case.parts["tube"].section
+    by_hand, found = (
+        check_case(case, fidelity=fidelity, threads=1).load_cases["tip"].links["tube"] for fidelity in ("beam", "solid")
+    )
+    exact = slender_tube.tip_deflection(ratio, material.youngs_modulus, section.i_z)
+    # The eyes bend less than the tube: a few diameters of its length.
+    assert found.displacement_max.value == pytest.approx(exact, rel=max(5.0 / ratio, 5e-3))
+    assert by_hand.displacement_max.value == pytest.approx(exact, rel=1e-2)

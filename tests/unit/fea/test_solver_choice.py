@@ -24,10 +24,10 @@ def small():
     return K, LinearLevel(space=space, E=2900.0, nu=0.38, fixed=fixed)
 
 
-def _choice(unknowns, *, nu=0.38, right_hand_sides=1, direct="pardiso", room=16e9, monkeypatch):
+def _choice(unknowns, *, nu=0.38, right_hand_sides=1, direct="pardiso", room=16e9, slenderness=6.0, monkeypatch):
     """What the chooser says about a system of that size, which is not made."""
     K = SimpleNamespace(size=unknowns, blocks=SimpleNamespace(nbytes=int(72 * 4.8 * unknowns)))
-    level = SimpleNamespace(space=SimpleNamespace(corners=unknowns // 23), nu=nu)
+    level = SimpleNamespace(space=SimpleNamespace(corners=unknowns // 23), nu=nu, slenderness=slenderness)
     monkeypatch.setattr(memory, "available", lambda: room)
     return solve._chosen(K, level, right_hand_sides, direct, None)
 
@@ -43,6 +43,9 @@ def _choice(unknowns, *, nu=0.38, right_hand_sides=1, direct="pardiso", room=16e
         (550_000, {"right_hand_sides": 60}, "pardiso", "60 right-hand sides"),
         (550_000, {"right_hand_sides": 200, "room": 4e9}, "two-level", "a factorisation needs about"),
         (1_500_000, {}, "two-level", "GB left"),
+        (785_000, {"slenderness": 625.0}, "pardiso", "625 times as long as wide"),
+        (785_000, {"slenderness": 625.0, "room": 4e9}, "pardiso", "625 times as long as wide"),
+        (160_000, {"slenderness": 62.0, "direct": "superlu", "room": 4e9}, "two-level", "a factorisation needs about"),
         (20_000, {"direct": "superlu"}, "two-level", "of the work of SuperLU"),
         (5_000, {"direct": "superlu"}, "superlu", "small enough"),
     ],
