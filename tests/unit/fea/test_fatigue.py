@@ -70,7 +70,8 @@ def test_no_variation_no_cycles():
 
 
 def test_goodman_by_hand():
-    # Shigley, chapter 6: Goodman's line solved for the reversed amplitude: 100 / (1 − 200/800) = 133.3; compression counts as none.
+    # Shigley, chapter 6: Goodman's line solved for the reversed amplitude: 100 / (1 − 200/800) = 133.3; compression
+    # counts as none.
     cycles = np.array([[200.0, 200.0, 1.0], [200.0, -200.0, 1.0], [200.0, 900.0, 1.0]])
     assert reversed_amplitude(cycles, 800.0) == pytest.approx([400.0 / 3.0, 100.0, np.inf])
 
