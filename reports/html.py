@@ -36,8 +36,8 @@ from reports.wording import (
 MEANING = {
     Verdict.PASS: "In this pose and under these loads every checked link keeps the margin that was asked for, "
     "wherever in its error band the truth lies. What the model leaves out is listed at the end.",
-    Verdict.FAIL: "At least one link misses its limit wherever in its error band the truth lies: "
-    "change its section, its material or its load.",
+    Verdict.FAIL: "At least one check misses its limit wherever in its error band the truth lies: "
+    "change the section, the material, the load, or how the linkage is held.",
     Verdict.UNDECIDED: "At least one answer cannot be given with the models that ran: its error band reaches over "
     "the limit, or the model leaves out what matters there. This is neither a pass nor a fail.",
 }

@@ -111,7 +111,11 @@ def headline(result: CheckResult) -> str:
 
 
 def _named(check: CheckOutcome) -> str:
-    return f"{check.quantity} {'by' if check.quantity == LOAD_SHARE else 'of'} {check.link}"
+    return f"{check.quantity} {_of(check)} {check.link}"
+
+
+def _of(check: CheckOutcome) -> str:
+    return "by" if check.quantity == LOAD_SHARE else "of"
 
 
 def sentence(text: str) -> str:
@@ -124,6 +128,6 @@ def _nearest(result: CheckResult, check: CheckOutcome, lead: str) -> str:
     asked = "at least" if check.at_least else "at most"
     under = f" under load case {check.load_case}" if len(result.load_cases) > 1 else ""
     return (
-        f"{lead}: the {check.quantity} of {check.what}{under} is {band(check.value)}{unit}, "
+        f"{lead}: the {check.quantity} {_of(check)} {check.what}{under} is {band(check.value)}{unit}, "
         f"where {asked} {plain(check.limit)}{unit} is asked for."
     )

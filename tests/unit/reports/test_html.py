@@ -161,4 +161,7 @@ def test_what_the_source_published_stands_in_the_report(result, monkeypatch) -> 
     assert 'id="claims"' in page
     assert "does not hold" in page
     assert "claims: " in page
+    shown = page[page.index('id="claims"') :]
+    assert shown.index("<details open>") < shown.index("do not hold or do not follow (")
+    assert "<details><summary>Figures that hold (" in shown
     assert 'id="claims"' not in html.render(replace(result, name="elsewhere.toml"), {})
