@@ -350,14 +350,16 @@ def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplac
         for air in case.air_forces(title)
         for sentence in air.warnings
     ]
-    held = {"the pose coordinate": case.pose.coordinate, "the driven link": case.drive.link if case.drive else None}
-    for what, link in held.items():
-        if link is None:
-            continue
-        distance = statics.pose.dead_point_distance(link)
+    pose, drive, near = statics.pose, case.pinned_drive, {}
+    if pose.coordinate is not None:
+        named = f"the pose coordinate {pose.coordinate}"
+        near[named] = pose.dead_point_distance(pose.coordinate, slides=pose.slides)
+    if drive is not None:
+        near[f"the driven link {drive.link}"] = drive.dead_point_distance(pose)
+    for what, distance in near.items():
         if distance < NEAR_DEAD_POINT:
             found.append(
-                f"the pose is close to a dead point of {what} {link} (smallest singular value {distance:.2g}): "
+                f"the pose is close to a dead point of {what} (smallest singular value {distance:.2g}): "
                 "small errors of length and angle change the joint forces much"
             )
     return found

@@ -57,6 +57,11 @@ def envelope_case(
     begin = time.perf_counter()
     if not case.checked_links:
         raise CaseError("envelope: no moving link has a part, so there is no stress; give a link a part")
+    if case.motion is not None and case.motion.travel is not None:
+        raise CaseError(
+            "motion.travel: an envelope is drawn over the direction of a link, not over a slider's travel; state the "
+            "range of a link, or look at the forces with alula motion"
+        )
     moved = solve_case_motion(case)
     evaluated = evaluated_poses(moved, growth)
     if not evaluated.any():

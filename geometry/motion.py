@@ -56,6 +56,15 @@ class Motion:
         """True where a travel is prescribed and not an angle."""
         return self.track.driven.slides
 
+    @property
+    def unit(self) -> str:
+        """Unit in which the coordinate is told to people."""
+        return "mm" if self.slides else "deg"
+
+    def told(self, values: ArrayLike) -> Real:
+        """Return values of the coordinate in that unit."""
+        return np.asarray(values, dtype=float) if self.slides else np.degrees(values)
+
     @cached_property
     def qdot(self) -> Real:
         """Rates of the unknowns (n, unknowns) [rad/s, mm/s]."""

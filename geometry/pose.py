@@ -77,6 +77,13 @@ class Pose:
         """Travel of the pin in every slot and slider [mm]."""
         return dict(zip(self.closure.slots, map(float, self.q[len(self.linkage.moving) :]), strict=True))
 
+    @property
+    def held(self) -> float:
+        """Angle [rad] or travel [mm] of the coordinate; 0 where nothing moves."""
+        if self.coordinate is None:
+            return 0.0
+        return self.travels[self.coordinate] if self.slides else self.angles[self.coordinate]
+
     def position(self, link: str, point: str) -> Real:
         """Position of a link's point in global axes (2,) [mm]."""
         return self._positions[link, point]

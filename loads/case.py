@@ -74,20 +74,24 @@ class PoseSpec(CaseModel):
     """Which position the linkage is in."""
 
     coordinate: Name | None = None
-    """The link whose direction fixes the pose; leave it out for a structure that cannot move."""
+    """The link whose direction fixes the pose, or with a travel the slider or slot that does; leave it out for a
+    structure that cannot move."""
     angle: Angle = 0.0
     """Direction of that link's x axis, counter-clockwise from the global x axis."""
+    travel: Length | None = None
+    """Travel of that slider or slot, from the point of its first link to that of its second, along its direction."""
     near: dict[Name, Angle] = {}
     """Rough directions of the other links: they choose the assembly branch."""
 
 
 class DriveSpec(CaseModel):
-    """Where the drive torque enters."""
+    """Where the drive torque enters, or at a slider the drive force."""
 
     link: Name
     """The driven link."""
     joint: Name
-    """The joint about which it is driven; the torque's reaction goes to the other link there."""
+    """The joint about which it is driven, or the slider along which it is pushed; the reaction goes to the other link
+    there."""
     transfer: Literal["eye-faces", "bore-shear"] = "eye-faces"
     """How the torque enters the driven part: as shear on the eye's flat faces, or on its bore."""
 
@@ -315,11 +319,7 @@ class Case(CaseModel):
         if self.flapping_wing is not None:
             self.flapping_wing.wing(self.linkage)
         if self.motion is not None:
-            moved = self.motion_coordinate
-            if moved not in self.linkage.moving:
-                raise CaseError(
-                    f"motion: '{moved}' is not a moving link; choose among {', '.join(self.linkage.moving)}"
-                )
+            _check_motion(self)
         for audited in self.published_statics.links if self.published_statics else ():
             if audited not in self.linkage.moving:
                 raise CaseError(f"published_statics.links: '{audited}' is not a moving link; name moving links")
@@ -426,7 +426,10 @@ class Case(CaseModel):
 
     @property
     def motion_coordinate(self) -> str:
-        """The link whose direction the motion prescribes; raises ``CaseError`` where the case has no motion."""
+        """The link whose direction, or slider whose travel, the motion prescribes.
+
+        Raises ``CaseError`` where the case has no motion.
+        """
         name = None if self.motion is None else self.motion.coordinate or self.pose.coordinate
         if name is None:
             raise CaseError(
@@ -455,7 +458,13 @@ class Case(CaseModel):
 
     def solve_pose(self) -> Pose:
         """Assemble the linkage in the stated pose."""
-        return solve_pose(self.linkage, coordinate=self.pose.coordinate, angle=self.pose.angle, near=self.pose.near)
+        return solve_pose(
+            self.linkage,
+            coordinate=self.pose.coordinate,
+            angle=self.pose.angle,
+            near=self.pose.near,
+            travel=self.pose.travel,
+        )
 
 
 def _check_size(case: Case) -> None:
@@ -478,17 +487,44 @@ def _check_size(case: Case) -> None:
 
 
 def _check_pose(case: Case) -> None:
-    moving = case.linkage.moving
+    moving, slides = case.linkage.moving, case.pose.travel is not None
     for entry, names in (("pose.coordinate", [case.pose.coordinate]), ("pose.near", [*case.pose.near])):
         for name in names:
-            if name is not None and name not in moving:
+            if entry == "pose.coordinate" and slides:
+                _check_slides(case, entry, "pose.travel", name)
+            elif name is not None and name not in moving:
                 raise CaseError(f"{entry}: '{name}' is not a moving link; choose among {', '.join(moving)}")
+    if slides and "angle" in case.pose.model_fields_set:
+        raise CaseError("pose.angle: a travel fixes the pose already; leave one of the two out")
     if case.linkage.mobility == 1 and case.pose.coordinate is None:
         raise CaseError("pose.coordinate: the linkage can move, but no link fixes its pose; name one and its angle")
     if case.drive is None and case.linkage.mobility == 0 and case.pose.coordinate is not None:
         raise CaseError(
             f"pose.coordinate: it is '{case.pose.coordinate}', but the linkage cannot move (mobility 0); remove it"
         )
+
+
+def _check_slides(case: Case, entry: str, stated: str, name: str | None) -> None:
+    slots = [joint for joint, record in case.joints.items() if record.type != "revolute"]
+    if name not in slots:
+        raise CaseError(
+            f"{entry}: {stated} is the travel of a slider or slot, but '{name}' is none; "
+            f"choose among {', '.join(slots) or 'none'}"
+        )
+
+
+def _check_motion(case: Case) -> None:
+    spec, name = case.motion, case.motion_coordinate
+    assert spec is not None
+    if spec.travel is not None:
+        _check_slides(case, "motion.coordinate", "motion.travel", name)
+    elif spec.coordinate is None and case.pose.travel is not None:
+        raise CaseError(
+            f"motion: the pose's coordinate '{name}' is a slider, so the motion needs its travel, for example "
+            'travel = ["0 mm", "10 mm"], or a coordinate of its own'
+        )
+    elif name not in case.linkage.moving:
+        raise CaseError(f"motion: '{name}' is not a moving link; choose among {', '.join(case.linkage.moving)}")
 
 
 def _check_body(entry: str, body: Body) -> None:
@@ -523,6 +559,11 @@ def _check_loads(case: Case, where: str, load_case: LoadCase) -> None:
                 _check_no_slot(case, f"{where}.air.{i}", patch.link, patch.at)
     if load_case.speed != 0.0 and case.pose.coordinate is None:
         raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
+    if load_case.speed != 0.0 and case.pose.travel is not None:
+        raise CaseError(
+            f"{where}.speed: it is the angular speed of the pose's coordinate, but '{case.pose.coordinate}' is a "
+            "slider; leave it out and state motion.travel_speed"
+        )
 
 
 def _check_torque(case: Case, entry: str, load: PointMoment) -> None:
@@ -585,6 +626,8 @@ def _check_point(case: Case, entry: str, link: str, point: str) -> None:
 def _check_motor(case: Case, name: str) -> None:
     if case.motion is None or case.drive is None:
         raise CaseError(f"checks.{name}: a motor needs a motion to drive; add [motion] and [drive]")
+    if Drive(link=case.drive.link, joint=case.drive.joint).pushes(case.linkage):
+        raise CaseError(f"checks.{name}: a motor turns, but the drive pushes slider '{case.drive.joint}'; remove one")
     if not any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
         raise CaseError(
             f"checks.{name}: no load case states the speed at which the motor runs; "

@@ -12,7 +12,13 @@ from geometry.motion import Motion, solve_motion
 from geometry.pose import Pose
 from loads.actions import PartMass, needs_masses, stated_loads
 from loads.case import Case, LoadCase
-from loads.kinetostatics import Kinetostatics, is_determinate, solve_kinetostatics, torque_by_virtual_work
+from loads.kinetostatics import (
+    Kinetostatics,
+    dead_points,
+    is_determinate,
+    solve_kinetostatics,
+    torque_by_virtual_work,
+)
 from loads.masses import laden_masses, part_masses
 from loads.statics import Drive
 
@@ -25,8 +31,9 @@ class CaseMotion:
 
     masses  of the links' parts; empty where nothing weighs and inertia is left out
     forces  load case -> joint forces; empty where they do not follow from equilibrium (redundant linkages)
-    torque  load case -> drive torque (n,) [N mm]; NaN at dead points of the driven link
-    dead_points  angles of the coordinate [rad] at which the driven link turns back
+    torque  load case -> drive torque (n,) [N mm], or force along the guide [N] where the drive ``pushes``; NaN at dead
+            points of the driven link
+    dead_points  values of the coordinate [rad, mm] at which the driven link turns back
     """
 
     case: Case
@@ -36,6 +43,16 @@ class CaseMotion:
     forces: Mapping[str, Kinetostatics]
     torque: Mapping[str, Real]
     dead_points: tuple[float, ...]
+
+    @property
+    def pushes(self) -> bool:
+        """True where the drive is a force along a guide, and no torque."""
+        return self.drive.pushes(self.case.linkage)
+
+    @property
+    def effort(self) -> tuple[str, str]:
+        """What the drive exerts, and its unit, for people."""
+        return ("force", "N") if self.pushes else ("torque", "N·mm")
 
 
 def solve_case_motion(case: Case) -> CaseMotion:
@@ -54,10 +71,11 @@ def solve_case_motion(case: Case) -> CaseMotion:
     pose = case.solve_pose()
     angles = drive_angles(case, pose)
     speed, acceleration = drive_speeds(case, angles)
-    motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate)
+    slides = spec.travel is not None
+    motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate, slides=slides)
     masses = part_masses(case) if spec.inertia or needs_masses(case) else {}
     for name, load_case in case.load_cases.items():
-        if load_case.speed != 0.0 and coordinate != case.pose.coordinate:
+        if load_case.speed != 0.0 and (slides or coordinate != case.pose.coordinate):
             raise CaseError(
                 f"load_cases.{name}.speed: it is the speed of the pose's coordinate '{case.pose.coordinate}', but the "
                 f"motion prescribes '{coordinate}'; use one link for both, or leave this speed out"
@@ -71,10 +89,9 @@ def solve_case_motion(case: Case) -> CaseMotion:
     if is_determinate(case.linkage):
         forces = {n: solve_kinetostatics(moved[n], drive, acting, inert[n]) for n, acting in loads.items()}
     torque = {
-        n: forces[n].torque if forces else torque_by_virtual_work(moved[n], drive, acting, inert[n])
+        n: drive_effort(forces[n]) if forces else torque_by_virtual_work(moved[n], drive, acting, inert[n])
         for n, acting in loads.items()
     }
-    first, second = case.linkage.joints[drive.joint].links
     return CaseMotion(
         case=case,
         motion=motion,
@@ -82,8 +99,13 @@ def solve_case_motion(case: Case) -> CaseMotion:
         masses=masses,
         forces=forces,
         torque=torque,
-        dead_points=motion.turning_points(drive.link, second if first == drive.link else first),
+        dead_points=dead_points(motion, drive),
     )
+
+
+def drive_effort(solved: Kinetostatics) -> Real:
+    """Return the drive torque (n,) [N mm], or the drive force (n,) [N] where the drive pushes a slider."""
+    return solved.push if solved.drive.pushes(solved.motion.linkage) else solved.torque
 
 
 def with_inertia(case: Case, load_case: str) -> bool:
@@ -101,28 +123,29 @@ def _at_speed_of(motion: Motion, load_case: LoadCase) -> Motion:
 
 
 def drive_angles(case: Case, pose: Pose) -> Real:
-    """Angles of the motion's coordinate (poses,) [rad]: its range, or a full turn from the stated pose."""
+    """Values of the motion's coordinate (poses,) [rad, mm]: its range, or a full turn from the stated pose."""
     spec = case.motion
     assert spec is not None
-    if spec.range is not None:
-        return np.linspace(*spec.range, spec.poses)
+    if spec.ends is not None:
+        return np.linspace(*spec.ends, spec.poses)
     start = pose.angles[case.motion_coordinate]
     return np.linspace(start, start + math.copysign(2.0 * math.pi, spec.speed), spec.poses)
 
 
 def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
-    """Angular speed [rad/s] and acceleration [rad/s²] of the motion's coordinate at its angles (poses,).
+    """Speed and acceleration of the motion's coordinate at its angles or travels (poses,), per second and second².
 
     With constant acceleration: speed² = first speed² + 2 acceleration (angle - first angle).
     """
     spec = case.motion
     assert spec is not None
-    sense, first, rate = math.copysign(1.0, angles[-1] - angles[0]), abs(spec.speed), spec.acceleration
+    sense, first, rate = math.copysign(1.0, angles[-1] - angles[0]), abs(spec.rate[0]), spec.rate[1]
     square = first**2 + 2.0 * rate * np.abs(angles - angles[0])
     if square.min() < 0.0:
-        stop = math.degrees(angles[0] + sense * first**2 / (-2.0 * rate))
+        stop = angles[0] + sense * first**2 / (-2.0 * rate)
+        where = f"{math.degrees(stop):.6g} deg" if spec.travel is None else f"{stop:.6g} mm"
         raise CaseError(
-            f"motion.acceleration: the drive slows down to a stop at {stop:.6g} deg, before the motion ends; "
+            f"motion.acceleration: the drive slows down to a stop at {where}, before the motion ends; "
             "state a smaller deceleration, a higher speed or a shorter range"
         )
     return sense * np.sqrt(square), np.full(len(angles), sense * rate)

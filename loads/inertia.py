@@ -44,9 +44,7 @@ def link_rates(pose: Pose, speed: float) -> dict[str, LinkRates]:
 
     Raises ``CaseError`` for a pose without coordinate or at a dead point of its coordinate.
     """
-    coordinate = pose.coordinate
-    angle = 0.0 if coordinate is None else pose.angles[coordinate]
-    motion = solve_motion(pose, [angle], speed=speed, coordinate=coordinate)
+    motion = solve_motion(pose, [pose.held], speed=speed)
     rates = {}
     for link in pose.linkage.moving:
         point, (x, y) = next(iter(pose.linkage.links[link].points.items()))

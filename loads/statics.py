@@ -47,6 +47,11 @@ class Drive:
         """Whether the drive is a force along a guide, and no torque."""
         return linkage.joints[self.joint].type == "slider"
 
+    def dead_point_distance(self, pose: Pose) -> float:
+        """How far a pose is from a dead point of the driven link or slider (``Pose.dead_point_distance``)."""
+        slides = self.pushes(pose.linkage)
+        return pose.dead_point_distance(self.joint if slides else self.link, slides=slides)
+
     def sign(self, linkage: Linkage) -> float:
         """Return 1 where the driven link is the joint's second, so that its motion is that of the joint; else -1."""
         return 1.0 if linkage.joints[self.joint].links[1] == self.link else -1.0

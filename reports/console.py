@@ -74,6 +74,8 @@ def _statics(case: LoadCaseResult) -> str:
     torque = case.reactions.drive_torque
     drive = case.reactions.drive
     driven = "" if drive is None else f"\nDrive torque on {drive.link}: {number(torque)} N·mm ({turning(torque)})"
+    if drive is not None and drive.pushes(case.reactions.pose.linkage):
+        driven = f"\nDrive force on {drive.link}: {number(case.reactions.drive_force)} N along {drive.joint}"
     return f"Joint forces [N]: {forces}{driven}"
 
 

@@ -17,6 +17,7 @@ UNITS = {
     "large_displacement.linear": "mm",
     "large_displacement.held": "share of the load",
     "large_displacement.buckling": "1",
+    "large_displacement.buckling": "1",
     "large_displacement.points.displacement": "mm",
     "large_displacement.reactions.wrench": "N; N*mm",
     "large_displacement.reactions.force": "N",

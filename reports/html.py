@@ -159,9 +159,14 @@ def _bands(result: CheckResult) -> tuple[str, ...]:
 
 def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
     """(what, link, distance from its dead point)."""
-    drive = result.case.drive
-    held = (("the pose coordinate", result.pose.coordinate), ("the driven link", drive.link if drive else None))
-    return [(what, link, result.pose.dead_point_distance(link)) for what, link in held if link is not None]
+    pose, drive = result.pose, result.case.pinned_drive
+    found = []
+    if pose.coordinate is not None:
+        distance = pose.dead_point_distance(pose.coordinate, slides=pose.slides)
+        found.append(("the pose coordinate", pose.coordinate, distance))
+    if drive is not None:
+        found.append(("the driven link", drive.link, drive.dead_point_distance(pose)))
+    return found
 
 
 def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[str, Any]:

@@ -52,10 +52,11 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
         "units": UNITS,
         "motion": {
             "coordinate": motion.coordinate,
-            "first": _degrees(motion.angles[0]),
-            "last": _degrees(motion.angles[-1]),
+            "unit": motion.unit,
+            "first": float(motion.told(motion.angles[0])),
+            "last": float(motion.told(motion.angles[-1])),
             "poses": len(motion.angles),
-            "speed_rad_per_s": [float(motion.speed[0]), float(motion.speed[-1])],
+            "speed_mm_per_s" if motion.slides else "speed_rad_per_s": [float(motion.speed[0]), float(motion.speed[-1])],
             "duration": None if motion.times is None else float(motion.times[-1]),
             "closure_residual": motion.residual,
             "returns_to_start": motion.returns,
@@ -74,7 +75,7 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
         "drive": {
             "link": result.drive.link,
             "joint": result.drive.joint,
-            "dead_points": [_degrees(a) for a in result.dead_points],
+            "dead_points": [float(result.motion.told(a)) for a in result.dead_points],
         },
         "design": design_record(result.case),
         "load_cases": {load_case: _case_record(result, load_case) for load_case in result.torque},
@@ -84,8 +85,9 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
 def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
     own = result.case.load_cases[load_case].speed
     speed = own if own != 0.0 else float(result.motion.speed[0])
-    found: dict[str, Any] = {"inertia": with_inertia(result.case, load_case), "speed_rad_per_s": speed}
-    found |= {"drive_torque": _extremes(result, result.torque[load_case])}
+    found: dict[str, Any] = {"inertia": with_inertia(result.case, load_case)}
+    found |= {"speed_mm_per_s" if result.motion.slides else "speed_rad_per_s": speed}
+    found |= {f"drive_{result.effort[0]}": _extremes(result, result.torque[load_case])}
     if not result.forces:
         return found | {"joints": None}
     solved = result.forces[load_case]
@@ -106,7 +108,7 @@ def _extremes(result: CaseMotion, values: Real) -> dict[str, Any]:
         return ends | {"smallest": None, "largest": None, "unbounded": True}
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
     for key, i in (("smallest", low), ("largest", high)):
-        ends |= {key: _number(values[i]), f"{key}_at": _degrees(result.motion.angles[i])}
+        ends |= {key: _number(values[i]), f"{key}_at": float(result.motion.told(result.motion.angles[i]))}
     return ends | {"unbounded": False}
 
 
@@ -120,7 +122,7 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
     print(result.case.title)
     duration = "" if motion["duration"] is None else f", {motion['duration']:.4g} s"
     print(
-        f"{motion['coordinate']} from {motion['first']:.6g} to {motion['last']:.6g} deg: "
+        f"{motion['coordinate']} from {motion['first']:.6g} to {motion['last']:.6g} {motion['unit']}: "
         f"{motion['poses']} poses{duration}; loops closed to {motion['closure_residual']:.1g} of the longest link"
     )
     if motion["returns_to_start"]:
@@ -134,36 +136,40 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         )
     for angle in drive["dead_points"]:
         print(
-            f"\n{drive['link']} turns back at {motion['coordinate']} = {angle:.4f} deg: a dead point of the driven "
-            "link. There it cannot drive the linkage; torque and joint forces grow without bound."
+            f"\n{drive['link']} turns back at {motion['coordinate']} = {angle:.4f} {motion['unit']}: a dead point of "
+            f"the driven link. There it cannot drive the linkage; {result.effort[0]} and joint forces grow without "
+            "bound."
         )
     if design := design_lines(result.case):
         print("\n" + "\n".join(design))
     for load_case, row in found["load_cases"].items():
-        how = (
-            f"with inertia at {row['speed_rad_per_s'] * 30.0 / math.pi:.4g} rpm"
-            if row["inertia"]
-            else "without inertia"
-        )
+        how = "without inertia"
+        if row["inertia"]:
+            speed = row.get("speed_mm_per_s", row.get("speed_rad_per_s"))
+            at = f"{speed:.4g} mm/s" if result.motion.slides else f"{speed * 30.0 / math.pi:.4g} rpm"
+            how = f"with inertia at {at}"
         print(f"\nLoad case {load_case} ({how})")
-        print(f"  drive torque on {drive['link']} at {drive['joint']}: {_line(row['drive_torque'], 'N·mm')}")
+        what, unit = result.effort
+        told = _line(row[f"drive_{what}"], unit, motion["unit"])
+        print(f"  drive {what} on {drive['link']} at {drive['joint']}: {told}")
         if row["joints"] is None:
             print("  joint forces do not follow from equilibrium, since the linkage is redundant")
             continue
         if "drive_power" in row:
-            print(f"  drive power: {_line(row['drive_power'], 'W')}; energy balance to {row['energy_imbalance']:.1g}")
+            power = _line(row["drive_power"], "W", motion["unit"])
+            print(f"  drive power: {power}; energy balance to {row['energy_imbalance']:.1g}")
         for joint, extremes in row["joints"].items():
-            print(f"  joint {joint}: {_line(extremes, 'N')}")
+            print(f"  joint {joint}: {_line(extremes, 'N', motion['unit'])}")
 
 
-def _line(row: Mapping[str, Any], unit: str) -> str:
+def _line(row: Mapping[str, Any], unit: str, at: str) -> str:
     keys = ("first", "last", "smallest", "largest")
     scale = max((abs(row[key]) for key in keys if row[key] is not None), default=0.0)
     first, last, smallest, largest = (_text(row[key], scale) for key in keys)
     ends = f"{first} -> {last} {unit}"
     if row["unbounded"]:
         return ends
-    return f"{ends}, least {smallest} at {row['smallest_at']:.1f} deg, most {largest} at {row['largest_at']:.1f} deg"
+    return f"{ends}, least {smallest} at {row['smallest_at']:.1f} {at}, most {largest} at {row['largest_at']:.1f} {at}"
 
 
 def _text(value: float | None, scale: float) -> str:
@@ -174,20 +180,26 @@ def _text(value: float | None, scale: float) -> str:
 
 
 def _base(motion: Motion) -> dict[str, Real]:
-    columns = {f"{motion.coordinate} angle [deg]": np.degrees(motion.angles)}
+    columns = {
+        f"{motion.coordinate} {'travel' if motion.slides else 'angle'} [{motion.unit}]": motion.told(motion.angles)
+    }
     return columns if motion.times is None else columns | {"time [s]": motion.times}
 
 
 def _link_columns(motion: Motion) -> dict[str, Real]:
     columns: dict[str, Real] = {}
     for i, link in enumerate(motion.linkage.moving):
-        if link != motion.coordinate:
+        if motion.slides or link != motion.coordinate:
             columns[f"{link} angle [deg]"] = np.degrees(motion.angle(link))
-        columns[f"{link} speed over speed of {motion.coordinate} [1]"] = motion.first[:, i]
+        columns[f"{link} speed over speed of {motion.coordinate} [{'rad/mm' if motion.slides else '1'}]"] = (
+            motion.first[:, i]
+        )
         if motion.times is not None:
             columns[f"{link} speed [rad/s]"] = motion.angular_speed(link)
             columns[f"{link} acceleration [rad/s^2]"] = motion.angular_acceleration(link)
     for joint in motion.closure.slots:
+        if motion.slides and joint == motion.coordinate:
+            continue
         columns[f"{joint} travel [mm]"] = motion.travel(joint)
     return columns
 
@@ -208,7 +220,8 @@ def _point_columns(motion: Motion) -> dict[str, Real]:
 
 
 def _torque_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
-    columns = {f"torque on {result.drive.link} [N mm]": result.torque[load_case]}
+    what, unit = result.effort
+    columns = {f"{what} on {result.drive.link} [{unit.replace('·', ' ')}]": result.torque[load_case]}
     if any(np.any(solved.motion.speed) for solved in result.forces.values()):
         solved = result.forces[load_case]
         columns["drive power [N mm/s]"] = solved.drive_power

@@ -44,7 +44,7 @@ def draw_animation(motion: Motion, path: Path) -> None:
         for angle, here in zip(angles, points, strict=True):
             for line, columns in drawn:
                 line.set_data(here[columns].real, here[columns].imag)
-            title.set_text(f"{motion.coordinate} at {np.degrees(angle):.1f} deg")
+            title.set_text(f"{motion.coordinate} at {motion.told(angle):.1f} {motion.unit}")
             canvas.draw()
             frames.append(np.array(canvas.buffer_rgba())[..., :3])
     # Colours are chosen for all frames together, or they would flicker.

@@ -67,7 +67,7 @@ def angles_figure(result: CaseMotion) -> Figure:
 def torque_figure(result: CaseMotion) -> Figure:
     """Drive torque over the coordinate's angle, one line per load case."""
     motion = result.motion
-    figure, axes = _over_angle(motion, f"drive torque on {result.drive.link} [N·mm]")
+    figure, axes = _over_angle(motion, f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]")
     for i, (load_case, torque) in enumerate(result.torque.items()):
         _line(axes, motion, _broken(result, torque), load_case, i)
     axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
@@ -107,9 +107,9 @@ def paths_figure(motion: Motion) -> Figure:
             xy = np.array([motion.position(link, point)[index] for link, point in chain])
             axes.plot(*xy.T, color=colour, linewidth=1.4, marker="o", markersize=3.5, markerfacecolor="white", zorder=3)
     ground(axes, motion)
-    last = f"{np.degrees(motion.angles[indices[-1]]):.5g}"
+    last = f"{motion.told(motion.angles[indices[-1]]):.5g} {motion.unit}"
     axes.set_title(
-        f"{motion.coordinate} from {np.degrees(motion.angles[0]):.5g} deg (light) to {last} deg (black)",
+        f"{motion.coordinate} from {motion.told(motion.angles[0]):.5g} {motion.unit} (light) to {last} (black)",
         parse_math=False,
         loc="left",
         fontsize=10,
@@ -170,9 +170,10 @@ def ground(axes: Any, motion: Motion) -> None:
 def _over_angle(motion: Motion, label: str) -> tuple[Figure, Any]:
     figure = Figure(figsize=_SIZE, layout="constrained")
     axes = figure.add_subplot()
-    axes.set_xlabel(f"direction of {motion.coordinate} [deg]", parse_math=False)
+    what = "travel" if motion.slides else "direction"
+    axes.set_xlabel(f"{what} of {motion.coordinate} [{motion.unit}]", parse_math=False)
     axes.set_ylabel(label, parse_math=False)
-    first, last = np.degrees(motion.angles[[0, -1]])
+    first, last = motion.told(motion.angles[[0, -1]])
     axes.set_xlim(first, last)
     axes.grid(color="0.9", linewidth=0.8)
     return figure, axes
@@ -180,7 +181,7 @@ def _over_angle(motion: Motion, label: str) -> tuple[Figure, Any]:
 
 def _line(axes: Any, motion: Motion, values: Real, label: str, index: int) -> None:
     style = {"color": COLOURS[index % len(COLOURS)], "linestyle": DASHES[index // len(COLOURS) % len(DASHES)]}
-    axes.plot(np.degrees(motion.angles), values, label=label, linewidth=1.8, **style)
+    axes.plot(motion.told(motion.angles), values, label=label, linewidth=1.8, **style)
 
 
 def _equal(sizes: dict[str, Real]) -> list[list[str]]:
@@ -215,10 +216,10 @@ def _clip(axes: Any, result: CaseMotion, values: list[Real], *, symmetric: bool)
 
 
 def _dead_points(axes: Any, result: CaseMotion) -> None:
-    for angle in np.degrees(result.dead_points):
+    for angle in result.motion.told(result.dead_points):
         axes.axvline(angle, color="0.25", linewidth=1.0, linestyle=(0, (2, 2)), zorder=1)
         axes.annotate(
-            f"dead point of {result.drive.link}: {angle:.2f} deg",
+            f"dead point of {result.drive.link}: {angle:.2f} {result.motion.unit}",
             (angle, 1.0),
             xycoords=("data", "axes fraction"),
             xytext=(-4, -6),

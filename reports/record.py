@@ -36,6 +36,8 @@ FIELD_UNITS = {
     "pose.points": "mm",
     "pose.link_angles": "deg",
     "pose.coordinate_angle": "deg",
+    "pose.coordinate_travel": "mm",
+    "drive_force": "N",
     "pose.closure_residual": "share of the longest link",
     "pose.longest_link": "mm",
     "pose.mobility": "1",
@@ -107,6 +109,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "statics": _statics(first.reactions),
         "reactions": [entry for case in result.load_cases.values() for entry in _reactions(case)],
         "drive_torque": _drive_torque(first.reactions),
+        "drive_force": _drive_force(first.reactions),
         "links": {name: _worst_link(result, name) for name in first.links},
         "checks": [
             {
@@ -161,23 +164,26 @@ def _band(band: Band) -> dict[str, Any]:
 
 
 def _pose(result: CheckResult) -> dict[str, Any]:
-    pose, drive = result.pose, result.case.drive
+    pose = result.pose
     angles = {link: math.degrees(angle) % 360.0 for link, angle in pose.angles.items()}
 
-    def dead_point(link: str | None) -> dict[str, Any] | None:
-        return None if link is None else {"link": link, "distance": pose.dead_point_distance(link)}
+    drive = result.case.pinned_drive
+    slides = pose.slides
 
     return {
         "points": {name: [float(x) for x in at] for name, at in pose.points.items()},
         "link_angles": angles,
         "coordinate": pose.coordinate,
-        "coordinate_angle": None if pose.coordinate is None else angles[pose.coordinate],
+        "coordinate_angle": None if pose.coordinate is None or slides else angles[pose.coordinate],
+        "coordinate_travel": pose.held if slides else None,
         "mobility": pose.linkage.mobility,
         "closure_residual": pose.residual,
         "longest_link": pose.linkage.longest,
         "dead_points": {
-            "pose_coordinate": dead_point(pose.coordinate),
-            "driven_link": dead_point(drive.link if drive else None),
+            "pose_coordinate": None
+            if pose.coordinate is None
+            else {"link": pose.coordinate, "distance": pose.dead_point_distance(pose.coordinate, slides=slides)},
+            "driven_link": None if drive is None else {"link": drive.link, "distance": drive.dead_point_distance(pose)},
         },
     }
 
@@ -192,6 +198,11 @@ def _statics(reactions: Reactions) -> dict[str, Any]:
 
 def _drive_torque(reactions: Reactions) -> float | None:
     return None if reactions.drive is None else reactions.drive_torque
+
+
+def _drive_force(reactions: Reactions) -> float | None:
+    drive = reactions.drive
+    return None if drive is None or not drive.pushes(reactions.pose.linkage) else reactions.drive_force
 
 
 def _reactions(case: LoadCaseResult) -> list[dict[str, Any]]:
@@ -253,6 +264,7 @@ def _load_case(result: CheckResult, name: str) -> dict[str, Any]:
         "title": result.case.load_cases[name].title,
         "statics": _statics(case.reactions),
         "drive_torque": _drive_torque(case.reactions),
+        "drive_force": _drive_force(case.reactions),
         "anchor": anchor_record(case),
         "air": air_record(result, name),
         **frame_record(case),

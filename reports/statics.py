@@ -35,7 +35,11 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
                 f"{turned}{' N·mm' if turned else ''}"
             )
         if reactions.drive:
-            print(f"  drive torque on {reactions.drive.link}: {reactions.drive_torque:.2f} N·mm (counter-clockwise +)")
+            drive = reactions.drive
+            if drive.pushes(reactions.pose.linkage):
+                print(f"  drive force on {drive.link}: {reactions.drive_force:.4f} N (along {drive.joint} +)")
+            else:
+                print(f"  drive torque on {drive.link}: {reactions.drive_torque:.2f} N·mm (counter-clockwise +)")
         system = reactions.system
         print(f"  system {len(system.rows)}×{len(system.columns)}, condition number {system.condition:.4g} (scaled),")
         print(f"  residual {reactions.residual:.1e} of the load")
@@ -88,6 +92,7 @@ def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
                     for joint in reactions.joints.values()
                 ],
                 "drive_torque": reactions.drive_torque,
+                "drive_force": reactions.drive_force,
                 "residual": reactions.residual,
                 "condition": reactions.system.condition,
                 **({"system": _system(reactions.system)} if matrix else {}),

@@ -144,6 +144,49 @@ def pin_on_the_ground(angle: float = 30.0) -> Case:
     )
 
 
+def piston_entries() -> dict[str, Any]:
+    """Return the entries of a case whose piston is driven by its travel and turns a crank, as a user writes them."""
+    bar = {
+        "shape": "bar",
+        "material": "pla-fdm-xy",
+        "width": "8 mm",
+        "thickness": "4 mm",
+        "eye_diameter": "12 mm",
+        "eye_thickness": "4 mm",
+        "fillet_radius": "2 mm",
+    }
+    return {
+        "schema_version": 1,
+        "title": "a piston that drives its crank",
+        "links": {
+            "ground": {"ground": True, "points": {"O": ["0 mm", "0 mm"], "S": ["0 mm", "-20 mm"]}},
+            "crank": {
+                "part": "bar",
+                "points": {"O": ["0 mm", "0 mm"], "M": ["20 mm", "0 mm"], "P": ["40 mm", "0 mm"]},
+            },
+            "rod": {"part": "bar", "points": {"P": ["0 mm", "0 mm"], "C": ["120 mm", "0 mm"]}},
+            "piston": {"points": {"C": ["0 mm", "0 mm"], "Q": ["10 mm", "0 mm"]}},
+        },
+        "joints": {
+            "O": {"links": ["ground", "crank"], "pin_diameter": "3 mm"},
+            "P": {"links": ["crank", "rod"], "pin_diameter": "3 mm"},
+            "C": {"links": ["rod", "piston"], "pin_diameter": "3 mm"},
+            "S": {"type": "slider", "links": ["ground", "piston"], "points": ["S", "C"]},
+        },
+        "pose": {
+            "coordinate": "S",
+            "travel": "130 mm",
+            "near": {"crank": "60 deg", "rod": "-25 deg", "piston": "0 deg"},
+        },
+        "drive": {"link": "piston", "joint": "S"},
+        "motion": {"travel": ["90 mm", "150 mm"], "travel_speed": "400 mm/s", "poses": 13},
+        "parts": {"bar": bar},
+        "load_cases": {
+            "brake": {"moments": [{"link": "crank", "at": "M", "moment": "-300 N*mm"}]},
+        },
+    }
+
+
 def imbalance(reactions, loads, place=None) -> float:
     """Largest sum of forces, or of moments over the longest link, on any link; ``place`` (link, point) -> (3,)."""
     pose, worst = reactions.pose, 0.0

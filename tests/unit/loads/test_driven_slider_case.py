@@ -1,0 +1,138 @@
+"""A case whose slider is driven by its travel, from the entries to tables and reports."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from slotted_cases import piston_entries
+
+from fea.check import check_case
+from fea.verdict import LINKAGE
+from geometry.errors import CaseError
+from loads.case import Case
+from loads.case_file import validate
+from loads.case_motion import solve_case_motion
+from reports.motion import print_motion, record, write_tables
+
+A = 40.0
+
+
+def case_with(**changes: dict) -> Case:
+    data = piston_entries()
+    for table, more in changes.items():
+        data[table] = {key: value for key, value in (data.get(table, {}) | more).items() if value is not None}
+    return validate(data)
+
+
+def test_the_piston_holds_what_pushes_it_at_every_travel() -> None:
+    data = piston_entries()
+    data["load_cases"]["brake"] = {"forces": [{"link": "rod", "at": "C", "force": ["-20 N", "5 N"]}]}
+    moved = solve_case_motion(validate(data))
+    assert (moved.pushes, moved.effort, moved.motion.unit) == (True, ("force", "N"), "mm")
+    assert moved.torque["brake"] == pytest.approx(np.full(13, 20.0), abs=1e-9)
+    assert moved.motion.travel("S") == pytest.approx(np.linspace(90.0, 150.0, 13), abs=1e-10)
+    assert moved.motion.times[-1] == pytest.approx(60.0 / 400.0)
+    assert moved.dead_points == ()
+
+
+def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> None:
+    data = piston_entries()
+    data["load_cases"]["brake"] = {"forces": [{"link": "rod", "at": "C", "force": ["-20 N", "5 N"]}]}
+    moved = solve_case_motion(validate(data))
+    found = json.loads(json.dumps(record(moved, "piston")))
+    assert (found["motion"]["unit"], found["motion"]["first"], found["motion"]["last"]) == ("mm", 90.0, 150.0)
+    assert found["motion"]["speed_mm_per_s"] == [400.0, 400.0]
+    assert found["load_cases"]["brake"]["drive_force"]["first"] == pytest.approx(20.0)
+    assert "drive_torque" not in found["load_cases"]["brake"]
+    print_motion(moved, "piston", json=False)
+    told = capsys.readouterr().out
+    assert "S from 90 to 150 mm: 13 poses, 0.15 s" in told
+    assert "drive force on piston at S: 20 -> 20 N" in told
+    write_tables(moved, tmp_path)
+    with (tmp_path / "torque.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert float(rows[0]["S travel [mm]"]) == 90.0
+    assert float(rows[-1]["force on piston [N]"]) == pytest.approx(20.0)
+    with (tmp_path / "links.csv").open() as stream:
+        links = list(csv.DictReader(stream))
+    first, last = (float(links[i]["crank angle [deg]"]) for i in (0, -1))
+    assert first == pytest.approx(math.degrees(moved.motion.angle("crank")[0]))
+    assert last < first
+    assert "crank speed over speed of S [rad/mm]" in links[0]
+
+
+def test_figures_of_it_are_drawn(tmp_path) -> None:
+    from reports.motion_figures import draw_figures
+
+    draw_figures(solve_case_motion(validate(piston_entries())), tmp_path)
+    assert {path.suffix for path in tmp_path.iterdir()} == {".png"}
+
+
+def test_its_check_holds_the_piston() -> None:
+    """A moment on the crank alone: the piston's force is M/(ds/dphi), and the frame is held at the slider."""
+    case = validate(piston_entries())
+    result = check_case(case, fidelity="beam")
+    reactions = result.load_cases["brake"].reactions
+    pose = result.pose
+    crank, rod = pose.angles["crank"], pose.angles["rod"]
+    slope = -A * math.sin(crank - rod) / math.cos(rod)  # ds/dphi
+    assert reactions.drive_force == pytest.approx(300.0 / slope, rel=1e-12)
+    assert reactions.drive_torque == 0.0
+    assert reactions.joints["S"].wrench[0] == pytest.approx(reactions.drive_force)
+    assert result.load_cases["brake"].large_displacement.state == "small"
+    assert LINKAGE in {check.link for check in result.load_cases["brake"].checks}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"pose": {"coordinate": "O"}}, r"pose.coordinate: pose.travel is .*'O' is none; choose among S"),
+        ({"pose": {"angle": "10 deg"}}, r"pose.angle: a travel fixes the pose already"),
+        ({"pose": {"travel": "130"}}, "unit"),
+        ({"motion": {"travel": ["90 mm", "170 mm"]}}, None),
+        (
+            {"motion": {"travel": None, "range": ["0 deg", "30 deg"], "travel_speed": None}},
+            r"motion: .*is a slider, so",
+        ),
+        ({"motion": {"speed": "3 rpm"}}, "no angular speed"),
+        ({"motion": {"travel": ["90 mm", "90 mm"]}}, "same travel"),
+        ({"motion": {"travel_speed": "3 rpm"}}, "speed"),
+        ({"motion": {"coordinate": "crank"}}, r"motion.coordinate: motion.travel is .*'crank' is none"),
+        ({"load_cases": {"brake": {"speed": "3 rpm"}}}, r"load_cases.brake.speed: .*is a slider; leave it out"),
+        (
+            {"checks": {"motor": {"type": "motor", "voltage": "6 V", "current": "1 A", "efficiency": 0.5}}},
+            r"checks.motor: a motor turns, but the drive pushes slider 'S'",
+        ),
+    ],
+)
+def test_what_does_not_fit_is_refused(changes: dict, words: str | None) -> None:
+    if words is None:
+        with pytest.raises(CaseError, match=r"driven by S, the linkage comes to a dead point at S = 158.745079 mm"):
+            solve_case_motion(case_with(**changes))
+        return
+    with pytest.raises(CaseError, match=words):
+        case_with(**changes)
+
+
+def test_a_crank_driven_pose_may_move_by_its_pistons_travel() -> None:
+    """The motion's coordinate need not be the pose's."""
+    data = piston_entries()
+    data["pose"] = {"coordinate": "crank", "angle": "60 deg", "near": {"rod": "-25 deg", "piston": "0 deg"}}
+    data["motion"] = {"coordinate": "S", "travel": ["100 mm", "140 mm"], "poses": 5}
+    moved = solve_case_motion(validate(data))
+    assert moved.motion.travel("S") == pytest.approx([100.0, 110.0, 120.0, 130.0, 140.0], abs=1e-10)
+
+
+def test_a_braked_piston_stops_where_its_energy_ends() -> None:
+    moving = {"travel_speed": "100 mm/s", "travel_acceleration": "-1 m/s^2"}
+    with pytest.raises(CaseError, match=r"slows down to a stop at 95 mm"):
+        solve_case_motion(case_with(motion=moving))
+
+
+def test_an_envelope_over_a_travel_is_refused() -> None:
+    from fea.envelope import envelope_case
+
+    with pytest.raises(CaseError, match=r"motion.travel: an envelope is drawn over the direction of a link"):
+        envelope_case(validate(piston_entries()))
