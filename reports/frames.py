@@ -17,12 +17,12 @@ UNITS = {
     "large_displacement.linear": "mm",
     "large_displacement.held": "share of the load",
     "large_displacement.buckling": "1",
-    "large_displacement.buckling": "1",
     "large_displacement.points.displacement": "mm",
     "large_displacement.reactions.wrench": "N; N*mm",
     "large_displacement.reactions.force": "N",
     "large_displacement.reactions.magnitude": "N",
     "large_displacement.drive_torque": "N*mm",
+    "large_displacement.drive_force": "N",
     "pins.lever": "mm",
     "pins.moment": "N*mm",
     "pins.bending": "MPa",
@@ -86,6 +86,7 @@ def frame_record(case: LoadCaseResult) -> dict[str, Any]:
             ],
             "reactions": None if moved.reactions is None else reaction_records(moved.reactions),
             "drive_torque": None if moved.reactions is None else moved.reactions.drive_torque,
+            "drive_force": None if moved.reactions is None else moved.reactions.drive_force,
         },
         "pins": [
             {
@@ -118,7 +119,11 @@ def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:
         forces = "  ".join(f"{name} {number(joint.magnitude)}" for name, joint in deformed.joints.items())
         lines.append(f"On the deformed shape [N]: {forces}")
         if deformed.drive is not None:
-            lines.append(f"Drive torque on the deformed shape: {number(deformed.drive_torque)} N·mm")
+            pushes = deformed.drive.pushes(deformed.pose.linkage)
+            what = f"force on the deformed shape: {number(deformed.drive_force)} N"
+            if not pushes:
+                what = f"torque on the deformed shape: {number(deformed.drive_torque)} N·mm"
+            lines.append(f"Drive {what}")
     asked = result.case.ways_to_hold
     if asked is not None:
         ways = [
