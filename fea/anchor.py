@@ -37,11 +37,16 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
     joints = wrenches_on_ground(reactions)
     pose = reactions.pose
     ground = pose.linkage.ground
-    places = {name: pose.position(ground, pose.linkage.point_of(name, ground)) for name in joints}
+    places = {}
+    for name in joints:
+        point = pose.position(ground, pose.linkage.point_of(name, ground))
+        # A pin has travelled from the ground's point along its slot; the wrench is about where it stands.
+        travelled = reactions.joints[name].arm if reactions.joints[name].by == ground else np.zeros(3)
+        places[name] = np.array([*point, 0.0]) + travelled
     about = next(iter(joints))
     total = np.zeros(6)
     for name, wrench in joints.items():
-        total += shifted(wrench, np.array([*(places[name] - places[about]), 0.0]))
+        total += shifted(wrench, places[name] - places[about])
     return AnchorLoads(joints=joints, about=about, total=total, deformed=moved is not None)
 
 

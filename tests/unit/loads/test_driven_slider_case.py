@@ -3,11 +3,13 @@
 import csv
 import json
 import math
+import re
 
 import numpy as np
 import pytest
 from slotted_cases import piston_entries
 
+from fea.anchor import anchor_loads
 from fea.check import check_case
 from fea.verdict import LINKAGE
 from geometry.errors import CaseError
@@ -83,6 +85,8 @@ def test_its_check_holds_the_piston() -> None:
     assert reactions.joints["S"].wrench[0] == pytest.approx(reactions.drive_force)
     assert result.load_cases["brake"].large_displacement.state == "small"
     assert LINKAGE in {check.link for check in result.load_cases["brake"].checks}
+    # The guide's force acts where the piston stands: the ground holds the moment on the crank, and no force.
+    assert anchor_loads(result.load_cases["brake"]).total == pytest.approx([0, 0, 0, 0, 0, -300.0], abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -136,3 +140,14 @@ def test_an_envelope_over_a_travel_is_refused() -> None:
 
     with pytest.raises(CaseError, match=r"motion.travel: an envelope is drawn over the direction of a link"):
         envelope_case(validate(piston_entries()))
+
+
+def test_the_report_of_its_check_tells_the_travel_and_the_force() -> None:
+    from reports.html import render
+
+    result = check_case(validate(piston_entries()), fidelity="beam")
+    page = render(result, {})
+    assert "The pose is fixed by joint S, whose travel is" in page
+    assert re.search(r"whose travel is\s+130(\.0+)? mm", page)
+    assert "Drive force on" in page
+    assert "Drive torque" not in page
