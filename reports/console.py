@@ -89,6 +89,7 @@ def _anchor(case: LoadCaseResult) -> str:
     anchor = anchor_loads(case)
     rows = {**anchor.joints, f"all, about {anchor.about}": anchor.total}
     forces, moments = (max(float(np.abs(w[part]).max()) for w in rows.values()) for part in (slice(3), slice(3, 6)))
+    moments = max(moments, forces * case.reactions.pose.linkage.longest)
     shape = ", deformed" if anchor.deformed else ""
     lines = [f"On the ground{shape}: force x, y, z [N]; moment x, y, z [N·mm]"]
     for name, wrench in rows.items():
