@@ -77,6 +77,12 @@ def test_factor_tells_its_name_and_reason(small):
     assert factorise(K).reason.endswith("factorisation alone suits this system")
 
 
+def test_two_levels_that_do_not_fit_are_refused_before_they_are_made(small):
+    K, level = small
+    with pytest.raises(CannotRunError, match="unknowns by conjugate gradients over linear elements needs about"):
+        factorise(K, level=level, method="two-level", memory_limit=1.0)
+
+
 def test_two_levels_need_quadratic_elements(small):
     K, _ = small
     with pytest.raises(CannotRunError, match=r"needs quadratic elements"):
