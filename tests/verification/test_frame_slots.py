@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
 from slotted_cases import (
     imbalance,
     oscillating_cylinder,
@@ -20,7 +21,7 @@ from slotted_cases import (
     slider_crank,
 )
 
-from fea.corotational import _Path, solve_large_displacement, subdivide
+from fea.corotational import _gap, _Path, _State, solve_large_displacement, subdivide
 from fea.frame import FrameModel, Guide, solve_frame
 from fea.joint_forces import PINNED_FRAME, joint_forces
 from fea.large_displacement import examine
@@ -307,3 +308,32 @@ def test_what_no_guide_can_be_is_refused() -> None:
 
 def rebuilt(model: FrameModel, guide: Guide) -> FrameModel:
     return replace(model, guides=(guide,))
+
+
+@pytest.mark.parametrize("axis", [None, np.array([0.0, 0.6, 0.8])])
+@pytest.mark.parametrize("nodes", [(0, 1), (None, 1), (0, None)])
+def test_a_guides_gradient_and_curvature_are_the_derivatives_of_its_gap(axis, nodes) -> None:
+    """By central differences in displacements and spins; rows and columns of the ground stand for nothing."""
+    rng = np.random.default_rng(7)
+    guide = Guide(carrier=nodes[0], pin=nodes[1], normal=np.array([0.48, -0.6, 0.64]), axis=axis)
+    displacements = rng.normal(size=(2, 3))
+    rotations = Rotation.from_rotvec(rng.normal(size=(2, 3))).as_matrix()
+
+    def at(change: np.ndarray):
+        parts = change.reshape(2, 6)
+        turned = Rotation.from_rotvec(parts[:, 3:]).as_matrix() @ rotations
+        state = _State(
+            displacements=displacements + parts[:, :3],
+            rotations=turned,
+            attachments=np.zeros((0, 2, 3, 3)),
+            guide_forces=np.zeros(1),
+        )
+        return _gap(guide, state)
+
+    free = [i for i in range(12) if nodes[i // 6] is not None]
+    _, gradient, curvature = at(np.zeros(12))
+    h = 1e-6
+    for i in free:
+        ends = [at(sign * h * np.eye(12)[i]) for sign in (1.0, -1.0)]
+        assert gradient[i] == pytest.approx((ends[0][0] - ends[1][0]) / (2 * h), abs=1e-9)
+        assert curvature[free, i] == pytest.approx((ends[0][1] - ends[1][1])[free] / (2 * h), abs=1e-9)
