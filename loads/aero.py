@@ -51,7 +51,8 @@ class AirPatch(CaseModel):
     span: tuple[Annotated[float, Field(ge=0, le=1)], Annotated[float, Field(ge=0, le=1)]] = (0.0, 1.0)
     """Elliptic only: place of ``start`` and ``end`` on the span, 0 at the wing's root, 1 at its tip."""
     share: Annotated[float, Field(gt=0, le=1)] | None = None
-    """Share of the load; when left out by all, loads are shared by length and shape, as one wing has them."""
+    """Share of the load; when left out by all: uniform loads by length, elliptic ones by the area under the one ellipse
+    over their spans."""
 
 
 class AirLoad(CaseModel):
@@ -234,6 +235,23 @@ def check_air(air: AirLoad, entry: str, points: Points) -> None:
             raise CaseError(f"{where}: start and end lie at the same station; name two different points")
         if patch.shape == "elliptic" and patch.span[0] == patch.span[1]:
             raise CaseError(f"{where}.span: start and end stand at one place of the span; name two different places")
+    if not any(stated):
+        _check_sharing(air.spread, f"{entry}.spread")
+
+
+def _check_sharing(spread: Sequence[AirPatch], entry: str) -> None:
+    """Refuse patches without shares that are not of one shape, or that claim one part of the span twice."""
+    if len({patch.shape for patch in spread}) > 1:
+        raise CaseError(f"{entry}: uniform and elliptic patches have no common measure to share by; state every share")
+    if spread[0].shape == "uniform":
+        return
+    inner_first = sorted((sorted(patch.span), i) for i, patch in enumerate(spread))
+    for (inner, i), (outer, j) in itertools.pairwise(inner_first):
+        if outer[0] < inner[1]:
+            raise CaseError(
+                f"{entry}.{j}.span: it overlaps that of {entry}.{i}, but one ellipse loads each part of the span once; "
+                "state the span's parts one after the other, or every share"
+            )
 
 
 def air_loads(air: AirLoad, entry: str, points: Points) -> tuple[LineLoad | PointLoad, ...]:
@@ -256,8 +274,8 @@ def shares(air: AirLoad, points: Points) -> tuple[float, ...]:
     sizes = []
     for patch in air.spread:
         x0, x1 = _stations(patch, points)
-        mean = 1.0 if patch.shape == "uniform" else _moments(*patch.span)[0] / (patch.span[1] - patch.span[0])
-        sizes.append(abs(x1 - x0) * mean)
+        # The ellipse stands over the span, whatever the lengths of the links on which its parts are laid.
+        sizes.append(abs(x1 - x0) if patch.shape == "uniform" else abs(_moments(*patch.span)[0]))
     return tuple(size / sum(sizes) for size in sizes)
 
 

@@ -27,6 +27,7 @@ UNITS = {
     "air.drag_direction": "1",
     "air.force": "N",
     "air.spread.share": "1",
+    "air.spread.span": "1",
 }
 
 
@@ -96,6 +97,7 @@ def air_record(result: CheckResult, name: str) -> list[dict[str, Any]]:
                         "link": patch.link,
                         "where": patch.at or f"{patch.start} to {patch.end}",
                         "shape": "point" if patch.at else patch.shape,
+                        "span": list(patch.span) if patch.at is None and patch.shape == "elliptic" else None,
                         "share": share,
                     }
                     for patch, share in zip(air.spread, shares(air, points), strict=True)

@@ -8,6 +8,7 @@ import pytest
 from fea.anchor import wrenches_on_ground
 from fea.check import check_case, solve_case_statics
 from geometry.errors import CaseError
+from loads.aero import air_loads
 from loads.case_file import read_case
 from loads.masses import part_mass
 
@@ -115,6 +116,34 @@ def test_complete_loads_follow_from_one_dynamic_pressure(name):
     coefficients = (0.32, 0.06) if "flight" in name else (1.2 * math.cos(math.pi / 3), 1.2 * math.sin(math.pi / 3))
     assert complete.lift == pytest.approx(q_s * coefficients[0], rel=2e-3)
     assert complete.drag == pytest.approx(q_s * coefficients[1], rel=2e-3)
+
+
+@pytest.mark.parametrize("name", AIRBORNE)
+@pytest.mark.parametrize("load_case", ["complete", "planform"])
+def test_the_air_is_a_quarter_ellipse_on_two_links(name, load_case, statics):
+    """Half the span on each link: 1/3 + sqrt(3)/(2 pi) of the force inside; centroids from the ellipse's moments."""
+    found = statics[name]
+    [air] = found.case.air_forces(load_case)
+    inner = 1.0 / 3.0 + math.sqrt(3.0) / (2.0 * math.pi)
+    centroids = [4.0 / (3.0 * math.pi) * m / share for m, share in ((1 - 0.75**1.5, inner), (0.75**1.5, 1 - inner))]
+    f, c, h = (found.pose.position(link, point) for link, point in (("CF", "F"), ("CF", "C"), ("CH", "H")))
+    places = f + (c - f) * centroids[0] / 0.5, c + (h - c) * (centroids[1] - 0.5) / 0.5
+    expected = sum(
+        np.cross([*place[:2], 0.0], share * air.total)
+        for place, share in zip(places, (inner, 1.0 - inner), strict=True)
+    )
+    case = found.case
+    spread = air_loads(case.load_cases[load_case].air[0], "air.0", case.link_points)
+    wrench = sum(load.resultant(found.pose) for load in spread)
+    for load in spread:  # from the origin of its link's frame to A
+        wrench[3:] += np.cross([*found.pose.origins[load.link], 0.0], load.resultant(found.pose)[:3])
+    np.testing.assert_allclose(wrench[:3], air.total, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(wrench[3:], expected, rtol=1e-10, atol=1e-9)
+    # What the assumptions say of "beyond H": the load stands 146 mm outward of the root; over 366 mm it stood at 155.
+    outward = -(inner * places[0][0] + (1.0 - inner) * places[1][0])
+    assert outward == pytest.approx(146.0, abs=0.5)
+    assert 1.0 - outward / (4.0 * 366.0 / (3.0 * math.pi)) == pytest.approx(0.06, abs=5e-3)
+    assert (-f[0], 366.0 + h[0]) == pytest.approx((33.0, 94.0), abs=0.5)
 
 
 def test_one_wing_carries_half_of_the_bird_in_flight():

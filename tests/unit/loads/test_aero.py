@@ -8,7 +8,7 @@ import pytest
 
 from geometry.errors import CaseError
 from loads.actions import actions
-from loads.aero import AirLoad, air_forces, air_loads, shares
+from loads.aero import AirLoad, air_forces, air_loads, check_air, shares
 from loads.applied import LineLoad, PointLoad
 from loads.case_file import read_case, read_text, validate
 
@@ -186,6 +186,47 @@ def test_one_ellipse_over_two_links():
         w = np.sqrt(1.0 - e * e)
         centroid = float((e * w).sum() / w.sum())
         assert first[1] / force[1] == pytest.approx(x0 + (centroid - e0) * 200.0, rel=1e-5)
+
+
+def test_the_ellipse_is_shared_by_the_span_not_by_lengths():
+    """Links of 120 and 80 mm bear half of the span each: the inner half has 1/3 + sqrt(3)/(2 pi) of the area."""
+    spread = [
+        {"link": "b", "start": "R", "end": "Q", "shape": "elliptic", "span": (1.0, 0.5)},  # from tip to middle
+        {"link": "a", "start": "P", "end": "Q", "shape": "elliptic", "span": (0.0, 0.5)},
+    ]
+    spec = air(lift="3 N", drag="1 N", spread=spread)
+    check_air(spec, "air.0", POINTS)
+    inner = 1.0 / 3.0 + math.sqrt(3.0) / (2.0 * math.pi)
+    assert shares(spec, POINTS) == pytest.approx((1.0 - inner, inner))
+    loads = air_loads(spec, "air.0", POINTS)
+    # First moments over the span of 1: (1 - 0.75^1.5)/3 inside and 0.75^1.5/3 outside, of an area of pi/4.
+    for link, share, first, x0, scale, start in (
+        ("a", inner, (1.0 - 0.75**1.5) / 3.0, 0.0, 240.0, 0.0),
+        ("b", 1.0 - inner, 0.75**1.5 / 3.0, 10.0, 160.0, 0.5),
+    ):
+        force, moment = force_and_first_moment(loads, link)
+        np.testing.assert_allclose(force, share * np.array([0.0, 3.0, 1.0]), rtol=1e-12)
+        centroid = first / (math.pi / 4.0 * share)
+        assert moment[1] / force[1] == pytest.approx(x0 + (centroid - start) * scale, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("second", "words"),
+    [
+        ({"shape": "uniform"}, ["air.0.spread:", "uniform and elliptic", "state every share"]),
+        ({"shape": "elliptic", "span": (1.0, 0.4)}, ["air.0.spread.1.span", "overlaps", "air.0.spread.0", "share"]),
+    ],
+)
+def test_patches_that_are_not_one_ellipse_need_shares(second, words):
+    spread = [
+        {"link": "a", "start": "P", "end": "Q", "shape": "elliptic", "span": (0.0, 0.5)},
+        {"link": "b", "start": "Q", "end": "R", **second},
+    ]
+    with pytest.raises(CaseError) as error:
+        check_air(air(lift="3 N", drag="1 N", spread=spread), "air.0", POINTS)
+    assert all(word in str(error.value) for word in words)
+    stated = [{**patch, "share": share} for patch, share in zip(spread, (0.6, 0.4), strict=True)]
+    check_air(air(lift="3 N", drag="1 N", spread=stated), "air.0", POINTS)
 
 
 def test_stated_shares_and_points():
