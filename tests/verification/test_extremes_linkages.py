@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from planar_linkages import four_bar
 
-from geometry.continuation import DeadPointError
-from geometry.errors import CaseError
+from geometry.continuation import DeadPointError, Track
+from geometry.errors import CannotRunError, CaseError
 from geometry.fourbar import FourBar
 from geometry.grashof import classify
 from geometry.motion import solve_motion
@@ -90,6 +90,16 @@ def test_motion_neither_jumps_nor_crosses_a_change_point(start, end):
     angles = np.radians(np.copysign([1.0, 1e-2, 1e-4, 1e-5], start))
     motion = solve_motion(pose, angles)
     np.testing.assert_allclose(motion.angle("rocker"), angles, atol=1e-8)
+
+
+def test_a_pose_that_closes_elsewhere_than_the_branch_is_refused(monkeypatch):
+    """What the interpolation between the nodes misses by too much may belong to another assembly."""
+    pose = solve_pose(four_bar(20.0, 50.0, 40.0, 60.0), coordinate="crank", angle=1.0, near={"rocker": 1.5})
+    assert len(solve_motion(pose, [1.0, 1.1]).q) == 2
+    interpolate = Track._interpolate
+    monkeypatch.setattr(Track, "_interpolate", lambda self, angles: interpolate(self, angles) + 0.05)
+    with pytest.raises(CannotRunError, match="could not be closed on the branch"):
+        solve_motion(pose, [1.0, 1.1])
 
 
 @pytest.mark.parametrize(
