@@ -193,6 +193,8 @@ def check_claim(claim: Claim, names: Callable[[Path], Value | str]) -> ClaimResu
         note = f"By the source's own figures {subject} is {_shown(stated, claim, printed)}{_off(stated, printed)}."
         if ours is not None and _agrees(ours, claim, printed, allowed):
             note += " The printed figure itself is right."
+        elif ours is not None and shown != _shown(stated, claim, printed):
+            note += f" Re-derived, {subject} is {shown}."
     elif ours is not None and not _agrees(ours, claim, printed, allowed):
         finding = Finding.DOES_NOT_HOLD
         note = f"Re-derived, {'it' if printed else 'the answer'} is {shown}{_off(ours, printed)}."

@@ -106,6 +106,7 @@ def test_hand_calculations_of_the_owl_wing(findings):
     assert wing == pytest.approx(2.9335, abs=1e-4)  # printed 1.9356 MPa
     assert owl["hand.wing.safety-factor"].finding is NOT_FOLLOW
     assert "21.4508" in owl["hand.wing.safety-factor"].note  # 41.4 / 1.93, printed 69.2
+    assert f"Re-derived, it is {41.4 / wing:.4f}" in owl["hand.wing.safety-factor"].note
     assert owl["hand.wing.moment"].finding is HOLDS
 
 
@@ -160,13 +161,50 @@ def test_published_reactions_follow_from_the_published_equations_and_do_not_hold
 def test_weight_of_the_owl_wing(findings):
     owl = findings["owl-wing"]
     assert owl["weight.wing"].finding is NOT_HOLD
-    assert float(owl["weight.wing"].ours.split()[0]) == pytest.approx(0.2548 * 9.81, rel=1e-3)
+    assert float(owl["weight.wing"].ours.split()[0]) == pytest.approx(
+        0.2548 * 9.81 + 5.027e-2 + 1.502e-2 + 2.346e-2, abs=1e-3
+    )
     humerus = math.pi / 4 * 0.005**2 * 0.150 * 1.74 * 9.81
     assert humerus == pytest.approx(5.027e-5, abs=5e-9)
     assert owl["weight.humerus"].finding is HOLDS
     assert "what its name says is 0.05027" in owl["weight.humerus"].note
     assert owl["weight.prosthesis"].finding is NOT_FOLLOW
     assert float(owl["weight.prosthesis"].ours.split()[0]) == pytest.approx(0.25 / 9.81, rel=1e-3)
+
+
+def test_rival_statements_refute_none_of_each_other(findings):
+    """What a source says twice, without deriving one from the other, cannot be re-derived; both are named."""
+    owl, flapping = findings["owl-wing"], findings["flapping-wing"]
+    for link, length in {"GF": 50, "AE": 190, "CF": 150, "CH": 124, "ED": 88}.items():
+        assert owl[f"code.{link}.section"].finding is MISSING
+        mass = owl[f"mass.{link}"]
+        assert mass.finding is MISSING
+        for area in (math.pi * (2.5**2 - 1.25**2), math.pi * 2.0**2):
+            assert f" {area * length * 1.45e-3:.2f} g" in mass.note
+    assert owl["mass.links-alike"].finding is NOT_HOLD
+    for name in ("wire.diameter", "wire.diameter-text", "mass.assembly", "fe.static.stress-text"):
+        assert owl[name].finding is MISSING
+        assert owl[name].claim.note
+    assert flapping["wing.inner-program"].finding is flapping["wing.outer-program"].finding is MISSING
+
+
+@pytest.mark.parametrize(
+    ("name", "after", "before", "half"),
+    [
+        ("0deg.variation-drag", (0.128, 0.0005), (0.270, 0.0005), 0.05),
+        ("0deg.variation-lift", (0.241, 0.0005), (0.523, 0.0005), 0.05),
+        ("0deg.variation-Cd", (0.193, 0.0005), (0.872, 0.0005), 0.05),
+        ("0deg.variation-Cl", (0.092, 0.0005), (0.093, 0.0005), 0.05),
+        ("60deg.variation-Cd", (1.29, 0.005), (2.78, 0.005), 0.5),
+    ],
+)
+def test_variations_hold_where_rounded_inputs_reach_them(findings, name, after, before, half):
+    low = 100 * (1 - (after[0] + after[1]) / (before[0] - before[1]))
+    high = 100 * (1 - (after[0] - after[1]) / (before[0] + before[1]))
+    result = findings["owl-wing"][f"air.{name}"]
+    published = float(result.claim.published.split()[0])
+    reached = published - half <= high and low <= published + half
+    assert result.finding is (HOLDS if reached else NOT_FOLLOW)
 
 
 def test_aerodynamic_coefficients(findings):
@@ -258,7 +296,8 @@ def test_the_ornithopter(findings):
     assert bird["motion.angular-speed"].finding is NOT_HOLD
     assert bird["film.rpm"].finding is HOLDS
     assert bird["film.cycle"].finding is NOT_FOLLOW
-    assert bird["motion.angular-momentum"].finding is MISSING
+    for name in ("motion.angular-momentum", "motion.speed", "film.flap", "film.acceleration", "film.deceleration"):
+        assert bird[name].finding is MISSING
 
 
 def test_the_synthesised_four_bar(findings):
