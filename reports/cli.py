@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -12,8 +13,6 @@ from reports.ending import end_if_stopped, run
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from fea.verdict import Verdict
 
 app = typer.Typer(
     name="alula",
@@ -106,25 +105,29 @@ def check(
     from loads.case_file import read_case
     from reports.console import print_result
     from reports.limits import limited
+    from reports.output import refuse_unusable
     from reports.record import as_json
 
     if second_opinion and fidelity == "auto":
         fidelity = "solid"  # a link that beam theory decides has no mesh that CalculiX could be given
-    with limited(threads, memory):
+    with limited(threads, memory), ExitStack() as scratch:
         parsed = read_case(case, overrides or ())
+        refuse_unusable(output)
         effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)
-        with TemporaryDirectory(prefix="alula-") as decks:
-            if second_opinion:
-                from reports.second_opinion import with_second_opinions
+        decks = None
+        if second_opinion:
+            from reports.second_opinion import with_second_opinions
 
-                result = with_second_opinions(result, Path(decks), threads=threads, progress=_progress)
-            if output is not None:
-                from reports.folder import write_report
+            decks = Path(scratch.enter_context(TemporaryDirectory(prefix="alula-")))
+            result = with_second_opinions(result, decks, threads=threads, progress=_progress)
+        _show(result, as_json if json else None, print_result)
+        if output is not None:
+            from reports.folder import write_report
 
-                write_report(result, output, decks=Path(decks), progress=_progress)
-    written = f"Report: {output / 'report.html'}" if output else ""
-    _end(result, as_json if json else None, print_result, written)
+            write_report(result, output, decks=decks, progress=_progress)
+            _tell(f"Report: {output / 'report.html'}", json)
+    raise SystemExit(result.verdict.exit_status)
 
 
 @app.command()
@@ -158,17 +161,17 @@ def motion(
     from loads.case_motion import solve_case_motion
     from reports.limits import limited
     from reports.motion import print_motion, write_motion
+    from reports.output import refuse_unusable, write_folder
 
     with limited(threads):
-        result = solve_case_motion(read_case(case, overrides or ()))
+        parsed = read_case(case, overrides or ())
+        refuse_unusable(output)
+        result = solve_case_motion(parsed)
+        print_motion(result, case, json=json)
         if output is not None:
-            from reports.output import write_folder
-
             _progress("Drawing figures and the animation ...")
             write_folder(output, lambda folder: write_motion(result, folder, case))
-    print_motion(result, case, json=json)
-    if output is not None and not json:
-        print(f"\nTables and figures: {output}")
+            _tell(f"\nTables and figures: {output}", json)
 
 
 @app.command()
@@ -203,9 +206,11 @@ def envelope(
     from loads.case_file import read_case
     from reports.envelope import as_json, print_envelope, write_envelope
     from reports.limits import limited
+    from reports.output import refuse_unusable
 
     with limited(threads, memory):
         parsed = read_case(case, overrides or ())
+        refuse_unusable(output)
         result = envelope_case(
             parsed,
             name=case,
@@ -215,10 +220,11 @@ def envelope(
             effort=effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit),
             progress=_progress,
         )
+        _show(result, as_json if json else None, print_envelope)
         if output is not None:
             write_envelope(result, output, progress=_progress)
-    written = f"Curves, pictures and fields: {output}" if output else ""
-    _end(result, as_json if json else None, print_envelope, written)
+            _tell(f"Curves, pictures and fields: {output}", json)
+    raise SystemExit(result.verdict.exit_status)
 
 
 @app.command()
@@ -283,16 +289,15 @@ def synth(
     json: JsonOption = False,
 ) -> None:
     """Synthesise a four-bar through three precision points, and name its defects."""
+    from reports.output import refuse_unusable, write_folder
     from reports.synthesis import PUBLISHED_POINTS, print_synthesis, read_synthesis, write_synthesis
 
+    refuse_unusable(output)
     found = read_synthesis(points or PUBLISHED_POINTS, ground)
-    if output is not None:
-        from reports.output import write_folder
-
-        write_folder(output, lambda folder: write_synthesis(found, folder))
     print_synthesis(found, json=json)
-    if output is not None and not json:
-        print(f"\nRecord and drawing: {output}")
+    if output is not None:
+        write_folder(output, lambda folder: write_synthesis(found, folder))
+        _tell(f"\nRecord and drawing: {output}", json)
 
 
 @app.command()
@@ -356,23 +361,20 @@ def export(
         print(path)
 
 
-def _end(
-    result: Any,
-    as_json: Callable[[Any], str] | None,
-    show: Callable[[Any, "Console"], None],
-    written: str,
-) -> NoReturn:
-    """Print a result, as JSON or for people with where it was ``written``, and end with its verdict's status."""
+def _show(result: Any, as_json: Callable[[Any], str] | None, show: Callable[[Any, "Console"], None]) -> None:
+    """Print a result, as JSON or for people: before its folder is written, so that a full disk keeps no verdict."""
     if as_json is not None:
-        print(as_json(result))
+        print(as_json(result), flush=True)
     else:
         from rich.console import Console
 
         show(result, Console())
-        if written:
-            print(written)
-    verdict: Verdict = result.verdict
-    raise SystemExit(verdict.exit_status)
+
+
+def _tell(written: str, json: bool) -> None:
+    """Say where the folder is, unless standard output is JSON."""
+    if not json:
+        print(written)
 
 
 def _progress(message: str) -> None:

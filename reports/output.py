@@ -34,9 +34,7 @@ def write_folder(target: Path, fill: Callable[[Path], None]) -> None:
             fresh = Path(tempfile.mkdtemp(prefix=_prefix(target), dir=target.parent))
             mine = locked(fresh)
     except OSError as error:
-        raise CannotRunError(
-            f"output: '{target}' cannot be written ({error.strerror}); choose another folder"
-        ) from None
+        raise _unwritable(target, error) from None
     try:
         fill(fresh)
         for path in (*fresh.rglob("*"), fresh):
@@ -55,6 +53,28 @@ def write_folder(target: Path, fill: Callable[[Path], None]) -> None:
         shutil.rmtree(fresh, ignore_errors=True)
         if mine is not None:
             os.close(mine)
+
+
+def refuse_unusable(target: Path | None) -> None:
+    """Refuse an output folder before anything is computed for it.
+
+    Raises ``CaseError`` for a target that is something else than a folder of results, and ``CannotRunError`` where
+    the disk refuses to be written to.
+    """
+    if target is None:
+        return
+    target = Path(os.path.abspath(target))
+    try:
+        _check(target)
+        parent = next(folder for folder in target.parents if folder.exists())
+        with tempfile.TemporaryDirectory(prefix=_prefix(target), dir=parent):
+            pass
+    except OSError as error:
+        raise _unwritable(target, error) from None
+
+
+def _unwritable(target: Path, error: OSError) -> CannotRunError:
+    return CannotRunError(f"output: '{target}' cannot be written ({error.strerror}); choose another folder")
 
 
 def _prefix(target: Path) -> str:

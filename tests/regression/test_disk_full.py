@@ -53,10 +53,21 @@ def test_a_disk_that_is_full(tmp_path: Path) -> None:
         done = programs.run(*programs.BEAM, "-o", str(disk / "out"), scratch=tmp_path / "scratch")
         assert done.returncode == 4
         assert "failed (No space left on device); nothing was changed there" in done.stderr
+        assert "\nFail: " in done.stdout  # what was computed is told all the same
         assert programs.text_of(disk / "out") == "old"
         assert programs.hidden(disk) == []
     finally:
         subprocess.run(["umount", str(disk)], check=True)
+
+
+@pytest.mark.parametrize("command", ["check", "envelope", "motion"])
+def test_a_folder_of_other_files_is_refused_before_anything_is_solved(tmp_path: Path, command: str) -> None:
+    (tmp_path / "thesis.txt").write_text("mine")
+    done = programs.run(command, "ornithopter", "-o", str(tmp_path), scratch=tmp_path / "scratch")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1, done.stderr  # not a word of progress
+    assert "holds other files and no earlier result" in done.stderr
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
