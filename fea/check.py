@@ -22,6 +22,7 @@ from fea.outcomes import outcomes
 from fea.pins import PinStress, stress_at
 from fea.refinement import START, Effort
 from fea.result import CheckResult, LinkResult, LoadCaseResult
+from fea.solid import require_compressible
 from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
 from fea.solid_result import link_task, solid_result
@@ -166,6 +167,9 @@ def check_case(
     if fidelity not in FORCED_BEAM:
         loaded = {link: [x for x in loads if _acts(x)] for link, loads in cut.items()}
         tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
+        if fidelity in ("solid", "submodel"):
+            for task in tasks.values():
+                require_compressible(task.nu)  # before the first mesh
         start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
         climbs = climb(
             tasks,

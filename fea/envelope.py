@@ -15,6 +15,8 @@ from fea.envelope_result import EnvelopeResult, LinkEnvelope
 from fea.link_envelope import link_envelope
 from fea.link_history import link_histories
 from fea.refinement import START, Effort, refine_links
+from fea.solid import require_compressible
+from fea.scatter import load_scatter
 from fea.solid_result import link_task
 from fea.space import DisplacementSpace, displacement_space
 from fea.threads import bounded_run
@@ -52,9 +54,12 @@ def envelope_case(
     On a first, coarse mesh the worst pose of every link and load case is found. There the meshes are refined as
     a check would; the finest one then serves the whole motion, with the relative error found at the worst pose.
 
-    Raises ``CaseError`` for a case without motion, drive or part, ``CannotRunError`` where a stage fails.
+    Raises ``CaseError`` for a case without motion, drive or part and for repetitions that are no number of at least 1,
+    ``CannotRunError`` where a stage fails.
     """
     begin = time.perf_counter()
+    if repetitions is not None and not (math.isfinite(repetitions) and repetitions >= 1.0):
+        raise CaseError(f"repetitions: they are {repetitions:g}, but must be a number of at least 1; state how many")
     if not case.checked_links:
         raise CaseError("envelope: no moving link has a part, so there is no stress; give a link a part")
     if case.motion is not None and case.motion.travel is not None:
@@ -83,6 +88,7 @@ def envelope_case(
                 evaluated=evaluated,
                 stated=case.drive.transfer if case.drive else None,
                 returns=moved.motion.returns,
+                scatter={title: load_scatter(case, title) for title in case.load_cases},
                 threads=threads,
                 **options,
             )
@@ -100,6 +106,7 @@ def envelope_case(
         first = over_motion(link, displacement_space(meshes[link]), fatigue=False)
         at_worst = [h.at(first.load_cases[h.load_case].pose) for h in found]
         tasks[link] = link_task(case, link, at_worst)
+        require_compressible(tasks[link].nu)
     timings["worst poses"], begin = time.perf_counter() - begin, time.perf_counter()
     refined = refine_links(tasks, start, effort or effort_of(case), threads=threads, progress=progress)
     timings["refinement"], begin = time.perf_counter() - begin, time.perf_counter()

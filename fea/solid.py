@@ -93,6 +93,15 @@ class SolidSolution:
     timings: dict[str, float]
 
 
+def require_compressible(nu: float) -> None:
+    """Raise ``CaseError`` for a Poisson's ratio above ``LARGEST_POISSON_RATIO``: no solid model will be solved."""
+    if nu > LARGEST_POISSON_RATIO:
+        raise CaseError(
+            f"poissons_ratio: it is {nu:g}, but displacements alone hold no solid model above {LARGEST_POISSON_RATIO}, "
+            "where the material hardly changes its volume; state a lower one or check with fidelity beam"
+        )
+
+
 def solve_solid(
     mesh: TaggedMesh,
     *,
@@ -118,11 +127,7 @@ def solve_solid(
     not balance (to 0.1 % of the load), reactions above 1 %, surfaces that the mesh lacks, a mesh with folded elements,
     or a solver that fails.
     """
-    if nu > LARGEST_POISSON_RATIO:
-        raise CaseError(
-            f"poissons_ratio: it is {nu:g}, but displacements alone hold no solid model above {LARGEST_POISSON_RATIO}, "
-            "where the material hardly changes its volume; state a lower one or check with fidelity beam"
-        )
+    require_compressible(nu)
     timings: dict[str, float] = {}
     clock = _Clock(timings)
     space = displacement_space(mesh, order=order)

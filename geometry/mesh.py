@@ -41,7 +41,7 @@ __all__ = [
 
 _T = TypeVar("_T")
 
-KERNEL_TIME_LIMIT = 120.0
+KERNEL_TIME_LIMIT = 300.0
 """Seconds for tasks of the geometry kernel that mesh nothing."""
 KERNEL_MEMORY_LIMIT = MeshSettings.memory_limit
 """Bytes for the same."""
@@ -165,7 +165,8 @@ def _run(task: str, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memo
                 raise CannotRunError(_obituary(status, told)) from None
     except subprocess.TimeoutExpired:
         raise CannotRunError(
-            f"the mesher was stopped after its time limit of {time_limit:g} s; use a coarser size or raise the limit"
+            f"the mesher was stopped after its time limit of {time_limit:g} s; use a coarser size (solid.mesh_size) "
+            "or check with fidelity beam"
         ) from None
     except OSError as error:
         raise CannotRunError(
@@ -178,14 +179,15 @@ def _run(task: str, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memo
         raise CannotRunError(result)
     if kind == "memory":
         raise CannotRunError(
-            f"the mesher needed more than the {memory / 1e9:.3g} GB of memory that it may take; use a coarser size"
+            f"the mesher needed more than the {memory / 1e9:.3g} GB of memory that it may take; "
+            "use a coarser size (solid.mesh_size)"
         )
     return result
 
 
 def _obituary(status: int, told: str) -> str:
     if status == -signal.SIGKILL:
-        return "the mesher was killed (SIGKILL), as the system does when memory runs out; use a coarser size"
+        return "the mesher was killed (SIGKILL), as the system does when memory runs out; raise solid.mesh_size"
     if status < 0:
         name = signal.Signals(-status).name
         return f"the mesher crashed ({name}); change the part's dimensions or the mesh size a little"

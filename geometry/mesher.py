@@ -48,7 +48,8 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
     if estimate > SAFETY * settings.max_elements:
         raise CannotRunError(
             f"the mesh would have about {estimate:,.2g} tetrahedra, more than max_elements {settings.max_elements:,} "
-            f"even if that is {SAFETY:g} times too many; use a coarser size or raise the limit"
+            f"even if that is {SAFETY:g} times too many; use a coarser size (solid.mesh_size) "
+            "or check with fidelity beam"
         )
     _set_sizes(gmsh, solid, settings)
     options = {"Mesh.Algorithm": 6, "Mesh.Algorithm3D": 1, "Mesh.Optimize": 1, "Mesh.ElementOrder": 1}
@@ -64,7 +65,7 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
     if count > settings.max_elements:
         raise CannotRunError(
             f"the mesh has {count:,} tetrahedra, more than max_elements {settings.max_elements:,}; "
-            "use a coarser size or raise the limit"
+            "use a coarser size (solid.mesh_size) or check with fidelity beam"
         )
     if order == 2:
         gmsh.model.mesh.setOrder(2)

@@ -26,6 +26,7 @@ from fea.supports import isostatic_supports
 from geometry.errors import CannotRunError, CaseError
 from geometry.part import Section
 from loads.bearing import WIDE
+from loads.case_file import read_case
 
 
 def pulled(nu, **options):
@@ -196,3 +197,10 @@ def test_a_slender_tube_through_the_whole_program(ratio):
     # The eyes bend less than the tube: a few diameters of its length.
     assert found.displacement_max.value == pytest.approx(exact, rel=max(5.0 / ratio, 5e-3))
     assert by_hand.displacement_max.value == pytest.approx(exact, rel=1e-2)
+
+
+def test_poissons_ratio_beyond_the_boundary_is_refused_before_anything_is_meshed(monkeypatch):
+    monkeypatch.setattr("fea.refinement.mesh_body", lambda *a, **k: pytest.fail("meshed"))
+    monkeypatch.setattr("fea.solid.LARGEST_POISSON_RATIO", 0.3)
+    with pytest.raises(CaseError, match=r"poissons_ratio: it is 0\.38"):
+        check_case(read_case("owl-wing-static"), name="owl-wing-static", fidelity="solid")
