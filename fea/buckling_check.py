@@ -1,22 +1,25 @@
 """Buckling of links in compression, and of the linkage as a whole.
 
-A link's factor is Euler's load over the largest compression anywhere along it. Every link is a straight column of its
-section, under its largest compression N over its whole length. Both make the answer smaller, never larger. The end
-conditions are the least favourable ones that joints leave:
+A link is a straight column of its section under its own normal force, as it varies along it. How its joints hold it
+is known but in part, so that its factor is a band:
 
-pinned ends     a link whose compression lies between its outermost pins turns freely about them in the linkage's
-                plane, k = 1. Out of the plane the pins carry moments, which would give k down to 0.5 between stiff
-                neighbours; how stiff they are is not known here, so k = 1 stands there too.
-built in, free  k = 2 over the whole length, for the driven link (held in its angle at the drive's joint, free at
-                the other end), for compression beyond the outermost pins, and where pins are bonded (the linkage may
-                sway). For an overhang this is a lower bound: the slope v of a column held at x = 0 and x = L and free
-                at L + a has a zero between the pins, on either side of which ∫v'² ≥ (π/2)² ∫v²/(L + a)².
+value  the outermost pins stay where they are and leave the link free to turn, in the linkage's plane and out of it;
+       overhangs are free. A link on one pin is built in there. A pin in a slot of the link, and one on an arm, hold
+       nothing.
+high   every pin stays where it is and keeps whatever angle it can: out of the plane the angle, which only stiff
+       neighbours would keep, in the plane the driven link's at the drive's joint, and every angle where pins are
+       bonded. No linkage whose joints stay where they are holds the link better, so that below 1 it buckles: a link
+       fails on this end alone. Times the largest modulus over the modulus.
+low    a third of the value, since linear stress is not relied on below 3 (see below), times the least modulus over the
+       modulus. Joints of a driven link and of bonded ones may move with the link as it bends: there it is a third of
+       the lesser of the value and the factor of the link built in at the drive's joint, or at either of the
+       outermost pins, and free elsewhere.
 
-That the joints stay where they are is taken for granted: sway of the whole linkage is the other outcome, the lowest
+That joints stay where they are is taken for granted: sway of the whole linkage is the other outcome, the lowest
 factor on all loads at which its linear frame becomes unstable (``fea.corotational.buckling_factor``). It leaves out
 how the frame moves before that. Where equilibrium was followed on the deformed shape (``fea.large_displacement``),
-that answer rules: a frame may give way below the linear factor, or stiffen and hold beyond it. The outcome then is the
-share of the load at which it gave way, or at least 1 where it held the whole.
+that answer rules and is the only outcome (``fea.outcomes``): a frame may give way below the linear factor, or stiffen
+and hold beyond it.
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
@@ -24,18 +27,24 @@ Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks
 link, and no linkage whose deformed shape is not known.
 """
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fea.band import Band
-from fea.beam import BeamCheck, euler_load
+from fea.beam import BeamCheck
+from fea.column_factor import AxialForce, column_factors
 from fea.large_displacement import LargeDisplacement
 from fea.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
 from geometry.material import Material
+from geometry.part import Section
 from loads.case import Case
+
+Real = NDArray[np.float64]
 
 NAME = "buckling"
 LEAST_LINEAR = 3.0
@@ -44,94 +53,145 @@ SECOND_ORDER = 10.0
 """Factor below which the growth of bending is told."""
 NO_COMPRESSION = 1e-9
 """Share of the largest force in the link below which compression is rounding."""
-PINNED, BUILT_IN = 1.0, 2.0
+ON_AXIS = 1e-9
+"""Share of a link's length below which a pin stands on its axis."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Holding:
+    """Where joints hold a link as a column; x along its axis [mm].
+
+    outermost   first and last pin on it, or the one that there is
+    in_plane    where pins hold it in the linkage's plane, free to turn, at the most; None where that is not known
+    kept        where they keep its angle in that plane as well, at the most
+    across      where they hold it and keep its angle out of the plane, at the most; None where that is not known
+    alone       where it may be built in and free elsewhere, each by itself; empty where its joints stay in place
+    """
+
+    outermost: tuple[float, ...]
+    in_plane: tuple[float, ...] | None
+    kept: tuple[float, ...]
+    across: tuple[float, ...] | None
+    alone: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ColumnFactors:
+    """Buckling factors (P,) of a link as a column; infinite where nothing makes it buckle, NaN where not known.
+
+    value  outermost pins in place and free to turn
+    least  where the joints of a driven or a bonded link move as well
+    most   joints hold it as well as they can
+    """
+
+    value: Real
+    least: Real
+    most: Real
 
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
     """A link in compression as a column.
 
-    compression       the largest along the link [N]
-    length            between its ends [mm]
-    effective_length  k, as a multiple of ``length``
-    ends              how they are held, for people
+    compression   the largest along the link [N]
+    outermost     x of the pins that hold it [mm]
+    factors       of this one pose
     """
 
     compression: float
-    length: float
-    effective_length: float
-    ends: str
+    outermost: tuple[float, ...]
+    factors: ColumnFactors
 
 
 def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
-    """Return the column that stands for a link under a load case; None without compression."""
+    """Return the column that stands for a link under a load case; None where nothing makes it buckle."""
     _, _, compression = beam.forces.largest(lambda f: -float(f[0]))
     forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
     if compression <= NO_COMPRESSION * forces:
         return None
-    start, end = (float(x) for x in beam.forces.breaks[[0, -1]])
-    first, last = outermost_pins(case, link)
-    slack = 1e-9 * (end - start)
-    outside = (beam.x < first[0] - slack) | (beam.x > last[0] + slack)
-    beyond = bool(np.any(-beam.n[outside] > NO_COMPRESSION * forces))
-    length, effective, ends = held(case, link, (start, end), beyond=beyond)
-    return Column(compression=compression, length=length, effective_length=effective, ends=ends)
+    breaks, at = beam.forces.breaks, beam.forces.at
+    values = [
+        [-at(a, "after")[0], -at((a + b) / 2.0, "after")[0], -at(b, "before")[0]] for a, b in itertools.pairwise(breaks)
+    ]
+    factors = link_factors(case, link, beam.section, AxialForce(breaks=breaks, values=np.array(values)[:, :, None]))
+    if math.isinf(factors.value[0]):
+        return None
+    return Column(compression=compression, outermost=holding(case, link).outermost, factors=factors)
 
 
-def outermost_pins(case: Case, link: str) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the places of a link's first and last pin along its axis, in its frame [mm]."""
-    points, linkage = case.links[link].points, case.linkage
-    pins = sorted({points[linkage.point_of(joint, link)] for joint in linkage.joints_of(link)})
-    return pins[0], pins[-1]
+def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
+    """Return the factors of a link in every pose of ``force``, for the modulus of its card."""
+    where, young = holding(case, link), case.material_of(link).youngs_modulus
+    soft = young * min(section.i_y, section.i_z)
+    if len(where.outermost) > 1:
+        value = column_factors(force, soft, held=where.outermost)
+    else:
+        value = column_factors(force, soft, built_in=where.outermost)
+    least = value
+    for x in where.alone:
+        least = np.minimum(least, column_factors(force, soft, built_in=(x,)))
+    most = np.full(len(value), np.inf)
+    if where.in_plane is not None:
+        most = column_factors(force, young * section.i_z, held=where.in_plane, built_in=where.kept)
+    if where.across is not None:
+        most = np.minimum(most, column_factors(force, young * section.i_y, built_in=where.across))
+    return ColumnFactors(value=value, least=least, most=np.maximum(most, value))
 
 
-def held(case: Case, link: str, extent: tuple[float, float], *, beyond: bool) -> tuple[float, float, str]:
-    """Return length [mm] and effective length (as its multiple) of a link as a column, and for people how it is held.
+def holding(case: Case, link: str) -> Holding:
+    """Return where joints hold a link as a column."""
+    linkage, bonded = case.linkage, case.joint_model == "bonded"
+    pins = {pin.name: pin for pin in case.body(link).pins}
+    joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
+    carried = {n for n in joints if linkage.joints[n].type != "revolute" and linkage.joints[n].links[0] == link}
+    places, feet = case.links[link].points, {point: pin.foot[0] for point, pin in pins.items() if pin.foot is not None}
+    foot = {name: feet.get(point, places[point][0]) for name, point in joints.items()}
+    on_arms = {name for name, point in joints.items() if point in feet}
+    slack = ON_AXIS * linkage.longest
+    off = on_arms | {name for name, point in joints.items() if abs(places[point][1]) > slack}
+    plain = [foot[name] for name in joints if name not in carried | on_arms] or list(foot.values())
+    first, last = min(plain), max(plain)
+    driven = case.drive is not None and case.drive.link == link
+    drive = {case.drive.joint} if case.drive is not None and driven else set()
+    # A pin that holds the link off its axis may keep its angle, held by other pins as well.
+    kept = set(joints) if bonded else drive | off
+    slides = {name for name in carried if bonded or linkage.joints[name].type == "slider"}
+    alone = {first, last} if bonded else {foot[name] for name in drive & set(joints)}
+    return Holding(
+        outermost=(first, last) if last - first > slack else (first,),
+        in_plane=None if carried else tuple(sorted(set(foot.values()))),
+        kept=tuple(sorted({foot[name] for name in kept & set(joints)})),
+        across=None if slides else tuple(sorted({foot[name] for name in set(joints) - carried})) or None,
+        alone=tuple(sorted(alone)),
+    )
 
-    extent  first and last x of what acts on the link [mm]
-    beyond  whether it is compressed beyond its outermost pins
-    """
-    first, last = outermost_pins(case, link)
-    reasons = {
-        "driven": case.drive is not None and case.drive.link == link,
-        "bonded": case.joint_model == "bonded",
-        "compressed beyond its pins": beyond,
-        "on one pin": first == last,
-    }
-    why = [reason for reason, holds in reasons.items() if holds]
-    if why:
-        whole = max(extent[1], last[0]) - min(extent[0], first[0])
-        return whole, BUILT_IN, f"built in and free, since it is {' and '.join(why)}"
-    return float(np.hypot(last[0] - first[0], last[1] - first[1])), PINNED, "pinned at both ends"
 
-
-def factor_band(material: Material, factor: float) -> Band:
-    """Return the band of a link's buckling factor.
-
-    From a third of the factor of the least modulus, since linear stress is not relied on below 3, to the factor.
-    """
-    least = min((material.youngs_modulus, *(material.youngs_modulus_range or ()))) / material.youngs_modulus
+def factor_band(material: Material, value: float, least: float, most: float) -> Band:
+    """Return the band of a link's buckling factor from the factors of ``ColumnFactors``."""
+    moduli = (material.youngs_modulus, *(material.youngs_modulus_range or ()))
     return Band(
-        value=factor,
-        low=least * factor / LEAST_LINEAR,
-        high=factor,
-        holds=("the modulus", "bending that grows with compression, which linear stress leaves out"),
+        value=value,
+        low=min(moduli) / material.youngs_modulus * least / LEAST_LINEAR,
+        high=max(moduli) / material.youngs_modulus * most,
+        holds=(
+            "the modulus",
+            "bending that grows with compression, which linear stress leaves out",
+            "how stiffly its neighbours hold it",
+        ),
     )
 
 
 def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) -> Iterator[CheckOutcome]:
     """Yield the outcome of every link that is compressed under the load case ``title``.
 
-    A link fails where its compression exceeds Euler's load, whatever its stress says.
+    A link fails where its compression buckles it however its joints hold it, whatever its stress says.
     """
     for link, beam in beams.items():
         found = column(case, link, beam)
         if found is None:
             continue
-        material, inertia = case.material_of(link), min(beam.section.i_y, beam.section.i_z)
-        load = euler_load(material.youngs_modulus, inertia, found.length, found.effective_length)
-        value = load / found.compression
-        band = factor_band(material, value)
+        factors, material = found.factors, case.material_of(link)
+        band = factor_band(material, *(float(f[0]) for f in (factors.value, factors.least, factors.most)))
         verdict = at_least(band, 1.0)
         yield CheckOutcome(
             name=NAME,
@@ -142,18 +202,32 @@ def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) ->
             value=band,
             limit=1.0,
             verdict=verdict,
-            reason=_reason(found, value, verdict),
+            reason=_reason(found, band, verdict) + beyond_strength({link: beam}),
         )
 
 
-def linkage_outcome(case: Case, title: str, moved: LargeDisplacement) -> Iterator[CheckOutcome]:
+def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
+    """Say, for the end of a reason, which link bears more than its strength by beam theory; nothing where none does."""
+    link, worst = max(beams.items(), key=lambda item: item[1].worst.equivalent / item[1].strength)
+    stress = worst.worst.equivalent
+    if stress <= worst.strength:
+        return ""
+    return (
+        f"; all this is elastic and void once material gives way, and {link} bears {stress:.3g} MPa by beam theory "
+        f"where its strength is {worst.strength:.3g} MPa"
+    )
+
+
+def linkage_outcome(
+    case: Case, title: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]
+) -> Iterator[CheckOutcome]:
     """Yield the outcome of the linkage as a whole where its frame can buckle under the load case ``title``.
 
-    The band is that of a link, with the least ratio of a stated least modulus to the modulus; where equilibrium was
-    followed on the deformed shape, it is what was found there.
+    None where equilibrium was followed on the deformed shape, whose outcome rules. The band is that of linear theory,
+    from a third with the least ratio of a stated least modulus to the modulus.
     """
     value = moved.buckling
-    if value is None or math.isinf(value):
+    if value is None or math.isinf(value) or moved.followed:
         return
     materials = [case.material_of(link) for link in case.checked_links]
     softest = min(min((m.youngs_modulus, *(m.youngs_modulus_range or ()))) / m.youngs_modulus for m in materials)
@@ -165,15 +239,7 @@ def linkage_outcome(case: Case, title: str, moved: LargeDisplacement) -> Iterato
         holds=("the modulus", "displacement that grows with the load, which linear theory leaves out"),
     )
     verdict = at_least(band, 1.0)
-    if moved.followed:
-        verdict = Verdict.PASS if moved.state == "deformed" else Verdict.FAIL
-        at, held = {
-            "deformed": (max(value, 1.0), "the linkage holds the whole load"),
-            "unstable": (min(value, 1.0), "the linkage has buckled before the whole load acts"),
-        }.get(moved.state, (moved.held, f"the linkage gives way at {moved.held:.3g} of the load"))
-        band = Band.exact(at, "equilibrium on the deformed shape, followed from no load")
-        reason = f"{factor}, but large displacement was followed and rules: {held}"
-    elif verdict is Verdict.FAIL:
+    if verdict is Verdict.FAIL:
         reason = f"{factor}, so the linkage gives way"
     elif verdict is Verdict.UNDECIDED:
         reason = f"{factor}; so near to it, joint forces by linear theory do not hold"
@@ -190,19 +256,20 @@ def linkage_outcome(case: Case, title: str, moved: LargeDisplacement) -> Iterato
         value=band,
         limit=1.0,
         verdict=verdict,
-        reason=reason,
+        reason=reason + beyond_strength(beams),
     )
 
 
-def _reason(found: Column, factor: float, verdict: Verdict) -> str:
-    load = (
-        f"{found.compression:.3g} N compress it, Euler's load is {factor * found.compression:.3g} N "
-        f"({found.length:.4g} mm, {found.ends}, k = {found.effective_length:g})"
-    )
+def _reason(found: Column, band: Band, verdict: Verdict) -> str:
+    pins = " and ".join(f"{x:.4g}" for x in found.outermost)
+    held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
+    load = f"up to {found.compression:.3g} N compress it, and {band.value:.3g} times that buckle it, {held}"
     if verdict is Verdict.FAIL:
-        return f"{load}, so it buckles"
+        return f"{load}, {band.high:.3g} times where its joints hold it as well as they can, so it buckles"
+    if verdict is Verdict.UNDECIDED and band.value < 1.0:
+        return f"{load}; stiffer neighbours and a drive may hold it, up to {band.high:.3g} times"
     if verdict is Verdict.UNDECIDED:
         return f"{load}; within {LEAST_LINEAR:g} times the load, stress by linear theory does not hold"
-    if factor < SECOND_ORDER:
-        return f"{load}; bending is up to {1.0 / (1.0 - 1.0 / factor):.3g} times that of linear theory"
+    if band.value < SECOND_ORDER:
+        return f"{load}; bending is up to {1.0 / (1.0 - 1.0 / band.value):.3g} times that of linear theory"
     return load

@@ -17,13 +17,16 @@ from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.link_history import LinkHistory
 from fea.outcomes import least_safety_factor, reason_for
 from fea.pins import stress_of
+from fea.scatter import load_scatter, strength_scatter
 from fea.verdict import BUCKLING_FACTOR, PIN, SAFETY_FACTOR, CheckOutcome, Verdict, at_least
+from geometry.material import Material
 from loads.case_motion import CaseMotion
 from loads.check_spec import BearingCheck, PinCheck, SafetyFactorCheck
 
 FATIGUE_STRESS = "fatigue, stress"
 FATIGUE_LIFE = "fatigue, life"
 """Fatigue strength over stress, and life over the repetitions that are wanted."""
+BEYOND_CARD = "nothing: the material's card ends below the repetitions that are wanted"
 FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck)
 """Checks of the case that are decided over the motion."""
 
@@ -55,6 +58,8 @@ def envelope_outcomes(
             fatigue = load_case.fatigue
             if fatigue is None:
                 continue
+            if fatigue.strength is None and fatigue.repetitions is None:
+                found.append(_beyond_card(case.material_of(link), link, title, fatigue.wanted))
             if fatigue.strength is not None:
                 factor = fatigue.stress.inverse(fatigue.strength)
                 found.append(_outcome("fatigue", link, title, FATIGUE_STRESS, factor, STRESS_FACTOR))
@@ -62,6 +67,19 @@ def envelope_outcomes(
                 share = _scaled(fatigue.repetitions, 1.0 / fatigue.wanted)
                 found.append(_outcome("fatigue", link, title, FATIGUE_LIFE, share, LIFE_FACTOR))
     return found
+
+
+def _beyond_card(material: Material, link: str, title: str, wanted: float) -> CheckOutcome:
+    """Outcome of fatigue where the card knows neither a strength at the wanted repetitions nor a life."""
+    assert material.fatigue is not None
+    outcome = _outcome("fatigue", link, title, FATIGUE_STRESS, Band.unknown(BEYOND_CARD), STRESS_FACTOR)
+    return replace(
+        outcome,
+        reason=(
+            f"the material's card ends at {material.fatigue.cycles:g} cycles and states no exponent, so its strength "
+            f"for {wanted:g} repetitions is not known; ask for at most as many, or add an exponent to the card"
+        ),
+    )
 
 
 def _joints(
@@ -76,11 +94,12 @@ def _joints(
             pose = int(np.argmax(size))
             force = float(size[pose])
             if isinstance(check, BearingCheck):
-                eye, factor = weakest_eye(case, name, joint, force)
+                eye, factor = weakest_eye(case, name, joint, force, load_scatter(case, title))
                 limit, where = check.limit, f"bearing on the eye of {eye} under {force:.3g} N"
             else:
                 material = case.pin_material(joint)
-                factor = stress_of(case, joint, force).equivalent.inverse(material.allowable)
+                stress = load_scatter(case, title).on(stress_of(case, joint, force).equivalent)
+                factor = strength_scatter(material).on(stress.inverse(material.allowable))
                 limit = least_safety_factor(name, check.minimum, material, f"{PIN}{joint}")
                 where = f"under {force:.3g} N"
             outcome = _outcome(name, f"{PIN}{joint}", title, SAFETY_FACTOR, factor, limit, complete=complete)
@@ -94,12 +113,12 @@ def column_outcomes(
     case, complete = moved.case, bool(evaluated.all())
     for link, histories in loaded.items():
         for history in histories:
-            factors = np.where(evaluated, factors_over_motion(case, link, history), np.inf)
-            pose = int(np.argmin(factors))
-            factor = float(factors[pose])
+            found = factors_over_motion(case, link, history)
+            pose = int(np.argmin(np.where(evaluated, found.value, np.inf)))
+            factor, least, most = (float(f[evaluated].min()) for f in (found.value, found.least, found.most))
             if math.isinf(factor):
                 continue
-            band = factor_band(case.material_of(link), factor)
+            band = factor_band(case.material_of(link), factor, least, most)
             outcome = _outcome(BUCKLING, link, history.load_case, BUCKLING_FACTOR, band, 1.0, complete=complete)
             reason = f"{factor:.3g} times the compression at {_when(moved, pose)} buckles it"
             if outcome.verdict is Verdict.UNDECIDED:

@@ -66,7 +66,8 @@ class LargeDisplacement:
     held        share of the load up to which equilibrium was found; 1 for all of it
     buckling    lowest factor on all loads at which the linear frame becomes unstable; infinite where it never does,
                 None where there is no frame
-    points      (link, point) -> displacement (3,) on the deformed shape [mm]; the linear one where small
+    points      (link, point) -> displacement (3,) on the deformed shape [mm]; the linear one where small or off;
+                empty where no equilibrium or no frame was found
     reactions   on the deformed shape, in global axes; None unless deformed
     links       loads of each link on the deformed shape, in its chord's frame; empty unless deformed
     sentence    for people
@@ -126,7 +127,7 @@ def examine(
     except (CaseError, CannotRunError) as error:
         return left("off", as_said) if off else left("unknown", f": {error}")
     if off:
-        return left("off", as_said, factor)
+        return replace(left("off", as_said, factor), points=frame.at_points(solution.displacements))
     linear, where = _largest(frame, solution)
     small = LargeDisplacement(
         state="small",

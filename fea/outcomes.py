@@ -1,19 +1,27 @@
 """From results to verdicts: every check that the case asks for, decided on its band."""
 
+import math
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from fea.band import Band
-from fea.buckling_check import linkage_outcome
-from fea.large_displacement import LargeDisplacement
+from fea.beam import BeamCheck
+from fea.buckling_check import beyond_strength, linkage_outcome
+from fea.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
 from fea.pins import PinStress
 from fea.result import LinkResult
-from fea.verdict import LINKAGE, LOAD_SHARE, PIN, SAFETY_FACTOR, CheckOutcome, Verdict, at_least, at_most
+from fea.verdict import LINKAGE, LOAD_SHARE, PIN, POINT, SAFETY_FACTOR, CheckOutcome, Verdict, at_least, at_most
 from geometry.errors import CaseError
 from geometry.material import Material
 from loads.case import Case
 from loads.check_spec import BearingCheck, DisplacementCheck, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
 
 LARGE_DISPLACEMENT = "large displacement"
+DEFLECTION = "deflection from its pins"
+"""Of a link by itself: displacement from the line through its own pins, as if these stayed."""
+DISPLACEMENT = "displacement"
+"""Of a point, with the whole linkage."""
 
 
 def outcomes(
@@ -33,10 +41,13 @@ def outcomes(
     for name, check in case.all_checks.items():
         if isinstance(check, PinCheck):
             found += _pins(case, name, check, title, pins)
+        elif isinstance(check, DisplacementCheck) and check.at is not None:
+            found.append(_point(case, name, check, title, moved))
         elif not isinstance(check, MotorCheck | BearingCheck):
             found += [_link(case, name, check, title, links[link]) for link in check.links or case.checked_links]
-    found += _large_displacement(title, moved)
-    found += linkage_outcome(case, title, moved)
+    beams = {link: result.beam for link, result in links.items()}
+    found += _large_displacement(title, moved, beams)
+    found += linkage_outcome(case, title, moved, beams)
     return tuple(found)
 
 
@@ -56,7 +67,7 @@ def _link(
         verdict = at_most(value, limit)
     else:
         limit = check.maximum
-        quantity, unit, value = "displacement", "mm", result.displacement_max
+        quantity, unit, value = DEFLECTION, "mm", result.displacement_max
         verdict = at_most(value, limit)
     forced = result.fidelity == "beam" and not result.decided_by
     if forced and verdict is Verdict.PASS and result.beam.worst.equivalent > 0.0:
@@ -74,6 +85,47 @@ def _link(
         limit=limit,
         verdict=verdict,
         reason=reason,
+    )
+
+
+def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: LargeDisplacement) -> CheckOutcome:
+    """Outcome of how far a point of the linkage moves, by the frame: linear, or on the deformed shape where that rules.
+
+    The band holds the moduli, and for the linear answer the growth 1/(1 - 1/n) up to the buckling factor n.
+    """
+    link, point = case.displaced_point(name, check)
+    displacement, factor = moved.points.get((link, point)), moved.buckling
+    value, limit = Band.unknown(), check.maximum
+    why = f"the frame does not tell how far it moves: {moved.sentence}"
+    if displacement is not None and moved.state in ("small", "deformed", "off"):
+        size = float(np.linalg.norm(displacement))
+        near = factor is not None and factor < LEAST_FACTOR
+        if moved.followed or not (near or size > LARGE * moved.span):
+            materials = [case.material_of(other) for other in case.checked_links]
+            ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
+            growth = 1.0 if moved.followed or factor is None else 1.0 / (1.0 - 1.0 / factor)
+            value = Band(
+                value=size,
+                low=min((*ratios, 1.0)) * size,
+                high=max((*ratios, 1.0)) * growth * size,
+                holds=("the modulus",) if moved.followed else ("the modulus", "growth towards buckling"),
+            )
+            shape = "on its deformed shape" if moved.followed else "by linear theory"
+            why = f"by the frame of the linkage, {shape}: {reason_for(value, limit, at_most(value, limit))}"
+        else:
+            far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
+            what = f"buckles at {factor:.3g} times the load, below {LEAST_FACTOR:g}" if near else far
+            why = f"the linear frame {what}, so it does not hold; take large_displacement = off out of the case"
+    return CheckOutcome(
+        name=name,
+        link=f"{POINT}{point} of {link}",
+        load_case=title,
+        quantity=DISPLACEMENT,
+        unit="mm",
+        value=value,
+        limit=limit,
+        verdict=at_most(value, limit),
+        reason=why,
     )
 
 
@@ -96,19 +148,27 @@ def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str,
         )
 
 
-def _large_displacement(title: str, moved: LargeDisplacement) -> Iterator[CheckOutcome]:
+def _large_displacement(title: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]) -> Iterator[CheckOutcome]:
+    """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
     if not moved.followed:
         return
+    followed = "equilibrium on the deformed shape, followed from no load"
+    value = Band.exact(moved.held, followed)
+    if moved.state == "unstable":
+        # It became unstable somewhere on the way.
+        value = Band(value=min(moved.buckling or 1.0, 1.0), low=0.0, high=1.0, holds=(followed,))
+    linear = moved.buckling is not None and math.isfinite(moved.buckling)
+    informs = f"; for information, its buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
     yield CheckOutcome(
         name=LARGE_DISPLACEMENT,
         link=LINKAGE,
         load_case=title,
         quantity=LOAD_SHARE,
         unit="",
-        value=Band.exact(moved.held, "equilibrium on the deformed shape, followed from no load"),
+        value=value,
         limit=1.0,
         verdict=Verdict.PASS if moved.state == "deformed" else Verdict.FAIL,
-        reason=moved.sentence,
+        reason=moved.sentence + informs + beyond_strength(beams),
     )
 
 
@@ -133,11 +193,11 @@ def stress_limits(case: Case, link: str) -> tuple[float, ...]:
 
 
 def displacement_limits(case: Case, link: str) -> tuple[float, ...]:
-    """Limits [mm] on a link's displacement, of all checks."""
+    """Limits [mm] on a link's displacement from the line through its pins, of all checks."""
     return tuple(
         check.maximum
         for check in case.all_checks.values()
-        if isinstance(check, DisplacementCheck) and link in (check.links or case.checked_links)
+        if isinstance(check, DisplacementCheck) and check.at is None and link in (check.links or case.checked_links)
     )
 
 

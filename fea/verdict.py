@@ -14,6 +14,9 @@ LINKAGE = "the linkage"
 PIN = "pin "
 """Begins what stands in the place of a link where a check is about the pin of a joint."""
 
+POINT = "point "
+"""Begins what stands in the place of a link where a check is about a point of the linkage."""
+
 
 class Verdict(StrEnum):
     """The answer of a check."""
@@ -32,8 +35,9 @@ class Verdict(StrEnum):
 class CheckOutcome:
     """One check of one link under one load case.
 
-    link       its name; "pin " and the joint's name for a pin, "the linkage" for all together
-    quantity   what was checked: "safety factor", "displacement"
+    link       its name; "pin " and the joint's name for a pin, "point H of CH" for a point, "the linkage" for all
+               together
+    quantity   what was checked: "safety factor", "displacement" of a point, "deflection from its pins" of a link
     unit       of value and limit; "" for a pure number
     reason     one sentence that says why the verdict is what it is
     """
@@ -55,8 +59,8 @@ class CheckOutcome:
 
     @property
     def what(self) -> str:
-        """What was checked, for people: a link of that name, a pin or the whole linkage."""
-        return self.link if self.link == LINKAGE or self.link.startswith(PIN) else f"link {self.link}"
+        """What was checked, for people: a link of that name, a pin, a point or the whole linkage."""
+        return self.link if self.link == LINKAGE or self.link.startswith((PIN, POINT)) else f"link {self.link}"
 
 
 def at_least(value: Band, limit: float) -> Verdict:

@@ -28,12 +28,21 @@ from geometry.units import (
 from loads.accuracy import Accuracy
 from loads.aero import AirForces, AirLoad, air_forces, check_air
 from loads.carried import Carried, CarriedSpread
-from loads.check_spec import BearingCheck, Check, MotorCheck, PinCheck, SafetyFactorCheck, SustainedCheck
+from loads.check_spec import (
+    BearingCheck,
+    Check,
+    DisplacementCheck,
+    MotorCheck,
+    PinCheck,
+    SafetyFactorCheck,
+    SustainedCheck,
+)
 from loads.claim import Claim
 from loads.conditions import Conditions, under
 from loads.mass_rules import check_masses, check_weighed
 from loads.mechanism import FlappingWingSpec
 from loads.motion_spec import MotionSpec
+from loads.scatter import LoadScatter
 from loads.statics import Drive, check_drive
 
 Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
@@ -140,6 +149,9 @@ class LoadCase(CaseModel):
     inertia of the parts and of what they carry acts as well."""
     carried: bool = True
     """False: without the masses that the links carry."""
+    scatter: LoadScatter = (1.0, 1.0)
+    """How far all loads of this load case may be off together, such as "20 %", or { low = "90 %", high = "130 %" };
+    the bands of all that they do hold it."""
     forces: tuple[PointForce, ...] = ()
     moments: tuple[PointMoment, ...] = ()
     spread: tuple[SpreadForce, ...] = ()
@@ -287,6 +299,9 @@ class Case(CaseModel):
             if isinstance(check, MotorCheck):
                 _check_motor(self, name)
                 continue
+            if isinstance(check, DisplacementCheck) and (check.at, check.link) != (None, None):
+                _check_displaced(self, name, check)
+                continue
             if isinstance(check, SustainedCheck) and self.conditions.duration is None:
                 raise CaseError(
                     f"checks.{name}: a sustained load needs to be known for how long; "
@@ -358,6 +373,32 @@ class Case(CaseModel):
         if self.conditions.duration is not None and not any(isinstance(c, SustainedCheck) for c in checks.values()):
             checks["sustained load"] = SustainedCheck(type="sustained")
         return checks
+
+    def displaced_point(self, name: str, check: DisplacementCheck) -> tuple[str, str]:
+        """Return link and point of a check called ``name`` that is about a point.
+
+        Raises ``CaseError`` where there is no such point, or more than one.
+        """
+        point = check.at or ""
+        if check.link is not None:
+            _check_point(self, f"checks.{name}", check.link, point)
+            return check.link, point
+        owners = [link for link in self.linkage.moving if point in self.links[link].points]
+        if not owners:
+            every = dict.fromkeys(p for link in self.linkage.moving for p in self.links[link].points)
+            raise CaseError(f"checks.{name}.at: no moving link has a point '{point}'; choose among {', '.join(every)}")
+        pinned = {
+            link
+            for joint, record in self.joints.items()
+            if record.type == "revolute" and set(self.linkage.joint_points(joint)) == {point}
+            for link in record.links
+        }
+        if len(owners) > 1 and not set(owners) <= pinned:
+            raise CaseError(
+                f"checks.{name}.at: links {', '.join(owners)} have a point '{point}' each, not joined there by a pin; "
+                "add link, the one that is meant"
+            )
+        return owners[0], point
 
     def pin_material(self, joint: str) -> Material:
         """The material of a joint's pin; the case's conditions, which are those of the links, leave it alone."""
@@ -621,6 +662,16 @@ def _check_point(case: Case, entry: str, link: str, point: str) -> None:
         raise CaseError(
             f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(case.links[link].points)}"
         )
+
+
+def _check_displaced(case: Case, name: str, check: DisplacementCheck) -> None:
+    if check.at is None:
+        raise CaseError(f"checks.{name}.link: it says whose point is meant, but none is named; add at, or use links")
+    if check.links:
+        raise CaseError(
+            f"checks.{name}.at: it is about one point of the linkage, but links are about each by itself; remove one"
+        )
+    case.displaced_point(name, check)
 
 
 def _check_motor(case: Case, name: str) -> None:

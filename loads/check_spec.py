@@ -19,11 +19,20 @@ class SafetyFactorCheck(CaseModel):
 
 
 class DisplacementCheck(CaseModel):
-    """The largest displacement of each link, relative to the line through its pins, must be small enough."""
+    """The largest displacement must be small enough: of each link by itself, or of one point of the linkage.
+
+    Without ``at`` it is that of each link from the line through its own pins, which tells nothing of where the linkage
+    as a whole takes its tip; with it, how far the named point moves while the linkage deforms.
+    """
 
     type: Literal["displacement"]
     maximum: Annotated[Length, POSITIVE]
     links: tuple[Name, ...] = ()
+    """The links to check, each by itself; all that have a part when neither these nor a point are stated."""
+    at: Name | None = None
+    """The point whose displacement with the whole linkage is checked, by the frame."""
+    link: Name | None = None
+    """The moving link that has the point; may be left out where only one has, or where pins join those that have."""
 
 
 class SustainedCheck(CaseModel):

@@ -95,12 +95,17 @@ def test_the_factor_of_a_parallelogram_is_that_of_the_closed_form() -> None:
     [(0.5, "deformed", Verdict.PASS), (0.97, "deformed", Verdict.PASS), (1.03, "unstable", Verdict.FAIL)],
 )
 def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, state, verdict) -> None:
-    moved, found = outcome(parallelogram(share * critical()))
+    """One limit load, one outcome: the factor of linear theory stands in its reason alone."""
+    result = check_case(parallelogram(share * critical()), fidelity="beam").load_cases["weight"]
+    moved, (found,) = result.large_displacement, [c for c in result.checks if c.link == LINKAGE]
+    assert found.name == "large displacement"
     assert moved.share < 1e-3
     assert (moved.state, found.verdict) == (state, verdict)
     assert moved.buckling == pytest.approx(1.0 / share, rel=3e-3)
     assert "the linear frame buckles at" in moved.sentence
-    assert "large displacement was followed and rules" in found.reason
+    assert f"buckling factor by linear theory is {moved.buckling:.3g}" in found.reason
+    # Somewhere below the whole load where it became unstable on the way, else all of it.
+    assert (found.value.low, found.value.high) == ((0.0, 1.0) if state == "unstable" else (1.0, 1.0))
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(0.3, Verdict.PASS), (0.5, Verdict.UNDECIDED), (1.03, Verdict.FAIL)])

@@ -275,7 +275,6 @@ def test_buckling_is_that_of_the_pose_with_the_least_factor(path, moved, result)
         beam = check_beam(loads, history.body.part.section, 1.0)
         factors += [(c.value.value, c.value.low, pose) for c in buckling_outcomes(case, "push", {"rocker": beam})]
     value, low, pose = min(factors)
-    assert 0 < pose < history.poses - 1
     assert found.value.value == pytest.approx(value, rel=2e-3)  # the beam is sampled at stations
     assert found.value.low == pytest.approx(low, rel=2e-3)
     assert found.verdict is Verdict.PASS

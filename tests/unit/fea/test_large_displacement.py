@@ -79,6 +79,68 @@ def test_its_verdict_is_fail_and_the_undeformed_figures_stay():
     assert any("large_displacement = off" in warning for warning in off.warnings)
 
 
+def tip(maximum, *overrides, load=(0, -0.25)):
+    """What becomes of a check of the wing's tip."""
+    case = under(load, f'checks.tip={{type="displacement", at="H", maximum="{maximum} mm"}}', *overrides)
+    result = check_case(case, name="owl-wing-static", fidelity="beam").load_cases["weight"]
+    (found,) = [c for c in result.checks if c.name == "tip"]
+    assert (found.link, found.quantity, found.unit) == ("point H of CH", "displacement", "mm")
+    return result, found
+
+
+def test_a_point_is_checked_with_the_whole_linkage_and_a_link_from_its_own_pins():
+    limit = 'checks.each={type="displacement", maximum="5 mm"}'
+    result, found = tip(5.0, *HELD_AT_GF, limit)
+    size = np.linalg.norm(result.large_displacement.points["CH", "H"])
+    assert found.value.value == pytest.approx(size)
+    # Linear theory leaves out that displacements grow towards buckling.
+    growth = 1.0 / (1.0 - 1.0 / result.large_displacement.buckling)
+    assert (found.value.low, found.value.high) == pytest.approx((size, growth * size))
+    assert size < 5.0 < growth * size
+    assert found.verdict is Verdict.UNDECIDED
+    assert tip(6.0, *HELD_AT_GF)[1].verdict is Verdict.PASS
+    assert tip(4.0, *HELD_AT_GF)[1].verdict is Verdict.FAIL
+    each = [c for c in result.checks if c.name == "each"]
+    assert len(each) == 5
+    assert {c.quantity for c in each} == {"deflection from its pins"}
+    (link,) = [c for c in each if c.link == "CH"]
+    assert link.value.value < 0.3
+
+
+def test_a_point_that_moves_far_is_checked_on_the_deformed_shape():
+    result, found = tip(5.0, *HELD_AT_GF, load=(0, -1.5))
+    moved = result.large_displacement
+    assert moved.state == "deformed"
+    assert found.value.value == pytest.approx(np.linalg.norm(moved.points["CH", "H"]))
+    assert found.value.value != pytest.approx(moved.linear, rel=1e-2)
+    assert found.verdict is Verdict.FAIL
+    assert "on its deformed shape" in found.reason
+
+
+def test_a_point_without_equilibrium_or_beyond_linear_theory_is_left_open():
+    _, found = tip(1000.0)
+    assert found.verdict is Verdict.UNDECIDED
+    assert found.value.unknowable
+    assert "equilibrium ends at 0.203" in found.reason
+    _, found = tip(1000.0, 'large_displacement="off"')
+    assert found.verdict is Verdict.UNDECIDED
+    assert "buckles at 1.6 times the load, below 3" in found.reason
+    _, found = tip(1000.0, *HELD_AT_GF, 'large_displacement="off"', load=(0, -1.0))
+    assert found.verdict is Verdict.UNDECIDED
+    assert "above 5 % of the span" in found.reason
+    _, found = tip(6.0, *HELD_AT_GF, 'large_displacement="off"')
+    assert found.verdict is Verdict.PASS
+
+
+def test_a_card_with_a_range_of_moduli_widens_the_band_of_a_point():
+    stiff, soft = (tip(5.0, *HELD_AT_GF, f'parts.tube.material="{m}"')[1] for m in ("pvc-paredes-2018", "pvc-u"))
+    assert stiff.value.low == stiff.value.value
+    material = read_case("owl-wing-static", ['parts.tube.material="pvc-u"']).material_of("CH")
+    least, largest = material.youngs_modulus_range
+    assert soft.value.low == pytest.approx(soft.value.value * material.youngs_modulus / largest)
+    assert soft.value.high > soft.value.value * material.youngs_modulus / least
+
+
 @pytest.mark.parametrize("load", [[0, -1.5], [0, -1.2, 0.4]])
 def test_links_carry_what_the_deformed_frame_says(load):
     """Bending moments at every pin, from the link's own loads and from the co-rotational elements beside it."""

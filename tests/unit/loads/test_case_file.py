@@ -37,6 +37,10 @@ BAD = [
     ("pose.angle=228", ["pose.angle", "228", "unit", "30 deg"]),
     ('links.GF.points.F=["50", "0 mm"]', ["links.GF.points.F.0", "'50'", "unit", "125 mm"]),
     ("links.GF.points.F=[50, 0]", ["links.GF.points.F.0", "(it is 50)", "unit as text"]),
+    ('checks.x={type="displacement",maximum="2 mm",at="X"}', ["checks.x.at", "'X'", "choose among"]),
+    ('checks.x={type="displacement",maximum="2 mm",at="H",link="AE"}', ["checks.x", "'AE'", "no point 'H'"]),
+    ('checks.x={type="displacement",maximum="2 mm",link="CH"}', ["checks.x.link", "add at"]),
+    ('checks.x={type="displacement",maximum="2 mm",at="H",links=["CH"]}', ["checks.x.at", "remove one"]),
     ('checks.x={type="displacement",maximum=2}', ["checks.x.maximum", "(it is 2)", "unit"]),
     # wrong dimensions
     ("pose.angle=5 mm", ["pose.angle", "5 mm", "not a unit of angle", "30 deg"]),
