@@ -8,6 +8,7 @@ from scipy.sparse.linalg import splu
 from benchmarks.stability_report import Row, figure, table, timed
 from benchmarks.stability_solids import box
 from fea.beam import euler_load
+from fea.column_factor import AxialForce, column_factors
 from fea.corotational import buckling_factor
 from fea.elasticity import assemble_stiffness
 from fea.frame import ALL_DOFS, FrameElement, FrameModel, FrameSolution, NodeLoad, Support, solve_frame
@@ -108,7 +109,7 @@ def mixed_stiffness() -> Row:
     return Row(table=table(head, rows), figure=made)
 
 
-def column_factor(stations: list[float], pins: tuple[int, ...], built_in: bool = False) -> float:
+def frame_column(stations: list[float], pins: tuple[int, ...], built_in: bool = False) -> float:
     """Critical load [N] in the plane by the frame's stability, pushed at the last station."""
     plane = frozenset({"uz", "rx", "ry"})
     held = [Support(node=i, dofs=plane) for i in range(len(stations)) if i not in pins]
@@ -129,22 +130,31 @@ def column_factor(stations: list[float], pins: tuple[int, ...], built_in: bool =
 
 
 def buckling() -> Row:
-    """The check's bound beside the frame's stability, over the overhang."""
-    rows = []
+    """The check's column and its bounds beside the frame's stability, over the overhang."""
+    rows, stiffness, ends = [], YOUNG * SECTION.i_z, (0.0, LENGTH)
     for share in (0.0, 0.01, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0):
         over = share * LENGTH
         stations = [0.0, LENGTH] + ([LENGTH + over] if share else [])
-        exact, seconds = timed(lambda s=stations: column_factor(s, (0, 1)))
-        used = (
-            euler_load(YOUNG, SECTION.i_z, LENGTH) if not share else euler_load(YOUNG, SECTION.i_z, LENGTH + over, 2.0)
-        )
-        rows.append((f"{share:g}", 1.0 if not share else 2.0, used, exact, used / exact, 1e3 * seconds))
+        exact, seconds = timed(lambda s=stations: frame_column(s, (0, 1)))
+        force = AxialForce(breaks=np.array([0.0, LENGTH + over]), values=np.ones((1, 3, 1)))
+        value, own = timed(lambda f=force: float(column_factors(f, stiffness, held=ends)[0]))
+        kept = float(column_factors(force, stiffness, built_in=ends)[0])
+        euler = euler_load(YOUNG, SECTION.i_z, LENGTH + over, 2.0)
+        rows.append((f"{share:g}", euler, value, kept, exact, value / exact, 1e3 * own, 1e3 * seconds))
     made, (axes,) = figure(1)
-    axes.plot([float(row[0]) for row in rows], [row[3] for row in rows], "o-", label="frame, eight elements each")
-    axes.plot(
-        [float(row[0]) for row in rows], [row[2] for row in rows], "x--", label="Euler's load that the check uses"
-    )
+    named = ("built in and free, whole length", "check: pins let it turn", "check: pins keep its angle", "frame")
+    for i, (label, style) in enumerate(zip(named, (":", "x--", "-.", "o-"), strict=True), 1):
+        axes.plot([float(row[0]) for row in rows], [row[i] for row in rows], style, label=label)
     axes.set(xlabel="overhang / distance of the pins", ylabel="critical load [N]", yscale="log")
     axes.legend(fontsize=8)
-    head = ("overhang / span", "k of the check", "check [N]", "frame [N]", "check / frame", "frame [ms]")
+    head = (
+        "overhang / span",
+        "built in and free [N]",
+        "check [N]",
+        "pins keep its angle [N]",
+        "frame [N]",
+        "check / frame",
+        "check [ms]",
+        "frame [ms]",
+    )
     return Row(table=table(head, rows), figure=made)
