@@ -13,6 +13,7 @@ from geometry.errors import CaseError
 from geometry.linkage import Joint, Link, Linkage
 from geometry.material import Material, library
 from geometry.model import CaseModel, Name, Text, check_file_names
+from geometry.ornithopter import OrnithopterRules
 from geometry.part import Body, Part, Pin, PlainEnd
 from geometry.pose import Pose, solve_pose
 from geometry.units import (
@@ -220,6 +221,8 @@ class Case(CaseModel):
     source: Text = ""
     assumptions: tuple[Text, ...] = ()
     """What the case assumes beyond its source, one sentence each; the report lists them."""
+    ornithopter: OrnithopterRules | None = None
+    """Rules by which ``read_case`` works out the dimensions of the built-in ornithopter or of a copy of it."""
     links: Annotated[dict[Name, Link], Field(min_length=2, max_length=200)]
     joints: Annotated[dict[Name, Joint], Field(min_length=1, max_length=400)]
     pose: PoseSpec = PoseSpec()

@@ -7,11 +7,13 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from geometry.errors import CaseError
+from geometry.ornithopter import OrnithopterRules
 from loads.case import SCHEMA_VERSION, Case
 from loads.explain import printable, sentence
+from loads.ornithopter_case import ornithopter_settings
 
 LARGEST_FILE = 1 << 20
 """Bytes; a case file is some kilobytes."""
@@ -37,7 +39,19 @@ def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
         raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; correct that line") from None
     for override in overrides:
         _override(data, override)
+    if "ornithopter" in data:
+        for entry in (*_by_rules(data["ornithopter"]), *overrides):  # what is stated outright wins
+            _override(data, entry)
     return validate(data)
+
+
+def _by_rules(stated: object) -> list[str]:
+    """Return the entries, as ``path=value``, that follow from the table ``[ornithopter]``."""
+    try:
+        (rules,) = TypeAdapter(dict[str, OrnithopterRules]).validate_python({"ornithopter": stated}).values()
+    except ValidationError as error:
+        raise CaseError(sentence(error)) from None
+    return ornithopter_settings(rules)
 
 
 def read_text(name_or_path: str) -> tuple[str, str]:

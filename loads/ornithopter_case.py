@@ -1,25 +1,18 @@
-"""The ornithopter as a case for any choice of its rules: settings of the built-in one, as for ``--set``."""
+"""The ornithopter's case by its rules: what the table ``[ornithopter]`` makes of the entries of its case file."""
 
 import math
 
 from geometry.ornithopter import OrnithopterRules
 from geometry.part import Body
-from loads.case import Case
-from loads.case_file import read_case
 
 _LEVERS = {"lever-right": 1.0, "lever-left": -1.0}
 
 
-def ornithopter_case(rules: OrnithopterRules) -> Case:
-    """Return the built-in case with the dimensions that the rules yield; wings, loads and checks stay as they are.
-
-    Raises ``CaseError`` where the rules leave no pin or no wall.
-    """
-    return read_case("ornithopter", ornithopter_settings(rules))
-
-
 def ornithopter_settings(rules: OrnithopterRules) -> list[str]:
-    """Return the entries of the built-in case that the rules change, each as ``path=value``."""
+    """Return the entries of the built-in case that the rules decide, each as ``path=value``.
+
+    Wings, loads and checks stay as they are. Raises ``CaseError`` where the rules leave no pin or no wall.
+    """
     sizes, bodies = rules.dimensions(), rules.bodies("-")
     low, high = bodies["lever"].pins[0].span
     slot, height = (f'["{_mm(-sizes.slot_reach)}", "0 mm"]', _mm(sizes.pivot_height))

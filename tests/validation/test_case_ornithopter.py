@@ -9,6 +9,7 @@ from fea.check import check_case
 from fea.link_history import link_histories
 from fea.motor_check import motor_outcomes
 from fea.verdict import Verdict
+from geometry.errors import CaseError
 from geometry.ornithopter import OrnithopterRules, variants
 from geometry.pose import freedom
 from geometry.wing_power import electrical_power, inertial_power, rod_inertia
@@ -18,7 +19,6 @@ from loads.case_motion import solve_case_motion
 from loads.inertia import acting_loads, with_carried
 from loads.kinetostatics import solve_kinetostatics
 from loads.masses import part_masses
-from loads.ornithopter_case import ornithopter_case
 from loads.statics import solve_statics
 
 RPM = math.pi / 30.0
@@ -55,11 +55,37 @@ def test_the_moving_parts_are_those_of_the_rules(case) -> None:
         assert ours.ends == rule.ends
 
 
+def as_settings(rules: OrnithopterRules) -> list[str]:
+    stated = {"throw": f"{rules.throw!r} mm", "wing_angle": f"{math.degrees(rules.wing_angle)!r} deg"}
+    return [f'ornithopter.{name}="{text}"' for name, text in (stated | {"motor": rules.motor}).items()]
+
+
+def test_what_is_stated_outright_wins_over_the_rules() -> None:
+    settings = ['ornithopter.throw="4 mm"', 'parts.rod.width="2.4 mm"']
+    case = read_case("ornithopter", settings)
+    assert case.parts["rod"].width == 2.4
+    assert case.links["crank"].points["A"] == (4.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        ('ornithopter.wing_angle="95 deg"', r"^ornithopter\.wing_angle .*between 0 and 90 degrees"),
+        ('ornithopter.motor="V8"', r"^ornithopter\.motor .*there is no motor \"V8\"; choose one of"),
+        ('ornithopter.clearance="1.2 mm"', r"ornithopter clearance = 1\.2 mm must stay below 1 mm"),
+        ("ornithopter=3", r"^ornithopter .*must be a table"),
+    ],
+)
+def test_rules_that_yield_no_ornithopter(setting: str, sentence: str) -> None:
+    with pytest.raises(CaseError, match=sentence):
+        read_case("ornithopter", [setting])
+
+
 @pytest.mark.parametrize("name", sorted(variants()))
 def test_the_three_variants_run_at_both_speeds(name: str) -> None:
     """Check by hand, motion and joint forces of the variants that the source shows, with their own parts."""
     rules = variants()[name]
-    variant = ornithopter_case(rules)
+    variant = read_case("ornithopter", as_settings(rules))
     assert variant.body("lever-right").part == rules.bodies("resin-405nm")["lever"].part
     assert variant.body("crank").part.diameter == 2.0 * rules.dimensions().crank_disc_radius
     turned = solve_case_motion(variant)
