@@ -12,6 +12,9 @@ from loads.statics import Reactions
 
 Real = NDArray[np.float64]
 
+_ROUNDING = 1e-10
+"""Share of the solution's size below which a component is taken for rounding."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AnchorLoads:
@@ -22,12 +25,16 @@ class AnchorLoads:
     about     the joint about which ``total`` is taken
     total     wrench (6,) of all joints together about that joint
     deformed  True where the forces are those on the deformed shape
+    unstable  True where they are those of the undeformed pose, since the deformed shape has no stable equilibrium
+
+    What rounding leaves of a force or a moment is zero.
     """
 
     joints: Mapping[str, Real]
     about: str
     total: Real
     deformed: bool
+    unstable: bool
 
 
 def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
@@ -47,7 +54,26 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
     total = np.zeros(6)
     for name, wrench in joints.items():
         total += shifted(wrench, places[name] - places[about])
-    return AnchorLoads(joints=joints, about=about, total=total, deformed=moved is not None)
+    size = _size(reactions)
+    return AnchorLoads(
+        joints={name: _rounded(wrench, size) for name, wrench in joints.items()},
+        about=about,
+        total=_rounded(total, size),
+        deformed=moved is not None,
+        unstable=moved is None and case.large_displacement.followed,
+    )
+
+
+def _size(reactions: Reactions) -> Real:
+    """Size (6,) of the forces and moments of a solution, of which single components may be what rounding leaves."""
+    wrenches = np.array([joint.wrench for joint in reactions.joints.values()])
+    arm = reactions.pose.linkage.longest
+    force = max(np.abs(wrenches[:, :3]).max(), np.abs(wrenches[:, 3:]).max() / arm, abs(reactions.drive_torque) / arm)
+    return np.array([force] * 3 + [force * arm] * 3)
+
+
+def _rounded(wrench: Real, size: Real) -> Real:
+    return np.where(np.abs(wrench) <= _ROUNDING * size, 0.0, wrench)
 
 
 def wrenches_on_ground(reactions: Reactions) -> dict[str, Real]:

@@ -197,6 +197,8 @@ class WaysToHold(CaseModel):
     at: Name
     published: Annotated[Length, POSITIVE] | None = None
     """A published displacement, to stand beside them."""
+    load_case: Name | None = None
+    """The load case that it was published for; needed where the case has several."""
     source: Text = ""
 
 
@@ -328,6 +330,7 @@ class Case(CaseModel):
                 self.material_of(checked)
         if self.ways_to_hold is not None:
             _check_point(self, "ways_to_hold", self.ways_to_hold.link, self.ways_to_hold.at)
+            _check_published(self, self.ways_to_hold)
         _check_size(self)
         for name, hand in self.hand_calculations.items():
             if hand.part not in self.parts:
@@ -665,6 +668,15 @@ def _check_point(case: Case, entry: str, link: str, point: str) -> None:
         raise CaseError(
             f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(case.links[link].points)}"
         )
+
+
+def _check_published(case: Case, asked: WaysToHold) -> None:
+    """A published displacement stands beside that of the loads that it was published for, and of no others."""
+    known = ", ".join(case.load_cases)
+    if asked.load_case is not None and asked.load_case not in case.load_cases:
+        raise CaseError(f"ways_to_hold.load_case: '{asked.load_case}' does not exist; the load cases are {known}")
+    if asked.published is not None and asked.load_case is None and len(case.load_cases) > 1:
+        raise CaseError(f"ways_to_hold.load_case: it is missing; name the one that was published for, among {known}")
 
 
 def _check_displaced(case: Case, name: str, check: DisplacementCheck) -> None:

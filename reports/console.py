@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fea.anchor import anchor_loads
 from fea.result import CheckResult, LoadCaseResult
 from fea.verdict import Verdict
@@ -88,13 +86,11 @@ def _air(air: AirForces) -> str:
 def _anchor(case: LoadCaseResult) -> str:
     anchor = anchor_loads(case)
     rows = {**anchor.joints, f"all, about {anchor.about}": anchor.total}
-    forces, moments = (max(float(np.abs(w[part]).max()) for w in rows.values()) for part in (slice(3), slice(3, 6)))
-    moments = max(moments, forces * case.reactions.pose.linkage.longest)
-    shape = ", deformed" if anchor.deformed else ""
+    undeformed = ", undeformed (no stable equilibrium beyond)" if anchor.unstable else ""
+    shape = ", deformed" if anchor.deformed else undeformed
     lines = [f"On the ground{shape}: force x, y, z [N]; moment x, y, z [N·mm]"]
     for name, wrench in rows.items():
-        force = ", ".join(number(float(x), 4, 1e3 * forces) for x in wrench[:3])
-        moment = ", ".join(number(float(x), 4, 1e3 * moments) for x in wrench[3:])
+        force, moment = (", ".join(number(float(x)) for x in part) for part in (wrench[:3], wrench[3:]))
         lines.append(f"  {name}: {force}; {moment}")
     return "\n".join(lines)
 

@@ -127,9 +127,10 @@ def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:
     asked = result.case.ways_to_hold
     if asked is not None:
         ways = [
-            f"{held.name} ({', '.join(fixed(float(x), 1) for x in held.displacement)})" for held in case.ways_to_hold
+            f"{held.name} ({', '.join(fixed(float(x), 1) for x in held.displacement)}), {number(held.size, 3)} in all"
+            for held in case.ways_to_hold
         ]
-        if asked.published is not None:
-            ways.append(f"published {number(asked.published, 3)}")
+        if asked.published is not None and asked.load_case in (None, case.name):
+            ways.append(f"published {number(asked.published, 3)} in all")
         lines.append(f"{asked.at} moves by x, y, z [mm, linear frame]: {'; '.join(ways)}")
     return lines

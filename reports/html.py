@@ -2,6 +2,7 @@
 
 import base64
 import math
+import re
 from collections.abc import Mapping
 from functools import cache
 from typing import Any
@@ -145,16 +146,20 @@ def data_uri(picture: bytes) -> str:
     return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
 
 
-def _bands(result: CheckResult) -> tuple[str, ...]:
-    """What the bands of this result hold, each once and without particulars."""
-    return tuple(
-        dict.fromkeys(
-            held.partition(" (")[0]
-            for case in result.load_cases.values()
-            for link in case.links.values()
-            for held in link.safety_factor.holds
-        )
-    )
+def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
+    """What the bands in the table of checks hold: name of the check -> each source of error once, without particulars.
+
+    A check without any width stands there only where its values say why (``nothing: ...``).
+    """
+    checks = checks_of(result)
+    wide = {check.name for check in checks if check.value.low < check.value.high}
+    found: dict[str, dict[str, None]] = {}
+    for check in checks:
+        for held in check.value.holds:
+            if check.name in wide or held.startswith("nothing"):
+                told = held.partition(" (")[0]
+                found.setdefault(check.name, {})[re.sub(r"^nothing: (.*)$", r"nothing (\1)", told)] = None
+    return {name: tuple(held) for name, held in found.items()}
 
 
 def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:

@@ -68,6 +68,7 @@ def anchor_record(case: LoadCaseResult) -> dict[str, Any]:
             "moment": [float(x) for x in anchor.total[3:]],
         },
         "deformed": anchor.deformed,
+        "unstable": anchor.unstable,
     }
 
 

@@ -1,12 +1,21 @@
 """What the report and the record say of frames: models, large displacement, pins, ways to hold."""
 
 import html
+import io
 import re
+import tomllib
+from dataclasses import replace
 
+import numpy as np
 import pytest
+from rich.console import Console
 
+from fea.anchor import anchor_loads
+from fea.band import Band
 from fea.check import check_case
-from loads.case_file import read_case
+from geometry.errors import CaseError
+from loads.case_file import read_case, read_text, validate
+from reports.console import print_result
 from reports.frames import frame_lines, frame_record
 from reports.html import render
 from reports.record import result_record
@@ -42,6 +51,87 @@ def test_the_wings_page_sets_the_ways_to_hold_it_side_by_side(wing):
     assert "its equilibrium ends at 0.203 of it" in words
     assert "are those of the undeformed pose" in words
     assert "A steel-wire 1.5 7 6.66 (3.33 to 6.66) 20.1 (10.1 to 20.1) 0.718" in words
+
+
+def test_a_published_displacement_stands_with_its_own_load_case_alone():
+    """The source ran as-published; complete and planform are not its loads."""
+    case = read_case("owl-wing-flight")
+    result = check_case(case, name="owl-wing-flight", fidelity="beam")
+    words = section(result)
+    parts = re.split(r"Load case (as-published|complete|planform)", words)
+    told = dict(zip(parts[1::2], parts[2::2], strict=True))
+    assert {name: "published: Paredes" in text for name, text in told.items()} == {
+        "as-published": True,
+        "complete": False,
+        "planform": False,
+    }
+    for name, load_case in result.load_cases.items():
+        [line] = [line for line in frame_lines(result, load_case) if "moves by" in line]
+        assert ("published 3.20 in all" in line) == (name == "as-published")
+        assert line.count(" in all") == len(load_case.ways_to_hold) + (name == "as-published")
+
+
+@pytest.mark.parametrize(
+    ("stated", "words"),
+    [
+        ("other", ["ways_to_hold.load_case", "'other'", "as-published, complete"]),
+        (None, ["ways_to_hold.load_case", "missing", "as-published"]),
+    ],
+)
+def test_a_published_displacement_needs_its_load_case(stated, words):
+    tree = tomllib.loads(read_text("owl-wing-flight")[0])
+    del tree["ways_to_hold"]["load_case"]
+    tree["ways_to_hold"] |= {} if stated is None else {"load_case": stated}
+    with pytest.raises(CaseError) as error:
+        validate(tree)
+    assert all(word in str(error.value) for word in words)
+
+
+def test_the_bands_are_told_check_by_check(wing):
+    """Where a model gives stresses no band, pins and buckling have theirs in the same table."""
+    load_case = wing.load_cases["weight"]
+    bare = [
+        replace(check, value=Band.exact(check.value.value, "nothing: beam theory without stress concentration"))
+        if check.name == "strength"
+        else check
+        for check in load_case.checks
+    ]
+    result = replace(wing, load_cases={"weight": replace(load_case, checks=tuple(bare))})
+    words = re.sub(r"\s+", " ", html.unescape(re.sub(r"<[^>]+>", " ", render(result, {}))))
+    start = words.index("What the bands hold, and nothing else:")
+    told = words[start : start + 1000]
+    assert "strength: nothing (beam theory without stress concentration)." in told
+    assert "pins: one eye takes the couple of the joint force, or both take half." in told
+    assert "buckling: the modulus, " in told
+
+
+def test_forces_of_the_undeformed_pose_are_called_so(wing):
+    load_case = wing.load_cases["weight"]
+    assert load_case.large_displacement.state == "no equilibrium"
+    assert result_record(wing)["load_cases"]["weight"]["anchor"]["unstable"] is True
+    page = html.unescape(render(wing, {}))
+    assert "On the ground, of the undeformed pose: the deformed shape has no stable equilibrium" in page
+    console = Console(width=100, record=True, file=io.StringIO())
+    print_result(wing, console)
+    text = console.export_text()
+    assert "On the ground, undeformed (no stable equilibrium beyond): force" in text
+    # Forces in the plane leave no force along z and no moment about x and y, whatever rounding says.
+    total = anchor_loads(load_case).total
+    assert total[2] == total[3] == total[4] == 0.0
+
+
+def test_rounding_of_the_anchor_is_zero(wing):
+    """Components of 1e-13 of the rest, of either sign, are what rounding leaves of nothing."""
+    load_case = wing.load_cases["weight"]
+    noisy = {
+        name: replace(joint, wrench=joint.wrench + 1e-14 * np.array([0, 0, -1, 1, -1, 0]))
+        for name, joint in load_case.reactions.joints.items()
+    }
+    reactions = replace(load_case.reactions, joints=noisy)
+    anchor = anchor_loads(replace(load_case, forces=replace(load_case.forces, reactions=reactions)))
+    for wrench in (*anchor.joints.values(), anchor.total):
+        assert wrench[2] == wrench[3] == wrench[4] == 0.0
+        assert np.abs(wrench[:2]).min() > 0.0 or wrench is anchor.total
 
 
 def test_the_record_keeps_both_shapes():
