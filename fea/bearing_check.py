@@ -12,6 +12,7 @@ import numpy as np
 
 from fea.band import Band
 from fea.outcomes import reason_for
+from fea.scatter import Scatter, load_scatter, strength_scatter
 from fea.verdict import PIN, SAFETY_FACTOR, CheckOutcome, at_least
 from geometry.errors import CaseError
 from loads.case import Case
@@ -33,8 +34,10 @@ def bearing_stress(force: float, diameter: float, thickness: float) -> float:
     return force / (diameter * thickness)
 
 
-def weakest_eye(case: Case, name: str, joint: str, force: float) -> tuple[str, Band]:
+def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) -> tuple[str, Band]:
     """Return the link whose eye or slot a joint's pin loads worst, and its safety factor, under a force [N] across it.
+
+    The band holds the scatter of the ``load`` and, where its strength is that of the safety factor, of the strength.
 
     Raises ``CaseError`` for a joint without pin diameter, which the check ``name`` needs.
     """
@@ -50,8 +53,9 @@ def weakest_eye(case: Case, name: str, joint: str, force: float) -> tuple[str, B
             material = case.material_of(link)
             strength = material.ultimate_strength or material.allowable
             stress = bearing_stress(force, record.pin_diameter, case.part_of(link).eye_thickness)
-            factors[link] = Band.exact(stress, *HOLDS).inverse(strength)
-    weakest = min(factors, key=lambda link: factors[link].value)
+            own = strength_scatter(material) if strength == material.allowable else Scatter()
+            factors[link] = own.on(load.on(Band.exact(stress, *HOLDS)).inverse(strength))
+    weakest = min(factors, key=lambda link: factors[link].low)
     return weakest, factors[weakest]
 
 
@@ -62,8 +66,9 @@ def bearing_outcomes(
 
     Raises ``CaseError`` for a joint without pin diameter.
     """
+    load = load_scatter(case, title)
     for joint in check.joints or case.bearing_joints:
-        eye, factor = weakest_eye(case, name, joint, float(np.hypot(*reactions.joints[joint].wrench[:2])))
+        eye, factor = weakest_eye(case, name, joint, float(np.hypot(*reactions.joints[joint].wrench[:2])), load)
         verdict = at_least(factor, check.limit)
         yield CheckOutcome(
             name=name,

@@ -14,7 +14,7 @@ from fea.buckling_check import buckling_outcomes
 from fea.cut_free import beam_loads, link_loads
 from fea.details import Detail, details, remarks
 from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
-from fea.ladder import Climb, HandBands, climb
+from fea.ladder import Climb, HandBands, by_hand, climb
 from fea.large_displacement import LargeDisplacement, examine
 from fea.link_loads import LinkLoads
 from fea.motor_check import motor_outcomes
@@ -22,6 +22,7 @@ from fea.outcomes import outcomes
 from fea.pins import PinStress, stress_at
 from fea.refinement import START, Effort
 from fea.result import CheckResult, LinkResult, LoadCaseResult
+from fea.scatter import compliance_scatter, load_scatter, strength_scatter
 from fea.solid import require_compressible
 from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
@@ -137,8 +138,9 @@ def check_case(
 
     name       path or built-in name of the case, for companion files and the report
     fidelity   "auto" for the cheapest model that decides each link (``fea.ladder``), or one for all of them: "solid",
-               "beam" for beam theory alone, without stress concentration, "frame" for the same where a frame gives
-               the joint forces, "submodel" for submodels of the eyes that may bear a link's peak, where they can
+               "beam" for hand calculation alone, in calibrated bands where there are any and else without verdict,
+               "frame" for the same where a frame gives the joint forces, "submodel" for submodels of the eyes that
+               may bear a link's peak, where they can
     effort     accuracy of solid models and what it may cost, by default what the case says
     progress   called with a sentence before every stage that may take long
 
@@ -164,23 +166,26 @@ def check_case(
     beams = {link: tuple(_beam(case, statics, link, loads) for loads in cut[link]) for link in cut}
     clock("hand calculations")
     climbs: dict[str, Climb] = {}
-    if fidelity not in FORCED_BEAM:
-        loaded = {link: [x for x in loads if _acts(x)] for link, loads in cut.items()}
-        tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
+    loaded = {link: [x for x in loads if _acts(x)] for link, loads in cut.items()}
+    tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
+    framed = any(forces.model != PINNED_STATICS for forces in statics.forces.values())
+    checked = {
+        link: {loads.name: beam.check for loads, beam in zip(cut[link], beams[link], strict=True)} for link in cut
+    }
+    if fidelity in FORCED_BEAM:
+        climbs = {link: by_hand(task, checked[link], framed=framed) for link, task in tasks.items()}
+    else:
         if fidelity in ("solid", "submodel"):
             for task in tasks.values():
                 require_compressible(task.nu)  # before the first mesh
         start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
         climbs = climb(
             tasks,
-            {
-                link: {loads.name: beam.check for loads, beam in zip(cut[link], beams[link], strict=True)}
-                for link in cut
-            },
+            checked,
             start,
             effort or effort_of(case),
             fidelity=fidelity,
-            framed=any(forces.model != PINNED_STATICS for forces in statics.forces.values()),
+            framed=framed,
             threads=threads,
             progress=progress,
         )
@@ -189,7 +194,7 @@ def check_case(
     load_cases = {}
     for i, (title, forces) in enumerate(statics.forces.items()):
         links = {
-            link: _link_result(case, link, title, beams[link][i], climbs.get(link), forced=fidelity in FORCED_BEAM)
+            link: _scattered(case, title, _link_result(case, link, title, beams[link][i], climbs.get(link)))
             for link in cut
         }
         reactions = moved[title].reactions or forces.reactions
@@ -257,22 +262,32 @@ def _acts(loads: LinkLoads) -> bool:
     return bool(loads.bodies or loads.lines or loads.couples or any(np.any(w != 0.0) for w in wrenches))
 
 
-def _link_result(case: Case, link: str, title: str, beam: _Beam, climbed: Climb | None, *, forced: bool) -> LinkResult:
+def _link_result(case: Case, link: str, title: str, beam: _Beam, climbed: Climb | None) -> LinkResult:
     material = case.material_of(link)
-    result = _beam_result(link, material, beam, ran=not forced)
-    if forced:
-        return result
+    result = _beam_result(link, material, beam)
     if climbed is None:
         return replace(result, decided_by="beam", why="nothing acts on it")
     decision = climbed.decision
     found = None if climbed.solid is None else solid_result(case, link, title, beam.check, climbed.solid)
     if found is not None:
         result = replace(found, notes=(*found.notes, *beam.remarks))
-    elif climbed.solid is None and title in climbed.hands:
+    elif climbed.solid is None and title in climbed.hands and not climbed.hands[title].outside:
         result = _calibrated(result, material, climbed.hands[title])
     if decision.rung == "submodel":
         result = replace(result, fidelity="submodel")
     return replace(result, decided_by=decision.rung, why=decision.why, next_cost=decision.next_cost)
+
+
+def _scattered(case: Case, title: str, result: LinkResult) -> LinkResult:
+    """Return a result with the stated scatter of load, strength and modulus in its bands."""
+    material, load = case.material_of(result.link), load_scatter(case, title)
+    return replace(
+        result,
+        von_mises_max=load.on(result.von_mises_max),
+        principal_max=load.on(result.principal_max),
+        safety_factor=strength_scatter(material).times(load.inverse).on(result.safety_factor),
+        displacement_max=compliance_scatter(material).times(load).on(result.displacement_max),
+    )
 
 
 def _calibrated(result: LinkResult, material: Material, hand: HandBands) -> LinkResult:
@@ -288,7 +303,7 @@ def _calibrated(result: LinkResult, material: Material, hand: HandBands) -> Link
     )
 
 
-def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> LinkResult:
+def _beam_result(link: str, material: Material, beam: _Beam) -> LinkResult:
     x, worst = beam.worst
     stress = Band.exact(worst.equivalent, *BEAM_HOLDS)
     principal = Band.exact(max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0), *BEAM_HOLDS)
@@ -311,7 +326,7 @@ def _beam_result(link: str, material: Material, beam: _Beam, *, ran: bool) -> Li
         comparisons=(),
         notes=(
             "nothing acts on this link in this load case"
-            if ran or worst.equivalent == 0.0
+            if worst.equivalent == 0.0
             else "beam theory alone: stress concentration at eyes and holes is not in these numbers",
             *beam.remarks,
         ),

@@ -15,8 +15,8 @@ from fea.envelope_result import EnvelopeResult, LinkEnvelope
 from fea.link_envelope import link_envelope
 from fea.link_history import link_histories
 from fea.refinement import START, Effort, refine_links
-from fea.solid import require_compressible
 from fea.scatter import load_scatter
+from fea.solid import require_compressible
 from fea.solid_result import link_task
 from fea.space import DisplacementSpace, displacement_space
 from fea.threads import bounded_run

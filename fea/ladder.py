@@ -1,8 +1,9 @@
 """The cheapest model that decides a link: hand calculation, frame, submodels of its eyes and holes, whole solid.
 
 A rung decides only where the whole band of its model, as calibrated against solid models (``fea.calibration``),
-clears every limit on the link; else the next one is taken. Hand calculation and frame give the stress of a link in
-the same way; a frame is a rung of its own where equilibrium alone does not give the joint forces.
+clears every limit on the link, and all that stated scatter makes of it; else the next one is taken. Hand calculation
+and frame give the stress of a link in the same way; a frame is a rung of its own where equilibrium alone does not give
+the joint forces.
 """
 
 from collections.abc import Mapping, Sequence
@@ -57,9 +58,12 @@ class HandBands:
 
 @dataclass(frozen=True, kw_only=True)
 class Decision:
-    """Which rung decided a link under all load cases, why, and what the next one would have cost ("" on the last)."""
+    """Which rung decided a link under all load cases, why, and what the next one would have cost ("" on the last).
 
-    rung: Rung
+    The rung is "" where one was asked for that cannot decide.
+    """
+
+    rung: Rung | Literal[""]
     why: str
     next_cost: str
 
@@ -129,6 +133,20 @@ def climb(
         decision = Decision(rung="solid", why=reasons[link], next_cost="")
         found[link] = Climb(decision=decision, hands=hands.get(link, {}), solid=solid)
     return {link: found[link] for link in tasks}
+
+
+def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck], *, framed: bool) -> Climb:
+    """Return what a link is by hand alone, where that was asked for; without decision where it has no bands.
+
+    beams   load case -> its hand calculation; ``framed`` True where a frame gave the joint forces
+    """
+    hands = {loads.name: hand_bands(task, loads, beams[loads.name]) for loads in task.loads}
+    rung: Rung = "frame" if framed else "beam"
+    outside = next((hand.outside for hand in hands.values() if hand.outside), "")
+    if outside:
+        why = f"hand calculation is not calibrated for it, since {outside}, so it cannot decide; run the solid model"
+        return Climb(decision=Decision(rung="", why=why, next_cost=""), hands=hands)
+    return Climb(decision=Decision(rung=rung, why="hand calculation was asked for", next_cost=""), hands=hands)
 
 
 def _cuts(
@@ -242,11 +260,18 @@ def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[
     ):
         for limit in limits:
             for band in bands:
-                if band.unknowable or band.low <= limit <= band.high:
+                if band.unknowable or (band.low <= limit[1] and limit[0] <= band.high):
                     return (
-                        f"the band of its {what}, {band.low:.3g} to {band.high:.3g} {unit}, holds the limit {limit:.3g}"
+                        f"the band of its {what}, {band.low:.3g} to {band.high:.3g} {unit}, holds the limit "
+                        f"{_limit(limit)}"
                     )
     return ""
+
+
+def _limit(ends: tuple[float, float]) -> str:
+    """Say a limit, with what stated scatter makes of it."""
+    low, high = ends
+    return f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g} (with stated scatter)"
 
 
 def decided_by_hand(task: LinkTask, hands: Sequence[HandBands], rung: Rung) -> tuple[Decision | None, str]:
@@ -261,7 +286,7 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands], rung: Rung) -> t
         return None, f"by {name} {open_limit}"
     worst = max(range(len(hands)), key=lambda i: stresses[i].high)
     band, spot = stresses[worst], hands[worst].spots[0].spot
-    limits = ", ".join(f"{limit:.3g}" for limit in task.stress_limits)
+    limits = ", ".join(map(_limit, task.stress_limits))
     why = f"by {name} its peak stress lies between {band.low:.3g} and {band.high:.3g} MPa, at most at {spot.name}"
     why += f", clear of the limit {limits} MPa" if limits else ""
     if task.displacement_limits:

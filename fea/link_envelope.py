@@ -1,6 +1,7 @@
 """One link over a motion: stress of every pose and load case from unit loads, its peaks, bands and fatigue."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from fea.link_history import LinkHistory
 from fea.link_series import Quantity
 from fea.peaks import Peaks, principal_peaks, von_mises_peaks
 from fea.refinement import RefinedSolid
+from fea.scatter import Scatter, strength_scatter
 from fea.solid import IMBALANCE_LIMIT, REACTION_LIMIT, LineReference
 from fea.solid_result import DRIVEN_HOLDS, PINNED_HOLDS
 from fea.space import DisplacementSpace
@@ -32,6 +34,7 @@ from loads.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw, Span
 Real = NDArray[np.float64]
 
 LAWS = (WIDE, NARROW)
+FATIGUE_ELSEWHERE = "where fatigue is worst, for which no mesh was refined, fourfold estimate on one mesh"
 AGREEMENT = 5e-3
 """To which the peak of a pose by unit loads equals that of a direct solution."""
 
@@ -48,6 +51,7 @@ def link_envelope(
     fatigue: bool = True,
     repetitions: float | None = None,
     refined: RefinedSolid | None = None,
+    scatter: Mapping[str, Scatter] | None = None,
     notes: tuple[str, ...] = (),
     threads: int | None = None,
 ) -> LinkEnvelope:
@@ -59,6 +63,7 @@ def link_envelope(
     returns    True where the last pose is the first again; else the motion goes there and back
     fatigue    False to leave it out; ``repetitions`` of the motion that are wanted
     refined    the series of meshes that ended with this one, solved at the worst pose: for the bands
+    scatter    load case -> that of its loads; none where it is left out
 
     Raises ``CannotRunError`` for loads that do not balance, supports that react, or a failing solver.
     """
@@ -100,8 +105,10 @@ def link_envelope(
         load_case = _load_case(space.nodes, history.load_case, material, variants, stated, series)
         if load_case.known and series.was_not_refined_for(load_case.governing):
             load_case = _estimated(load_case, solved, material, evaluated)
+        load = (scatter or {}).get(history.load_case, Scatter())
+        load_case = _scattered(load_case, material, load)
         if not lacking and load_case.known:
-            varied = _fatigue(solved, material, load_case, stated, series, returns, repetitions)
+            varied = _fatigue(solved, material, load_case, stated, series, returns, repetitions, load)
             load_case = replace(load_case, fatigue=varied)
         found[history.load_case] = load_case
     worst = min(found.values(), key=lambda load_case: load_case.severity)
@@ -164,6 +171,7 @@ class _Series:
         self.discretisation: Discretisation | None = None
         self.holds: tuple[str, ...] = ("nothing of the discretisation: one mesh",)
         self._refined: dict[tuple[Span, Transfer | None], float] = {}
+        self._size = math.inf
 
     @classmethod
     def of(cls, refined: RefinedSolid | None, load_case: str, material: Material) -> "_Series":
@@ -178,6 +186,7 @@ class _Series:
         for number, judgement in zip(numbers, judgements, strict=True):
             case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
             found._refined[case.span, case.transfer] = series.value
+            found._size = min(found._size, series.sizes[0])
             if judgement.known and series.value > 0.0:
                 measure: Quantity = "principal" if material.brittle else "von_mises"
                 ends = precise.low(measure) / series.value, precise.high(measure) / series.value
@@ -188,6 +197,13 @@ class _Series:
         """True where the motion's peak exceeds that of the pose that the meshes were refined for: it lies elsewhere."""
         refined = self._refined.get((variant.span, variant.transfer), np.inf)
         return variant.peak > (1.0 + AGREEMENT) * refined
+
+    def holds_at(self, variant: VariantCurve, nodes: Real, node: int) -> bool:
+        """True for a node about the peak that the meshes were refined for, no further than the first's elements."""
+        if self.was_not_refined_for(variant):
+            return False
+        peak = int(variant.node[int(np.nanargmax(variant.stress))])
+        return bool(np.linalg.norm(nodes[node] - nodes[peak]) <= self._size)
 
     def of_variant(self, variant: VariantCurve) -> tuple[float, float]:
         """Factors on the stress of a variant: its own, else those of its span without torque, else the widest."""
@@ -244,12 +260,9 @@ def _estimated(
     load_case: LoadCaseEnvelope, solved: UnitSolutions, material: Material, evaluated: NDArray[np.bool_]
 ) -> LoadCaseEnvelope:
     """Return the envelope with a peak that no mesh was refined for in a band of the estimate on this mesh alone."""
-    governing, pose, space = load_case.governing, load_case.pose, solved.space
-    field = solved.field(governing.first + int(np.count_nonzero(evaluated[:pose])))
-    young, poisson = material.youngs_modulus, material.poissons_ratio
-    estimate = estimate_error(stress_field(space, field, E=young, nu=poisson), field, E=young, nu=poisson)
-    beside = (space.cells == governing.node[pose]).any(axis=1)
-    error = ALONE * float(estimate.stress[beside].max())
+    governing, pose = load_case.governing, load_case.pose
+    number = governing.first + int(np.count_nonzero(evaluated[:pose]))
+    error = _local_error(solved, material, number, int(governing.node[pose]))
     contact = 1.0 - CONTACT_SHORTFALL if governing.span == NARROW.span else 1.0
     peak = load_case.stress
     peak = Band(
@@ -262,6 +275,27 @@ def _estimated(
     low[pose], high[pose] = min(low[pose], peak.low), max(high[pose], peak.high)
     factor = peak.inverse(material.allowable)
     return replace(load_case, stress=peak, safety_factor=factor, low=low, high=high)
+
+
+def _local_error(solved: UnitSolutions, material: Material, number: int, node: int) -> float:
+    """Fourfold estimate [MPa] beside a node, on this mesh alone, under load ``number``."""
+    field, young, poisson = solved.field(number), material.youngs_modulus, material.poissons_ratio
+    estimate = estimate_error(stress_field(solved.space, field, E=young, nu=poisson), field, E=young, nu=poisson)
+    beside = (solved.space.cells == node).any(axis=1)
+    return ALONE * float(estimate.stress[beside].max())
+
+
+def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -> LoadCaseEnvelope:
+    """Return the envelope with the scatter of load and strength in its bands."""
+    stress = load.on(load_case.stress)
+    return replace(
+        load_case,
+        stress=stress,
+        safety_factor=strength_scatter(material).on(stress.inverse(material.allowable)),
+        # Compression goes the other way, further from no stress.
+        low=np.minimum(load.low * load_case.low, load.high * load_case.low),
+        high=np.maximum(load.low * load_case.high, load.high * load_case.high),
+    )
 
 
 def _sources(governing: VariantCurve) -> tuple[str, ...]:
@@ -281,9 +315,10 @@ def _fatigue(
     series: _Series,
     returns: bool,
     repetitions: float | None,
+    load: Scatter,
 ) -> LinkFatigue:
     assert material.fatigue is not None
-    every, found, parts = [], [], []
+    every, found, parts, meshes = [], [], [], list(series.holds)
     for variant in load_case.variants:
         count = int(np.isfinite(variant.stress).sum())
         parts.append(solved.combination[:, variant.first : variant.first + count])
@@ -291,11 +326,16 @@ def _fatigue(
     for variant, (node, history) in zip(load_case.variants, critical, strict=True):
         closed = closed_history(history, returns=returns)
         life = fatigue_life(closed, material)
-        every += [life, *(fatigue_life(factor * closed, material) for factor in series.of_variant(variant))]
+        factors = series.of_variant(variant)
+        if series.discretisation is not None and not series.holds_at(variant, solved.space.nodes, node):
+            factors = _fatigue_factors(solved, material, variant, node, history)
+            meshes.append(FATIGUE_ELSEWHERE)
+        ends = (factors[0] * load.low, factors[1] * load.high)
+        every += [life, *(fatigue_life(factor * closed, material) for factor in ends)]
         if variant.transfer in (None, stated):
             found.append((life, node, history))
     life, node, history = max(found, key=lambda f: f[0].stress)
-    sources = (*_sources(load_case.governing), *series.holds)
+    sources = (*_sources(load_case.governing), *dict.fromkeys(meshes), *load.holds)
     wanted = material.fatigue.cycles if repetitions is None else repetitions
     counts = tuple(one.repetitions for one in every if one.repetitions is not None)
     return LinkFatigue(
@@ -307,3 +347,16 @@ def _fatigue(
         strength=strength_at(material.fatigue, wanted),
         repetitions=None if life.repetitions is None else Band.around(life.repetitions, counts, *sources),
     )
+
+
+def _fatigue_factors(
+    solved: UnitSolutions, material: Material, variant: VariantCurve, node: int, history: Real
+) -> tuple[float, float]:
+    """Factors on the history of a node that no mesh was refined for: the estimate there where its stress is largest."""
+    pose = int(np.argmax(np.abs(history)))
+    stress = abs(float(history[pose]))
+    if stress == 0.0:
+        return 1.0, 1.0
+    error = _local_error(solved, material, variant.first + pose, node) / stress
+    contact = 1.0 - CONTACT_SHORTFALL if variant.span == NARROW.span else 1.0
+    return max(1.0 - error, 0.0), (1.0 + error) / contact

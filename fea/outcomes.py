@@ -11,6 +11,7 @@ from fea.buckling_check import beyond_strength, linkage_outcome
 from fea.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
 from fea.pins import PinStress
 from fea.result import LinkResult
+from fea.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
 from fea.verdict import LINKAGE, LOAD_SHARE, PIN, POINT, SAFETY_FACTOR, CheckOutcome, Verdict, at_least, at_most
 from geometry.errors import CaseError
 from geometry.material import Material
@@ -70,9 +71,9 @@ def _link(
         quantity, unit, value = DEFLECTION, "mm", result.displacement_max
         verdict = at_most(value, limit)
     forced = result.fidelity == "beam" and not result.decided_by
-    if forced and verdict is Verdict.PASS and result.beam.worst.equivalent > 0.0:
+    if forced and verdict is not Verdict.UNDECIDED and result.beam.worst.equivalent > 0.0:
         verdict = Verdict.UNDECIDED
-        reason = "beam theory leaves stress concentration out, so it cannot pass a link; run the solid model"
+        reason = result.why
     else:
         reason = _why(result, value, limit, verdict)
     return CheckOutcome(
@@ -133,7 +134,8 @@ def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str,
     for joint in check.joints or case.pinned_joints:
         material = case.pin_material(joint)
         limit = least_safety_factor(name, check.minimum, material, f"{PIN}{joint}")
-        value = pins[joint].equivalent.inverse(material.allowable)
+        stress = load_scatter(case, title).on(pins[joint].equivalent)
+        value = strength_scatter(material).on(stress.inverse(material.allowable))
         verdict = at_least(value, limit)
         yield CheckOutcome(
             name=name,
@@ -180,25 +182,40 @@ def least_safety_factor(name: str, stated: float | None, material: Material, wha
     return limit
 
 
-def stress_limits(case: Case, link: str) -> tuple[float, ...]:
-    """Limits [MPa] on a link's deciding stress, of all checks; raises ``CaseError`` where one is not stated."""
-    material, found = case.material_of(link), []
+def stress_limits(case: Case, link: str) -> tuple[tuple[float, float], ...]:
+    """Limits [MPa] on a link's deciding stress, of all checks, each from the least to the largest by stated scatter.
+
+    Raises ``CaseError`` where one is not stated.
+    """
+    material, load, found = case.material_of(link), _widest_load(case), []
     for name, check in case.all_checks.items():
         if isinstance(check, SafetyFactorCheck | SustainedCheck) and link in (check.links or case.checked_links):
             if isinstance(check, SafetyFactorCheck):
-                found.append(material.allowable / least_safety_factor(name, check.minimum, material, link))
+                limit = material.allowable / least_safety_factor(name, check.minimum, material, link)
+                found.append(_spread(limit, strength_scatter(material).times(load.inverse)))
             elif material.sustained_stress is not None:
-                found.append(material.sustained_stress)
+                found.append(_spread(material.sustained_stress, load.inverse))
     return tuple(found)
 
 
-def displacement_limits(case: Case, link: str) -> tuple[float, ...]:
-    """Limits [mm] on a link's displacement from the line through its pins, of all checks."""
+def displacement_limits(case: Case, link: str) -> tuple[tuple[float, float], ...]:
+    """Limits [mm] on a link's displacement from the line through its pins, of all checks, as ``stress_limits``."""
+    scatter = compliance_scatter(case.material_of(link)).times(_widest_load(case))
     return tuple(
-        check.maximum
+        _spread(check.maximum, scatter.inverse)
         for check in case.all_checks.values()
         if isinstance(check, DisplacementCheck) and check.at is None and link in (check.links or case.checked_links)
     )
+
+
+def _widest_load(case: Case) -> Scatter:
+    """Return the widest scatter of any load case: a link's meshes serve all of them."""
+    every = [load_scatter(case, title) for title in case.load_cases]
+    return Scatter(low=min(one.low for one in every), high=max(one.high for one in every))
+
+
+def _spread(limit: float, scatter: Scatter) -> tuple[float, float]:
+    return limit * scatter.low, limit * scatter.high
 
 
 def _why(result: LinkResult, value: Band, limit: float, verdict: Verdict) -> str:

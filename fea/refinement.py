@@ -69,7 +69,8 @@ class LinkTask:
     E, nu, density        of the material [MPa, -, tonne/mm³]
     line                  surfaces that displacements refer to (``solve_solid``)
     brittle               True where the principal stress decides, False where von Mises does
-    stress_limits         [MPa] on the deciding stress; ``displacement_limits`` [mm]
+    stress_limits         [MPa] on the deciding stress; ``displacement_limits`` [mm]: from the least to the largest that
+                          stated scatter makes of each, within which nothing is decided
     """
 
     body: Body
@@ -79,8 +80,8 @@ class LinkTask:
     density: float
     line: tuple[str, str]
     brittle: bool
-    stress_limits: tuple[float, ...]
-    displacement_limits: tuple[float, ...]
+    stress_limits: tuple[tuple[float, float], ...]
+    displacement_limits: tuple[tuple[float, float], ...]
 
     @property
     def section(self) -> float:
@@ -274,13 +275,15 @@ class _Link:
 
     def _limits(self) -> Iterable[tuple[float, float, float]]:
         """Ends of every band, and a limit that it must clear."""
-        stated: tuple[tuple[Quantity, tuple[float, ...]], ...] = (
+        stated: tuple[tuple[Quantity, tuple[tuple[float, float], ...]], ...] = (
             (self._measure, self.task.stress_limits),
             ("displacement", self.task.displacement_limits),
         )
         for case in self.precision:
             if case.sharp is None:
-                yield from ((case.low(q), case.high(q), limit) for q, limits in stated for limit in limits)
+                yield from (
+                    (case.low(q), case.high(q), limit) for q, limits in stated for ends in limits for limit in ends
+                )
 
     def _decided(self) -> bool:
         """Whether every limit lies outside every band."""

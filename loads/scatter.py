@@ -27,8 +27,8 @@ def parse_scatter(stated: object) -> tuple[float, float]:
     if low is None or high is None or not 0.0 < low <= 1.0 <= high <= MOST:
         raise PydanticCustomError(
             "not_a_scatter",
-            'the scatter must be a share below 100 % such as "20 %", or the least and largest share of the loads, above '
-            'zero and up to {most} times, that hold the whole: write for example {{ low = "90 %", high = "130 %" }}',
+            'the scatter must be a share below 100 %, such as "20 %", or the least and the largest share of the loads, '
+            'above zero, up to {most}, with the whole between them: write for example { low = "90 %", high = "130 %" }',
             {"most": f"{MOST:g}"},
         )
     return low, high

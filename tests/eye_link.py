@@ -49,7 +49,7 @@ def task(limit: float = 10.0, *, stretch: float = 1.0, holes: tuple[HoleRow, ...
         density=1.4e-9,
         line=("bore:A", "bore:C"),
         brittle=False,
-        stress_limits=(limit,),
+        stress_limits=((limit, limit),),
         displacement_limits=(),
     )
 
