@@ -79,6 +79,17 @@ def test_its_verdict_is_fail_and_the_undeformed_figures_stay():
     assert any("large_displacement = off" in warning for warning in off.warnings)
 
 
+def test_an_elastic_answer_beyond_the_strength_says_that_it_is_void():
+    for load, void in ((-3.0, False), (-4.0, True)):
+        result = check_case(under([0, load], *HELD_AT_GF), name="owl-wing-static", fidelity="beam").load_cases["weight"]
+        worst = result.links["AE"].beam
+        assert (worst.worst.equivalent > worst.strength) is void
+        about = {c.link: c.reason for c in result.checks if c.name in ("buckling", "large displacement")}
+        assert ("AE bears 43.8 MPa by beam theory where its strength is 41.4 MPa" in about["the linkage"]) is void
+        assert ("void" in about["AE"]) is void
+        assert "void" not in about["CH"]
+
+
 def tip(maximum, *overrides, load=(0, -0.25)):
     """What becomes of a check of the wing's tip."""
     case = under(load, f'checks.tip={{type="displacement", at="H", maximum="{maximum} mm"}}', *overrides)
