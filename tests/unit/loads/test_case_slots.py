@@ -23,7 +23,7 @@ def test_a_slot_becomes_a_hole_drawn_out_with_its_clearance() -> None:
     body = ornithopter('links.lever-right.slots.slot.clearance="0.1 mm"').body("lever-right")
     slot = body.pins[0]
     assert slot == Pin(
-        name="slot", x=pytest.approx(-7.37), y=0.0, diameter=2.1, slot=pytest.approx(1.02), clearance=0.1
+        name="slot", x=pytest.approx(-7.372736), y=0.0, diameter=2.1, slot=pytest.approx(1.010357), clearance=0.1
     )
     assert slot.pin_diameter == 2.0
 
