@@ -65,6 +65,16 @@ def end_cleanly_on_signals() -> None:
         stop_all()
         raise KeyboardInterrupt
 
+    told = sys.unraisablehook
+
+    def tell(unraisable: "sys.UnraisableHookArgs") -> None:
+        """Stay silent on the interruption that a callback swallowed; ``end_if_stopped`` makes up for it."""
+        from geometry.child import stopped
+
+        if not (stopped() and isinstance(unraisable.exc_value, KeyboardInterrupt)):
+            told(unraisable)
+
+    sys.unraisablehook = tell
     names = ("SIGINT", "SIGTERM", "SIGHUP")
     found = [getattr(signal, name) for name in names if hasattr(signal, name)]
     # One that is ignored stays so: nohup says that the end of the terminal is to be survived.

@@ -143,11 +143,9 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
     if design := design_lines(result.case):
         print("\n" + "\n".join(design))
     for load_case, row in found["load_cases"].items():
-        how = "without inertia"
-        if row["inertia"]:
-            speed = row.get("speed_mm_per_s", row.get("speed_rad_per_s"))
-            at = f"{speed:.4g} mm/s" if result.motion.slides else f"{speed * 30.0 / math.pi:.4g} rpm"
-            how = f"with inertia at {at}"
+        speed = row.get("speed_mm_per_s", row.get("speed_rad_per_s"))
+        at = f"{speed:.4g} mm/s" if result.motion.slides else f"{speed * 30.0 / math.pi:.4g} rpm"
+        how = f"with inertia at {at}" if row["inertia"] else "without inertia"
         print(f"\nLoad case {load_case} ({how})")
         what, unit = result.effort
         told = _line(row[f"drive_{what}"], unit, motion["unit"])
@@ -157,7 +155,7 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
             continue
         if "drive_power" in row:
             power = _line(row["drive_power"], "W", motion["unit"])
-            print(f"  drive power: {power}; energy balance to {row['energy_imbalance']:.1g}")
+            print(f"  drive power at {at}: {power}; energy balance to {row['energy_imbalance']:.1g}")
         for joint, extremes in row["joints"].items():
             print(f"  joint {joint}: {_line(extremes, 'N', motion['unit'])}")
 

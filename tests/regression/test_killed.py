@@ -224,6 +224,27 @@ def test_an_interruption_that_a_library_swallows_still_ends_the_run(tmp_path: Pa
     assert programs.hidden(tmp_path) == []
 
 
+def test_an_interruption_in_a_destructor_prints_no_traceback(tmp_path: Path) -> None:
+    """Python told of it with "Exception ignored in ..." before the one sentence; other faults there are still told."""
+    text = (
+        "import signal, reports.ending\n"
+        "class Fragile:\n"
+        "    def __init__(self, act): self.act = act\n"
+        "    def __del__(self): self.act()\n"
+        "def app():\n"
+        "    Fragile(lambda: 1 // 0)\n"
+        "    Fragile(lambda: signal.raise_signal(signal.SIGTERM))\n"
+        "    raise SystemExit(0)\n"
+        "reports.ending.run(app)\n"
+    )
+    done = programs.script(text)
+    assert done.returncode == 130
+    assert done.stderr.count("Exception ignored in") == 1
+    assert "ZeroDivisionError" in done.stderr
+    assert "KeyboardInterrupt" not in done.stderr
+    assert done.stderr.strip().endswith("alula: interrupted")
+
+
 def test_leftovers_of_a_living_run_stay(tmp_path: Path) -> None:
     """Another run into the same folder is at work: its half-written folder is not cleared away."""
     text = (
