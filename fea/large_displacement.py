@@ -239,7 +239,17 @@ def _on_deformed_shape(
         point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
         for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
     }
-    return in_slots(bent(link_loads(title, link, body, reactions, loads, axes), moved), body, link)
+    return in_slots(bent(_driven(link_loads(title, link, body, reactions, loads, axes), axes), moved), body, link)
+
+
+def _driven(loads: LinkLoads, axes: Real) -> LinkLoads:
+    """Return the loads with what the drive torque, about the global z, has off the link's own z, at the pin driven."""
+    pins = {pin.name: pin for pin in loads.pins}
+    for couple in loads.couples:
+        wrench = pins[couple.pin].wrench.copy()
+        wrench[3:] += couple.torque * (axes[2] - np.array([0.0, 0.0, 1.0]))
+        pins[couple.pin] = replace(pins[couple.pin], wrench=wrench)
+    return replace(loads, pins=tuple(pins.values()))
 
 
 def in_slots(loads: LinkLoads, body: Body, link: str) -> LinkLoads:
