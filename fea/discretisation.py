@@ -61,8 +61,8 @@ class Discretisation:
             )
         if self.status == "growing":
             return (
-                f"the peak stress still grows as fast after {count} meshes as before ({self._values} MPa), so it has "
-                f"no safety factor; {self._remedy}"
+                f"the peak stress still grows as fast after {count} meshes as before ({self._values} MPa), by "
+                f"{series.step:.0%} of itself in the last step, so it has no safety factor; {self._remedy}"
             )
         if self.status == "far":
             return (
@@ -72,7 +72,7 @@ class Discretisation:
         order = "" if series.order is None else f", observed order {series.order:.1f}"
         found = (
             f"{count} meshes, the finest of {self.meshes[-1].elements:,} elements: peak {self._values} MPa{order}, "
-            f"error at most {series.index:.1%} (factor {series.factor:g})"
+            f"error at most {series.index:.1%} ({series.rule})"
         )
         if self.status == "converged":
             return f"{found}: converged"
@@ -89,12 +89,18 @@ class Discretisation:
         return ", ".join(f"{value:.3g}" for value in self.stress.values)
 
 
-def holds(series: GridConvergence) -> str:
-    """What a band of this series says that it holds."""
+def holds(series: GridConvergence, *, sharp_edges: int = 0) -> str:
+    """What a band of this series says that it holds; ``sharp_edges`` of the link, where the band is of a stress."""
     if series.kind == "one mesh":
-        return "discretisation (estimated on one mesh, fourfold)"
-    count = len(series.values)
-    return f"discretisation (grid convergence over {count} meshes, factor {series.factor:g})"
+        text = "estimated on one mesh, fourfold"
+    elif series.kind == "two meshes":
+        width = "fourfold estimate" if series.multiple is not None else f"factor {series.factor:g}"
+        text = f"two meshes, no observed order: {width}"
+    else:
+        text = f"grid convergence over {len(series.values)} meshes, {series.rule}"
+    if sharp_edges:
+        text += f"; without the stress at sharp edges ({sharp_edges}), below {LOADED:.0%} of the peak and without limit"
+    return f"discretisation ({text})"
 
 
 def judged(refined: RefinedSolid, number: int, *, brittle: bool) -> Discretisation:

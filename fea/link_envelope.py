@@ -182,7 +182,7 @@ class _Series:
         numbers = [n for n, case in enumerate(refined.solution.cases) if case.load == load_case]
         judgements = [judged(refined, number, brittle=material.brittle) for number in numbers]
         found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
-        found.holds = (f"{holds(found.discretisation.stress)}, at the worst pose",)
+        found.holds = (f"{holds(found.discretisation.stress, sharp_edges=refined.sharp_edges)}, at the worst pose",)
         for number, judgement in zip(numbers, judgements, strict=True):
             case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
             found._refined[case.span, case.transfer] = series.value

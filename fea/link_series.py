@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fea.convergence import LEAST_RATIO, GridConvergence, grid_convergence
 from fea.error_estimate import ErrorEstimate, energy_factor, estimate_error, relative_error
-from fea.singular import SharpPeak, loaded_edge, sharp_peak
+from fea.singular import ON_EDGE, SharpPeak, edge_distance, loaded_edge, sharp_peak
 from fea.solid import SolidSolution
 from fea.stress import stress_field
 from fea.target_sizes import LocalGoal
@@ -26,6 +26,8 @@ NOT_RESOLVED = 0.3
 25 diameters long left a tube 55 % too stiff, where a band of the estimate (0.53, hence 28 %) would have missed it."""
 _EDGE = (6.0 * np.sqrt(2.0)) ** (1.0 / 3.0)  # edge of a regular tetrahedron over the cube root of its volume
 _NEIGHBOURS = 8
+AROUND = 1.5
+"""Radius about a peak, in sizes of the first mesh, in which a series measures its sizes and the next mesh is finer."""
 
 
 Quantity = Literal["von_mises", "principal", "displacement"]
@@ -199,14 +201,22 @@ def _energy_error(levels: Sequence[Level], number: int, end: int) -> float:
 
 
 def goals(
-    level: Level, allowed: float, *, brittle: bool, edges: Sequence[ReentrantEdge], section: float
+    levels: Sequence[Level],
+    allowed: float,
+    *,
+    brittle: bool,
+    edges: Sequence[ReentrantEdge],
+    section: float,
+    ratios: Sequence[float],
 ) -> list[LocalGoal]:
     """Peaks, of the principal stress where ``brittle``, that are to be resolved to a relative estimate ``allowed``.
 
     To these come sharp edges that bear much stress, so that their growth shows.
+
+    ratios   of the sizes about each case's peak, last mesh over next one
     """
-    found = []
-    for figures in level.figures:
+    found, level = [], levels[-1]
+    for figures, ratio in zip(level.figures, ratios, strict=True):
         stress = figures.principal if brittle else figures.von_mises
         edge = loaded_edge(edges, level.nodes, figures.von_mises, section)
         nodes = {int(np.argmax(stress))} | ({edge[1]} if edge else set())
@@ -217,6 +227,8 @@ def goals(
                 stress=stress[level.cells].max(axis=1),
                 estimate=figures.estimate.stress,
                 allowed=allowed,
+                ratio=ratio,
+                radius=AROUND * levels[0].size(level.nodes[node]),
             )
             for node in nodes
             if stress[node] > 0.0
@@ -231,9 +243,14 @@ def _case(
     stresses = [level.figures[number].von_mises for level in levels]
     found = loaded_edge(edges, last.nodes, stresses[-1], section)
     edge_series = sharp = None
+
+    def series(nodal: Sequence[NDArray[np.float64]], node: int) -> GridConvergence:
+        on_edge = bool(edges) and edge_distance(edges, last.nodes[[node]]).min() <= ON_EDGE * section
+        return _series(levels, number, nodal, node, sharp=on_edge)
+
     if found is not None:
         edge, node = found
-        edge_series = _series(levels, number, stresses, node)
+        edge_series = series(stresses, node)
         sharp = sharp_peak(
             edge,
             edges,
@@ -245,8 +262,8 @@ def _case(
         )
     principal = [level.figures[number].principal for level in levels]
     return CasePrecision(
-        von_mises=_series(levels, number, stresses, int(np.argmax(stresses[-1]))),
-        principal=_series(levels, number, principal, int(np.argmax(principal[-1]))),
+        von_mises=series(stresses, int(np.argmax(stresses[-1]))),
+        principal=series(principal, int(np.argmax(principal[-1]))),
         displacement=_displacement(levels, number),
         edge=edge_series,
         sharp=sharp,
@@ -275,15 +292,18 @@ def _in_contact(level: Level, number: int, eyes: Sequence[Eye]) -> dict[Quantity
     }
 
 
-def _series(levels: Sequence[Level], number: int, nodal: Sequence[NDArray[np.float64]], node: int) -> GridConvergence:
-    """Series of a nodal stress about a node of the finest mesh."""
+def _series(
+    levels: Sequence[Level], number: int, nodal: Sequence[NDArray[np.float64]], node: int, *, sharp: bool
+) -> GridConvergence:
+    """Series of a nodal stress about a node of the finest mesh; ``sharp`` where that lies on a re-entrant edge."""
     last = levels[-1]
     place = last.nodes[node]
     radius = levels[0].size(place)
-    chosen = _falling([level.size(place, 1.5 * radius) for level in levels])
+    chosen = _falling([level.size(place, AROUND * radius) for level in levels])
     values = [float(nodal[i][levels[i].around(nodal[i], place, radius)]) for i, _ in chosen]
     error = float(last.figures[number].estimate.stress[(last.cells == node).any(axis=1)].max())
-    return grid_convergence([size for _, size in chosen], values, estimate=error + CHORD * last.chord * abs(values[-1]))
+    missing = error + CHORD * last.chord * abs(values[-1])
+    return grid_convergence([size for _, size in chosen], values, estimate=missing, sharp=sharp)
 
 
 def _at_maximum(levels: Sequence[Level], nodal: Sequence[NDArray[np.float64]], node: int) -> dict[str, list[float]]:

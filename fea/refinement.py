@@ -6,6 +6,7 @@ estimate asks (``fea.target_sizes``), until every limit lies outside the band or
 asked for; or until a limit of time, unknowns or number of meshes stops it, which the link's numbers then say.
 """
 
+import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -14,12 +15,12 @@ from typing import Literal
 
 import numpy as np
 
-from fea.convergence import ALONE, GridConvergence
+from fea.convergence import ALONE, FORMAL_ORDER, GridConvergence
 from fea.link_loads import LinkLoads
 from fea.link_series import CasePrecision, Eye, Level, Quantity, energy_errors, goals, level_of, precision
-from fea.singular import element_exponents
+from fea.singular import NEARLY, element_exponents, loaded_edge
 from fea.solid import SolidSolution, solve_solid
-from fea.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction
+from fea.target_sizes import MOST_RATIO, SERIES_RATIO, element_sizes, next_sizes, reduction
 from geometry.body_rules import section_height, section_width
 from geometry.errors import AlulaError, CaseError
 from geometry.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
@@ -52,7 +53,7 @@ class Effort:
     stated: bool = False
     max_unknowns: int = 600_000
     time_limit: float = 600.0
-    max_meshes: int = 6
+    max_meshes: int = 10
 
     def __post_init__(self) -> None:
         """Refuse an accuracy that no series of meshes reaches."""
@@ -260,7 +261,7 @@ class _Link:
         # Nothing finer makes a singular peak finite.
         real = [p for p in self.precision if p.sharp is None]
         series = [s for p in real for s in (self._deciding(p), p.edge) if s is not None]
-        if any(s.kind == "growing" or len(s.values) < SERIES for s in series):
+        if any(s.kind == "growing" or s.suspect or len(s.values) < SERIES for s in series):
             return False
         narrow = all(max(self._deciding(p).index, p.displacement.index) <= self.effort.accuracy for p in real)
         return narrow or (not self.effort.stated and self._decided())
@@ -293,6 +294,9 @@ class _Link:
         """Whether one mesh decides: well resolved, away from sharp edges, every limit far outside the band."""
         if any(self._deciding(p).index > ALONE * ROUGH or p.edge is not None for p in self.precision):
             return False
+        level, section = self.levels[-1], self.task.section
+        if any(loaded_edge(self.edges, level.nodes, f.von_mises, section, NEARLY) for f in level.figures):
+            return False
         return all(high * FAR < limit or low > FAR * limit for low, high, limit in self._limits())
 
     def _refine(self, pool: ThreadPoolExecutor) -> None:
@@ -305,10 +309,25 @@ class _Link:
             reduction(figures.estimate.energy, figures.estimate.energy_norm, allowed, exponent)
             for figures in level.figures
         ]
-        wanted = goals(level, accuracy / 1.5, brittle=self.task.brittle, edges=self.edges, section=self.task.section)
+        wanted = goals(
+            self.levels,
+            accuracy / 1.5,
+            brittle=self.task.brittle,
+            edges=self.edges,
+            section=self.task.section,
+            ratios=[_ratio(self._deciding(case), accuracy) for case in self.precision],
+        )
         points, sizes = next_sizes(self.solution.space, factors, wanted)
         self.settings = replace(self.settings, size_points=points, size_values=sizes)
         if not self.settings.curved:  # straight sides miss the round of a surface, which sizes alone would leave
             turn = round(SERIES_RATIO * self.settings.turn_elements)
             self.settings = replace(self.settings, turn_elements=turn)
         self.order_mesh(pool)
+
+
+def _ratio(series: GridConvergence, accuracy: float) -> float:
+    """Of the sizes at a peak, last mesh over next one, so that two further meshes narrow its band to an accuracy."""
+    if not len(series.values) >= SERIES or not math.isfinite(series.index):
+        return SERIES_RATIO
+    order = min(max(series.order or 1.0, 1.0), FORMAL_ORDER)
+    return min(max((series.index / accuracy) ** (0.5 / order), SERIES_RATIO), MOST_RATIO)

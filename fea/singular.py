@@ -16,6 +16,8 @@ ON_EDGE = 0.01
 """Distance from an edge, over the section's smaller dimension, up to which a node lies on it: edges are polylines."""
 LOADED = 0.5
 """Stress on a sharp edge over the peak from which on the edge is refined to see whether it grows without limit."""
+NEARLY = 0.25
+"""Stress on a sharp edge over one coarse mesh's peak from which on finer meshes judge anew whether it is ``LOADED``."""
 SCREENING = 0.2
 """Distance from the edge, over the section's smaller dimension, at which the screening stress is taken."""
 SHARE_OF_WILLIAMS = 0.3
@@ -68,18 +70,23 @@ def edge_distance(edges: Sequence[ReentrantEdge], points: NDArray[np.float64]) -
 
 
 def loaded_edge(
-    edges: Sequence[ReentrantEdge], nodes: NDArray[np.float64], von_mises: NDArray[np.float64], section: float
+    edges: Sequence[ReentrantEdge],
+    nodes: NDArray[np.float64],
+    von_mises: NDArray[np.float64],
+    section: float,
+    share: float = LOADED,
 ) -> tuple[ReentrantEdge, int] | None:
     """The edge whose nodes bear the largest stress of all edges, and that node; None where it is well below the peak.
 
-    nodes (n, 3) [mm] with their von Mises stress (n,) [MPa]; section [mm] as in ``sharp_peak``
+    nodes (n, 3) [mm] with their von Mises stress (n,) [MPa]; section [mm] as in ``sharp_peak``; share of the peak
+    below which it is well below
     """
     if not edges:
         return None
     distance = edge_distance(edges, nodes)
     stress = np.where(distance.min(axis=1) <= ON_EDGE * section, von_mises, -1.0)
     node = int(np.argmax(stress))
-    if stress[node] < LOADED * von_mises.max():
+    if stress[node] < share * von_mises.max():
         return None
     return edges[int(np.argmin(distance[node]))], node
 

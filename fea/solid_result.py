@@ -74,7 +74,10 @@ def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: Re
             high=max(value, *(found.high(quantity) for found in every)),
             holds=(
                 *(text for text in sources if text != CONTACT_HOLDS or quantity != "displacement"),
-                holds(refined.precision[governing].series(quantity)),
+                holds(
+                    refined.precision[governing].series(quantity),
+                    sharp_edges=0 if quantity == "displacement" else refined.sharp_edges,
+                ),
             ),
         )
 

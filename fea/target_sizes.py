@@ -37,6 +37,8 @@ class LocalGoal:
     stress     (m,) largest nodal stress in each element [MPa]
     estimate   (m,) of the stress error in each element [MPa]
     allowed    estimate over peak that is aimed at
+    ratio      of the sizes, last mesh over next one, within ``radius`` [mm] of the peak, at least ``NEAR`` elements:
+               where a series measures its sizes, since a smaller region lets them fall by less than the ratio
     """
 
     location: NDArray[np.float64]
@@ -44,6 +46,8 @@ class LocalGoal:
     stress: NDArray[np.float64]
     estimate: NDArray[np.float64]
     allowed: float
+    ratio: float = SERIES_RATIO
+    radius: float = 0.0
 
 
 def element_sizes(space: DisplacementSpace) -> NDArray[np.float64]:
@@ -83,7 +87,7 @@ def next_sizes(
         factor = np.where(hot, np.maximum(factor, wanted), factor)
         distance = np.linalg.norm(centres - goal.location, axis=1)
         here = float(sizes[np.argsort(distance)[:8]].mean())
-        factor = np.where(distance <= NEAR * here, np.maximum(factor, SERIES_RATIO), factor)
+        factor = np.where(distance <= max(NEAR * here, goal.radius), np.maximum(factor, goal.ratio), factor)
     corners = space.cells[:, :4]
     finest = np.full(space.corners, np.inf)
     np.minimum.at(finest, corners.ravel(), np.repeat(sizes / factor, 4))

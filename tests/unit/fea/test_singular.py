@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fea.convergence import williams_exponent
-from fea.singular import edge_distance, element_exponents, loaded_edge, sharp_peak
+from fea.singular import NEARLY, edge_distance, element_exponents, loaded_edge, sharp_peak
 from geometry.mesh import ReentrantEdge
 
 EDGE = ReentrantEdge(points=np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), angle=1.5 * math.pi)
@@ -29,6 +29,7 @@ def test_edge_that_bears_most():
     nodes = np.array([[0.0, 0.0, 0.5], [5.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
     assert loaded_edge([EDGE, OTHER], nodes, np.array([6.0, 8.0, 10.0]), 3.0) == (OTHER, 1)
     assert loaded_edge([EDGE, OTHER], nodes, np.array([4.0, 3.0, 10.0]), 3.0) is None
+    assert loaded_edge([EDGE, OTHER], nodes, np.array([4.0, 3.0, 10.0]), 3.0, NEARLY) == (EDGE, 0)
     assert loaded_edge([], nodes, np.array([4.0, 3.0, 10.0]), 3.0) is None
 
 
