@@ -39,6 +39,7 @@ from fea.band import Band
 from fea.beam import BeamCheck
 from fea.column_factor import AxialForce, column_factors
 from fea.large_displacement import LargeDisplacement
+from fea.scatter import load_scatter
 from fea.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
 from geometry.material import Material
 from geometry.part import Section
@@ -192,6 +193,7 @@ def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) ->
             continue
         factors, material = found.factors, case.material_of(link)
         band = factor_band(material, *(float(f[0]) for f in (factors.value, factors.least, factors.most)))
+        band = load_scatter(case, title).inverse.on(band)
         verdict = at_least(band, 1.0)
         yield CheckOutcome(
             name=NAME,
@@ -238,6 +240,7 @@ def linkage_outcome(
         high=value,
         holds=("the modulus", "displacement that grows with the load, which linear theory leaves out"),
     )
+    band = load_scatter(case, title).inverse.on(band)
     verdict = at_least(band, 1.0)
     if verdict is Verdict.FAIL:
         reason = f"{factor}, so the linkage gives way"

@@ -119,6 +119,7 @@ def column_outcomes(
             if math.isinf(factor):
                 continue
             band = factor_band(case.material_of(link), factor, least, most)
+            band = load_scatter(case, history.load_case).inverse.on(band)
             outcome = _outcome(BUCKLING, link, history.load_case, BUCKLING_FACTOR, band, 1.0, complete=complete)
             reason = f"{factor:.3g} times the compression at {_when(moved, pose)} buckles it"
             if outcome.verdict is Verdict.UNDECIDED:

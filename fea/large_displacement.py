@@ -8,13 +8,15 @@ Stability, 2nd ed., section 1.11), by half and more.
 """
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.band import Band
 from fea.corotational import (
     CorotationalSolution,
     NoEquilibriumError,
@@ -26,6 +28,7 @@ from fea.frame import FrameSolution, solve_frame
 from fea.joint_forces import JointForces
 from fea.link_loads import LinkLoads
 from fea.linkage_frame import LinkageFrame, build_frame
+from fea.scatter import Scatter, compliance_scatter, load_scatter
 from geometry.errors import CannotRunError, CaseError
 from geometry.part import Body
 from geometry.pose import Pose
@@ -64,6 +67,7 @@ class LargeDisplacement:
     span        largest distance between two points of the pose [mm]
     linear      largest displacement by the linear frame [mm], at ``where``; 0 where there is no frame
     held        share of the load up to which equilibrium was found; 1 for all of it
+    held_band   the same with the stated scatter of load and modulus; of no meaning unless ``followed``
     buckling    lowest factor on all loads at which the linear frame becomes unstable; infinite where it never does,
                 None where there is no frame
     points      (link, point) -> displacement (3,) on the deformed shape [mm]; the linear one where small or off;
@@ -78,6 +82,7 @@ class LargeDisplacement:
     linear: float = 0.0
     where: str = ""
     held: float = 1.0
+    held_band: Band = field(default_factory=lambda: Band.exact(1.0))
     buckling: float | None = None
     points: Mapping[tuple[str, str], Real]
     reactions: Reactions | None = None
@@ -144,7 +149,42 @@ def examine(
     )
     if linear <= LARGE * size and factor >= LEAST_FACTOR:
         return small
-    return _deformed(case, title, frame, small, loads, masses)
+    found = _deformed(case, title, frame, small, loads, masses)
+    materials = [compliance_scatter(case.material_of(link)) for link in case.checked_links]
+    slack = Scatter(low=min(m.low for m in materials), high=max(m.high for m in materials))
+    load = load_scatter(case, title)
+    holds = dict.fromkeys(text for one in (*materials, load) for text in one.holds)
+    return replace(found, held_band=_held_band(frame, found, slack.times(load), tuple(holds)))
+
+
+def _held_band(frame: LinkageFrame, found: LargeDisplacement, scatter: Scatter, holds: tuple[str, ...]) -> Band:
+    """Band of the share of the load that is held, with what load over modulus may be by ``scatter``.
+
+    A frame of linear material has the shape that load over modulus gives it, so that its limit load scales.
+    """
+    holds = ("equilibrium on the deformed shape, followed from no load", *holds)
+    if found.state == "no equilibrium":
+        return Band(value=found.held, low=found.held / scatter.high, high=found.held / scatter.low, holds=holds)
+    if found.state == "unstable":
+        # It became unstable somewhere on the way.
+        high = 1.0 if scatter.low < 1.0 and _holds(frame, scatter.low) == 1.0 else math.nextafter(1.0, 0.0)
+        return Band(value=min(found.buckling or 1.0, high), low=0.0, high=high, holds=holds)
+    return Band(value=1.0, low=_holds(frame, scatter.high) if scatter.high > 1.0 else 1.0, high=1.0, holds=holds)
+
+
+def _holds(frame: LinkageFrame, factor: float) -> float:
+    """Share that is held of ``factor`` times load over modulus; 0 where the linkage becomes unstable on the way."""
+    elements = tuple(replace(element, young=element.young / factor) for element in frame.model.elements)
+    try:
+        found = solve_large_displacement(
+            replace(frame.model, elements=elements),
+            SUBDIVISIONS,
+            least_step=LEAST_STEP,
+            most_iterations=MOST_ITERATIONS,
+        )
+    except NoEquilibriumError as error:
+        return error.reached
+    return 1.0 if found.stable else 0.0
 
 
 def linkage_factor(frame: LinkageFrame) -> float:

@@ -104,13 +104,16 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
         if moved.followed or not (near or size > LARGE * moved.span):
             materials = [case.material_of(other) for other in case.checked_links]
             ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
-            growth = 1.0 if moved.followed or factor is None else 1.0 / (1.0 - 1.0 / factor)
+            load = load_scatter(case, title)
+            near_by = 0.0 if moved.followed or factor is None else load.high * max((*ratios, 1.0)) / factor
+            growth = 1.0 / (1.0 - near_by) if near_by < 1.0 else math.inf
             value = Band(
                 value=size,
                 low=min((*ratios, 1.0)) * size,
                 high=max((*ratios, 1.0)) * growth * size,
                 holds=("the modulus",) if moved.followed else ("the modulus", "growth towards buckling"),
             )
+            value = load.on(value)
             shape = "on its deformed shape" if moved.followed else "by linear theory"
             why = f"by the frame of the linkage, {shape}: {reason_for(value, limit, at_most(value, limit))}"
         else:
@@ -154,11 +157,9 @@ def _large_displacement(title: str, moved: LargeDisplacement, beams: Mapping[str
     """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
     if not moved.followed:
         return
-    followed = "equilibrium on the deformed shape, followed from no load"
-    value = Band.exact(moved.held, followed)
-    if moved.state == "unstable":
-        # It became unstable somewhere on the way.
-        value = Band(value=min(moved.buckling or 1.0, 1.0), low=0.0, high=1.0, holds=(followed,))
+    value = moved.held_band
+    verdict = at_least(value, 1.0)
+    open_end = f"; {reason_for(value, 1.0, verdict)}" if verdict is Verdict.UNDECIDED else ""
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
     informs = f"; for information, its buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
     yield CheckOutcome(
@@ -169,8 +170,8 @@ def _large_displacement(title: str, moved: LargeDisplacement, beams: Mapping[str
         unit="",
         value=value,
         limit=1.0,
-        verdict=Verdict.PASS if moved.state == "deformed" else Verdict.FAIL,
-        reason=moved.sentence + informs + beyond_strength(beams),
+        verdict=verdict,
+        reason=moved.sentence + open_end + informs + beyond_strength(beams),
     )
 
 

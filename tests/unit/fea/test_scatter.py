@@ -1,0 +1,163 @@
+"""Stated scatter of loads, strength and modulus in every band, and verdicts on what is not known."""
+
+import math
+from dataclasses import replace
+from importlib.resources import files
+
+import eye_link
+import numpy as np
+import pytest
+from pydantic_core import PydanticCustomError
+
+from fea.band import Band
+from fea.check import check_case
+from fea.envelope import envelope_case
+from fea.envelope_outcomes import envelope_outcomes
+from fea.ladder import decided_by_hand, hand_bands
+from fea.refinement import Effort
+from fea.scatter import Scatter, compliance_scatter, strength_scatter
+from fea.verdict import Verdict
+from geometry.errors import CaseError
+from geometry.material import library
+from loads.case_file import read_case
+from loads.case_motion import solve_case_motion
+from loads.scatter import parse_scatter
+
+STARTER = files("loads") / "cases" / "starter.toml.txt"
+PLA = library()["pla-fdm-xy"]
+FIXED = [  # a material without any range
+    "materials.own.title=plastic", f'materials.own.density="{PLA.density * 1e12:.9g} kg/m^3"',
+    f'materials.own.youngs_modulus="{PLA.youngs_modulus} MPa"', f"materials.own.poissons_ratio={PLA.poissons_ratio}",
+    'materials.own.ultimate_strength="33 MPa"', "materials.own.strength=ultimate",
+    "materials.own.minimum_safety_factor=6.0", "materials.own.sources={}", "materials.own.status={}",
+    "parts.bar.material=own",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    path = tmp_path_factory.mktemp("case") / "four-bar.toml"
+    path.write_text(STARTER.read_text(encoding="utf-8"), encoding="utf-8")
+    return str(path)
+
+
+def checked(path, *overrides, fidelity="beam"):
+    [found] = check_case(read_case(path, overrides), fidelity=fidelity).load_cases.values()
+    return found
+
+
+@pytest.mark.parametrize(
+    ("stated", "ends"),
+    [("20 %", (0.8, 1.2)), (0.2, (0.8, 1.2)), ({"low": "90 %", "high": "130 %"}, (0.9, 1.3)), ([0.5, 2], (0.5, 2.0))],
+)
+def test_scatter_as_people_state_it(stated, ends):
+    assert parse_scatter(stated) == pytest.approx(ends)
+
+
+@pytest.mark.parametrize(
+    "stated", ["100 %", "20 N", -0.1, True, {"low": 0.9}, {"low": 1.1, "high": 1.2}, [0, 2], [1, 11], math.nan]
+)
+def test_what_is_no_scatter(stated):
+    with pytest.raises(PydanticCustomError, match="the scatter must be a share below 100 %"):
+        parse_scatter(stated)
+
+
+def test_a_band_is_multiplied_at_its_ends():
+    band = Band(value=2.0, low=1.0, high=4.0, holds=("nothing: one mesh",))
+    found = Scatter(low=0.5, high=3.0, holds=("load",)).on(band)
+    assert (found.value, found.low, found.high, found.holds) == (2.0, 0.5, 12.0, ("one mesh", "load"))
+    assert Scatter().on(band) is band
+    assert strength_scatter(PLA).low == pytest.approx(23 / 33)
+    assert strength_scatter(PLA).high == pytest.approx(65 / 33)
+    young = PLA.youngs_modulus
+    assert (compliance_scatter(PLA).low, compliance_scatter(PLA).high) == pytest.approx((young / 3500, young / 2000))
+
+
+def test_strength_and_modulus_ranges_widen_factor_and_displacement(path):
+    plain, ranged = checked(path, *FIXED).links["rocker"], checked(path).links["rocker"]
+    assert ranged.safety_factor.low == pytest.approx(plain.safety_factor.low * 23 / 33)
+    assert ranged.safety_factor.high == pytest.approx(plain.safety_factor.high * 65 / 33)
+    ours = ranged.displacement_max
+    assert ours.high / ours.value == pytest.approx(
+        plain.displacement_max.high / plain.displacement_max.value * PLA.youngs_modulus / 2000
+    )
+    assert any("stated strength, 23 to 65 MPa" in text for text in ranged.safety_factor.holds)
+    assert any("stated modulus" in text for text in ours.holds)
+
+
+def test_all_effects_of_a_load_scatter_with_it(path):
+    asked = [*FIXED, 'checks.shear={type="pins", minimum=2.0}', 'checks.eyes={type="bearing"}']
+    plain, wide = checked(path, *asked), checked(path, *asked, 'load_cases.lift.scatter="20 %"')
+    rising = {c.quantity for c in plain.checks if c.quantity.startswith(("displacement", "deflection"))}
+    assert len(plain.checks) == len(wide.checks)
+    assert {"strength", "shear", "eyes", "buckling"} <= {c.name for c in plain.checks}
+    for ours, theirs in zip(wide.checks, plain.checks, strict=True):
+        low, high = (0.8, 1.2) if ours.quantity in rising else (1 / 1.2, 1 / 0.8)
+        assert ours.value.low == pytest.approx(theirs.value.low * low), ours
+        assert ours.value.high == pytest.approx(theirs.value.high * high), ours
+        assert any("scatter of the load, 80% to 120%" in text for text in ours.value.holds)
+
+
+def test_hand_calculation_decides_on_the_whole_band():
+    what = eye_link.task(1000.0)
+    hand = hand_bands(what, what.loads[0], eye_link.beam(what))
+    assert decided_by_hand(what, [hand], "beam")[0] is not None
+    ranged = replace(what, stress_limits=((0.5 * hand.von_mises.low, 1000.0),))
+    decision, why = decided_by_hand(ranged, [hand], "beam")
+    assert decision is None
+    assert "(with stated scatter)" in why
+
+
+def test_hand_calculation_without_calibration_neither_passes_nor_fails(path):
+    found = checked(path, *FIXED, 'parts.bar.fillet_radius="0 mm"', 'checks.stiffness.maximum="0.01 mm"')
+    asked = [c for c in found.checks if c.name in ("strength", "stiffness")]
+    assert len(asked) == 6
+    assert {c.verdict for c in asked} == {Verdict.UNDECIDED}
+    assert "not calibrated" in asked[0].reason
+
+
+def test_hand_calculation_decides_in_its_calibrated_bands(path):
+    """Beam theory alone has no width: whatever limit lies off its number would be kept or missed."""
+    value = checked(path, *FIXED).links["coupler"].displacement_max
+    for factor, verdict in ((0.95, Verdict.UNDECIDED), (2.0, Verdict.PASS), (0.1, Verdict.FAIL)):
+        found = checked(path, *FIXED, f'checks.stiffness.maximum="{factor * value.value} mm"')
+        [outcome] = [c for c in found.checks if (c.name, c.link) == ("stiffness", "coupler")]
+        assert outcome.verdict is verdict
+
+
+MOTION = ['motion.range=["0 deg","360 deg"]', "motion.poses=7"]
+
+
+@pytest.fixture(scope="module")
+def coupler(tmp_path_factory):
+    text = STARTER.read_text(encoding="utf-8").replace('part = "bar"', "", 1)
+    head, _, tail = text.rpartition('part = "bar"')
+    path = tmp_path_factory.mktemp("coupler") / "coupler.toml"
+    path.write_text((head + tail).replace("own_weight = true", "own_weight = false"), encoding="utf-8")
+    return str(path)
+
+
+def test_more_repetitions_than_the_card_knows_are_not_passed(coupler):
+    case = read_case(coupler, [*MOTION, "solid.mesh_size=3.0", "checks.strength.minimum=0.01"])
+    effort = Effort(max_meshes=1)
+    within = envelope_case(case, threads=1, effort=effort, repetitions=2e6)
+    beyond = envelope_case(case, threads=1, effort=effort, repetitions=2.1e6)
+    [known] = [c for c in within.checks if c.name == "fatigue"]
+    assert known.value.value > 0.0
+    [outcome] = [c for c in beyond.checks if c.name == "fatigue"]
+    assert outcome.verdict is Verdict.UNDECIDED
+    assert "ends at 2e+06 cycles" in outcome.reason
+    assert beyond.verdict is Verdict.UNDECIDED
+    wide = read_case(coupler, [*MOTION, "solid.mesh_size=3.0", 'load_cases.lift.scatter="20 %"'])
+    scattered = envelope_case(wide, threads=1, effort=effort)
+    [ours], [theirs] = (r.links["coupler"].load_cases.values() for r in (scattered, within))
+    assert ours.safety_factor.low == pytest.approx(theirs.safety_factor.low / 1.2)
+    assert ours.fatigue.stress.high > 1.15 * theirs.fatigue.stress.high
+    moved = solve_case_motion(wide)
+    assert envelope_outcomes(moved, {}, np.ones(7, dtype=bool)) == []
+
+
+@pytest.mark.parametrize("repetitions", [math.inf, math.nan, 0.0])
+def test_repetitions_are_a_number(coupler, repetitions):
+    with pytest.raises(CaseError, match="repetitions: they are"):
+        envelope_case(read_case(coupler, MOTION), repetitions=repetitions)
