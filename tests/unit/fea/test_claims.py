@@ -216,7 +216,7 @@ SOLID = """
 [[claims]]
 name = "stress"
 quantity = "solid.weight.links.AE.von_mises"
-published = "11.36 MPa"
+published = "14.06 MPa"
 source = "Someone (2000)"
 """
 

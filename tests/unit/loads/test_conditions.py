@@ -80,7 +80,7 @@ def test_a_load_that_stays_is_checked_without_being_asked_for():
 
 
 def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
-    """Beam theory has 11.35 MPa there: beyond 11 MPa, and far beyond 11 x 0.70."""
+    """Beam theory has 11.35 MPa there, which its calibrated band leaves open at 11 MPa."""
     short, long = checked(), checked('conditions.duration="10 year"')
     assert short.links["AE"].beam.worst.equivalent == pytest.approx(11.35, abs=0.01)
     stress = short.links["AE"].von_mises_max.value
@@ -88,7 +88,7 @@ def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
     (root,) = [c for c in long.checks if c.quantity == "sustained stress" and c.link == "AE"]
     assert (root.verdict, root.limit, root.unit) == (Verdict.UNDECIDED, 11.0, "MPa")
     others = {c.link: c.verdict for c in long.checks if c.quantity == "sustained stress" and c.link != "AE"}
-    assert set(others.values()) == {Verdict.UNDECIDED}, "beam theory cannot pass a link"
+    assert set(others.values()) == {Verdict.PASS}, "by calibrated hand calculation"
     warm = checked('conditions.duration="10 year"', 'conditions.temperature="40 degC"')
     (root,) = [c for c in warm.checks if c.quantity == "sustained stress" and c.link == "AE"]
     assert root.limit == pytest.approx(7.7)
