@@ -330,4 +330,4 @@ def _ratio(series: GridConvergence, accuracy: float) -> float:
     if not len(series.values) >= SERIES or not math.isfinite(series.index):
         return SERIES_RATIO
     order = min(max(series.order or 1.0, 1.0), FORMAL_ORDER)
-    return min(max((series.index / accuracy) ** (0.5 / order), SERIES_RATIO), MOST_RATIO)
+    return min(max(math.pow(series.index / accuracy, 0.5 / order), SERIES_RATIO), MOST_RATIO)
