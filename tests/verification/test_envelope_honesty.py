@@ -7,7 +7,7 @@ import pytest
 import solid_meshes
 from turning_load import POSES, RHO, history
 
-from fea.link_envelope import link_envelope
+from fea.link_envelope import FATIGUE_ELSEWHERE, link_envelope
 from fea.link_series import level_of, precision
 from fea.refinement import MeshRecord, RefinedSolid
 from fea.solid import solve_solid
@@ -37,11 +37,11 @@ def refined_at(mesh, pose):
     )  # fmt: skip
 
 
-def enveloped(mesh, refined):
+def enveloped(mesh, refined, *, fatigue=False):
     space = displacement_space(mesh)
     found = link_envelope(
         space, link="bar", material=MATERIAL, histories=[history(space)], evaluated=np.ones(POSES, dtype=bool),
-        stated="eye-faces", returns=True, fatigue=False, refined=refined, threads=1,
+        stated="eye-faces", returns=True, fatigue=fatigue, refined=refined, threads=1,
     )  # fmt: skip
     [load_case] = found.load_cases.values()
     return load_case
@@ -66,6 +66,9 @@ def test_a_peak_at_a_pose_that_was_not_refined_for_bears_its_own_estimate(mesh):
     assert elsewhere.stress.high > 1.05 * elsewhere.stress.value
     assert elsewhere.high[elsewhere.pose] == elsewhere.stress.high
     assert elsewhere.safety_factor.low == pytest.approx(MATERIAL.allowable / elsewhere.stress.high)
+    fatigued = enveloped(mesh, replace(confident, precision=settled), fatigue=True).fatigue
+    assert FATIGUE_ELSEWHERE in fatigued.stress.holds
+    assert fatigued.stress.high > 1.05 * fatigued.stress.value
 
 
 def test_a_peak_without_limit_has_no_curve(mesh):

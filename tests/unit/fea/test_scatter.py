@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from pydantic_core import PydanticCustomError
 
+from fea import large_displacement
 from fea.band import Band
 from fea.check import check_case
 from fea.envelope import envelope_case
 from fea.envelope_outcomes import envelope_outcomes
 from fea.ladder import decided_by_hand, hand_bands
+from fea.outcomes import _large_displacement
 from fea.refinement import Effort
 from fea.scatter import Scatter, compliance_scatter, strength_scatter
 from fea.verdict import Verdict
@@ -161,3 +163,34 @@ def test_more_repetitions_than_the_card_knows_are_not_passed(coupler):
 def test_repetitions_are_a_number(coupler, repetitions):
     with pytest.raises(CaseError, match="repetitions: they are"):
         envelope_case(read_case(coupler, MOTION), repetitions=repetitions)
+
+
+@pytest.mark.parametrize(
+    ("state", "held", "shares", "ends"),
+    [
+        ("no equilibrium", 0.9, {}, (0.9 / 1.25, 0.9 / 0.8)),
+        ("deformed", 1.0, {1.25: 0.85}, (0.85, 1.0)),
+        ("deformed", 1.0, {1.25: 1.0}, (1.0, 1.0)),
+        ("unstable", 1.0, {0.8: 1.0}, (0.0, 1.0)),
+        ("unstable", 1.0, {0.8: 0.0}, (0.0, math.nextafter(1.0, 0.0))),
+    ],
+)
+def test_the_limit_load_holds_load_over_least_modulus(monkeypatch, state, held, shares, ends):
+    monkeypatch.setattr(large_displacement, "_holds", lambda frame, factor: shares[factor])
+    found = large_displacement.LargeDisplacement(
+        state=state, span=1.0, held=held, buckling=0.7, points={}, links={}, sentence=""
+    )
+    band = large_displacement._held_band(None, found, Scatter(low=0.8, high=1.25, holds=("E",)), ("E",))
+    assert (band.low, band.high) == pytest.approx(ends, abs=0.0)
+    [outcome] = _large_displacement("lift", replace(found, held_band=band), {"link": _Idle()})
+    expected = Verdict.PASS if band.low == 1.0 else Verdict.FAIL if band.high < 1.0 else Verdict.UNDECIDED
+    assert outcome.verdict is expected
+
+
+class _Idle:
+    """A link on which nothing acts."""
+
+    strength = 1.0
+
+    class worst:  # noqa: N801
+        equivalent = 0.0
