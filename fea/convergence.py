@@ -36,7 +36,8 @@ SIGNIFICANT = 0.02
 """Step over the value, above the estimate as well, that must be exceeded for a rise to count: what a peak gains at a
 right-angled notch with size ratio 1.15 is 6 %, while a converged one moves by less from mesh to mesh."""
 NOISE_RATIO = 1.3
-"""Least size ratio (Celik et al.) in the index of an irregular series: scatter of a peak is not error that a small ratio hides."""
+"""Least size ratio (Celik et al.) in the index of an irregular series: scatter of a peak is no error that a
+small ratio hides."""
 
 FLOOR, CEILING, TOO_HIGH, ALONE = 1.5, 3.0, 2.4, 4.0
 """Bounds of a series' band in multiples of the recovery-based estimate at the peak (the upper one of monotone series;
