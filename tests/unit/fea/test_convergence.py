@@ -119,7 +119,7 @@ def test_away_from_edges_a_fourth_mesh_must_show_that_a_number_grows():
 @pytest.mark.parametrize(
     ("values", "estimate", "true"),
     [
-        ((0.99, 0.9915, 0.9937), 0.02, 0.9949),  # of the starter's coupler; true on 39,000 elements
+        ((0.99, 0.9915, 0.9937), 0.02, 0.9949),  # made up to end as the starter's coupler did; 0.9949 is measured
         ((10.0, 10.05, 10.15), 0.01, 10.2),  # above the estimate, but 1 % of the value
         ((10.0, 10.4, 11.2), 1.0, 11.0),  # 7 % of the value, but below the estimate
     ],
@@ -141,9 +141,9 @@ def test_a_rise_that_did_not_last_is_irregular():
 def test_an_order_too_high_is_an_accident():
     """The same crank under the 180° law; 21.82 MPa on 123,000 elements (bore 36, size 0.25 mm, fillet 0.3 mm).
 
-    The index at factor 1.25 and 1.5 times the estimate ended at 21.4.
+    A band of 1.5 times the estimate ended at 21.43; finer meshes went on to 21.14 and 21.72 MPa.
     """
-    found = grid_convergence((1.592, 0.937, 0.6245), (16.982, 19.942, 20.288), estimate=0.757)
+    found = grid_convergence((1.661, 0.948, 0.632), (16.982, 19.942, 20.295), estimate=0.757)
     assert found.order > 3.0
     assert (found.kind, found.factor) == ("irregular", DOUBT)
     assert found.low < 21.823 < found.high
