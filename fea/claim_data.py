@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from fea.check import CaseStatics, check_case, effort_of, solve_case_statics
-from fea.result import CheckResult, LoadCaseResult
+from fea.result import CheckResult, LinkResult, LoadCaseResult
 from geometry.errors import CannotRunError, CaseError
 from geometry.flapping import FlappingWing
 from geometry.fourbar import FourBar
@@ -183,25 +183,34 @@ def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, A
             raise CannotRunError(
                 f"no claim on stress can be judged, since that of {name} has not converged: {state.sentence}"
             )
-    worst = max(load_case.links.values(), key=lambda link: link.von_mises_max.value)
+    worst = max(load_case.links.values(), key=_von_mises)
     points = result.case.links[worst.link].points
     near = min(points, key=lambda point: math.hypot(*(np.array(points[point]) - worst.location[:2])))
     return {
-        "largest_stress": Value.of(worst.von_mises_max.value, "MPa"),
-        "least_safety_factor": Value.of(min(link.safety_factor.value for link in load_case.links.values())),
+        "largest_stress": Value.of(_von_mises(worst), "MPa"),
+        "least_safety_factor": Value.of(min(map(_safety_factor, load_case.links.values()))),
         "most_stressed_link": worst.link,
         "most_stressed_joint": near,
         "links": {
             name: {
-                "von_mises": Value.of(link.von_mises_max.value, "MPa"),
+                "von_mises": Value.of(_von_mises(link), "MPa"),
                 "principal": Value.of(link.principal_max.value, "MPa"),
                 "displacement": Value.of(link.displacement_max.value, "mm"),
                 "moment": Value.of(float(np.hypot(link.beam.m_y, link.beam.m_z).max()), "N*mm"),
             }
-            | ({"safety_factor": Value.of(link.safety_factor.value)} if math.isfinite(link.safety_factor.value) else {})
+            | ({"safety_factor": Value.of(_safety_factor(link))} if math.isfinite(_safety_factor(link)) else {})
             for name, link in load_case.links.items()
         },
     }
+
+
+def _von_mises(link: LinkResult) -> float:
+    """Largest stress [MPa] of the solid, else by beam theory alone, as the hand calculations of sources are."""
+    return link.von_mises_max.value if link.solid is not None else float(link.beam.equivalent.max())
+
+
+def _safety_factor(link: LinkResult) -> float:
+    return link.safety_factor.value if link.solid is not None else link.beam.safety_factor
 
 
 def _material(case: Case, link: str) -> Mapping[str, Any]:

@@ -216,7 +216,7 @@ SOLID = """
 [[claims]]
 name = "stress"
 quantity = "solid.weight.links.AE.von_mises"
-published = "14.06 MPa"
+published = "11.36 MPa"
 source = "Someone (2000)"
 """
 

@@ -129,7 +129,11 @@ def result():
     solid = solid_result(weight.links[SOLID_LINK].beam, material, cut)
     load_cases = {}
     for title, found in checked.load_cases.items():
-        links = dict(found.links)
+        # By beam theory alone, with no band: what these tests read is what the report says of given numbers.
+        links = {
+            name: replace(link, safety_factor=Band.exact(link.beam.safety_factor, "nothing"))
+            for name, link in found.links.items()
+        }
         if title == "weight":
             links[SOLID_LINK] = solid
         load_cases[title] = replace(found, links=links, checks=checks_of(title, links))

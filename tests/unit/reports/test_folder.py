@@ -34,7 +34,7 @@ def test_without_a_renderer_all_but_the_stress_plots_stands(result, tmp_path):
     record = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))
     [warning] = [w for w in record["warnings"] if "stress plot" in w]
     assert warning == "no stress plot of GF: rendering crashed (signal 11)"
-    assert warning in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert warning[1:] in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")  # there it begins a sentence
     assert not list((tmp_path / "out" / "pictures").glob("stress-*"))
     assert (tmp_path / "out" / "vtu" / "GF.vtu").exists()
 
