@@ -254,29 +254,26 @@ def unknowns_of(record: dict[str, Any]) -> dict[str, int]:
 
 
 def peers(record: dict[str, Any]) -> plt.Figure:
-    """Time and memory of every program; a cross stands where one ended without an answer. Straight sides alone."""
+    """Time and memory of every program; those without an answer are named. Straight sides alone."""
     figure, axes = plt.subplots(1, 2, figsize=(12, 5))
     unknowns = unknowns_of(record)
     record = record | {"rows": [r for r in record["rows"] if not r["size"].endswith("-curved")]}
     for ax, (key, label) in zip(axes, (("wall_s", "wall time [s]"), ("peak_gb", "peak memory [GB]")), strict=True):
-        top = max((r[key] for r in record["rows"] if key in r), default=1.0)
-        ended = 0
         for name in dict.fromkeys(r["program"] for r in record["rows"]):
             colour, marker = PROGRAMS.get(name, (BLACK, "x"))
-            rows = [r for r in record["rows"] if r["program"] == name]
-            done = [r for r in rows if key in r]
+            done = [r for r in record["rows"] if r["program"] == name and key in r]
             ax.plot(
                 [unknowns[r["size"]] for r in done], [r[key] for r in done], color=colour, marker=marker, label=name
             )
-            for r in rows:
-                if "end" in r:
-                    ended += 1
-                    place = (unknowns[r["size"]], top * 1.5**ended)
-                    ax.plot(*place, marker="x", color=colour, ms=9, mew=2)
-                    ax.annotate(f"{name}: {r['end']}", place, ha="right", va="bottom", fontsize=7, xytext=(-6, 2),
-                                textcoords="offset points")  # fmt: skip
         log_axes(ax, "unknowns", label)
-    axes[0].legend(fontsize=8)
+    ended = [
+        f"{r['program']} at {r['size']}: {r['end']}" for r in record["rows"] if r.get("end", " at ").find(" at ") < 0
+    ]
+    if ended:
+        axes[0].text(0.03, 0.97, "\n".join(["Without an answer:", *ended]), transform=axes[0].transAxes, va="top",
+                     fontsize=8)  # fmt: skip
+        axes[0].set_ylim(top=20.0 * axes[0].get_ylim()[1])
+    axes[1].legend(fontsize=8, loc="lower right")
     figure.suptitle(f"One mesh, material and load, from mesh file to stress, {record['threads']} threads", fontsize=11)
     figure.tight_layout()
     return figure
