@@ -91,7 +91,7 @@ def _joints(
     for joint in check.joints or asked:
         for title, solved in moved.forces.items():
             size = np.where(evaluated, np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
-            pose = int(np.argmax(size))
+            pose = _first_largest(size)
             force = float(size[pose])
             if isinstance(check, BearingCheck):
                 eye, factor = weakest_eye(case, name, joint, force, load_scatter(case, title))
@@ -106,6 +106,11 @@ def _joints(
             yield replace(outcome, reason=f"{where} at {_when(moved, pose)}: {outcome.reason}")
 
 
+def _first_largest(values: NDArray[np.float64]) -> int:
+    """Number of the first of the largest values: both ends of a turn are one pose, whatever rounding says."""
+    return int(np.argmax(values >= values.max() * (1.0 - 1e-9)))
+
+
 def column_outcomes(
     moved: CaseMotion, loaded: Mapping[str, Sequence[LinkHistory]], evaluated: NDArray[np.bool_]
 ) -> Iterator[CheckOutcome]:
@@ -114,7 +119,7 @@ def column_outcomes(
     for link, histories in loaded.items():
         for history in histories:
             found = factors_over_motion(case, link, history)
-            pose = int(np.argmin(np.where(evaluated, found.value, np.inf)))
+            pose = _first_largest(np.where(evaluated, 1.0 / found.value, -np.inf))
             factor, least, most = (float(f[evaluated].min()) for f in (found.value, found.least, found.most))
             if math.isinf(factor):
                 continue

@@ -53,6 +53,7 @@ def test_the_longest_name_makes_file_names_that_every_disk_takes() -> None:
     tables = _tables()
     longest = "\U0001d49c" * 50
     tables["load_cases"] = {longest: next(iter(tables["load_cases"].values()))}
+    del tables["ways_to_hold"]  # it names a load case that is gone
     case = validate(tables)
     assert len(f"linkage-{next(iter(case.load_cases))}.png".encode()) <= 255
 

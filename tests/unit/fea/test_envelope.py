@@ -274,7 +274,8 @@ def test_buckling_is_that_of_the_pose_with_the_least_factor(path, moved, result)
         loads = beam_loads(history.at(pose), history.body, case.material_of("rocker").density, history.mass)
         beam = check_beam(loads, history.body.part.section, 1.0)
         factors += [(c.value.value, c.value.low, pose) for c in buckling_outcomes(case, "push", {"rocker": beam})]
-    value, low, pose = min(factors)
+    value, low, _ = min(factors)
+    pose = next(number for factor, _, number in factors if factor <= value * (1.0 + 1e-9))  # a turn ends where it began
     assert found.value.value == pytest.approx(value, rel=2e-3)  # the beam is sampled at stations
     assert found.value.low == pytest.approx(low, rel=2e-3)
     assert found.verdict is Verdict.PASS
