@@ -196,7 +196,7 @@ def test_a_slender_tube_through_the_whole_program(ratio):
     exact = slender_tube.tip_deflection(ratio, material.youngs_modulus, section.i_z)
     # The eyes bend less than the tube: a few diameters of its length.
     assert found.displacement_max.value == pytest.approx(exact, rel=max(5.0 / ratio, 5e-3))
-    assert by_hand.displacement_max.value == pytest.approx(exact, rel=1e-2)
+    assert by_hand.displacement_max.low < exact < by_hand.displacement_max.high
 
 
 def test_poissons_ratio_beyond_the_boundary_is_refused_before_anything_is_meshed(monkeypatch):
