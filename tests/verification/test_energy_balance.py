@@ -5,6 +5,7 @@ rates are then taken numerically: by Fourier series over a full turn, by Chebysh
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -109,3 +110,17 @@ def test_a_redundant_linkage_balances_too():
     waves = np.fft.fftfreq(64, 1.0 / 64)
     lifted = np.fft.ifft(1j * waves * np.fft.fft(potential)).real
     np.testing.assert_allclose(torque, lifted, rtol=0, atol=1e-10 * np.max(np.abs(torque)))
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1e3, 1e6])
+def test_masses_of_very_different_size(ratio):
+    """Every other link's mass times ``ratio``: joint forces balance and work as the motion alone says."""
+    pose = four_bar_pose()
+    own = masses_of(pose)
+    for name in list(own)[::2]:
+        own[name] = replace(own[name], mass=ratio * own[name].mass, inertia=ratio * own[name].inertia)
+    motion = solve_motion(pose, CRANK + np.linspace(0, 2 * math.pi, 181), speed=SPEED, acceleration=35.0)
+    found = solve_kinetostatics(motion, drive_of(pose), forces_of(pose), own)
+    assert balance(found) < 1e-10
+    torque = torque_by_virtual_work(motion, drive_of(pose), forces_of(pose), own)
+    np.testing.assert_allclose(found.torque, torque, rtol=0, atol=1e-10 * np.max(np.abs(torque)))
