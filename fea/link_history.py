@@ -13,9 +13,9 @@ from geometry.part import Body, Pin
 from loads.actions import PartMass, StatedLoad, stated_loads
 from loads.applied import BodyForce, PointLoad
 from loads.carried import CarriedSpread
-from loads.case import gravity
 from loads.case_motion import CaseMotion, with_inertia
 from loads.kinetostatics import Kinetostatics
+from loads.load_case import gravity
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -8,7 +8,8 @@ import numpy as np
 from geometry.pose import Pose
 from loads.aero import air_loads
 from loads.applied import BodyForce, LineLoad, Load, PointLoad
-from loads.case import Axes, Case, LoadCase, gravity, vector3
+from loads.case import Case
+from loads.load_case import Axes, LoadCase, gravity, vector3
 
 
 @dataclass(frozen=True, kw_only=True)

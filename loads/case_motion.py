@@ -11,7 +11,7 @@ from geometry.errors import CaseError
 from geometry.motion import Motion, solve_motion
 from geometry.pose import Pose
 from loads.actions import PartMass, needs_masses, stated_loads
-from loads.case import Case, LoadCase
+from loads.case import Case
 from loads.kinetostatics import (
     Kinetostatics,
     dead_points,
@@ -19,6 +19,7 @@ from loads.kinetostatics import (
     solve_kinetostatics,
     torque_by_virtual_work,
 )
+from loads.load_case import LoadCase
 from loads.masses import laden_masses, part_masses
 from loads.statics import Drive
 

@@ -15,7 +15,8 @@ from geometry.pose import Pose
 from loads.actions import PartMass, actions
 from loads.applied import BodyForce, LineLoad, Load, PointLoad
 from loads.carried import Carried, CarriedSpread
-from loads.case import Case, LoadCase, gravity
+from loads.case import Case
+from loads.load_case import LoadCase, gravity
 
 Real = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from geometry.errors import CaseError
-from loads.case import MOST_RESULTS
 from loads.case_file import LARGEST_FILE, read_case, validate
+from loads.case_rules import MOST_RESULTS
 
 OWL = "owl-wing-static"
 HOLES = '{count=%d,diameter="1 mm",first="40 mm",last="60 mm",along="z"}'

@@ -11,8 +11,9 @@ from geometry.errors import CaseError
 from geometry.pose import CLOSED
 from loads.actions import PartMass, actions, needs_masses
 from loads.applied import BodyForce, LineLoad, PointLoad
-from loads.case import Case, vector3
+from loads.case import Case
 from loads.case_file import read_case, read_text, validate
+from loads.load_case import vector3
 
 OWL = "owl-wing-static"
 

@@ -14,8 +14,8 @@ from fea.solid import solve_solid
 from fea.stress import stress_field
 from fea.verdict import CheckOutcome, Verdict, at_least, at_most, overall
 from loads.actions import actions
-from loads.case import LoadCase
 from loads.case_file import read_case, validate
+from loads.load_case import LoadCase
 
 NAME = "owl-wing-static"
 SOLID_LINK = "GF"
