@@ -21,7 +21,7 @@ from fea.solid import solve_solid
 from fea.spots import displacement_estimate, spots
 from fea.stress import stress_field
 from geometry.mesh import MeshSettings, mesh_body
-from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from geometry.part import RIM, Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 FILE = Path(__file__).resolve().parents[1] / "fea" / "calibration.toml"
 SETTINGS = MeshSettings(size=0.45, bore_elements=14, hole_elements=8, turn_elements=8, fillet_size=0.9, growth=0.8)
@@ -75,7 +75,7 @@ def bodies(shape: str) -> Iterator[tuple[Body, float]]:
                     "outer_diameter": _mm(1.0),
                     "inner_diameter": _mm(inner),
                     "eye_diameter": _mm(eye),
-                    "eye_thickness": _mm(max(thick, 1.001 + 2.0 * fillet)),
+                    "eye_thickness": _mm(max(thick, 1.0 + RIM * fillet)),
                     "fillet_radius": _mm(fillet),
                 }
             )

@@ -24,7 +24,7 @@ from fea.target_sizes import MOST_RATIO, SERIES_RATIO, element_sizes, next_sizes
 from geometry.body_rules import section_height, section_width
 from geometry.errors import AlulaError, CaseError
 from geometry.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
-from geometry.part import Bar, Body, Disc
+from geometry.part import Body, Disc
 from geometry.tagged_mesh import TaggedMesh
 
 FAR = 2.0
@@ -91,12 +91,9 @@ class LinkTask:
 
     @property
     def may_be_sharp(self) -> bool:
-        """True where the shape may have re-entrant edges: without fillets, or at a step too low for its fillet."""
+        """True where the shape has re-entrant edges: at eyes without fillets."""
         part = self.body.part
-        if isinstance(part, Disc):
-            return False
-        step = isinstance(part, Bar) and part.thickness < part.eye_thickness
-        return part.fillet_radius == 0.0 or step
+        return not isinstance(part, Disc) and part.fillet_radius == 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

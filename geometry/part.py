@@ -13,6 +13,14 @@ from pydantic_core import PydanticCustomError
 from geometry.model import CaseModel, Name
 from geometry.units import NOT_NEGATIVE, POSITIVE, Length
 
+EYE_WIDTH = 1.6
+"""Diameter of an eye over the width of its tube or bar, where none is stated: a proportion often met, no standard."""
+RIM = 2.05
+"""Fillet radii that an eye must rise in all above what it is filleted to: 2 by geometry, and the kernel fails on a
+fillet that just touches the eye's rim."""
+ROUNDING = 1e-9
+"""Share by which lengths that are meant to be equal may differ, such as "0.3 in" and "7.62 mm"."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Section:
@@ -73,11 +81,14 @@ class Tube(CaseModel):
     material: Name
     outer_diameter: Annotated[Length, POSITIVE]
     inner_diameter: Annotated[Length, NOT_NEGATIVE]
-    eye_diameter: Annotated[Length, POSITIVE]
-    eye_thickness: Annotated[Length, POSITIVE]
-    """Height of the eye's cylinder along the pin."""
     fillet_radius: Annotated[Length, NOT_NEGATIVE]
     """Fillet where the tube meets an eye; 0 leaves the edge sharp (and its stress singular)."""
+    eye_diameter: Annotated[Length, POSITIVE] = Field(default_factory=lambda part: EYE_WIDTH * part["outer_diameter"])
+    """1.6 times outer_diameter unless stated."""
+    eye_thickness: Annotated[Length, POSITIVE] = Field(
+        default_factory=lambda part: part["outer_diameter"] + 2.5 * part["fillet_radius"]
+    )
+    """Height of the eye's cylinder along the pin; outer_diameter + 2.5 fillet_radius unless stated."""
 
     @model_validator(mode="after")
     def _sizes(self) -> "Tube":
@@ -90,15 +101,17 @@ class Tube(CaseModel):
         if self.eye_diameter <= self.outer_diameter:
             raise PydanticCustomError(
                 "narrow_eye",
-                "eye_diameter {eye} mm must be greater than outer_diameter {outer} mm; widen the eye",
+                "eye_diameter {eye} mm must be greater than outer_diameter {outer} mm; widen the eye or leave it out",
                 {"eye": f"{self.eye_diameter:g}", "outer": f"{self.outer_diameter:g}"},
             )
-        if self.eye_thickness < self.outer_diameter + 2.0 * self.fillet_radius:
+        least = self.outer_diameter + RIM * self.fillet_radius
+        if self.eye_thickness < (1.0 - ROUNDING) * least:
             raise PydanticCustomError(
                 "thin_eye",
-                "eye_thickness {eye} mm must be at least outer_diameter + 2 fillet_radius = {least} mm, "
-                "so that the fillet runs all round the tube; make the eye thicker or the fillet smaller",
-                {"eye": f"{self.eye_thickness:g}", "least": f"{self.outer_diameter + 2 * self.fillet_radius:g}"},
+                "eye_thickness {eye} mm must be at least outer_diameter + {rim} fillet_radius = {least} mm, so that "
+                "the fillet runs all round the tube; make the eye thicker, the fillet smaller or leave eye_thickness "
+                "out",
+                {"eye": f"{self.eye_thickness:g}", "rim": f"{RIM:g}", "least": f"{least:g}"},
             )
         return self
 
@@ -126,27 +139,48 @@ class Bar(CaseModel):
     material: Name
     width: Annotated[Length, POSITIVE]
     thickness: Annotated[Length, POSITIVE]
-    eye_diameter: Annotated[Length, POSITIVE]
-    eye_thickness: Annotated[Length, POSITIVE]
-    """At least the bar's thickness."""
     fillet_radius: Annotated[Length, NOT_NEGATIVE]
-    """Fillet in the plane where the bar's sides meet an eye; 0 leaves the edge sharp."""
+    """Fillet where the bar's sides meet an eye, and its faces a thicker eye; 0 leaves the edge sharp."""
+    eye_diameter: Annotated[Length, POSITIVE] = Field(default_factory=lambda part: EYE_WIDTH * part["width"])
+    """1.6 times width unless stated."""
+    eye_thickness: Annotated[Length, POSITIVE] = Field(default_factory=lambda part: part["thickness"])
+    """The bar's thickness unless stated; if thicker, by so much that the fillet fits on the step."""
 
     @model_validator(mode="after")
     def _sizes(self) -> "Bar":
         if self.eye_diameter <= self.width:
             raise PydanticCustomError(
                 "narrow_eye",
-                "eye_diameter {eye} mm must be greater than width {width} mm; widen the eye",
+                "eye_diameter {eye} mm must be greater than width {width} mm; widen the eye or leave it out",
                 {"eye": f"{self.eye_diameter:g}", "width": f"{self.width:g}"},
             )
-        if self.eye_thickness < self.thickness:
+        if self.eye_thickness < (1.0 - ROUNDING) * self.thickness:
             raise PydanticCustomError(
                 "thin_eye",
-                "eye_thickness {eye} mm must be at least the bar's thickness {bar} mm; make the eye thicker",
+                "eye_thickness {eye} mm must be at least the bar's thickness {bar} mm; make the eye thicker or leave "
+                "eye_thickness out",
                 {"eye": f"{self.eye_thickness:g}", "bar": f"{self.thickness:g}"},
             )
+        least = self.thickness + RIM * self.fillet_radius
+        if self.has_step and self.eye_thickness < (1.0 - ROUNDING) * least:
+            raise PydanticCustomError(
+                "low_step",
+                "eye_thickness {eye} mm makes a step on the bar of {bar} mm too low for its fillet, whose sharp edge "
+                "would have no finite stress; it must be at least thickness + {rim} fillet_radius = {least} mm, or "
+                "leave it out for eyes as thick as the bar",
+                {
+                    "eye": f"{self.eye_thickness:g}",
+                    "bar": f"{self.thickness:g}",
+                    "rim": f"{RIM:g}",
+                    "least": f"{least:g}",
+                },
+            )
         return self
+
+    @property
+    def has_step(self) -> bool:
+        """Whether the eyes are thicker than the bar."""
+        return self.eye_thickness > (1.0 + ROUNDING) * self.thickness
 
     @property
     def section(self) -> Section:

@@ -237,8 +237,6 @@ def _bar(gmsh: Any, body: Body, named: Body) -> Entity:
     gmsh.option.setNumber("Geometry.OCCUnionUnify", 1)
     solid = _fuse(gmsh, [*boxes, *_eyes(gmsh, body)])
     gmsh.option.setNumber("Geometry.OCCUnionUnify", 0)
-    # The kernel fails on a fillet that just touches the eye's rim: such a step stays sharp.
-    step_filleted = part.eye_thickness > part.thickness + 2.05 * part.fillet_radius
 
     def on_piece(p: NDArray[np.float64], start: tuple[float, float], angle: float, length: float) -> tuple[bool, bool]:
         """Whether a point lies on a side of a straight piece, and on its top or bottom."""
@@ -253,7 +251,7 @@ def _bar(gmsh: Any, body: Body, named: Body) -> Entity:
         """Whether a point lies where a piece meets an eye, or an arm's side the bar's."""
         found = [on_piece(p, *piece) for piece in pieces]
         sides = sum(on_side for on_side, _ in found)
-        at_eye = sides > 0 or (step_filleted and any(on_top for _, on_top in found))
+        at_eye = sides > 0 or (part.has_step and any(on_top for _, on_top in found))
         return sides > 1 or (at_eye and _on_an_eye(body, p))
 
     return _fillet(gmsh, solid, _curves(gmsh, to_fillet), part.fillet_radius, named)

@@ -196,8 +196,8 @@ def test_flattened_elements_are_told() -> None:
 
 
 def test_fillet_that_the_kernel_cannot_make() -> None:
-    with pytest.raises(CaseError, match=r"fillet_radius 1 mm does not fit .* make the fillet smaller"):
-        mesh_body(tube_body(fillet_radius="1 mm"), COARSE)
+    with pytest.raises(CaseError, match=r"fillet_radius 20 mm does not fit .* make the fillet smaller"):
+        mesh_body(bar_body("20 mm"), COARSE)
 
 
 def test_several_bodies_at_once_name_the_one_that_fails() -> None:
@@ -205,7 +205,7 @@ def test_several_bodies_at_once_name_the_one_that_fails() -> None:
     assert list(meshes) == ["one", "two"]
     assert meshes["one"].volume > meshes["two"].volume
     with pytest.raises(CaseError, match=r"^odd: fillet_radius"):
-        mesh_bodies({"good": bar_body(), "odd": tube_body(fillet_radius="1 mm")}, COARSE)
+        mesh_bodies({"good": bar_body(), "odd": bar_body("20 mm")}, COARSE)
 
 
 def test_reentrant_edges_are_those_without_fillet() -> None:
@@ -221,10 +221,14 @@ def test_reentrant_edges_are_those_without_fillet() -> None:
         assert np.ptp(edge.points[:, 2]) == pytest.approx(3.0)
 
 
-def test_step_in_an_eye_without_room_for_a_fillet_stays_reentrant() -> None:
-    edges = reentrant_edges(bar_body("1 mm", "4 mm"))
-    assert edges
-    assert all(edge.angle == pytest.approx(1.5 * np.pi) for edge in edges)
+def test_the_step_of_a_thick_eye_is_rounded_where_its_fillet_just_fits() -> None:
+    assert reentrant_edges(bar_body("1 mm", "5.05 mm")) == []
+    assert reentrant_edges(bar_body("0 mm", "5.05 mm"))
+
+
+def test_the_fillet_of_a_tube_whose_eyes_are_as_thin_as_may_be() -> None:
+    thin = tube_body(eye_thickness="6.64 mm")
+    assert reentrant_edges(thin) == []
 
 
 def test_step_files_hold_millimetres(tmp_path: Path) -> None:

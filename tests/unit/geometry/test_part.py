@@ -24,7 +24,7 @@ BAR: dict[str, Any] = {
     "width": "6 mm",
     "thickness": "4 mm",
     "eye_diameter": "9 mm",
-    "eye_thickness": "5 mm",
+    "eye_thickness": "7 mm",
     "fillet_radius": "1 mm",
 }
 HOLES: dict[str, Any] = {"count": 5, "diameter": "1 mm", "first": "20 mm", "last": "40 mm", "along": "y"}
@@ -100,11 +100,12 @@ def test_shear_coefficients_of_cowper() -> None:
         (TUBE, {"inner_diameter": "6 mm"}, "leaves no wall"),
         (TUBE, {"outer_diameter": "0 mm"}, "greater than zero"),
         (TUBE, {"eye_diameter": "5 mm"}, "eye_diameter 5 mm must be greater than outer_diameter 5 mm; widen"),
-        (TUBE, {"eye_thickness": "6.5 mm"}, "eye_thickness 6.5 mm must be at least .* = 6.6 mm"),
+        (TUBE, {"eye_thickness": "6.5 mm"}, "eye_thickness 6.5 mm must be at least .* = 6.64 mm"),
         (TUBE, {"fillet_radius": "-1 mm"}, "must not be negative"),
         (TUBE, {"width": "1 mm"}, "Extra inputs"),
         (BAR, {"eye_diameter": "6 mm"}, "eye_diameter 6 mm must be greater than width 6 mm; widen"),
         (BAR, {"eye_thickness": "3.9 mm"}, "eye_thickness 3.9 mm must be at least the bar's thickness 4 mm"),
+        (BAR, {"eye_thickness": "5 mm"}, "eye_thickness 5 mm makes a step .* at least .* = 6.05 mm, or leave it out"),
         (BAR, {"thickness": "0 mm"}, "greater than zero"),
         (BAR, {"shape": "cone"}, "does not match any of the expected tags"),
     ],
@@ -115,8 +116,25 @@ def test_sizes_that_cannot_be(part: dict[str, Any], change: dict[str, str], word
 
 
 def test_sizes_at_the_limit_are_allowed() -> None:
-    assert Tube.model_validate(TUBE | {"inner_diameter": "0 mm", "eye_thickness": "6.6 mm"}).section.radius_ratio == 0.0
+    rod = TUBE | {"inner_diameter": "0 mm", "eye_thickness": "6.64 mm"}
+    assert Tube.model_validate(rod).section.radius_ratio == 0.0
     assert Bar.model_validate(BAR | {"eye_thickness": "4 mm", "fillet_radius": "0 mm"}).eye_thickness == 4.0
+    assert Bar.model_validate(BAR | {"eye_thickness": "6.05 mm"}).eye_thickness == 6.05
+    same = Bar.model_validate(BAR | {"thickness": "0.3 in", "eye_thickness": "7.62 mm"})
+    assert not same.has_step
+
+
+@pytest.mark.parametrize(("outer", "diameter", "thickness"), [("5 mm", 8.0, 7.0), ("6 mm", 9.6, 8.0)])
+def test_eyes_follow_from_the_tube(outer: str, diameter: float, thickness: float) -> None:
+    """1.6 times the outer diameter wide; 2.5 fillets of 0.8 mm thicker than the tube."""
+    sizes = TUBE | {"outer_diameter": outer}
+    found = Tube.model_validate({key: sizes[key] for key in sizes if not key.startswith("eye")})
+    assert (found.eye_diameter, found.eye_thickness) == (pytest.approx(diameter), pytest.approx(thickness))
+
+
+def test_eyes_follow_from_the_bar() -> None:
+    found = Bar.model_validate({key: BAR[key] for key in BAR if not key.startswith("eye")})
+    assert (found.eye_diameter, found.eye_thickness) == (pytest.approx(9.6), 4.0)
 
 
 def test_holes_are_evenly_spaced() -> None:

@@ -82,7 +82,12 @@ BAD = [
     ("joints.A.pin_diameter=8 mm", ["links.AE", "pin hole at A", "8 mm", "eye_diameter", "wall", "smaller"]),
     ("parts.tube.inner_diameter=5 mm", ["parts.tube", "inner_diameter 5 mm", "no wall", "bore smaller"]),
     ("parts.tube.eye_diameter=5 mm", ["parts.tube", "eye_diameter 5 mm", "greater than", "widen"]),
-    ("parts.tube.eye_thickness=5 mm", ["parts.tube", "eye_thickness 5 mm", "at least", "6.6 mm"]),
+    ("parts.tube.eye_thickness=5 mm", ["parts.tube", "eye_thickness 5 mm", "at least", "6.64 mm"]),
+    (
+        'parts.tube={shape="bar", material="pvc-u", width="6 mm", thickness="4 mm", eye_thickness="5 mm", '
+        'fillet_radius="1 mm"}',
+        ["parts.tube", "eye_thickness 5 mm", "step", "6.05 mm", "leave it out"],
+    ),
     ("links.CF.holes.0.diameter=5 mm", ["links.CF", "5 mm", "smaller"]),
     ("links.CF.holes.0.first=-30 mm", ["links.CF", "-30 mm", "within the link", "inwards"]),
     ("links.CF.holes.0.last=60 mm", ["links.CF", "60 mm", "eye", "move"]),
