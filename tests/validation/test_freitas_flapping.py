@@ -93,12 +93,12 @@ def test_published_oscillation_fails_where_the_wing_stays_above_or_below():
 
 
 def test_published_phase_lag_is_the_difference_at_crank_angle_zero():
-    for row in rows():
-        design = wing(row)
-        if design.turns_fully:
-            metrics = design.metrics()
-            assert design.published_metrics().phase_lag == pytest.approx(metrics.side_difference_at_zero, abs=1e-12)
-            assert metrics.side_difference >= metrics.side_difference_at_zero
+    turning = [design for design in map(wing, rows()) if design.turns_fully]
+    assert len(turning) > 80
+    for design in turning:
+        metrics = design.metrics()
+        assert design.published_metrics().phase_lag == pytest.approx(metrics.side_difference_at_zero, abs=1e-12)
+        assert metrics.side_difference >= metrics.side_difference_at_zero
 
 
 def test_reference_and_chosen_design():

@@ -60,6 +60,31 @@ def test_a_pin_bears_on_the_flank_of_its_slot():
     assert "eye of lever-right" in found["pin slot-right"].reason
 
 
+BAR_OF = """
+[parts.{name}]
+shape = "bar"
+material = "pvc-paredes-2018"
+width = "4 mm"
+thickness = "{thickness} mm"
+eye_diameter = "8 mm"
+eye_thickness = "{thickness} mm"
+fillet_radius = "1 mm"
+"""
+
+
+@pytest.mark.parametrize(("arm", "strut", "weaker"), [(1.5, 3.0, "arm"), (3.0, 1.5, "strut")])
+def test_the_weaker_of_two_eyes_decides(arm, strut, weaker):
+    """4 N on the pin of 2 mm at B: the eye of 1.5 mm decides, whichever link it belongs to."""
+    head, _, rest = ARM.partition("[parts.arm]")
+    text = head.replace("[links.strut]", '[links.strut]\npart = "rod"').format()
+    text += BAR_OF.format(name="arm", thickness=arm) + BAR_OF.format(name="rod", thickness=strut)
+    text += ("[load_cases" + rest.partition("[load_cases")[2]).format(force=-2.0, minimum=3.0)
+    checks = check_case(validate(tomllib.loads(text + '[checks.eyes]\ntype = "bearing"\n')), fidelity="beam")
+    (found,) = (c for c in checks.load_cases["tip"].checks if (c.name, c.link) == ("eyes", "pin B"))
+    assert found.value.value == pytest.approx(52.0 / (4.0 / 3.0))
+    assert f"eye of {weaker}" in found.reason
+
+
 def test_joint_that_does_not_exist():
     with pytest.raises(CaseError, match=r"checks\.bearing\.joints: 'X'"):
         bearing('joints = ["X"]')

@@ -53,7 +53,9 @@ def test_compression_is_that_of_the_internal_forces() -> None:
     """The largest within an interval, where turning mass makes the force a parabola."""
     case = read_case("ornithopter", ["motion.poses=5"])
     moved = solve_case_motion(case)
-    for history in link_histories(moved, "rod"):
+    histories = link_histories(moved, "rod")
+    assert [history.load_case for history in histories] == list(case.load_cases)
+    for history in histories:
         compression, along = axial_compression(case, "rod", history)
         start, end = along.breaks[[0, -1]]
         inside = np.linspace(start + 1e-6, end - 1e-6, 400)

@@ -2,11 +2,13 @@ import math
 
 import pytest
 
-from fea.convergence import ALONE, CEILING, DOUBT, FLOOR, SAFETY, grid_convergence, observed_order, williams_exponent
+from fea.convergence import grid_convergence, observed_order, williams_exponent
 from fea.discretisation import holds
 from geometry.errors import CannotRunError
 
 SIZES = (1.0, 0.6, 0.4)
+SAFETY, DOUBT = 1.25, 3.0  # Roache (1998), section 5.6: with an observed order and without
+FLOOR, CEILING, ALONE = 1.5, 3.0, 4.0  # multiples of the estimate, as docs/design.md states them
 
 
 def power(order, sizes=SIZES, limit=10.0, share=2.0):

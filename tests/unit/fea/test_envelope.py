@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
+from materials import with_material
 from result_paths import compare
 
 from fea.band import Band
@@ -18,16 +19,17 @@ from fea.check import solve_case_statics
 from fea.cut_free import beam_loads, link_loads
 from fea.envelope import envelope_case, evaluated_poses
 from fea.envelope_outcomes import FATIGUE_LIFE, FATIGUE_STRESS, envelope_outcomes
-from fea.link_envelope import closed_history
+from fea.link_envelope import closed_history, link_envelope
 from fea.link_history import link_histories
 from fea.peaks import deviator, largest_sizes, principal_peaks, size_parts, von_mises_peaks
-from fea.pins import stress_at
-from fea.refinement import Effort
+from fea.pins import stress_at, stress_of
+from fea.refinement import START, Effort
 from fea.space import displacement_space
 from fea.stress import principal, stress_field, von_mises
 from fea.unit_solutions import nodal_stress
 from fea.verdict import BUCKLING_FACTOR, SAFETY_FACTOR, Verdict
 from geometry.errors import CannotRunError, CaseError
+from geometry.mesh import mesh_body
 from loads.case_file import read_case
 from loads.case_motion import solve_case_motion
 
@@ -130,7 +132,9 @@ def result(path):
 def test_loads_at_a_pose_are_those_of_the_statics(path, moved):
     """Weight, inertia, carried masses, forces, moments and spread loads, cut free by the other path of the code."""
     statics = solve_case_statics(read_case(path))
-    for history in link_histories(moved, "rocker"):
+    histories = link_histories(moved, "rocker")
+    assert [history.load_case for history in histories] == ["spin", "push"]
+    for history in histories:
         reactions, loads = statics.reactions[history.load_case], statics.loads[history.load_case]
         other = link_loads(history.load_case, "rocker", history.body, reactions, loads)
         found = history.at(0)
@@ -308,6 +312,30 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
         assert f"at crank = {40.0 + 15.0 * pose:.5g} deg" in found[key].reason
 
 
+def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(path):
+    """Without the pose of its largest force a joint is judged at the next one; its pin's strength has a range."""
+    case = read_case(path, ['checks.shear={type="pins", minimum=2.0}', 'checks.eyes={type="bearing"}'])
+    card = case.pin_material("O4")
+    ranged = card.model_copy(update={"strength_range": (0.8 * card.allowable, 1.1 * card.allowable)})
+    case = with_material(case, case.joints["O4"].pin_material, ranged)
+    motion = solve_case_motion(case)
+    force = np.linalg.norm(motion.forces["push"].forces["O4"], axis=1)
+    kept = force < np.sort(force[:-1])[-3] * (1.0 - 1e-9)
+    found = {
+        check.name: check
+        for check in envelope_outcomes(motion, {}, kept)
+        if (check.link, check.load_case) == ("pin O4", "push")
+    }
+    stress = stress_of(case, "O4", force[kept].max()).equivalent
+    shear = found["shear"].value
+    assert shear.value == pytest.approx(card.allowable / stress.value)
+    assert (shear.low, shear.high) == pytest.approx(
+        (0.8 * card.allowable / stress.high, 1.1 * card.allowable / stress.low)
+    )
+    eye = case.material_of("rocker").ultimate_strength / (force[kept].max() / (3.0 * 4.0))
+    assert found["eyes"].value.value == pytest.approx(eye)
+
+
 def test_no_joint_passes_where_poses_were_left_out(path):
     moved = solve_case_motion(read_case(path, ['checks.eyes={type="bearing", minimum=0.001}']))
     every = np.ones(25, dtype=bool)
@@ -327,6 +355,29 @@ def test_a_dead_point_of_the_drive_leaves_the_verdict_open(path):
     assert "dead point" in found.checks[0].reason
     assert found.links["rocker"].no_fatigue
     assert np.isnan(found.links["rocker"].worst.value[~found.evaluated]).all()
+
+
+@pytest.mark.parametrize(("share", "refused"), [(1e-4, False), (0.05, True)])
+def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
+    """A push of a pin that equilibrium does not know, as a share of its largest force."""
+    case = read_case(path)
+    (history,) = (h for h in link_histories(moved, "rocker") if h.load_case == "push")
+    wrench = history.pins["B"].copy()
+    wrench[:, 0] += share * np.abs(wrench).max()
+    space = displacement_space(mesh_body(case.body("rocker"), START.scaled(4.0)), order=1)
+
+    def solve():
+        return link_envelope(
+            space, link="rocker", material=case.material_of("rocker"),
+            histories=[replace(history, pins={**history.pins, "B": wrench})],
+            evaluated=np.ones(25, dtype=bool), stated=None, returns=True, fatigue=False, threads=1,
+        )  # fmt: skip
+
+    if refused:
+        with pytest.raises(CannotRunError, match="the loads leave a resultant"):
+            solve()
+    else:
+        assert solve().imbalance > 1e-5
 
 
 def test_what_cannot_be_enveloped_is_refused(path, tmp_path):

@@ -67,6 +67,7 @@ def test_contact_widens_the_hand_bands_of_eyes_alone():
     task = eye_link.task()
     band = hand_bands(task, task.loads[0], eye_link.beam(task))
     factors = calibrations()["tube"].von_mises
+    assert sorted(row.spot.kind for row in band.spots) == ["eye", "eye", "eye", "section"]
     for row in band.spots:
         contact = 1.0 / (1.0 - CONTACT_SHORTFALL) if row.spot.kind == "eye" else 1.0
         assert row.von_mises.high == pytest.approx(contact * factors[row.spot.kind].high * row.spot.estimate)

@@ -62,6 +62,7 @@ def test_every_variant_is_there_once(solution):
 
 
 def test_loads_balance_and_supports_do_not_react(solution):
+    assert len(solution.cases) == 6, "two spans of pressure of two loads, one of them with two ways of the torque"
     for case in solution.cases:
         assert case.imbalance < 1e-12
         assert case.reaction < 1e-9

@@ -161,7 +161,9 @@ def test_a_quarter_ellipse_keeps_force_and_moment(ends):
 def test_the_pieces_follow_the_ellipse():
     spec = air(lift="1 N", drag="0.5 N", spread=[{"link": "a", "start": "P", "end": "Q", "shape": "elliptic"}])
     peak = 4.0 / (math.pi * 120.0)
-    for line in air_loads(spec, "air.0", POINTS):
+    lines = air_loads(spec, "air.0", POINTS)
+    assert (lines[0].start, lines[-1].end) == (0.0, 120.0)
+    for line in lines:
         assert isinstance(line, LineLoad)
         middle = (line.start + line.end) / 2.0
         true = peak * math.sqrt(1.0 - (middle / 120.0) ** 2)

@@ -1,9 +1,15 @@
 """How long and how warm: strengths, moduli, and what a material must state for them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from materials import with_material
 
+from fea.band import Band
 from fea.check import check_case
+from fea.outcomes import outcomes
+from fea.scatter import compliance_scatter, strength_scatter
 from fea.verdict import Verdict
 from geometry.errors import CaseError
 from geometry.material import library
@@ -36,6 +42,18 @@ def test_warm_and_long():
     assert both.youngs_modulus == pytest.approx(1200.0)
     assert under(PVC, Conditions()) is PVC
     assert PVC.yield_strength == 41.4
+
+
+def test_ranges_follow_what_they_belong_to():
+    """A strength's range is as warm as the strength; after creep the range of the short-term modulus is void."""
+    card = PVC.model_copy(update={"strength_range": (40.0, 46.0), "youngs_modulus_range": (2400.0, 3200.0)})
+    warm = under(card, Conditions.model_validate({"temperature": "40 degC"}))
+    assert warm.strength_range == pytest.approx((28.0, 32.2))
+    assert warm.youngs_modulus_range == (2400.0, 3200.0)
+    crept = under(card, Conditions.model_validate({"duration": "10 year"}))
+    assert (crept.strength_range, crept.youngs_modulus_range) == ((40.0, 46.0), None)
+    assert strength_scatter(warm).low == pytest.approx(40.0 / 41.4)
+    assert compliance_scatter(crept).high == 1.0
 
 
 @pytest.mark.parametrize(
@@ -93,6 +111,27 @@ def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
     (root,) = [c for c in warm.checks if c.quantity == "sustained stress" and c.link == "AE"]
     assert root.limit == pytest.approx(7.7)
     assert warm.links["AE"].safety_factor.value == pytest.approx(0.7 * short.links["AE"].safety_factor.value)
+
+
+@pytest.mark.parametrize(
+    ("strength", "von_mises", "principal", "verdict"),
+    [
+        ("yield", 9.0, 12.0, Verdict.PASS),
+        ("yield", 12.0, 9.0, Verdict.FAIL),
+        ("ultimate", 9.0, 12.0, Verdict.FAIL),
+        ("ultimate", 12.0, 9.0, Verdict.PASS),
+    ],
+)
+def test_sustained_stress_is_the_one_that_decides_the_material(strength, von_mises, principal, verdict):
+    """Von Mises against a yield strength, the largest principal stress against an ultimate one; 11 MPa are allowed."""
+    card = PVC.model_copy(update={"strength": strength})
+    case = read_case(WING, [*OF_PVC_U, 'conditions.duration="10 year"'])
+    case = with_material(case, "pvc-u", card)
+    result = check_case(case, name=WING, fidelity="beam").load_cases["weight"]
+    stresses = {"von_mises_max": Band.exact(von_mises), "principal_max": Band.exact(principal)}
+    links = {name: replace(link, decided_by="beam", **stresses) for name, link in result.links.items()}
+    found = outcomes(case, "weight", links, result.pins, result.large_displacement)
+    assert {check.verdict for check in found if check.quantity == "sustained stress"} == {verdict}
 
 
 def test_creep_makes_links_give_more():

@@ -116,6 +116,7 @@ def test_imbalances_are_the_sums_at_the_assembled_pose(pose: Pose) -> None:
     solution = np.random.default_rng(5).normal(size=15)
     found = of(pose, matrix, solution)
     stated = np.round(solution, 4)
+    assert sorted({left.link for left in found.imbalances}) == ["AE", "CF", "CH", "ED", "GF"]
     for left in found.imbalances:
         force, moment = np.zeros(2), 0.0
         for point in "ABCDEFG":

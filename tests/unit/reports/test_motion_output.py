@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import subprocess
 import sys
 
@@ -94,6 +95,18 @@ def test_everything_is_there(folder):
         "result.json", "links.csv", "points.csv", "torque.csv", "joint-forces.csv", "link-angles.png", "paths.png",
         "torque.png", "joint-forces-1.png", "joint-forces-2.png", "linkage.gif",
     }  # fmt: skip
+
+
+def test_power_is_torque_times_speed_in_watts(folder):
+    """600 rpm are 20π rad/s; N·mm/s are thousandths of a watt."""
+    torque = np.array(columns(folder / "torque.csv")["torque on crank [N mm]"], dtype=float)
+    written = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    assert written["units"]["power"] == "W"
+    for name, rows in (("push", torque[:73]), ("idle", torque[73:])):
+        power = rows * 20.0 * math.pi / 1000.0
+        told = written["load_cases"][name]["drive_power"]
+        assert told["largest"] == pytest.approx(power.max(), rel=1e-9)
+        assert told["smallest"] == pytest.approx(power.min(), rel=1e-9)
 
 
 def test_tables_name_their_units_and_hold_the_motion(folder):

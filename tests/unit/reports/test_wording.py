@@ -4,7 +4,7 @@ from dataclasses import replace
 import pytest
 
 from fea.band import Band
-from fea.verdict import Verdict
+from fea.verdict import SAFETY_FACTOR, Verdict
 from reports import wording
 
 
@@ -84,6 +84,22 @@ def test_the_worst_of_a_fail_is_one_that_failed(result, changed):
         return replace(check, value=Band.exact(12.5), verdict=Verdict.FAIL) if missed else check
 
     assert "Worst: the displacement of link CH" in wording.headline(changed(change))
+
+
+@pytest.mark.parametrize("at_least", [True, False])
+def test_the_unfavourable_end_of_a_band_says_which_check_is_nearest_to_its_limit(result, changed, at_least):
+    """CH has the better value and the wider band: its unfavourable end is the nearer one."""
+    quantity = SAFETY_FACTOR if at_least else "displacement"
+    bands = {"CH": Band(value=2.0, low=1.1, high=2.9, holds=()), "CF": Band(value=1.6, low=1.5, high=1.7, holds=())}
+    if not at_least:
+        bands = {name: Band(value=2.0 - b.value / 2, low=2.0 - b.high / 2, high=2.0 - b.low / 2, holds=())
+                 for name, b in bands.items()}  # fmt: skip
+
+    def change(check):
+        value = bands.get(check.link, Band.exact(100.0 if at_least else 0.01))
+        return replace(check, quantity=quantity, value=value, limit=1.0 if at_least else 1.5)
+
+    assert wording.tightest(changed(change)).link == "CH"
 
 
 def test_percentages_and_sentences():
