@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from geometry.ornithopter import OrnithopterRules, WingDrive, variants
-from geometry.wing_power import electrical_power, inertial_power, rod_inertia
 
 RPM_150 = 150 * 2 * math.pi / 60
 
@@ -81,15 +80,3 @@ def test_filmed_figures_fit_no_single_crank_speed():
         [444 / degrees(extremes.fastest_up), 30.74 / extremes.pin_speed_up, 32.6 / extremes.pin_speed_up]
     )
     assert rpm == pytest.approx([167.3, 93.7, 99.4], abs=0.1)
-
-
-@pytest.mark.parametrize(
-    ("frequency", "peak", "mean", "largest"), [(10, 195.35, 51.50, 5.221), (12, 337.57, 88.99, 3.022)]
-)
-def test_motor_power_against_wings_of_100_mm(frequency, peak, mean, largest):
-    """6 V and 170 mA are 1.02 W; two wings of 1 g and 100 mm ask for a fifth to a third of that at their peak."""
-    supply = electrical_power(voltage=6, current=0.17)
-    assert supply == pytest.approx(1020.0)
-    need = inertial_power(OrnithopterRules().drive(), inertia=rod_inertia(mass=1e-6, span=100.0), frequency=frequency)
-    assert (need.peak_power, need.mean_positive_power) == pytest.approx((peak, mean), abs=5e-3)
-    assert need.largest_mass(1.0, supply) == pytest.approx(largest, abs=5e-4)

@@ -9,7 +9,6 @@ from pydantic import ValidationError
 from geometry.errors import CaseError
 from geometry.ornithopter import OrnithopterRules, WingDrive, motors
 from geometry.periodic import periodic_maximum, periodic_minimum
-from geometry.wing_power import electrical_power, inertial_power, rod_inertia
 
 DRIVE = OrnithopterRules().drive()
 
@@ -119,40 +118,3 @@ def test_periodic_maximum_is_refined():
     assert np.sin(grid + 0.013).max() < 1 - 5e-5
     assert periodic_minimum(3 + np.cos(grid + 0.013)) == pytest.approx(2.0, abs=1e-6)
     assert periodic_maximum(np.full(5, 2.0)) == 2.0
-
-
-def test_rod_inertia():
-    assert rod_inertia(mass=3.0, span=2.0) == pytest.approx(4.0)
-    # Two half rods, the second one away from the pivot, make up the whole.
-    halves = rod_inertia(mass=1.5, span=1.0) + rod_inertia(mass=1.5, span=1.0, root=1.0)
-    assert halves == pytest.approx(4.0)
-    for bad in ({"mass": 0.0, "span": 1.0}, {"mass": 1.0, "span": -1.0}, {"mass": 1.0, "span": 1.0, "root": -0.1}):
-        with pytest.raises(CaseError, match="must"):
-            rod_inertia(**bad)
-
-
-def test_inertial_power_of_a_harmonic_wing():
-    """With an endless rod and far pivots it moves as A cos ωt: P is I A² ω³/2 at its peak, I A² ω³/(2π) on average."""
-    throw, offset, hz, inertia = 1.0, 1e4, 3.0, 0.02
-    drive = WingDrive(throw=throw, rod=1e7, pivot_offset=offset, pivot_height=1e7)
-    need = inertial_power(drive, inertia=inertia, frequency=hz, wings=2)
-    omega, swing = 2 * math.pi * hz, throw / offset
-    assert need.peak_power == pytest.approx(2 * inertia * swing**2 * omega**3 / 2, rel=1e-5)
-    assert need.mean_positive_power == pytest.approx(2 * inertia * swing**2 * omega**3 / (2 * math.pi), rel=1e-5)
-    assert need.greatest_energy == pytest.approx(inertia * (swing * omega) ** 2, rel=1e-5)
-    assert need.peak_torque == pytest.approx(need.peak_power / omega, rel=1e-6)
-    assert need.peak_wing_torque == pytest.approx(inertia * swing * omega**2, rel=1e-5)
-
-
-def test_inertial_power_scales_and_names_the_largest_mass():
-    one = inertial_power(DRIVE, inertia=1e-3, frequency=10.0)
-    three = inertial_power(DRIVE, inertia=3e-3, frequency=20.0)
-    assert three.peak_power == pytest.approx(24 * one.peak_power)
-    assert three.mean_positive_power == pytest.approx(24 * one.mean_positive_power)
-    supply = electrical_power(voltage=6.0, current=0.17)
-    for by, demand in (("peak", one.peak_power), ("mean", one.mean_positive_power)):
-        mass = one.largest_mass(2.0, supply, by=by)
-        assert demand * mass / 2.0 == pytest.approx(supply)
-    for bad in ({"inertia": 0.0}, {"frequency": -1.0}, {"wings": 0}):
-        with pytest.raises(CaseError, match="must be positive"):
-            inertial_power(DRIVE, **{"inertia": 1.0, "frequency": 1.0, **bad})
