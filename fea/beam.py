@@ -15,13 +15,14 @@ Everything is a piecewise polynomial (N, V of degree 2, M of degree 3 under line
 such and therefore exact at every station.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fea.flanks import Flanks
 from geometry.errors import CannotRunError
 from geometry.part import Section
 
@@ -404,9 +405,19 @@ class Deflection:
 
 
 def deflection(
-    forces: Piecewise, section: Section, *, young: float, poisson: float, line: tuple[float, float]
+    forces: Piecewise,
+    section: Section,
+    *,
+    young: float,
+    poisson: float,
+    line: tuple[float, float],
+    flanks: Sequence[Flanks] = (),
 ) -> Deflection:
     """Integrate the internal forces to the deflection relative to the line through two stations [mm].
+
+    Along a slot its ``flanks`` take the section's place: as both bend alike, M_z less the moment of the pair of forces
+    that their ends' turning makes, (∫M_z dx/L) S/(S + I) with S the pair's second moment and I the flanks' own. How the
+    pin bends the flank that it pushes further than the other is left out.
 
     Timoshenko's beam with Cowper's shear coefficient κ (Przemieniecki, Theory of Matrix Structural Analysis,
     1968, section 5.6): θ_z' = M_z/(E I_z), v' = θ_z + V_y/(κ G A), θ_y' = M_y/(E I_y), w' = -θ_y + V_z/(κ G A),
@@ -415,22 +426,17 @@ def deflection(
     x_a, x_b = line
     if x_a == x_b:
         raise CannotRunError(f"a line needs two different stations, not x = {x_a:g} mm twice")
-    shear_modulus = young / (2.0 * (1.0 + poisson))
-    shear_stiffness = section.shear_coefficient(poisson) * shear_modulus * section.area
-    flexibility = np.array(
-        [
-            1.0 / (young * section.area),
-            1.0 / shear_stiffness,
-            1.0 / shear_stiffness,
-            1.0 / (shear_modulus * section.torsion),
-            1.0 / (young * section.i_y),
-            1.0 / (young * section.i_z),
-        ]
-    )
+    forces = _divided(forces, [x for slot in flanks for x in (slot.first, slot.last)])
+    middles = (forces.breaks[:-1] + forces.breaks[1:]) / 2.0
     out = np.zeros((len(forces.coefficients), 6, 6))
     state = np.zeros(6)
-    for i, (c, h) in enumerate(zip(forces.coefficients, np.diff(forces.breaks), strict=True)):
-        strain = c * flexibility[:, None]
+    for i, (c, x, h) in enumerate(zip(forces.coefficients, middles, np.diff(forces.breaks), strict=True)):
+        slot = next((slot for slot in flanks if slot.first < x < slot.last), None)
+        strain = c * _flexibility(section if slot is None else slot.together, young, poisson)[:, None]
+        if slot is not None:
+            own = slot.together.i_z
+            mean = _moment_between(forces, slot.first, slot.last) / slot.length
+            strain[5, 0] -= mean * slot.pair / (slot.pair + own) / (young * own)
         out[i, [0, 3, 4, 5], :5] = _integral(strain[[0, 3, 4, 5]], state[[0, 3, 4, 5]])
         slope = out[i, [5, 4], :5] * np.array([[1.0], [-1.0]])
         slope[:, :4] += strain[[1, 2]]
@@ -450,6 +456,49 @@ def deflection(
     functions = Piecewise(breaks=forces.breaks, coefficients=relative)
     x, _, value = functions.largest(lambda f: float(np.hypot(f[1], f[2])))
     return Deflection(functions=functions, largest=value, largest_x=x)
+
+
+def _flexibility(section: Section, young: float, poisson: float) -> Floats:
+    """Strains (6,) per unit of N, V_y, V_z, T, M_y, M_z [1/N, 1/(N·mm²)]."""
+    shear_modulus = young / (2.0 * (1.0 + poisson))
+    shear = 1.0 / (section.shear_coefficient(poisson) * shear_modulus * section.area)
+    return np.array(
+        [
+            1.0 / (young * section.area),
+            shear,
+            shear,
+            1.0 / (shear_modulus * section.torsion),
+            1.0 / (young * section.i_y),
+            1.0 / (young * section.i_z),
+        ]
+    )
+
+
+def _divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
+    """Return the same functions with further breaks at stations inside."""
+    first, last = functions.breaks[0], functions.breaks[-1]
+    breaks = np.unique([*functions.breaks, *(x for x in stations if first < x < last)])
+    if len(breaks) == len(functions.breaks):
+        return functions
+    rows = []
+    for x in breaks[:-1]:
+        i = min(int(np.searchsorted(functions.breaks, x, side="right")) - 1, len(functions.coefficients) - 1)
+        c, s = functions.coefficients[i], float(x - functions.breaks[i])
+        taylor, factorial = [], 1.0
+        for k in range(c.shape[-1]):
+            taylor.append(_values(c, s) / factorial)
+            c, factorial = _derivative(c), factorial * (k + 1)
+        rows.append(np.stack(taylor, axis=-1))
+    return Piecewise(breaks=breaks, coefficients=np.array(rows))
+
+
+def _moment_between(forces: Piecewise, first: float, last: float) -> float:
+    """∫M_z dx between two stations that are breaks or lie beyond the beam, where there is none [N·mm²]."""
+    total = 0.0
+    for c, x, h in zip(forces.coefficients, forces.breaks[:-1], np.diff(forces.breaks), strict=True):
+        if first <= x < last:
+            total += float(_values(_integral(c[5], np.zeros(())), float(h)))
+    return total
 
 
 @dataclass(frozen=True, kw_only=True)

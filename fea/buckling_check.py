@@ -1,6 +1,7 @@
 """Buckling of links in compression, and of the linkage as a whole.
 
-A link is a straight column of its section under its own normal force, as it varies along it. How its joints hold it
+A link is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks
+take the section's place (``fea.flanks``). How its joints hold it
 is known but in part, so that its factor is a band:
 
 value  the outermost pins stay where they are and leave the link free to turn, in the linkage's plane and out of it;
@@ -29,7 +30,7 @@ link, and no linkage whose deformed shape is not known.
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,7 +38,8 @@ from numpy.typing import NDArray
 
 from fea.band import Band
 from fea.beam import BeamCheck
-from fea.column_factor import AxialForce, column_factors
+from fea.column_factor import AxialForce, Stretch, column_factors
+from fea.flanks import Flanks, flanks_of
 from fea.large_displacement import LargeDisplacement
 from fea.scatter import load_scatter
 from fea.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
@@ -123,20 +125,45 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
 def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
     """Return the factors of a link in every pose of ``force``, for the modulus of its card."""
     where, young = holding(case, link), case.material_of(link).youngs_modulus
-    soft = young * min(section.i_y, section.i_z)
-    if len(where.outermost) > 1:
-        value = column_factors(force, soft, held=where.outermost)
-    else:
-        value = column_factors(force, soft, built_in=where.outermost)
+    in_plane, across = _columns(section, flanks_of(case.body(link)))
+
+    def factors(
+        column: tuple[float, Sequence[Stretch]], held: Sequence[float] = (), built_in: Sequence[float] = ()
+    ) -> Real:
+        inertia, stretches = column
+        return column_factors(force, young * inertia, held=held, built_in=built_in, stretches=stretches)
+
+    def softer(held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
+        planes = (in_plane, across) if in_plane[1] else (min(in_plane, across, key=lambda plane: plane[0]),)
+        return np.asarray(np.min([factors(plane, held, built_in) for plane in planes], axis=0))
+
+    value = softer(held=where.outermost) if len(where.outermost) > 1 else softer(built_in=where.outermost)
     least = value
     for x in where.alone:
-        least = np.minimum(least, column_factors(force, soft, built_in=(x,)))
+        least = np.minimum(least, softer(built_in=(x,)))
     most = np.full(len(value), np.inf)
     if where.in_plane is not None:
-        most = column_factors(force, young * section.i_z, held=where.in_plane, built_in=where.kept)
+        most = factors(in_plane, where.in_plane, where.kept)
     if where.across is not None:
-        most = np.minimum(most, column_factors(force, young * section.i_y, built_in=where.across))
+        most = np.minimum(most, factors(across, built_in=where.across))
     return ColumnFactors(value=value, least=least, most=np.maximum(most, value))
+
+
+def _columns(
+    section: Section, slots: Sequence[Flanks]
+) -> tuple[tuple[float, Sequence[Stretch]], tuple[float, Sequence[Stretch]]]:
+    """Second moment [mm⁴] and softer stretches of a link's column in the plane and out of it."""
+    in_plane = [
+        Stretch(
+            first=slot.first,
+            last=slot.last,
+            bending=slot.together.i_z / section.i_z,
+            pair=slot.pair / section.i_z,
+        )
+        for slot in slots
+    ]
+    across = [Stretch(first=slot.first, last=slot.last, bending=slot.together.i_y / section.i_y) for slot in slots]
+    return (section.i_z, in_plane), (section.i_y, across)
 
 
 def holding(case: Case, link: str) -> Holding:

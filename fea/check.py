@@ -13,6 +13,7 @@ from fea.bearing_check import bearing_outcomes
 from fea.buckling_check import buckling_outcomes
 from fea.cut_free import beam_loads, link_loads
 from fea.details import Detail, details, remarks
+from fea.flanks import flanks_of
 from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
 from fea.ladder import Climb, HandBands, by_hand, climb
 from fea.large_displacement import LargeDisplacement, examine
@@ -251,6 +252,7 @@ def _beam(case: Case, statics: CaseStatics, link: str, loads: LinkLoads) -> _Bea
         young=material.youngs_modulus,
         poisson=material.poissons_ratio,
         line=reference_line(body),
+        flanks=flanks_of(body),
     )
     found = details(body, loads, check.forces)
     return _Beam(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))

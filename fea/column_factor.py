@@ -3,7 +3,8 @@
 The lowest factor λ at which E I ∫v''² dx = λ ∫P v'² dx for some shape v that the supports allow, P the compression
 (Timoshenko & Gere, Theory of Elastic Stability, 2nd ed., section 2.8). Cubic elements, with ∫P v'² integrated exactly
 for P of degree 2: the factor comes out from above, within 2e-4 where a half-wave spans six elements or more. Shear
-is left out.
+is left out. A stretch may be softer than the column: one of another E I, or two flanks beside a slot, which bend by
+themselves and resist with a pair of forces only that their ends turn against one another, E I ∫v''² + E S (Δv')²/L.
 """
 
 import itertools
@@ -44,17 +45,37 @@ class AxialForce:
         return np.asarray(np.einsum("nj,njp->np", weights, self.values[i]))
 
 
+@dataclass(frozen=True, kw_only=True)
+class Stretch:
+    """A part of a column with a stiffness of its own.
+
+    first, last  x [mm]
+    bending      its E I over the column's; ``pair`` E S over the column's E I, that of the flanks' pair of forces
+    """
+
+    first: float
+    last: float
+    bending: float
+    pair: float = 0.0
+
+
 def column_factors(
-    force: AxialForce, stiffness: float, *, held: Sequence[float] = (), built_in: Sequence[float] = ()
+    force: AxialForce,
+    stiffness: float,
+    *,
+    held: Sequence[float] = (),
+    built_in: Sequence[float] = (),
+    stretches: Sequence[Stretch] = (),
 ) -> Real:
     """Return the factor (P,) on the force at which a column buckles; infinite where none does, NaN where it is unknown.
 
     stiffness  E I [N·mm²]
     held       x where the column is held in place, free to turn [mm]
     built_in   x where it is held in place and in its angle [mm]
+    stretches  of another stiffness; they do not overlap
     """
     supports = sorted({*held, *built_in})
-    nodes = _nodes(force, supports)
+    nodes = _nodes(force, supports, [x for stretch in stretches for x in (stretch.first, stretch.last)])
     start, length = nodes[0], nodes[-1] - nodes[0]
     sizes = np.diff(nodes) / length
     points, weights = np.polynomial.legendre.leggauss(4)
@@ -66,10 +87,15 @@ def column_factors(
     count = 2 * len(nodes)
     K, G = np.zeros((count, count)), np.zeros((len(unknown), count, count))
     for e, h in enumerate(sizes):
-        own = slice(2 * e, 2 * e + 4)
-        K[own, own] += _bending(h)
+        own, middle = slice(2 * e, 2 * e + 4), (nodes[e] + nodes[e + 1]) / 2.0
+        soft = next((stretch for stretch in stretches if stretch.first < middle < stretch.last), None)
+        K[own, own] += (1.0 if soft is None else soft.bending) * _bending(h)
         slope = _slopes(h, points)
         G[:, own, own] += np.einsum("gp,gi,gj->pij", pressed[e] * (weights * h)[:, None], slope, slope)
+    for stretch in stretches:
+        ends = [2 * int(np.argmin(np.abs(nodes - x))) + 1 for x in (stretch.first, stretch.last)]
+        pair = stretch.pair * length / (stretch.last - stretch.first)
+        K[np.ix_(ends, ends)] += pair * np.array([[1.0, -1.0], [-1.0, 1.0]])
     fixed = [2 * int(np.argmin(np.abs(nodes - x))) for x in supports]
     fixed += [2 * int(np.argmin(np.abs(nodes - x))) + 1 for x in built_in]
     free = np.setdiff1d(np.arange(count), fixed)
@@ -81,12 +107,12 @@ def column_factors(
     return np.where(unknown, np.nan, factor)
 
 
-def _nodes(force: AxialForce, supports: Sequence[float]) -> Real:
-    """Nodes of the mesh (n,): supports, ends and, unless too near to these, where the force is no one parabola."""
-    first, last = min(force.breaks[0], *supports), max(force.breaks[-1], *supports)
+def _nodes(force: AxialForce, supports: Sequence[float], others: Sequence[float]) -> Real:
+    """Nodes of the mesh (n,): supports, ends, others and, unless too near, where the force is no one parabola."""
+    first, last = min(force.breaks[0], *supports, *others), max(force.breaks[-1], *supports, *others)
     length = last - first
     marks = list(supports)
-    for x in (first, last, *force.breaks):
+    for x in (first, last, *others, *force.breaks):
         if all(abs(x - mark) > MERGED * length for mark in marks):
             marks.append(float(x))
     found = [min(marks)]

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam import Floats, Piecewise, SectionStress, section_stress
+from fea.flanks import flanks_of
 from fea.link_loads import LinkLoads, PinLoad
 from geometry.part import Body, Disc, Pin, Section, rectangle
 
@@ -84,16 +85,17 @@ def flank_moments(length: float, at: float, force: float, x: Floats) -> Floats:
 def _slot(body: Body, pin: Pin, load: PinLoad, forces: Piecewise) -> Detail:
     part = body.part
     wide, thick = part.eye_diameter, part.eye_thickness
-    height, longer = (wide - pin.diameter) / 2.0, pin.diameter / 4.0
+    (flanks,) = (found for found in flanks_of(body) if found.first < pin.x < found.last)
+    height, length = flanks.height, flanks.length
     low, high = pin.span
     net = net_section(wide, pin.diameter, thick)
     place = float(load.centre[0])
-    stations = np.union1d(np.linspace(low - longer, high + longer, _SAMPLES), [low, place, high])
+    stations = np.union1d(np.linspace(flanks.first, flanks.last, _SAMPLES), [low, place, high])
     table = np.array([_inside(forces, x, side) for x in stations for side in ("before", "after")])
     x = np.repeat(stations, 2)
     moment = table[:, 5]
-    mean = float(np.trapezoid(moment, x)) / (high - low + 2.0 * longer)
-    push = flank_moments(high - low + 2.0 * longer, place - low + longer, abs(float(load.wrench[1])) / 2.0, x - x[0])
+    mean = float(np.trapezoid(moment, x)) / length
+    push = flank_moments(length, place - flanks.first, abs(float(load.wrench[1])) / 2.0, x - x[0])
     local = 6.0 * (np.abs(moment - mean) / 2.0 + np.abs(push)) / (thick * height**2)
     best: tuple[float, float, SectionStress] | None = None
     for station, row, bent in zip(x, table, local, strict=True):
@@ -104,7 +106,7 @@ def _slot(body: Body, pin: Pin, load: PinLoad, forces: Piecewise) -> Detail:
         if best is None or stress.equivalent > best[0]:
             best = (stress.equivalent, float(station), stress)
     assert best is not None
-    slender = (high - low + 2.0 * longer) / height
+    slender = length / height
     remark = f"net section of two flanks {height:.3g} mm high, and their own bending"
     if slender < SLENDER:
         remark += f"; an estimate, since they are but {slender:.2g} times as long as high"

@@ -1,7 +1,8 @@
 """A linkage as a spatial frame: links as Timoshenko beams, pins that carry all moments but the one about themselves.
 
 Every link with a part is a beam of its section along the x axis of its frame, at z = 0; a pin off the axis sits on
-a rigid arm, or where the link states an arm to it, on a beam of the same section. Links without a part are rigid. The
+a rigid arm, or where the link states an arm to it, on a beam of the same section. Along a slot the two flanks are
+beams of their own (``fea.flanks``), of which the pin pushes one. Links without a part are rigid. The
 link that the drive holds keeps its angle to the other link at the drive's joint, where the moment about z is the drive
 torque; at a slider it keeps its place, and the force along the guide is the drive force. In bonded linkages every pin
 carries all six components.
@@ -20,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.flanks import Flanks, flanks_of
 from fea.frame_model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from geometry.errors import CaseError
 from geometry.part import Section
@@ -252,6 +254,8 @@ class _Builder:
         points = {name: place for name, place in record.points.items() if name not in record.arms}
         wanted = [x for x, _ in (*points.values(), *contacts.values())]
         wanted += [x for load in loads if isinstance(load, LineLoad) for x in (load.start, load.end)]
+        slots = flanks_of(self.case.body(link)) if record.slots else ()
+        wanted += [x for slot in slots for x in (slot.first, slot.last)]
         xs: list[float] = []
         for x in sorted(wanted):
             if not xs or x - xs[-1] > self.slack:
@@ -285,36 +289,64 @@ class _Builder:
                 found[link, name] = twin
         self.stations[link] = tuple(stations)
         lines = [load for load in loads if isinstance(load, LineLoad)]
-        lines += [self._spread(link, load) for load in loads if isinstance(load, BodyForce)]
+        lines += [self._spread(link, load, slots) for load in loads if isinstance(load, BodyForce)]
         material, section = self.case.material_of(link), self.case.part_of(link).section
         for (x0, a), (x1, b) in itertools.pairwise(stations):
-            at_start, at_end = _line_between(lines, x0, x1)
-            self.elements.append(
-                FrameElement(
-                    nodes=(a, b),
-                    section=section,
-                    young=material.youngs_modulus,
-                    poisson=material.poissons_ratio,
-                    offsets=np.array([self.arms.get(node, np.zeros(3)) for node in (a, b)]),
-                    load_first=at_start,
-                    load_last=at_end,
-                )
-            )
+            if not any(slot.first < (x0 + x1) / 2.0 < slot.last for slot in slots):
+                self._along(link, (x0, a), (x1, b), section, lines)
+        for slot in slots:
+            own = [s for s in stations if slot.first - self.slack <= s[0] <= slot.last + self.slack]
+            inner = [(x, self._node(link, x, 0.0, f"x = {x:g} mm of the slot's other flank")) for x, _ in own[1:-1]]
+            for chain, side in ((own, 0.5), ([own[0], *inner, own[-1]], -0.5)):
+                across = self._place(link, 0.0, side * slot.apart) - self._place(link, 0.0, 0.0)
+                for start, end in itertools.pairwise(chain):
+                    self._along(link, start, end, slot.one, lines, across, 0.5)
         for name, foot in record.arms.items():
             tip = self.points[link, name] = self._node(link, *record.points[name], name)
             ends = (self.points[link, foot], tip)
             young, poisson = material.youngs_modulus, material.poissons_ratio
             self.elements.append(FrameElement(nodes=ends, section=section, young=young, poisson=poisson))
 
-    def _spread(self, link: str, load: BodyForce) -> LineLoad:
-        """Spread a body force along the beam; what the spread leaves out enters at the station next to the centroid."""
+    def _along(
+        self,
+        link: str,
+        start: tuple[float, int],
+        end: tuple[float, int],
+        section: Section,
+        lines: Sequence[LineLoad],
+        across: Real | None = None,
+        share: float = 1.0,
+    ) -> None:
+        """Add a beam between two stations, ``across`` (3,) off the link's axis, under a share of its line loads."""
+        (x0, a), (x1, b) = start, end
+        first, last = _line_between(lines, x0, x1)
+        aside = np.zeros(3) if across is None else across
+        material = self.case.material_of(link)
+        self.elements.append(
+            FrameElement(
+                nodes=(a, b),
+                section=section,
+                young=material.youngs_modulus,
+                poisson=material.poissons_ratio,
+                offsets=np.array([self.arms.get(node, np.zeros(3)) + aside for node in (a, b)]),
+                load_first=share * first,
+                load_last=share * last,
+            )
+        )
+
+    def _spread(self, link: str, load: BodyForce, slots: Sequence[Flanks]) -> LineLoad:
+        """Spread a body force along the beam; what the spread leaves out enters at the station next to the centroid.
+
+        Not at one inside a slot, where it would bend one flank.
+        """
         stations = self.stations[link]
         start, end = stations[0][0], stations[-1][0]
         middle, length = (start + end) / 2.0, end - start
         slope = 6.0 * (load.centroid[0] - middle) / length
         ends = [load.mass / length * (1.0 + s * slope) * load.acceleration for s in (-1.0, 1.0)]
         line = LineLoad(link=link, start=start, end=end, at_start=ends[0], at_end=ends[1])
-        _, node = min(stations, key=lambda station: abs(station[0] - load.centroid[0]))
+        solid = [s for s in stations if not any(slot.first < s[0] < slot.last for slot in slots)]
+        _, node = min(solid, key=lambda station: abs(station[0] - load.centroid[0]))
         missing = load.resultant(self.pose) - line.resultant(self.pose)
         arm = np.array([*self.pose.origins[link], 0.0]) - self.places[node]
         self.node_loads.append(NodeLoad(node=node, wrench=shifted(missing, arm)))
