@@ -12,6 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from geometry.errors import CaseError
 from geometry.ornithopter import OrnithopterRules
 from loads.case import SCHEMA_VERSION, Case
+from loads.entries import alike, names_tables
 from loads.explain import printable, sentence
 from loads.ornithopter_case import ornithopter_settings
 
@@ -40,8 +41,10 @@ def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
     for override in overrides:
         _override(data, override)
     if "ornithopter" in data:
-        for entry in (*_by_rules(data["ornithopter"]), *overrides):  # what is stated outright wins
-            _override(data, entry)
+        for entry in _by_rules(data["ornithopter"]):
+            _override(data, entry, "ornithopter sets")
+        for override in overrides:  # what is stated outright wins
+            _override(data, override)
     return validate(data)
 
 
@@ -50,7 +53,7 @@ def _by_rules(stated: object) -> list[str]:
     try:
         (rules,) = TypeAdapter(dict[str, OrnithopterRules]).validate_python({"ornithopter": stated}).values()
     except ValidationError as error:
-        raise CaseError(sentence(error)) from None
+        raise CaseError(sentence(error, Case)) from None
     return ornithopter_settings(rules)
 
 
@@ -98,6 +101,9 @@ def validate(data: dict[str, Any]) -> Case:
     """Validate a case given as nested tables; raises ``CaseError``."""
     version = data.get("schema_version")
     if version != SCHEMA_VERSION or type(version) is not int:
+        for key in () if "schema_version" in data else data:
+            if meant := alike(key, ("schema_version",)):
+                raise CaseError(f"{printable(key)}: this key is unknown{meant}")
         what = "it is missing" if version is None else f"it is {printable(repr(version))}"
         raise CaseError(
             f"schema_version: {what}, but this version of alula reads {SCHEMA_VERSION}; "
@@ -106,10 +112,15 @@ def validate(data: dict[str, Any]) -> Case:
     try:
         return Case.model_validate(data)
     except ValidationError as error:
-        raise CaseError(sentence(error)) from None
+        raise CaseError(sentence(error, Case)) from None
 
 
-def _override(data: dict[str, Any], override: str) -> None:
+def _override(data: dict[str, Any], override: str, who: str = "--set") -> None:
+    """Set an entry anew; ``who`` begins the message where it cannot be.
+
+    A name that the case does not have is refused where names stand for tables or points: mistyped, it would add one
+    beside the one that is meant, and change nothing else.
+    """
     path, sign, text = override.partition("=")
     path = path.strip()
     keys = [key.strip().strip("\"'") for key in path.split(".")]
@@ -129,18 +140,22 @@ def _override(data: dict[str, Any], override: str) -> None:
         if isinstance(here, list):
             if not (key.isascii() and key.isdigit() and len(key) < 6 and int(key) < len(here)):
                 raise CaseError(
-                    f"--set {printable(path)}: '{printable(key)}' does not name one of the {len(here)} entries of this "
+                    f"{who} {printable(path)}: '{printable(key)}' does not name one of the {len(here)} entries of this "
                     "list; count them from 0"
                 )
             index: Any = int(key)
         elif isinstance(here, dict):
             index = key
+            if key not in here and names_tables(Case, keys[:i]):
+                there = printable(".".join(keys[:i]))
+                remedy = alike(key, here) or f"; correct the name, or add '{printable(key)}' to the case file"
+                raise CaseError(f"{who} {printable(path)}: '{there}' has no '{printable(key)}' to change{remedy}")
             if not last and key not in here:
                 here[key] = {}
         else:
             above = printable(".".join(keys[:i]))
             raise CaseError(
-                f"--set {printable(path)}: '{above}' is a value, so nothing can be set below it; correct the path"
+                f"{who} {printable(path)}: '{above}' is a value, so nothing can be set below it; correct the path"
             )
         if last:
             here[index] = value

@@ -205,4 +205,4 @@ def read_source(name: str) -> Source:
     try:
         return Source.model_validate(tomllib.loads(text))
     except ValidationError as error:
-        raise CaseError(f"source '{name}': {sentence(error)}") from None
+        raise CaseError(f"source '{name}': {sentence(error, Source)}") from None

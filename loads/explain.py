@@ -2,7 +2,9 @@
 
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
+
+from loads.entries import alike, known_keys
 
 _TABLE = "it must be a table of entries; write it as [{entry}] with one entry per line below"
 _LIST = "it must be a list of values in square brackets; write for example {example}"
@@ -38,20 +40,34 @@ def printable(text: str) -> str:
     return clean if len(clean) <= 80 else clean[:77] + "..."
 
 
-def sentence(error: ValidationError) -> str:
-    """One sentence for the first problem: entry, value, rule, remedy."""
+def sentence(error: ValidationError, model: type[BaseModel]) -> str:
+    """One sentence for the first problem: entry, value, rule, remedy; ``model`` is what was validated.
+
+    A mistyped key comes before the entry that it leaves missing.
+    """
     try:
         problems = error.errors(include_url=False)
     except UnicodeEncodeError:  # pydantic itself cannot quote it
         return "case: a text in it holds half of a surrogate pair, which is no character; remove it"
     first = problems[0]
+    if first["type"] == "missing":
+        beside = (p for p in problems if p["type"] == "extra_forbidden" and p["loc"][:-1] == first["loc"][:-1])
+        first = next(beside, first)
     kind, place, value = first["type"], _place(first["loc"]), first["input"]
     context: dict[str, Any] = dict(first.get("ctx", {}))
+    meant = ""
+    if kind == "extra_forbidden":
+        above = first["loc"][:-1]
+        meant = alike(str(place[-1]), known_keys(model, above) or known_keys(model, _place(above)))
     if kind.startswith("union_tag"):
         # A part, check or the like whose kind decides what else belongs to it.
         place = (*place, context["discriminator"].strip("'"))
         if kind == "union_tag_not_found":
             kind = "missing"
+            for key in value if isinstance(value, dict) else ():
+                if meant := alike(str(key), (str(place[-1]),)):
+                    kind, place = "extra_forbidden", (*place[:-1], str(key))
+                    break
         else:
             kind, value = "literal_error", context["tag"]
             context["expected"] = context["expected_tags"]
@@ -59,7 +75,7 @@ def sentence(error: ValidationError) -> str:
         kind, place = "too_few_values", place[:-1]
     entry = printable(".".join(map(str, place))) or "case"
     if kind == "extra_forbidden":
-        rule = "this key is unknown; correct its name or remove it"
+        rule = "this key is unknown" + (meant or "; correct its name or remove it")
     elif kind == "missing":
         rule = "this entry is missing; add it"
     elif kind == "too_few_values":

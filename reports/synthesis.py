@@ -54,11 +54,11 @@ def read_synthesis(points: Sequence[str], ground: str) -> Synthesis:
         try:
             pairs.append(_Pair.model_validate({"theta": theta.strip(), "psi": psi.strip()}))
         except ValidationError as error:
-            raise CaseError(f"--point {number}: {sentence(error)}") from None
+            raise CaseError(f"--point {number}: {sentence(error, _Pair)}") from None
     try:
         d = _Ground.model_validate({"d": ground}).d
     except ValidationError as error:
-        raise CaseError(f"--ground: {sentence(error)}") from None
+        raise CaseError(f"--ground: {sentence(error, _Ground)}") from None
     return synthesise([pair.theta for pair in pairs], [pair.psi for pair in pairs], d)
 
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from edited_cases import edited
 from pydantic_core import PydanticCustomError
 
 from geometry.errors import CaseError
@@ -47,9 +48,9 @@ def test_an_overlong_companion_name_ended_in_a_traceback() -> None:
 def test_a_force_named_pydantics_types_in_its_message() -> None:
     """A union of pairs and triples put the names of its members into the entry that the sentence named."""
     with pytest.raises(CaseError, match=r"^load_cases\.weight\.forces\.0\.force\.1 \(it is '1 mm'\): "):
-        read_case("owl-wing-static", ['load_cases.weight.forces.0.force=["0 N", "1 mm"]'])
+        edited("owl-wing-static", ['load_cases.weight.forces.0.force=["0 N", "1 mm"]'])
     for force in ('["0 N", "1 N"]', '["0 N", "1 N", "2 N"]'):
-        read_case("owl-wing-static", [f"load_cases.weight.forces.0.force={force}"])
+        edited("owl-wing-static", [f"load_cases.weight.forces.0.force={force}"])
 
 
 def test_pins_of_two_diameters_shared_one_hole() -> None:
@@ -62,5 +63,5 @@ def test_pins_of_two_diameters_shared_one_hole() -> None:
     ]
     third = 'joints.P={links=["CH","X"],points=["D","P"],pin_diameter="%s"}'
     with pytest.raises(CaseError, match=r"joints.P.pin_diameter: it differs from that of joint 'D'"):
-        read_case("owl-wing-static", [*more, third % "2 mm"])
-    assert len(read_case("owl-wing-static", [*more, third % "1.5 mm"]).body("CH").pins) == 2
+        edited("owl-wing-static", [*more, third % "2 mm"])
+    assert len(edited("owl-wing-static", [*more, third % "1.5 mm"]).body("CH").pins) == 2

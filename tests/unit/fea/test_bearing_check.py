@@ -2,12 +2,13 @@ import tomllib
 
 import pytest
 from arm_case import ARM, BAR
+from edited_cases import edited
 
 from fea.bearing_check import bearing_stress
 from fea.check import check_case
 from fea.verdict import Verdict
 from geometry.errors import CaseError
-from loads.case_file import read_case, validate
+from loads.case_file import validate
 
 
 def bearing(lines, force=-2.0):
@@ -50,7 +51,7 @@ def test_limits_and_verdict():
 
 def test_a_pin_bears_on_the_flank_of_its_slot():
     """F/(d t) with the lever's 3.5 mm and the pin's 2 mm; the rod's hole, which slots share, is left to solids."""
-    case = read_case("ornithopter", ['checks.bearing={type="bearing"}'])
+    case = edited("ornithopter", ['checks.bearing={type="bearing"}'])
     result = check_case(case, fidelity="beam").load_cases["wings-12"]
     found = {check.link: check for check in result.checks if check.name == "bearing"}
     assert set(found) == {"pin O", "pin A", "pin R", "pin L", "pin slot-right", "pin slot-left"}

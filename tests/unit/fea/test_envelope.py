@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
+from edited_cases import edited
 from materials import with_material
 from result_paths import compare
 
@@ -162,7 +163,7 @@ def _per_mass(body, place):
 
 
 def test_the_driven_link_carries_the_torque_and_the_other_its_reaction(path):
-    moved = solve_case_motion(read_case(path, ["drive.link=rocker", "drive.joint=O4"]))
+    moved = solve_case_motion(edited(path, ["drive.link=rocker", "drive.joint=O4"]))
     spin, push = link_histories(moved, "rocker")
     assert list(spin.couples) == ["O4"]
     assert spin.couples["O4"] == pytest.approx(moved.torque["spin"], nan_ok=True)
@@ -170,7 +171,7 @@ def test_the_driven_link_carries_the_torque_and_the_other_its_reaction(path):
 
 
 def test_loads_out_of_the_plane_are_refused(path):
-    case = read_case(path, ['load_cases.push.forces=[{link="rocker", at="P", force=["0 N", "0 N", "1 N"]}]'])
+    case = edited(path, ['load_cases.push.forces=[{link="rocker", at="P", force=["0 N", "0 N", "1 N"]}]'])
     with pytest.raises(CaseError, match="out of the linkage's plane"):
         link_histories(solve_case_motion(case), "rocker")
 
@@ -289,7 +290,7 @@ def test_buckling_is_that_of_the_pose_with_the_least_factor(path, moved, result)
 def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, moved):
     """Against the statics of every pose by itself."""
     checks = ['checks.shear={type="pins", minimum=2.0}', 'checks.eyes={type="bearing"}']
-    motion = solve_case_motion(read_case(path, checks))
+    motion = solve_case_motion(edited(path, checks))
     found = {
         (c.name, c.link): c for c in envelope_outcomes(motion, {}, np.ones(25, dtype=bool)) if c.load_case == "push"
     }
@@ -298,7 +299,7 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
     for pose in range(24):
         angles = {link: np.degrees(moved.motion.angle(link)[pose]) for link in ("crank", "coupler", "rocker")}
         near = [f'pose.near.{link}="{angles[link]} deg"' for link in ("coupler", "rocker")]
-        case = read_case(path, [*checks, f'pose.angle="{angles["crank"]} deg"', *near])
+        case = edited(path, [*checks, f'pose.angle="{angles["crank"]} deg"', *near])
         reactions = solve_case_statics(case).reactions["push"]
         for joint in ("B", "O4"):
             stress = stress_at(case, joint, reactions.joints[joint]).equivalent
@@ -314,7 +315,7 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
 
 def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(path):
     """Without the pose of its largest force a joint is judged at the next one; its pin's strength has a range."""
-    case = read_case(path, ['checks.shear={type="pins", minimum=2.0}', 'checks.eyes={type="bearing"}'])
+    case = edited(path, ['checks.shear={type="pins", minimum=2.0}', 'checks.eyes={type="bearing"}'])
     card = case.pin_material("O4")
     ranged = card.model_copy(update={"strength_range": (0.8 * card.allowable, 1.1 * card.allowable)})
     case = with_material(case, case.joints["O4"].pin_material, ranged)
@@ -337,7 +338,7 @@ def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(
 
 
 def test_no_joint_passes_where_poses_were_left_out(path):
-    moved = solve_case_motion(read_case(path, ['checks.eyes={type="bearing", minimum=0.001}']))
+    moved = solve_case_motion(edited(path, ['checks.eyes={type="bearing", minimum=0.001}']))
     every = np.ones(25, dtype=bool)
     assert {c.verdict for c in envelope_outcomes(moved, {}, every)} == {Verdict.PASS}
     every[3] = False
@@ -345,9 +346,7 @@ def test_no_joint_passes_where_poses_were_left_out(path):
 
 
 def test_a_dead_point_of_the_drive_leaves_the_verdict_open(path):
-    case = read_case(
-        path, ["drive.link=rocker", "drive.joint=O4", 'checks.strength={type="safety-factor", minimum=0.01}']
-    )
+    case = edited(path, ["drive.link=rocker", "drive.joint=O4", 'checks.strength={type="safety-factor", minimum=0.01}'])
     found = envelope_case(case, threads=1, effort=Effort(max_meshes=1))
     assert found.verdict is Verdict.UNDECIDED
     assert 0 < found.evaluated.sum() < 25
@@ -386,7 +385,7 @@ def test_what_cannot_be_enveloped_is_refused(path, tmp_path):
     bare.write_text(kept, encoding="utf-8")
     with pytest.raises(CaseError, match="no moving link has a part"):
         envelope_case(read_case(str(bare)))
-    case = read_case(path, ["drive.link=rocker", "drive.joint=O4"])
+    case = edited(path, ["drive.link=rocker", "drive.joint=O4"])
     with pytest.raises(CannotRunError, match="no pose is left"):
         envelope_case(case, growth=0.5)
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from edited_cases import edited
 
 from fea.beam import internal_forces
 from fea.check import check_case, solve_case_statics
@@ -26,7 +27,7 @@ HELD_AT_GF = ('drive.link="GF"', 'drive.joint="G"')
 def under(load, *overrides):
     """The wing's case with its one load replaced, as [x, y] or [x, y, z] in N."""
     components = ", ".join(f'"{x} N"' for x in load)
-    return read_case(
+    return edited(
         "owl-wing-static", [f'load_cases.weight.forces=[{{link="CH", at="H", force=[{components}]}}]', *overrides]
     )
 
@@ -155,7 +156,7 @@ def test_a_point_without_equilibrium_or_beyond_linear_theory_is_left_open():
 def test_a_card_with_a_range_of_moduli_widens_the_band_of_a_point():
     stiff, soft = (tip(5.0, *HELD_AT_GF, f'parts.tube.material="{m}"')[1] for m in ("pvc-paredes-2018", "pvc-u"))
     assert stiff.value.low == stiff.value.value
-    material = read_case("owl-wing-static", ['parts.tube.material="pvc-u"']).material_of("CH")
+    material = edited("owl-wing-static", ['parts.tube.material="pvc-u"']).material_of("CH")
     least, largest = material.youngs_modulus_range
     assert soft.value.low == pytest.approx(soft.value.value * material.youngs_modulus / largest)
     assert soft.value.high > soft.value.value * material.youngs_modulus / least

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from edited_cases import edited
 
 from fea.check import check_case
 from fea.pins import lever, pin_stress, stress_at
@@ -49,13 +50,13 @@ def test_a_short_pin_shears_before_it_bends():
 def test_the_lever_is_half_of_each_eye_and_the_gap():
     assert lever(read_case(WING), "B") == 7.0
     # The ground has no part: its eye is taken as thick as that of AE.
-    assert lever(read_case(WING, ['joints.A.pin_gap="0.4 mm"']), "A") == pytest.approx(7.4)
+    assert lever(edited(WING, ['joints.A.pin_gap="0.4 mm"']), "A") == pytest.approx(7.4)
     two = [
         'parts.thick={shape="tube",material="pvc-u",outer_diameter="5 mm",inner_diameter="2.5 mm",'
         'eye_diameter="8 mm",eye_thickness="9 mm",fillet_radius="0.8 mm"}',
         'links.AE.part="thick"',
     ]
-    assert lever(read_case(WING, two), "B") == 8.0
+    assert lever(edited(WING, two), "B") == 8.0
 
 
 def test_moments_out_of_the_plane_add():
@@ -76,7 +77,7 @@ def test_the_wings_pins_pass_and_thin_ones_fail():
     assert pins[0].value.high == pytest.approx(2.0 * pins[0].value.low)
     for minimum, verdict in ((100.0, Verdict.UNDECIDED), (1000.0, Verdict.FAIL)):
         limits = [f'checks.pins={{type="pins",minimum={minimum},joints=["A"]}}']
-        result = check_case(read_case(WING, limits), name=WING, fidelity="beam")
+        result = check_case(edited(WING, limits), name=WING, fidelity="beam")
         (one,) = [c for c in result.load_cases["weight"].checks if c.name == "pins"]
         assert (one.verdict, one.what) == (verdict, "pin A")
 
@@ -100,4 +101,4 @@ def test_the_wings_pins_pass_and_thin_ones_fail():
 )
 def test_what_is_wrong_with_a_pin(overrides, sentence):
     with pytest.raises(CaseError, match=sentence):
-        read_case(WING, overrides)
+        edited(WING, overrides)

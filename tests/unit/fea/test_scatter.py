@@ -7,6 +7,7 @@ from importlib.resources import files
 import eye_link
 import numpy as np
 import pytest
+from edited_cases import edited
 from pydantic_core import PydanticCustomError
 
 from fea import large_displacement
@@ -21,7 +22,6 @@ from fea.scatter import Scatter, compliance_scatter, strength_scatter
 from fea.verdict import Verdict
 from geometry.errors import CaseError
 from geometry.material import library
-from loads.case_file import read_case
 from loads.case_motion import solve_case_motion
 from loads.scatter import parse_scatter
 
@@ -44,7 +44,7 @@ def path(tmp_path_factory):
 
 
 def checked(path, *overrides, fidelity="beam"):
-    [found] = check_case(read_case(path, overrides), fidelity=fidelity).load_cases.values()
+    [found] = check_case(edited(path, overrides), fidelity=fidelity).load_cases.values()
     return found
 
 
@@ -140,7 +140,7 @@ def coupler(tmp_path_factory):
 
 
 def test_more_repetitions_than_the_card_knows_are_not_passed(coupler):
-    case = read_case(coupler, [*MOTION, "solid.mesh_size=3.0", "checks.strength.minimum=0.01"])
+    case = edited(coupler, [*MOTION, "solid.mesh_size=3.0", "checks.strength.minimum=0.01"])
     effort = Effort(max_meshes=1)
     within = envelope_case(case, threads=1, effort=effort, repetitions=2e6)
     beyond = envelope_case(case, threads=1, effort=effort, repetitions=2.1e6)
@@ -150,7 +150,7 @@ def test_more_repetitions_than_the_card_knows_are_not_passed(coupler):
     assert outcome.verdict is Verdict.UNDECIDED
     assert "ends at 2e+06 cycles" in outcome.reason
     assert beyond.verdict is Verdict.UNDECIDED
-    wide = read_case(coupler, [*MOTION, "solid.mesh_size=3.0", 'load_cases.lift.scatter="20 %"'])
+    wide = edited(coupler, [*MOTION, "solid.mesh_size=3.0", 'load_cases.lift.scatter="20 %"'])
     scattered = envelope_case(wide, threads=1, effort=effort)
     [ours], [theirs] = (r.links["coupler"].load_cases.values() for r in (scattered, within))
     assert ours.safety_factor.low == pytest.approx(theirs.safety_factor.low / 1.2)
@@ -162,7 +162,7 @@ def test_more_repetitions_than_the_card_knows_are_not_passed(coupler):
 @pytest.mark.parametrize("repetitions", [math.inf, math.nan, 0.0])
 def test_repetitions_are_a_number(coupler, repetitions):
     with pytest.raises(CaseError, match="repetitions: they are"):
-        envelope_case(read_case(coupler, MOTION), repetitions=repetitions)
+        envelope_case(edited(coupler, MOTION), repetitions=repetitions)
 
 
 @pytest.mark.parametrize(

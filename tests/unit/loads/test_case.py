@@ -5,6 +5,7 @@ import tomllib
 import jsonschema
 import numpy as np
 import pytest
+from edited_cases import edited
 
 from geometry.body_rules import check_body
 from geometry.errors import CaseError
@@ -123,21 +124,21 @@ def test_a_safety_factor_check_needs_a_limit_from_somewhere() -> None:
         'yield_strength="40 MPa",strength="yield",sources={},status={}}'
     )
     use = 'parts.tube.material="bare"'
-    assert read_case(OWL, [bare, use]).material_of("ED").minimum_safety_factor is None
+    assert edited(OWL, [bare, use]).material_of("ED").minimum_safety_factor is None
     with pytest.raises(CaseError, match=r"checks.x.minimum: it is missing, and 'bare', the material of link 'GF'"):
-        read_case(OWL, [bare, use, 'checks.x={type="safety-factor"}'])
+        edited(OWL, [bare, use, 'checks.x={type="safety-factor"}'])
 
 
 def test_a_load_point_off_the_axis_must_be_a_pin() -> None:
     with pytest.raises(CaseError, match=r"links.CH.points.H: .*axis \(y = 0\), but y is 3 mm; move it"):
-        read_case(OWL, ['links.CH.points.H=["124 mm", "3 mm"]'])
+        edited(OWL, ['links.CH.points.H=["124 mm", "3 mm"]'])
 
 
 # ---- from load cases to loads ------------------------------------------------------------------------------
 
 
 def test_actions_of_every_kind(owl: Case) -> None:
-    case = read_case(
+    case = edited(
         OWL,
         [
             'load_cases.weight.moments=[{link="CH", at="H", moment="2 N*m"}]',
@@ -178,14 +179,14 @@ def test_actions_of_every_kind(owl: Case) -> None:
 )
 def test_loads_that_act_nowhere(override: str, words: str) -> None:
     with pytest.raises(CaseError, match=words):
-        read_case(OWL, [override])
+        edited(OWL, [override])
 
 
 def test_vectors_of_two_and_three_components() -> None:
     np.testing.assert_array_equal(vector3((1.0, 2.0)), [1.0, 2.0, 0.0])
     np.testing.assert_array_equal(vector3((1.0, 2.0, 3.0)), [1.0, 2.0, 3.0])
     with pytest.raises(CaseError, match="at most 3"):
-        read_case(OWL, ['load_cases.weight.forces.0.force=["1 N", "1 N", "1 N", "1 N"]'])
+        edited(OWL, ['load_cases.weight.forces.0.force=["1 N", "1 N", "1 N", "1 N"]'])
 
 
 # ---- the schema --------------------------------------------------------------------------------------------

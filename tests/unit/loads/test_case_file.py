@@ -1,7 +1,11 @@
 import os
+import tomllib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
+from edited_cases import edited
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -14,8 +18,12 @@ OWL = "owl-wing-static"
 
 def sentence(*arguments: object) -> str:
     """The one sentence that reading ends in."""
+    return refusal(read_case, *arguments)
+
+
+def refusal(read: Callable[..., Case], *arguments: object) -> str:
     with pytest.raises(CaseError) as caught:
-        read_case(*arguments)  # type: ignore[arg-type]
+        read(*arguments)
     text = str(caught.value)
     assert caught.value.exit_status == 2
     assert text.isprintable(), repr(text)  # one line, no control characters
@@ -151,7 +159,7 @@ BAD = [
 
 @pytest.mark.parametrize(("override", "words"), BAD, ids=[override[:50] for override, _ in BAD])
 def test_bad_input_ends_in_one_sentence(override: str, words: list[str]) -> None:
-    text = sentence(OWL, [override])
+    text = refusal(edited, OWL, [override])
     for word in words:
         assert word in text, text
     # A remedy: the sentence goes on after a semicolon.
@@ -159,7 +167,8 @@ def test_bad_input_ends_in_one_sentence(override: str, words: list[str]) -> None
 
 
 def test_disconnected_links() -> None:
-    text = sentence(
+    text = refusal(
+        edited,
         OWL,
         [
             'links.x={points={P=["0 mm","0 mm"],Q=["9 mm","0 mm"]}}',
@@ -172,7 +181,8 @@ def test_disconnected_links() -> None:
 
 
 def test_two_diameters_in_one_hole() -> None:
-    text = sentence(
+    text = refusal(
+        edited,
         OWL,
         [
             'links.X={points={P=["0 mm","0 mm"],Q=["50 mm","0 mm"]}}',
@@ -201,8 +211,9 @@ def test_two_diameters_in_one_hole() -> None:
         ("solid.mesh_size=2", lambda case: case.solid.mesh_size == 2.0),
         ("links.CF.holes.1.count=3", lambda case: case.links["CF"].holes[1].count == 3),
         ("load_cases.weight.forces.0.at=D", lambda case: case.load_cases["weight"].forces[0].at == "D"),
-        ("load_cases.more.title=new", lambda case: case.load_cases["more"].title == "new"),
-        ('checks.slim={type="displacement", maximum="1 mm"}', lambda case: case.checks["slim"].maximum == 1.0),
+        ("pose.near.GF=228 deg", lambda case: case.pose.near["GF"] == pytest.approx(3.97935069)),
+        ("drive.transfer=bore-shear", lambda case: case.drive.transfer == "bore-shear"),
+        ("large_displacement=off", lambda case: case.large_displacement == "off"),
         ('joints."A".pin_diameter=2 mm', lambda case: case.joints["A"].pin_diameter == 2.0),
         ("joints.'A'.pin_diameter=2 mm", lambda case: case.joints["A"].pin_diameter == 2.0),
         ("published_statics.rhs.14=0.5", lambda case: case.published_statics.rhs["14"] == 0.5),
@@ -245,6 +256,53 @@ def test_overrides_that_lead_nowhere(override: str, words: list[str]) -> None:
     text = sentence(OWL, [override])
     for word in words:
         assert word in text
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("load_cases.wieght.own_weight=true", ["'load_cases' has no 'wieght' to change; did you mean 'weight'?"]),
+        ("load_cases.wieght={own_weight=true}", ["'load_cases' has no 'wieght'", "did you mean 'weight'?"]),
+        (
+            'checks.slim={type="displacement"}',
+            ["'checks' has no 'slim'", "or add 'slim' to the case file"],
+        ),
+        ('links.CH.points.h=["90 mm", "0 mm"]', ["'links.CH.points' has no 'h'", "did you mean 'H'?"]),
+        ("parts.tub.outer_diameter=6 mm", ["'parts' has no 'tub'", "did you mean 'tube'?"]),
+        ("load_case.weight.own_weight=true", ["load_case: this key is unknown; did you mean 'load_cases'?"]),
+        ("solid.mesh_sise=2", ["solid.mesh_sise: this key is unknown; did you mean 'mesh_size'?"]),
+        ("checks.strength.minimun=2", ["checks.strength.minimun", "did you mean 'minimum'?"]),
+        ("links.CF.holes.0.cuont=2", ["links.CF.holes.0.cuont", "did you mean 'count'?"]),
+        ("load_cases.weight.forces.0.frce=1 N", ["load_cases.weight.forces.0.frce", "did you mean 'force'?"]),
+    ],
+)
+def test_a_mistyped_override_changes_nothing_and_names_what_was_meant(override: str, words: list[str]) -> None:
+    text = sentence(OWL, [override])
+    for word in words:
+        assert word in text
+
+
+@pytest.mark.parametrize(
+    ("table", "right", "wrong"),
+    [
+        ("parts.tube", "outer_diameter", "outer_diametre"),
+        ("parts.tube", "shape", "shap"),  # the kind itself, without which nothing else is known of the table
+        ("checks.strength", "type", "typ"),
+        ("links.GF", "points", "point"),
+        ("joints.A", "links", "Links"),
+        ("load_cases.weight.forces.0", "force", "froce"),
+        ("", "load_cases", "loadcases"),
+        ("", "schema_version", "schema_verion"),
+    ],
+)
+def test_a_mistyped_key_is_named_rather_than_the_one_that_it_leaves_missing(table: str, right: str, wrong: str) -> None:
+    data = tomllib.loads(read_text(OWL)[0])
+    here: Any = data
+    for key in table.split(".") if table else ():
+        here = here[int(key) if isinstance(here, list) else key]
+    here[wrong] = here.pop(right)
+    place = f"{table}.{wrong}" if table else wrong
+    assert refusal(validate, data) == f"{place}: this key is unknown; did you mean '{right}'?"
 
 
 @given(st.text(max_size=40))

@@ -2,21 +2,21 @@
 
 import numpy as np
 import pytest
+from edited_cases import edited
 
 from fea.cut_free import link_loads
 from geometry.errors import CaseError
 from geometry.part import Pin
 from loads.applied import PointLoad
-from loads.case_file import read_case
 from loads.statics import solve_statics
 
 
 def ornithopter(*settings: str):
-    return read_case("ornithopter", list(settings))
+    return edited("ornithopter", list(settings))
 
 
 def flapping(*settings: str):
-    return read_case("flapping-wing-reference", list(settings))
+    return edited("flapping-wing-reference", list(settings))
 
 
 def test_a_slot_becomes_a_hole_drawn_out_with_its_clearance() -> None:

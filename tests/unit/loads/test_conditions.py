@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from edited_cases import edited
 from materials import with_material
 
 from fea.band import Band
@@ -13,7 +14,6 @@ from fea.scatter import compliance_scatter, strength_scatter
 from fea.verdict import Verdict
 from geometry.errors import CaseError
 from geometry.material import library
-from loads.case_file import read_case
 from loads.check_spec import SustainedCheck
 from loads.conditions import Conditions, temperature_factor, under
 
@@ -82,19 +82,19 @@ def test_ranges_follow_what_they_belong_to():
 )
 def test_what_cannot_be_known(overrides, sentence):
     with pytest.raises(CaseError, match=sentence):
-        read_case(WING, overrides)
+        edited(WING, overrides)
 
 
 def checked(*overrides):
-    return check_case(read_case(WING, [*OF_PVC_U, *overrides]), name=WING, fidelity="beam").load_cases["weight"]
+    return check_case(edited(WING, [*OF_PVC_U, *overrides]), name=WING, fidelity="beam").load_cases["weight"]
 
 
 def test_a_load_that_stays_is_checked_without_being_asked_for():
-    case = read_case(WING, [*OF_PVC_U, 'conditions.duration="10 year"'])
+    case = edited(WING, [*OF_PVC_U, 'conditions.duration="10 year"'])
     assert isinstance(case.all_checks["sustained load"], SustainedCheck)
-    named = read_case(WING, [*OF_PVC_U, 'conditions.duration="10 year"', 'checks.long={type="sustained",links=["AE"]}'])
+    named = edited(WING, [*OF_PVC_U, 'conditions.duration="10 year"', 'checks.long={type="sustained",links=["AE"]}'])
     assert "sustained load" not in named.all_checks
-    assert "sustained load" not in read_case(WING, list(OF_PVC_U)).all_checks
+    assert "sustained load" not in edited(WING, list(OF_PVC_U)).all_checks
 
 
 def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
@@ -125,7 +125,7 @@ def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
 def test_sustained_stress_is_the_one_that_decides_the_material(strength, von_mises, principal, verdict):
     """Von Mises against a yield strength, the largest principal stress against an ultimate one; 11 MPa are allowed."""
     card = PVC.model_copy(update={"strength": strength})
-    case = read_case(WING, [*OF_PVC_U, 'conditions.duration="10 year"'])
+    case = edited(WING, [*OF_PVC_U, 'conditions.duration="10 year"'])
     case = with_material(case, "pvc-u", card)
     result = check_case(case, name=WING, fidelity="beam").load_cases["weight"]
     stresses = {"von_mises_max": Band.exact(von_mises), "principal_max": Band.exact(principal)}

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from edited_cases import edited
 from rich.console import Console
 
 from fea.anchor import anchor_loads
@@ -24,7 +25,7 @@ WING = "owl-wing-static"
 
 
 def checked(*overrides):
-    return check_case(read_case(WING, list(overrides)), name=WING, fidelity="beam")
+    return check_case(edited(WING, list(overrides)), name=WING, fidelity="beam")
 
 
 def section(result):

@@ -1,0 +1,68 @@
+"""Which entries the case file knows where, by its JSON Schema, and which one a mistyped name may have meant."""
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from typing import Any
+
+from pydantic import BaseModel
+
+Schema = Mapping[str, Any]
+
+
+def alike(name: str, known: Iterable[str]) -> str:
+    """Return ``; did you mean 'width'?`` with the known name that is most like ``name``, else an empty text."""
+    folded = {other.casefold(): other for other in known}
+    found = difflib.get_close_matches(name[:80].casefold(), folded, n=1)
+    return f"; did you mean '{folded[found[0]]}'?" if found else ""
+
+
+def known_keys(model: type[BaseModel], path: Sequence[object]) -> tuple[str, ...]:
+    """Return the keys that a model's tables at a path have; in ``path`` the kind of a union stands behind its entry."""
+    return tuple(dict.fromkeys(key for node in _at(model, path) for key in node.get("properties", ())))
+
+
+def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
+    """Return True where the user names the tables or lists at a path himself, such as ``links`` or ``links.X.points``.
+
+    Free names of plain values (``pose.near``) refer to what is named elsewhere, and are held against that.
+    """
+    root = _schema(model)
+    free = [node["additionalProperties"] for node in _at(model, path) if node.get("additionalProperties")]
+    return any(node.get("type") in ("object", "array") for child in free for node in _options(child, root))
+
+
+def _at(model: type[BaseModel], path: Sequence[object]) -> list[Schema]:
+    """Return the nodes of the schema at a path, all that a union leaves open."""
+    root = _schema(model)
+    nodes = _options(root, root)
+    for step in path:
+        nodes = [found for node in nodes for child in _children(node, step) for found in _options(child, root)]
+    return nodes
+
+
+def _children(node: Schema, step: object) -> list[Schema]:
+    if step == node.get("kind"):
+        return [node]
+    if isinstance(step, int) or node.get("type") == "array":
+        return [*node.get("prefixItems", ()), *([node["items"]] if node.get("items") else [])]
+    if step in node.get("properties", {}):
+        return [node["properties"][step]]
+    free = node.get("additionalProperties")
+    return [free] if free else []
+
+
+def _options(node: Schema, root: Schema) -> list[Schema]:
+    """Return what a node may be: references followed, unions taken apart; a kind stands beside its node."""
+    if "$ref" in node:
+        return _options(root["$defs"][node["$ref"].rpartition("/")[2]], root)
+    kinds = node.get("discriminator", {}).get("mapping")
+    if kinds:
+        return [{**found, "kind": kind} for kind, at in kinds.items() for found in _options({"$ref": at}, root)]
+    several = node.get("oneOf") or node.get("anyOf")
+    return [found for option in several for found in _options(option, root)] if several else [node]
+
+
+@cache
+def _schema(model: type[BaseModel]) -> Schema:
+    return model.model_json_schema()
