@@ -18,9 +18,9 @@ low    a third of the value, since linear stress is not relied on below 3 (see b
 
 That joints stay where they are is taken for granted: sway of the whole linkage is the other outcome, the lowest
 factor on all loads at which its linear frame becomes unstable (``fea.corotational.buckling_factor``). It leaves out
-how the frame moves before that. Where equilibrium was followed on the deformed shape (``fea.large_displacement``),
-that answer rules and is the only outcome (``fea.outcomes``): a frame may give way below the linear factor, or stiffen
-and hold beyond it.
+how the frame moves before that, by which a toggle snaps through at a linear factor of 5.2 (``fea.toggle``): the lower
+end of its band. Where equilibrium was followed on the deformed shape (``fea.large_displacement``), as it is below a
+factor of 10, that answer rules and is the only outcome (``fea.outcomes``).
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
@@ -40,8 +40,9 @@ from fea.band import Band
 from fea.beam import BeamCheck
 from fea.column_factor import AxialForce, Stretch, column_factors
 from fea.flanks import Flanks, flanks_of
-from fea.large_displacement import LargeDisplacement
+from fea.large_displacement import LEAST_FACTOR, LargeDisplacement
 from fea.scatter import load_scatter
+from fea.toggle import SNAP, growth
 from fea.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
 from geometry.material import Material
 from geometry.part import Section
@@ -52,8 +53,6 @@ Real = NDArray[np.float64]
 NAME = "buckling"
 LEAST_LINEAR = 3.0
 """Factor below which stress by linear theory is not relied on."""
-SECOND_ORDER = 10.0
-"""Factor below which the growth of bending is told."""
 NO_COMPRESSION = 1e-9
 """Share of the largest force in the link below which compression is rounding."""
 ON_AXIS = 1e-9
@@ -252,29 +251,31 @@ def linkage_outcome(
 ) -> Iterator[CheckOutcome]:
     """Yield the outcome of the linkage as a whole where its frame can buckle under the load case ``title``.
 
-    None where equilibrium was followed on the deformed shape, whose outcome rules. The band is that of linear theory,
-    from a third with the least ratio of a stated least modulus to the modulus.
+    None where equilibrium was followed on the deformed shape, whose outcome rules. The band goes from what a shallow
+    toggle holds, with the least ratio of a stated least modulus to the modulus, to linear theory's factor.
     """
-    value = moved.buckling
-    if value is None or math.isinf(value) or moved.followed:
+    value, least = moved.buckling, moved.factor
+    if value is None or least is None or moved.followed or (math.isinf(value) and least >= LEAST_FACTOR):
         return
     materials = [case.material_of(link) for link in case.checked_links]
     softest = min(min((m.youngs_modulus, *(m.youngs_modulus_range or ()))) / m.youngs_modulus for m in materials)
     factor = f"all links together become unstable at {value:.3g} times the load by linear theory"
+    if least < value:
+        factor = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
     band = Band(
-        value=value,
-        low=softest * value / LEAST_LINEAR,
+        value=least,
+        low=softest * least / SNAP,
         high=value,
-        holds=("the modulus", "displacement that grows with the load, which linear theory leaves out"),
+        holds=("the modulus", "snap-through of a shallow toggle, which linear theory puts too high"),
     )
     band = load_scatter(case, title).inverse.on(band)
     verdict = at_least(band, 1.0)
     if verdict is Verdict.FAIL:
         reason = f"{factor}, so the linkage gives way"
     elif verdict is Verdict.UNDECIDED:
-        reason = f"{factor}; so near to it, joint forces by linear theory do not hold"
-    elif value < SECOND_ORDER:
-        reason = f"{factor}; displacements are up to {1.0 / (1.0 - 1.0 / value):.3g} times those of linear theory"
+        reason = f"{factor}; a linkage may snap through at {least / SNAP:.3g} times the load: follow its deformed shape"
+    elif least < LEAST_FACTOR:
+        reason = f"{factor}; displacements are up to {growth(least):.3g} times those of linear theory"
     else:
         reason = factor
     yield CheckOutcome(
@@ -300,6 +301,6 @@ def _reason(found: Column, band: Band, verdict: Verdict) -> str:
         return f"{load}; stiffer neighbours and a drive may hold it, up to {band.high:.3g} times"
     if verdict is Verdict.UNDECIDED:
         return f"{load}; within {LEAST_LINEAR:g} times the load, stress by linear theory does not hold"
-    if band.value < SECOND_ORDER:
+    if band.value < LEAST_FACTOR:
         return f"{load}; bending is up to {1.0 / (1.0 - 1.0 / band.value):.3g} times that of linear theory"
     return load

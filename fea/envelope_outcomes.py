@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from fea.band import Band
 from fea.bearing_check import weakest_eye
 from fea.buckling_check import NAME as BUCKLING
-from fea.buckling_check import SECOND_ORDER, factor_band
+from fea.buckling_check import factor_band
 from fea.buckling_history import factors_over_motion
 from fea.envelope_result import LinkEnvelope
 from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from fea.large_displacement import LEAST_FACTOR
 from fea.link_history import LinkHistory
 from fea.outcomes import least_safety_factor, reason_for
 from fea.pins import stress_of
@@ -129,7 +130,7 @@ def column_outcomes(
             reason = f"{factor:.3g} times the compression at {_when(moved, pose)} buckles it"
             if outcome.verdict is Verdict.UNDECIDED:
                 reason += f"; {outcome.reason}"
-            elif factor < SECOND_ORDER and outcome.verdict is Verdict.PASS:
+            elif factor < LEAST_FACTOR and outcome.verdict is Verdict.PASS:
                 reason += f"; bending is up to {1.0 / (1.0 - 1.0 / factor):.3g} times that of linear theory"
             yield replace(outcome, reason=reason)
 

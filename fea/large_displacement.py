@@ -2,9 +2,10 @@
 
 Where the linear frame moves by more than 5 % of the linkage's span, equilibrium on the undeformed pose is no longer
 a good answer: joint forces then come from the co-rotational frame (``fea.corotational``), and each link is loaded by
-what acts on it on the deformed shape, along the chord through its first and last station. So it is where the frame's
-buckling factor is below 3: displacements grow to 1/(1 - 1/n) of the linear ones (Timoshenko & Gere, Theory of Elastic
-Stability, 2nd ed., section 1.11), by half and more.
+what acts on it on the deformed shape, along the chord through its first and last station. So it is where the frame is
+within ten times its load of buckling by linear theory, below which EN 1993-1-1:2005, 5.2.1(3), asks for second-order
+analysis, or of a dead point by its linear displacements: a shallow toggle snaps through at 5.2 of either
+(``fea.toggle``). Stated scatter of load and modulus counts at its worst.
 """
 
 import itertools
@@ -29,6 +30,7 @@ from fea.joint_forces import JointForces
 from fea.link_loads import LinkLoads
 from fea.linkage_frame import LinkageFrame, build_frame
 from fea.scatter import Scatter, compliance_scatter, load_scatter
+from fea.toggle import dead_point_factor
 from geometry.errors import CannotRunError, CaseError
 from geometry.part import Body
 from geometry.pose import Pose
@@ -41,8 +43,8 @@ Real = NDArray[np.float64]
 
 LARGE = 0.05
 """Share of the span above which a displacement is large."""
-LEAST_FACTOR = 3.0
-"""Buckling factor below which equilibrium is sought on the deformed shape, however little the frame moves."""
+LEAST_FACTOR = 10.0
+"""Factor to buckling or to a dead point below which equilibrium is sought on the deformed shape."""
 SUBDIVISIONS = 2
 COARSE, FINE, NEAR = 2, 8, 30.0
 """Elements per beam for the buckling factor, and the factor by the coarse ones below which the fine ones are used."""
@@ -70,6 +72,7 @@ class LargeDisplacement:
     held_band   the same with the stated scatter of load and modulus; of no meaning unless ``followed``
     buckling    lowest factor on all loads at which the linear frame becomes unstable; infinite where it never does,
                 None where there is no frame
+    dead_point  factor on the linear displacements that takes the linkage to a dead point; infinite where they lead away
     points      (link, point) -> displacement (3,) on the deformed shape [mm]; the linear one where small or off;
                 empty where no equilibrium or no frame was found
     reactions   on the deformed shape, in global axes; None unless deformed
@@ -84,6 +87,7 @@ class LargeDisplacement:
     held: float = 1.0
     held_band: Band = field(default_factory=lambda: Band.exact(1.0))
     buckling: float | None = None
+    dead_point: float = math.inf
     points: Mapping[tuple[str, str], Real]
     reactions: Reactions | None = None
     links: Mapping[str, LinkLoads]
@@ -93,6 +97,11 @@ class LargeDisplacement:
     def share(self) -> float:
         """Largest linear displacement over the span."""
         return self.linear / self.span
+
+    @property
+    def factor(self) -> float | None:
+        """The lesser of the factors to buckling and to a dead point; None where there is no frame."""
+        return None if self.buckling is None else min(self.buckling, self.dead_point)
 
     @property
     def followed(self) -> bool:
@@ -113,13 +122,13 @@ def examine(
     loads: Sequence[Load],
     masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
-    """Solve the linear frame of a load case and, where it moves far or is near to buckling, its deformed shape."""
+    """Solve the linear frame of a load case and, where it moves far or may give way, its deformed shape."""
     pose = forces.reactions.pose
     size = span(pose)
 
-    def left(state: State, why: str, factor: float | None = None) -> LargeDisplacement:
+    def left(state: State, why: str) -> LargeDisplacement:
         sentence = f"large displacement was not looked into{why}"
-        return LargeDisplacement(state=state, span=size, buckling=factor, points={}, links={}, sentence=sentence)
+        return LargeDisplacement(state=state, span=size, points={}, links={}, sentence=sentence)
 
     off = case.large_displacement == "off"
     as_said = ", as the case says (large_displacement = off)"
@@ -131,8 +140,9 @@ def examine(
         factor = linkage_factor(frame)
     except (CaseError, CannotRunError) as error:
         return left("off", as_said) if off else left("unknown", f": {error}")
+    near, points = dead_point_factor(frame, solution), frame.at_points(solution.displacements)
     if off:
-        return replace(left("off", as_said, factor), points=frame.at_points(solution.displacements))
+        return replace(left("off", as_said), buckling=factor, dead_point=near, points=points)
     linear, where = _largest(frame, solution)
     small = LargeDisplacement(
         state="small",
@@ -140,21 +150,23 @@ def examine(
         linear=linear,
         where=where,
         buckling=factor,
-        points=frame.at_points(solution.displacements),
+        dead_point=near,
+        points=points,
         links={},
         sentence=(
             f"the linear frame moves by at most {linear:.3g} mm ({where}), {100.0 * linear / size:.3g} % of the span "
             f"of {size:.4g} mm: the undeformed pose is good enough (limit {100.0 * LARGE:g} %)"
         ),
     )
-    if linear <= LARGE * size and factor >= LEAST_FACTOR:
-        return small
-    found = _deformed(case, title, frame, small, loads, masses)
     materials = [compliance_scatter(case.material_of(link)) for link in case.checked_links]
     slack = Scatter(low=min(m.low for m in materials), high=max(m.high for m in materials))
     load = load_scatter(case, title)
+    scatter = slack.times(load)
+    if scatter.high * linear <= LARGE * size and min(factor, near) >= LEAST_FACTOR * scatter.high:
+        return small
+    found = _deformed(case, title, frame, small, loads, masses)
     holds = dict.fromkeys(text for one in (*materials, load) for text in one.holds)
-    return replace(found, held_band=_held_band(frame, found, slack.times(load), tuple(holds)))
+    return replace(found, held_band=_held_band(frame, found, scatter, tuple(holds)))
 
 
 def _held_band(frame: LinkageFrame, found: LargeDisplacement, scatter: Scatter, holds: tuple[str, ...]) -> Band:
@@ -201,11 +213,19 @@ def _deformed(
     loads: Sequence[Load],
     masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
-    far = (
-        f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {100.0 * small.share:.3g} % of the span of "
-    )
-    near = f"the linear frame buckles at {small.buckling:.3g} times the load, below {LEAST_FACTOR:g}"
-    lead = f"{far}{small.span:.4g} mm, above {100.0 * LARGE:g} %" if small.share > LARGE else near
+    assert small.buckling is not None
+    if small.share > LARGE:
+        lead = (
+            f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {100.0 * small.share:.3g} % of the span "
+            f"of {small.span:.4g} mm, above {100.0 * LARGE:g} %"
+        )
+    elif small.buckling <= small.dead_point:
+        lead = f"the linear frame buckles at {small.buckling:.3g} times the load, too near (limit {LEAST_FACTOR:g})"
+    else:
+        lead = (
+            f"{small.dead_point:.3g} times the linear frame's displacements take the linkage to a dead point, too near "
+            f"(limit {LEAST_FACTOR:g})"
+        )
     lead = f"{lead}: the linear answer is not valid; in large displacement "
     try:
         found = solve_large_displacement(

@@ -8,10 +8,11 @@ import numpy as np
 from fea.band import Band
 from fea.beam import BeamCheck
 from fea.buckling_check import beyond_strength, linkage_outcome
-from fea.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
+from fea.large_displacement import LARGE, LargeDisplacement
 from fea.pins import PinStress
 from fea.result import LinkResult
 from fea.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
+from fea.toggle import SNAP, growth
 from fea.verdict import LINKAGE, LOAD_SHARE, PIN, POINT, SAFETY_FACTOR, CheckOutcome, Verdict, at_least, at_most
 from geometry.errors import CaseError
 from geometry.material import Material
@@ -92,33 +93,35 @@ def _link(
 def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: LargeDisplacement) -> CheckOutcome:
     """Outcome of how far a point of the linkage moves, by the frame: linear, or on the deformed shape where that rules.
 
-    The band holds the moduli, and for the linear answer the growth 1/(1 - 1/n) up to the buckling factor n.
+    The band holds the moduli, and for the linear answer the growth of a toggle (``fea.toggle``).
     """
     link, point = case.displaced_point(name, check)
-    displacement, factor = moved.points.get((link, point)), moved.buckling
+    displacement, factor = moved.points.get((link, point)), moved.factor
     value, limit = Band.unknown(), check.maximum
     why = f"the frame does not tell how far it moves: {moved.sentence}"
     if displacement is not None and moved.state in ("small", "deformed", "off"):
         size = float(np.linalg.norm(displacement))
-        near = factor is not None and factor < LEAST_FACTOR
+        near = factor is not None and factor < SNAP
         if moved.followed or not (near or size > LARGE * moved.span):
             materials = [case.material_of(other) for other in case.checked_links]
             ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
             load = load_scatter(case, title)
             near_by = 0.0 if moved.followed or factor is None else load.high * max((*ratios, 1.0)) / factor
-            growth = 1.0 / (1.0 - near_by) if near_by < 1.0 else math.inf
+            grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
             value = Band(
                 value=size,
                 low=min((*ratios, 1.0)) * size,
-                high=max((*ratios, 1.0)) * growth * size,
-                holds=("the modulus",) if moved.followed else ("the modulus", "growth towards buckling"),
+                high=max((*ratios, 1.0)) * grown * size,
+                holds=("the modulus",)
+                if moved.followed
+                else ("the modulus", "growth towards buckling or a dead point"),
             )
             value = load.on(value)
             shape = "on its deformed shape" if moved.followed else "by linear theory"
             why = f"by the frame of the linkage, {shape}: {reason_for(value, limit, at_most(value, limit))}"
         else:
             far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
-            what = f"buckles at {factor:.3g} times the load, below {LEAST_FACTOR:g}" if near else far
+            what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
             why = f"the linear frame {what}, so it does not hold; take large_displacement = off out of the case"
     return CheckOutcome(
         name=name,

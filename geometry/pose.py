@@ -111,9 +111,13 @@ class Pose:
         numbers. Where it vanishes the linkage moves although the link is held. With ``slides`` it
         is a slider or slot of that name that is held.
         """
-        held = _joint_motion(self, driven)[0][None] if slides else _held(self.linkage, driven)
-        matrix = np.vstack([constraint_jacobian(self), held])
+        matrix = np.vstack([constraint_jacobian(self), held_motion(self, driven, slides=slides)])
         return float(np.linalg.svd(matrix, compute_uv=False)[-1])
+
+
+def held_motion(pose: Pose, driven: str, *, slides: bool) -> Real:
+    """Row (coordinates,) that holds a link's angle or, with ``slides``, the slider or slot of that name."""
+    return _joint_motion(pose, driven)[0] if slides else _held(pose.linkage, driven)
 
 
 def constraint_jacobian(pose: Pose) -> Real:

@@ -142,7 +142,8 @@ class Case(CaseModel):
     joint_model: Literal["pinned", "bonded"] = "pinned"
     """Whether pins turn freely, or are bonded and carry moments about their own axis as well."""
     large_displacement: Literal["auto", "off"] = "auto"
-    """auto: where the linkage moves by more than 5 % of its span, equilibrium is sought on the deformed shape."""
+    """auto: where the linkage moves by more than 5 % of its span, or may give way below ten times its load,
+    equilibrium is sought on the deformed shape. off: never."""
     conditions: Conditions = Conditions()
     ways_to_hold: WaysToHold | None = None
     carried: tuple[Carried, ...] = ()

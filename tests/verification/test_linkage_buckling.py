@@ -78,21 +78,20 @@ def outcome(case: Case):
 
 def test_the_factor_of_a_parallelogram_is_that_of_the_closed_form() -> None:
     """Far from it the undeformed pose is good enough; no link alone is anywhere near to its own Euler load."""
-    moved, found = outcome(parallelogram(0.2 * critical()))
+    moved, found = outcome(parallelogram(0.09 * critical()))
     assert moved.state == "small"
     # Shear of the column takes a little more than lengthening gives.
-    assert found.value.value == pytest.approx(5.0, rel=3e-3)
-    assert found.value.low == pytest.approx(found.value.value / 3.0)
+    assert found.value.value == pytest.approx(1.0 / 0.09, rel=3e-3)
+    assert found.value.low == pytest.approx(found.value.value / 5.196, rel=1e-4)
     assert (found.verdict, found.limit, found.at_least) == (Verdict.PASS, 1.0, True)
-    assert "displacements are up to 1.25 times" in found.reason
-    links = check_case(parallelogram(0.2 * critical()), fidelity="beam").load_cases["weight"].checks
+    links = check_case(parallelogram(0.09 * critical()), fidelity="beam").load_cases["weight"].checks
     alone = {c.link: c.value.value for c in links if c.name == "buckling" and c.link != LINKAGE}
     assert min(alone.values()) > found.value.value
 
 
 @pytest.mark.parametrize(
     ("share", "state", "verdict"),
-    [(0.5, "deformed", Verdict.PASS), (0.97, "deformed", Verdict.PASS), (1.03, "unstable", Verdict.FAIL)],
+    [(0.11, "deformed", Verdict.PASS), (0.97, "deformed", Verdict.PASS), (1.03, "unstable", Verdict.FAIL)],
 )
 def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, state, verdict) -> None:
     """One limit load, one outcome: the factor of linear theory stands in its reason alone."""
@@ -108,7 +107,7 @@ def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, stat
     assert (found.value.low, found.value.high) == pytest.approx((0.0, 1.0) if state == "unstable" else (1.0, 1.0))
 
 
-@pytest.mark.parametrize(("share", "verdict"), [(0.3, Verdict.PASS), (0.5, Verdict.UNDECIDED), (1.03, Verdict.FAIL)])
+@pytest.mark.parametrize(("share", "verdict"), [(0.18, Verdict.PASS), (0.3, Verdict.UNDECIDED), (1.03, Verdict.FAIL)])
 def test_where_the_case_leaves_large_displacement_out_the_factor_decides(share, verdict) -> None:
     moved, found = outcome(parallelogram(share * critical(), large_displacement="off"))
     assert moved.state == "off"

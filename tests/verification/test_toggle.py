@@ -1,0 +1,183 @@
+"""Toggles that snap through: the linear frame's factors, the deformed shape and the verdict against closed forms.
+
+Two bars of half-span 50 mm push a lever of 100 mm, built in by the drive. With a lever of stiffness k and bars that
+keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³), derived in ``fea.toggle``.
+"""
+
+import math
+import tomllib
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from fea.check import check_case
+from fea.toggle import SNAP, growth
+from fea.verdict import LINKAGE, Verdict
+from loads.case import Case
+from loads.case_file import validate
+
+HALF, LEVER = 50.0, 100.0
+TOGGLE = """
+schema_version = 1
+title = "Toggle against a lever"
+large_displacement = "{way}"
+[links.base]
+ground = true
+points.O = ["0 mm", "0 mm"]
+points.D = ["100 mm", "-100 mm"]
+[links.left]
+part = "{bars}"
+points.O = ["0 mm", "0 mm"]
+points.B = ["{length!r} mm", "0 mm"]
+[links.right]
+part = "{bars}"
+points.B = ["0 mm", "0 mm"]
+points.C = ["{length!r} mm", "0 mm"]
+[links.lever]
+part = "bar"
+points.D = ["0 mm", "0 mm"]
+points.C = ["100 mm", "0 mm"]
+[joints]
+O = {{ links = ["base", "left"], pin_diameter = "3 mm" }}
+B = {{ links = ["left", "right"], pin_diameter = "3 mm" }}
+C = {{ links = ["right", "lever"], pin_diameter = "3 mm" }}
+D = {{ links = ["base", "lever"], pin_diameter = "3 mm" }}
+[pose]
+coordinate = "lever"
+angle = "90 deg"
+near = {{ left = "{slope!r} deg", right = "{down!r} deg" }}
+[drive]
+link = "lever"
+joint = "D"
+[parts.bar]
+shape = "bar"
+material = "pvc-paredes-2018"
+width = "10 mm"
+thickness = "10 mm"
+eye_diameter = "16 mm"
+eye_thickness = "10 mm"
+fillet_radius = "3 mm"
+[parts.slender]
+shape = "bar"
+material = "pvc-paredes-2018"
+width = "3 mm"
+thickness = "4 mm"
+eye_diameter = "7 mm"
+eye_thickness = "4 mm"
+fillet_radius = "1 mm"
+[load_cases.push]
+forces = [{{ link = "left", at = "B", force = ["0 N", "{force!r} N"] }}]
+[checks.strength]
+type = "safety-factor"
+minimum = 1.5
+"""
+
+
+def toggle(force: float, rise: float = 10.0, way: str = "auto", bars: str = "bar") -> Case:
+    slope = math.degrees(math.atan2(rise, HALF))
+    text = TOGGLE.format(force=force, length=math.hypot(HALF, rise), slope=slope, down=-slope, way=way, bars=bars)
+    return validate(tomllib.loads(text))
+
+
+def compliance(case: Case) -> float:
+    """Of the lever's tip [mm/N]: bending and shear of a cantilever."""
+    material, section = case.material_of("lever"), case.part_of("lever").section
+    shear = material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio)) * section.area
+    bending = LEVER**3 / (3.0 * material.youngs_modulus * section.i_z)
+    return bending + LEVER / (section.shear_coefficient(material.poissons_ratio) * shear)
+
+
+def limit_load(case: Case, rise: float, bars: str = "bar") -> float:
+    """Largest load of the exact toggle: bars that shorten under their force, a spring that moves along x."""
+    material, section = case.material_of("left"), case.parts[bars].section
+    spring, length = 1.0 / compliance(case), math.hypot(HALF, rise)
+    stretch = material.youngs_modulus * section.area / length
+
+    def load(height: float) -> float:
+        # Half a toggle: the spring moves by 2x under the thrust T, each bar shortens by T/(stretch cos).
+        low, high = 0.0, HALF
+        for _ in range(80):
+            x = (low + high) / 2.0
+            now = math.hypot(HALF + x, height)
+            thrust = stretch * (length - now) * (HALF + x) / now
+            low, high = (x, high) if thrust > spring * 2.0 * x else (low, x)
+        return 2.0 * spring * 2.0 * x * height / (HALF + x)
+
+    found = minimize_scalar(lambda y: -load(y), bounds=(0.0, rise), method="bounded")
+    return -float(found.fun)
+
+
+def linkage(case: Case):
+    result = check_case(case, fidelity="beam")
+    found = result.load_cases["push"]
+    return result.verdict, found.large_displacement, [c for c in found.checks if c.link == LINKAGE]
+
+
+def test_the_limit_load_of_a_shallow_toggle_stands_at_three_root_three() -> None:
+    """By the polynomial alone: where P(w) is largest, beside the linear displacement and the linear factor there."""
+    w = np.linspace(0.0, 1.0, 200_001)
+    load = 2.0 * w - 3.0 * w**2 + w**3
+    linear = load.max() / 2.0
+    assert linear == pytest.approx(0.19, abs=3e-3)
+    assert 1.0 / linear == pytest.approx(SNAP, rel=1e-8)
+    assert growth(SNAP * (1.0 + 1e-12)) == pytest.approx(w[load.argmax()] / linear, rel=1e-4)
+    for factor in (5.3, 8.0, 30.0, 1e4, 1e7):
+        below = np.interp(2.0 / factor, load[: load.argmax()], w[: load.argmax()])
+        assert growth(factor) == pytest.approx(factor * below, rel=1e-4)
+        assert growth(factor) > 1.0 / (1.0 - 1.0 / factor)
+    assert growth(5.19) == math.inf
+
+
+@pytest.mark.parametrize(("rise", "bars"), [(10.0, "bar"), (5.0, "bar"), (10.0, "slender")])
+def test_a_toggle_fails_beyond_its_limit_load_and_passes_below(rise: float, bars: str) -> None:
+    """Its stress is far below the limit, and its linear factor is five: above the three that sway asks for."""
+    limit = limit_load(toggle(-1.0, rise, bars=bars), rise, bars)
+    verdict, moved, (found,) = linkage(toggle(-1.03 * limit, rise, bars=bars))
+    assert (verdict, moved.state, found.verdict) == (Verdict.FAIL, "no equilibrium", Verdict.FAIL)
+    assert moved.held == pytest.approx(1.0 / 1.03, abs=0.012)
+    assert moved.buckling == pytest.approx(SNAP, rel=0.1)
+    assert moved.dead_point == pytest.approx(SNAP, rel=0.1)
+    verdict, moved, (found,) = linkage(toggle(-0.95 * limit, rise, bars=bars))
+    assert (moved.state, found.verdict) == ("deformed", Verdict.PASS)
+
+
+def test_the_toggle_at_three_newtons_gives_way() -> None:
+    """Once a pass: it moves by 2.9 % of its span, and linear theory puts its factor at three."""
+    case = toggle(-3.0)
+    verdict, moved, (found,) = linkage(case)
+    assert verdict is Verdict.FAIL
+    assert moved.buckling > 3.0
+    assert moved.share < 0.05
+    polynomial = (2.0 / (compliance(case) * HALF**2)) * 10.0**3 * 2.0 / (3.0 * math.sqrt(3.0))
+    # The polynomial is for shallow ones; the slope is one in five here.
+    assert moved.held == pytest.approx(polynomial / 3.0, rel=0.05)
+    assert found.value.value == pytest.approx(limit_load(case, 10.0) / 3.0, rel=0.01)
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(1.02, Verdict.UNDECIDED), (0.95, Verdict.PASS)])
+def test_without_the_deformed_shape_a_toggle_passes_below_its_limit_load_alone(share: float, verdict: Verdict) -> None:
+    limit = limit_load(toggle(-1.0, 5.0), 5.0)
+    _, moved, (found,) = linkage(toggle(-share * limit, 5.0, way="off"))
+    assert (moved.state, found.verdict) == ("off", verdict)
+
+
+def test_a_load_that_opens_a_toggle_stiffens_it() -> None:
+    """Pulled away from its dead point it holds what it cannot hold towards it."""
+    _, moved, found = linkage(toggle(3.0))
+    assert moved.state == "small"
+    assert moved.factor > 50.0
+    assert all(c.verdict is Verdict.PASS for c in found)
+
+
+def test_just_outside_of_the_limits_the_linear_answer_is_near() -> None:
+    """At a factor of ten the toggle has moved by a fifth more than linear theory says: the band holds it."""
+    case = toggle(-1.0)
+    _, one, _ = linkage(case)
+    force = one.factor / 10.0
+    _, inside, _ = linkage(toggle(-1.01 * force))
+    _, outside, (found,) = linkage(toggle(-0.99 * force))
+    assert (inside.state, outside.state, found.verdict) == ("deformed", "small", Verdict.PASS)
+    true = np.linalg.norm(inside.points["left", "B"]) / 1.01
+    linear = np.linalg.norm(outside.points["left", "B"]) / 0.99
+    assert 1.1 < true / linear < growth(10.0)
