@@ -10,6 +10,9 @@ ON_AXIS = 1e-9
 """Share of a slot's or arm's size by which it may lie off the link's axis."""
 LEAST_ARM_ANGLE = math.radians(30.0)
 """Between an arm and the link's axis: below it, bar and arm run into one another."""
+PLAIN_EYE = 1.01
+"""Eye over width of a bar up to which the eye is built as wide as the bar: the kernel cannot round so low a step, and
+a narrower eye bears no less stress."""
 _CHORDS = 200
 
 
@@ -81,6 +84,13 @@ def patch_span(body: Body, end: PlainEnd) -> tuple[float, float]:
     return end.x - end.patch / 2.0, end.x + end.patch / 2.0
 
 
+def plain_eye(body: Body, pin: Pin) -> bool:
+    """Whether an eye is no thicker and no wider than its bar (or arm): a hole, and a round end where the bar ends."""
+    part = body.part
+    within = isinstance(part, Bar) and not part.has_step and part.eye_diameter <= PLAIN_EYE * part.width
+    return within and (pin.foot is not None or abs(pin.y) <= ON_AXIS * section_width(part))
+
+
 def eye_reach(body: Body, pin: Pin) -> float:
     """Return half the length of x that an eye with its fillet takes up on the tube or bar [mm].
 
@@ -92,10 +102,14 @@ def eye_reach(body: Body, pin: Pin) -> float:
         return part.eye_diameter / 2.0
     if pin.foot is not None:
         return 0.0
+    if plain_eye(body, pin):
+        fillet = 0.0
     radius, width = part.eye_diameter / 2.0, section_width(part)
     across = max(0.0, abs(pin.y) - width / 2.0)
     corners = [
-        (width / 2.0 + fillet) / math.tan(_arm_angle(arm) / 2.0) for arm in body.pins if arm.foot == (pin.x, pin.y)
+        (width / 2.0 + fillet_radius(part)) / math.tan(_arm_angle(arm) / 2.0)
+        for arm in body.pins
+        if arm.foot == (pin.x, pin.y)
     ]
     return max([math.sqrt(max((radius + fillet) ** 2 - across**2, 0.0)), *corners]) + pin.slot / 2.0
 
@@ -152,7 +166,7 @@ def _check_pin(body: Body, pin: Pin, first: float, last: float) -> None:
     width = section_width(part)
     at_end = pin.span[0] == first or pin.span[1] == last
     reach = (part.eye_diameter - width) / 2.0 if at_end else part.eye_diameter / 2.0
-    if abs(pin.y) >= reach:
+    if abs(pin.y) >= reach and abs(pin.y) > ON_AXIS * width:
         what = "cover the whole end of the" if at_end else "reach past the axis of the"
         raise CaseError(
             f"pin {pin.name} lies {pin.y:g} mm off the link's axis, but its eye must {what} {part.shape}, which "

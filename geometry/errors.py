@@ -17,3 +17,7 @@ class CannotRunError(AlulaError):
     """The input may be right, but the run could not be finished (mesher, memory, disk, library)."""
 
     exit_status = 4
+
+
+class CoarseMeshError(CannotRunError):
+    """The mesher failed, or its mesh is none of the shape: a finer one may do."""

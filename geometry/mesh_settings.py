@@ -42,8 +42,10 @@ class MeshSettings:
 
     def scaled(self, factor: float) -> "MeshSettings":
         """Return the same settings with every element edge longer by ``factor`` (a turn keeps at least six)."""
+        values = self.size_values
         return replace(
             self,
+            size_values=None if values is None else values * factor,
             size=self.size * factor,
             bore_elements=max(6, round(self.bore_elements / factor)),
             hole_elements=max(6, round(self.hole_elements / factor)),

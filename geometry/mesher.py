@@ -4,15 +4,16 @@ Runs in a child process only (see ``geometry.mesh``).
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.body_rules import section_width
+from geometry.body_rules import plain_eye, section_width
 from geometry.element_count import SAFETY, Sizes, estimated_elements
 from geometry.element_geometry import element_volumes, flatten, scaled_jacobians, triangle_areas
-from geometry.errors import CannotRunError
+from geometry.errors import CannotRunError, CoarseMeshError
 from geometry.mesh_settings import MeshSettings
 from geometry.part import Body, Disc, Part, Pin, Tube
 from geometry.solid_model import SECTION_UNITS, Solid
@@ -27,6 +28,9 @@ gmsh's high-order optimiser is not used: on two owl links it mended 2 of 5 and 2
 it can take half a minute, aborts the process where it fails, and its result varies from run to run.
 """
 
+FINER, ATTEMPTS = 0.7, 3
+"""Factor on all sizes from one attempt at a mesh to the next, and how many there are."""
+
 # The mesher places some nodes from either end of an edge, as memory addresses fall: they differ by
 # 4e-16 from run to run. Rounding makes runs agree to the last bit.
 _DECIMALS = 10
@@ -40,9 +44,30 @@ _GMSH_TRIANGLE = {1: 2, 2: 9}
 def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
     """Mesh the solid and return the mesh in mm, checked against the kernel's areas and volume.
 
+    A mesh that fails these checks is made anew, finer, up to ``ATTEMPTS`` times in all, and the mesh's notes say so.
+
     Raises ``CannotRunError`` if the mesher fails, if the mesh will exceed or exceeds ``max_elements``, if an element
     stays invalid, or if an area or the volume is off by more than the elements' chord error.
     """
+    first: CoarseMeshError | None = None
+    for attempt in range(ATTEMPTS):
+        try:
+            mesh = _mesh(gmsh, solid, settings)
+        except CoarseMeshError as error:
+            first, settings = first or error, settings.scaled(FINER)
+        except CannotRunError:  # too many elements
+            if first is None:
+                raise
+            break
+        else:
+            note = f"meshed with {FINER**attempt:.2g} times the size that was asked for, since with that {first}"
+            return mesh if first is None else replace(mesh, notes=(*mesh.notes, note))
+    raise CannotRunError(f"{first}, and finer sizes fail as well; change the part's dimensions a little")
+
+
+def _mesh(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
+    """Return the mesh of one attempt; raises ``CoarseMeshError`` where a finer one may do."""
+    gmsh.model.mesh.clear()
     order = 2 if settings.curved else 1
     estimate = estimated_elements(gmsh, solid, _sizes_at(solid, settings), settings.turn_elements)
     if estimate > SAFETY * settings.max_elements:
@@ -58,10 +83,10 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
     try:
         gmsh.model.mesh.generate(3)
     except Exception as error:
-        raise CannotRunError(f"the mesher failed ({error}); use a finer size") from None
+        raise CoarseMeshError(f"the mesher failed ({error})") from None
     count = len(gmsh.model.mesh.getElementsByType(_GMSH_TETRA[1])[0])
     if count == 0:
-        raise CannotRunError("the mesher filled no volume")
+        raise CoarseMeshError("the mesher filled no volume")
     if count > settings.max_elements:
         raise CannotRunError(
             f"the mesh has {count:,} tetrahedra, more than max_elements {settings.max_elements:,}; "
@@ -106,7 +131,7 @@ def _checked(
 ) -> TaggedMesh:
     filled = element_volumes(points, cells)
     if (least := scaled_jacobians(points, cells).min()) <= 0.0 or (filled <= 0.0).any():
-        raise CannotRunError(f"the mesh holds an inverted element (scaled Jacobian {least:.3g}); change the size")
+        raise CoarseMeshError(f"the mesh holds an inverted element (scaled Jacobian {least:.3g})")
     surfaces: dict[str, NDArray[np.int64]] = {}
     areas: dict[str, float] = {}
     order = 2 if settings.curved else 1
@@ -116,18 +141,17 @@ def _checked(
         area = sum(gmsh.model.occ.getMass(2, tag) for tag in faces)
         meshed = triangle_areas(points, triangles).sum()
         if abs(meshed - area) > settings.chord_error * area:
-            raise CannotRunError(
+            raise CoarseMeshError(
                 f"surface '{name}' has {meshed * solid.unit**2:.6g} mm² in the mesh, but "
-                f"{area * solid.unit**2:.6g} mm² in the geometry; use a finer size"
+                f"{area * solid.unit**2:.6g} mm² in the geometry"
             )
         surfaces[name] = np.ascontiguousarray(triangles[:, :3])
         areas[name] = area * solid.unit**2
     volume = gmsh.model.occ.getMass(3, solid.volume)
     meshed = filled.sum()
     if abs(meshed - volume) > settings.chord_error * volume:
-        raise CannotRunError(
-            f"the mesh has {meshed * solid.unit**3:.6g} mm³, but the geometry {volume * solid.unit**3:.6g} mm³; "
-            "use a finer size"
+        raise CoarseMeshError(
+            f"the mesh has {meshed * solid.unit**3:.6g} mm³, but the geometry {volume * solid.unit**3:.6g} mm³"
         )
     return TaggedMesh(
         points=points * solid.unit,
@@ -200,13 +224,14 @@ def size_formulas(body: Body, settings: MeshSettings) -> list[str]:
     to_bar = f"(Sqrt(y^2+z^2)-{half:.12g})" if part.shape == "tube" else f"(Fabs(y)-{half:.12g})"
     for pin in body.pins:
         to_eye = f"({_from_pin(pin)}-{part.eye_diameter / 2.0:.12g})"
-        sides = [(to_eye, to_bar)]
+        sides = [] if plain_eye(body, pin) else [(to_eye, to_bar)]
         if pin.foot is not None:
             arm, foot = (
                 f"(Fabs({_across(pin)})-{half:.12g})",
                 _from_pin(Pin(name="", x=pin.foot[0], y=0.0, diameter=0.0)),
             )
-            sides = [(to_eye, arm), (f"({foot}-{part.eye_diameter / 2.0:.12g})", arm), (arm, to_bar)]
+            at_eyes = [(to_eye, arm), (f"({foot}-{part.eye_diameter / 2.0:.12g})", arm)]
+            sides = [*(at_eyes if sides else []), (arm, to_bar)]
         texts += [f"{size:.12g}+{growth:g}*Max(Sqrt({a}^2+{b}^2)-{part.fillet_radius:.12g},0)" for a, b in sides]
     return texts
 

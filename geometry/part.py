@@ -142,16 +142,16 @@ class Bar(CaseModel):
     fillet_radius: Annotated[Length, NOT_NEGATIVE]
     """Fillet where the bar's sides meet an eye, and its faces a thicker eye; 0 leaves the edge sharp."""
     eye_diameter: Annotated[Length, POSITIVE] = Field(default_factory=lambda part: EYE_WIDTH * part["width"])
-    """1.6 times width unless stated."""
+    """1.6 times width unless stated; built as wide as the bar where it is at most 1 % wider."""
     eye_thickness: Annotated[Length, POSITIVE] = Field(default_factory=lambda part: part["thickness"])
     """The bar's thickness unless stated; if thicker, by so much that the fillet fits on the step."""
 
     @model_validator(mode="after")
     def _sizes(self) -> "Bar":
-        if self.eye_diameter <= self.width:
+        if self.eye_diameter < (1.0 - ROUNDING) * self.width:
             raise PydanticCustomError(
                 "narrow_eye",
-                "eye_diameter {eye} mm must be greater than width {width} mm; widen the eye or leave it out",
+                "eye_diameter {eye} mm must be at least width {width} mm; widen the eye or leave it out",
                 {"eye": f"{self.eye_diameter:g}", "width": f"{self.width:g}"},
             )
         if self.eye_thickness < (1.0 - ROUNDING) * self.thickness:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.body_rules import extent, patch_span, section_height, section_width
+from geometry.body_rules import extent, patch_span, plain_eye, section_height, section_width
 from geometry.errors import CannotRunError, CaseError
 from geometry.part import Bar, Body, Disc, HoleRow, Part, Pin, PlainEnd, Tube
 
@@ -26,6 +26,8 @@ Entity = tuple[int, int]
 ON_SURFACE = 1e-5
 # Sections are ten units across.
 SECTION_UNITS = 10.0
+CLEAR_EYE = 1.1
+"""Eye over width of a bar from which on the eye's rim stands clear of the bar's sides."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,8 +129,12 @@ def _stations(body: Body) -> list[float]:
 
 
 def _eyes(gmsh: Any, body: Body) -> list[Entity]:
-    part = body.part
-    return [e for p in body.pins for e in _upright(gmsh, p, part.eye_diameter, part.eye_thickness)]
+    part, found = body.part, []
+    for pin in body.pins:
+        plain = plain_eye(body, pin)
+        if not plain or pin.foot is not None or {*pin.span} & {*extent(body)}:  # else within the bar
+            found += _upright(gmsh, pin, section_width(part) if plain else part.eye_diameter, part.eye_thickness)
+    return found
 
 
 def _upright(gmsh: Any, pin: Pin, diameter: float, height: float) -> list[Entity]:
@@ -166,7 +172,8 @@ def _tube(gmsh: Any, body: Body, named: Body) -> Entity:
 
 def _on_an_eye(body: Body, p: NDArray[np.float64]) -> bool:
     radius = body.part.eye_diameter / 2.0
-    return any(abs(_from_pin(pin, p[0], p[1]) - radius) < ON_SURFACE for pin in body.pins)
+    raised = [pin for pin in body.pins if not plain_eye(body, pin)]
+    return any(abs(_from_pin(pin, p[0], p[1]) - radius) < ON_SURFACE for pin in raised)
 
 
 def hollow_spans(body: Body) -> list[tuple[float, float]]:
@@ -269,7 +276,7 @@ def _imprint(gmsh: Any, body: Body, solid: Entity) -> Entity:
     width = section_width(part)
     if part.eye_thickness - part.thickness < ON_SURFACE:
         for side in (-0.5, 0.5):
-            discs += [_flat_eye(gmsh, p, part.eye_diameter, side * part.thickness) for p in body.pins]
+            discs += [_flat_eye(gmsh, p, _ring(part, p), side * part.thickness) for p in body.pins]
     for end in body.ends:
         low, high = patch_span(body, end)
         for side in (-0.5, 0.5):
@@ -284,6 +291,17 @@ def _imprint(gmsh: Any, body: Body, solid: Entity) -> Entity:
     # What lay over a hole belongs to no solid.
     occ.remove([p for p in pieces if p[0] == 2 and not gmsh.model.getAdjacencies(*p)[0].size], recursive=True)
     return _only([p for p in pieces if p[0] == 3])
+
+
+def _ring(part: Bar | Disc, pin: Pin) -> float:
+    """Return the diameter of the flat face about a hole on which a torque or a thrust enters.
+
+    That of the eye; where the bar's sides pass close to the eye's rim, three quarters of the wall: circle and sides
+    would leave cusps between them that no mesh fills.
+    """
+    if isinstance(part, Bar) and part.eye_diameter < CLEAR_EYE * part.width:
+        return pin.diameter + 0.75 * (min(part.eye_diameter, part.width) - pin.diameter)
+    return part.eye_diameter
 
 
 def _flat_eye(gmsh: Any, pin: Pin, diameter: float, z: float) -> Entity:
@@ -350,7 +368,7 @@ def _only(solids: list[Entity]) -> Entity:
 
 
 def _fillet(gmsh: Any, solid: Entity, curves: list[int], radius: float, named: Body) -> Entity:
-    if radius == 0.0 or not named.pins:  # what is cut out about a hole has no eye
+    if radius == 0.0 or all(plain_eye(named, pin) and pin.foot is None for pin in named.pins):
         return solid
     part = named.part
     assert not isinstance(part, Disc)

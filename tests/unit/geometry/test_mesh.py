@@ -1,6 +1,7 @@
 """Meshing of bodies: what comes back, and what a mesher's failure turns into."""
 
 import dataclasses
+import math
 import os
 import re
 import sys
@@ -15,7 +16,7 @@ from geometry.child_memory import allowed
 from geometry.element_geometry import TETRA_EDGES, scaled_jacobians, shape_quality, volumes_and_moments
 from geometry.errors import CannotRunError, CaseError
 from geometry.locks import locked
-from geometry.mesh import COARSE, export_step, mass_properties, mesh_bodies, mesh_body, reentrant_edges
+from geometry.mesh import COARSE, MeshSettings, export_step, mass_properties, mesh_bodies, mesh_body, reentrant_edges
 from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 from geometry.tagged_mesh import TaggedMesh
 
@@ -187,6 +188,40 @@ def test_thin_walls_are_meshed_finely_enough() -> None:
     thin = dataclasses.replace(tube_body(inner_diameter="4.7 mm"), holes=())
     mesh = mesh_body(thin, COARSE)
     assert volumes_and_moments(mesh.points, mesh.cells)[0].sum() == pytest.approx(mesh.volume, rel=3e-3)
+
+
+def test_a_mesh_that_is_none_of_the_shape_is_made_anew_and_finer() -> None:
+    """The rim of an eye 1.33 times as wide as the bar leaves cusps beside the fillets, in which elements go flat."""
+    part = Bar.model_validate(
+        {"shape": "bar", "material": "resin", "width": "3.861622932258501 mm", "thickness": "7.2386973237706815 mm",
+         "eye_diameter": "5.134312398304288 mm", "fillet_radius": "1.759191754369836 mm"}
+    )  # fmt: skip
+    pins = (
+        Pin(name="A", x=0.0, y=0.0, diameter=0.9142390520712832),
+        Pin(name="B", x=33.61526947468871, y=0.0, diameter=1.1955586797347495),
+    )
+    end = PlainEnd(name="H", x=53.784431159501935, patch=3.861622932258501)
+    first = MeshSettings(size=0.6, bore_elements=10, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)
+    mesh = mesh_body(Body(part=part, pins=pins, ends=(end,), holes=()), first)
+    assert re.search(r"meshed with 0\.\d+ times the size that was asked for, since .* in the mesh, but", mesh.notes[-1])
+    assert volumes_and_moments(mesh.points, mesh.cells)[0].sum() == pytest.approx(mesh.volume, rel=5e-3)
+
+
+@pytest.mark.parametrize(("eye", "fillet"), [(8.0, 2.0), (8.05, 0.2), (8.2, 2.0), (8.6, 0.0)])
+def test_eyes_as_wide_as_the_bar_or_just_wider(eye: float, fillet: float) -> None:
+    part = Bar.model_validate(
+        {"shape": "bar", "material": "resin", "width": "8 mm", "thickness": "4 mm", "eye_diameter": f"{eye} mm",
+         "fillet_radius": f"{fillet} mm"}
+    )  # fmt: skip
+    pins = tuple(Pin(name=name, x=x, y=0.0, diameter=3.0) for name, x in (("A", 0.0), ("M", 15.0), ("B", 40.0)))
+    mesh = mesh_body(Body(part=part, pins=pins, ends=(), holes=()), COARSE)
+    assert shape_quality(mesh.points, mesh.cells).min() > 0.1
+    straight = 4.0 * (8.0 * 40.0 + math.pi * 4.0**2 - 3.0 * math.pi * 1.5**2)  # bar with round ends and three holes
+    if eye <= 1.01 * 8.0:
+        assert mesh.volume == pytest.approx(straight, rel=1e-8)
+    else:
+        assert straight < mesh.volume < straight + 4.0 * 3.0 * math.pi / 4.0 * (eye**2 - 8.0**2) + fillet
+    assert set(mesh.areas) == {f"{kind}:{pin}" for kind in ("bore", "top", "bottom") for pin in "AMB"}
 
 
 def test_flattened_elements_are_told() -> None:

@@ -103,7 +103,7 @@ def test_shear_coefficients_of_cowper() -> None:
         (TUBE, {"eye_thickness": "6.5 mm"}, "eye_thickness 6.5 mm must be at least .* = 6.64 mm"),
         (TUBE, {"fillet_radius": "-1 mm"}, "must not be negative"),
         (TUBE, {"width": "1 mm"}, "Extra inputs"),
-        (BAR, {"eye_diameter": "6 mm"}, "eye_diameter 6 mm must be greater than width 6 mm; widen"),
+        (BAR, {"eye_diameter": "5.9 mm"}, "eye_diameter 5.9 mm must be at least width 6 mm; widen"),
         (BAR, {"eye_thickness": "3.9 mm"}, "eye_thickness 3.9 mm must be at least the bar's thickness 4 mm"),
         (BAR, {"eye_thickness": "5 mm"}, "eye_thickness 5 mm makes a step .* at least .* = 6.05 mm, or leave it out"),
         (BAR, {"thickness": "0 mm"}, "greater than zero"),
