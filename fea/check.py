@@ -1,7 +1,7 @@
 """The whole check of a case: pose, statics, beams, solids, bands, verdict."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -29,6 +29,7 @@ from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
 from fea.solid_result import link_task, solid_result
 from fea.threads import bounded_run
+from fea.unloaded import acts, load_size, nothing_acts, undecided, without_rounding
 from fea.verdict import CheckOutcome, overall
 from geometry.body_rules import hand_section, reference_line
 from geometry.errors import CaseError
@@ -157,9 +158,15 @@ def check_case(
         for title, forces in statics.forces.items()
     }
     clock("frames")
+    sizes = {title: load_size(loads, case.linkage.longest) for title, loads in statics.loads.items()}
     cut = {
         link: tuple(
-            moved[title].links.get(link) or link_loads(title, link, case.body(link), reactions, statics.loads[title])
+            without_rounding(
+                moved[title].links.get(link)
+                or link_loads(title, link, case.body(link), reactions, statics.loads[title]),
+                sizes[title],
+                case.linkage.longest,
+            )
             for title, reactions in statics.reactions.items()
         )
         for link in case.checked_links
@@ -167,7 +174,8 @@ def check_case(
     beams = {link: tuple(_beam(case, statics, link, loads) for loads in cut[link]) for link in cut}
     clock("hand calculations")
     climbs: dict[str, Climb] = {}
-    loaded = {link: [x for x in loads if _acts(x)] for link, loads in cut.items()}
+    loaded = {link: [x for x in loads if acts(x, sizes[x.name], case.linkage.longest)] for link, loads in cut.items()}
+    idle = set(sizes) - {loads.name for acting in loaded.values() for loads in acting} if cut else set()
     tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
     framed = any(forces.model != PINNED_STATICS for forces in statics.forces.values())
     checked = {
@@ -200,6 +208,15 @@ def check_case(
         }
         reactions = moved[title].reactions or forces.reactions
         pins = _pins(case, reactions)
+        checks: Iterable[CheckOutcome] = (
+            *outcomes(case, title, links, pins, moved[title]),
+            *_bearing(case, title, reactions),
+            *buckling_outcomes(case, title, {link: beams[link][i].check for link in cut}),
+            *(found[title] for found in motors if title in found),
+        )
+        if title in idle:
+            joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
+            checks = undecided(checks, title, sizes[title], joints)
         load_cases[title] = LoadCaseResult(
             name=title,
             forces=forces,
@@ -207,12 +224,7 @@ def check_case(
             links=links,
             pins=pins,
             ways_to_hold=ways_to_hold(case, statics.pose, statics.loads[title]),
-            checks=(
-                *outcomes(case, title, links, pins, moved[title]),
-                *_bearing(case, title, reactions),
-                *buckling_outcomes(case, title, {link: beams[link][i].check for link in cut}),
-                *(found[title] for found in motors if title in found),
-            ),
+            checks=tuple(checks),
         )
     clock("stress")
     return CheckResult(
@@ -224,7 +236,10 @@ def check_case(
         audit=statics.audit,
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
-        warnings=tuple(_warnings(case, statics, moved)),
+        warnings=(
+            *(nothing_acts(title, sizes[title]) for title in load_cases if title in idle),
+            *_warnings(case, statics, moved),
+        ),
     )
 
 
@@ -256,12 +271,6 @@ def _beam(case: Case, statics: CaseStatics, link: str, loads: LinkLoads) -> _Bea
     )
     found = details(body, loads, check.forces)
     return _Beam(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))
-
-
-def _acts(loads: LinkLoads) -> bool:
-    """Return True if anything but zeros acts on the link."""
-    wrenches = [p.wrench for p in loads.pins] + [e.wrench for e in loads.ends]
-    return bool(loads.bodies or loads.lines or loads.couples or any(np.any(w != 0.0) for w in wrenches))
 
 
 def _link_result(case: Case, link: str, title: str, beam: _Beam, climbed: Climb | None) -> LinkResult:

@@ -2,8 +2,9 @@
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,14 @@ from fea.check import effort_of
 from fea.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.envelope_result import EnvelopeResult, LinkEnvelope
 from fea.link_envelope import link_envelope
-from fea.link_history import link_histories
+from fea.link_history import LinkHistory, link_histories
 from fea.refinement import START, Effort, refine_links
 from fea.scatter import load_scatter
 from fea.solid import require_compressible
 from fea.solid_result import link_task
 from fea.space import DisplacementSpace, displacement_space
 from fea.threads import bounded_run
+from fea.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
 from fea.verdict import overall
 from geometry.errors import AlulaError, CannotRunError, CaseError
 from geometry.mesh import mesh_bodies
@@ -74,7 +76,9 @@ def envelope_case(
             f"envelope: no pose is left, since the drive torque grows beyond {growth:g} times everywhere; drive "
             "another link or allow a larger growth"
         )
-    histories = {link: tuple(h for h in link_histories(moved, link) if h.acts) for link in case.checked_links}
+    sizes = {title: stated_size(case, title) for title in case.load_cases}
+    acting = partial(_acts, sizes=sizes, length=case.linkage.longest, evaluated=evaluated)
+    histories = {link: tuple(filter(acting, link_histories(moved, link))) for link in case.checked_links}
     loaded = {link: found for link, found in histories.items() if found}
     timings = {"motion": time.perf_counter() - begin}
 
@@ -116,7 +120,13 @@ def envelope_case(
         progress(f"Solving {link} over the motion: {len(space.cells)} elements, {int(evaluated.sum())} poses ...")
         links[link] = over_motion(link, space, repetitions=repetitions, refined=solid, notes=solid.solution.notes)
     timings["motion of the solids"] = time.perf_counter() - begin
-    checks = (*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, loaded, evaluated))
+    checks = [*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, loaded, evaluated)]
+    idle = set(case.load_cases) - {history.load_case for found in loaded.values() for history in found}
+    for title in (title for title in case.load_cases if title in idle):
+        forces = {name: np.linalg.norm(f[evaluated], axis=1).max() for name, f in moved.forces[title].forces.items()}
+        of_idle = [*(check for check in checks if check.load_case == title), *unloaded_links(case, title)]
+        checks = [check for check in checks if check.load_case != title]
+        checks += undecided(of_idle, title, sizes[title], forces)
     return EnvelopeResult(
         name=name,
         case=case,
@@ -127,11 +137,20 @@ def envelope_case(
         evaluated=evaluated,
         links=links,
         idle=tuple(link for link in histories if link not in loaded),
-        checks=checks,
+        checks=tuple(checks),
         verdict=overall(check.verdict for check in checks),
-        warnings=tuple(_warnings(case, moved, evaluated, growth)),
+        warnings=(
+            *(nothing_acts(title, sizes[title]) for title in case.load_cases if title in idle),
+            *_warnings(case, moved, evaluated, growth),
+        ),
         timings=timings,
     )
+
+
+def _acts(history: LinkHistory, *, sizes: Mapping[str, float], length: float, evaluated: NDArray[np.bool_]) -> bool:
+    """Return True if anything acts on a link at some pose that counts."""
+    size = sizes[history.load_case]
+    return any(acts(history.at(pose), size, length) for pose in np.flatnonzero(evaluated).tolist())
 
 
 def evaluated_poses(moved: CaseMotion, growth: float = TORQUE_GROWTH) -> NDArray[np.bool_]:

@@ -59,13 +59,6 @@ class LinkHistory:
         """Number of poses."""
         return len(self.acceleration)
 
-    @property
-    def acts(self) -> bool:
-        """True if anything but zeros acts on the link at some pose."""
-        loads = (*self.pins.values(), *self.couples.values(), *self.ends.values())
-        inert = self.mass is not None and np.any(self.acceleration != 0.0)
-        return bool(inert or self.lines or any(np.any(np.nan_to_num(load) != 0.0) for load in loads))
-
     def chosen(self, poses: NDArray[np.bool_]) -> "LinkHistory":
         """Return the history at the chosen poses (n,) alone."""
         return replace(

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.band import Band
-from fea.verdict import CheckOutcome, Verdict, at_most
+from fea.verdict import DRIVE_POWER, CheckOutcome, Verdict, at_most
 from loads.case import Case
 from loads.case_motion import CaseMotion, solve_case_motion
 from loads.check_spec import MotorCheck
@@ -85,7 +85,7 @@ def _outcome(
         name=name,
         link=laden.drive.link,
         load_case=title,
-        quantity="drive power",
+        quantity=DRIVE_POWER,
         unit="W",
         value=value,
         limit=limit,

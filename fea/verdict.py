@@ -9,6 +9,7 @@ from fea.band import Band
 SAFETY_FACTOR = "safety factor"
 LOAD_SHARE = "share of the load that is held"
 BUCKLING_FACTOR = "buckling factor"
+DRIVE_POWER = "drive power"
 LINKAGE = "the linkage"
 """Stands in the place of a link where a check is about all of them."""
 PIN = "pin "

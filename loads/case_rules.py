@@ -199,6 +199,7 @@ def _check_loads(case: "Case", where: str, load_case: LoadCase) -> None:
             entry = f"{where}.{kind}.{i}"
             if load.link not in case.links:
                 raise CaseError(f"{entry}.link: '{load.link}' does not exist; the links are {', '.join(case.links)}")
+            _check_moves(case, entry, load.link)
             points = case.links[load.link].points
             for point in (load.start, load.end) if kind == "spread" else (load.at,):
                 if point not in points:
@@ -214,6 +215,7 @@ def _check_loads(case: "Case", where: str, load_case: LoadCase) -> None:
     for i, air in enumerate(load_case.air):
         check_air(air, f"{where}.air.{i}", case.link_points)
         for patch in air.spread:
+            _check_moves(case, f"{where}.air.{i}.spread", patch.link)
             if patch.at is not None:
                 _check_no_slot(case, f"{where}.air.{i}", patch.link, patch.at)
     if load_case.speed != 0.0 and case.pose.coordinate is None:
@@ -222,6 +224,14 @@ def _check_loads(case: "Case", where: str, load_case: LoadCase) -> None:
         raise CaseError(
             f"{where}.speed: it is the angular speed of the pose's coordinate, but '{case.pose.coordinate}' is a "
             "slider; leave it out and state motion.travel_speed"
+        )
+
+
+def _check_moves(case: "Case", entry: str, link: str) -> None:
+    if link == case.linkage.ground:
+        raise CaseError(
+            f"{entry}.link: '{link}' is the ground, where a load does nothing; name a moving link: "
+            f"{', '.join(case.linkage.moving)}"
         )
 
 

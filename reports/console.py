@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from fea.anchor import anchor_loads
 from fea.result import CheckResult, LoadCaseResult
-from fea.verdict import Verdict
+from fea.verdict import DRIVE_POWER, Verdict
 from loads.aero import AirForces
 from reports.frames import frame_lines
 from reports.second_opinion import opinion_table
@@ -41,7 +41,7 @@ def print_result(result: CheckResult, console: "Console") -> None:
         if case.checks:
             console.print(_checks(case))
         for check in case.checks:
-            if check.quantity == "drive power":
+            if check.quantity == DRIVE_POWER:
                 console.print(Text(f"Motor: {check.reason}."))
         for line in _hand(case):
             console.print(Text(line))
