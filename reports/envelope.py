@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from fea.band import Band
 from fea.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from fea.unchecked import unchecked
 from fea.verdict import SAFETY_FACTOR
 from geometry.material import Material
+from loads.check_spec import SafetyFactorCheck
 from reports.console import COLOURS
 from reports.meshes import solver_record
 from reports.output import MARK, write_folder
-from reports.wording import band, fixed, number, plain
+from reports.wording import band, fixed, not_checked, number, plain
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -131,6 +133,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         },
         "links": {name: _link_record(result, link) for name, link in result.links.items()},
         "idle_links": list(result.idle),
+        "not_checked": list(unchecked(result.case, (SafetyFactorCheck,))),
         "checks": [
             {
                 "name": check.name,
@@ -252,6 +255,8 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
             f"{int(result.evaluated.sum())} of {len(result.angles)} poses."
         )
     )
+    if left_out := not_checked(unchecked(result.case, (SafetyFactorCheck,))):
+        console.print(Text(left_out))
     console.print(_links(result))
     fatigued = {n: link for n, link in result.links.items() if any(c.fatigue for c in link.load_cases.values())}
     if fatigued:

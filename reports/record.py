@@ -8,6 +8,7 @@ from typing import Any
 
 from fea.band import Band
 from fea.result import CheckResult, LinkResult, LoadCaseResult
+from fea.unchecked import unchecked
 from geometry.material import Material
 from loads.published import StaticsAudit
 from loads.statics import Reactions
@@ -139,6 +140,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
             "duration": result.case.conditions.duration,
             "temperature": result.case.conditions.temperature,
         },
+        "not_checked": list(unchecked(result.case)),
         "assumptions": list(result.case.assumptions),
         "warnings": list(result.warnings),
         "timings": dict(result.timings),

@@ -4,6 +4,7 @@ import math
 
 from fea.band import Band
 from fea.result import CheckResult
+from fea.unchecked import unchecked
 from fea.verdict import LOAD_SHARE, CheckOutcome, Verdict
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -85,7 +86,16 @@ def tightest(result: CheckResult) -> CheckOutcome | None:
 
 
 def headline(result: CheckResult) -> str:
-    """Return the verdict and what it means in one or two plain sentences."""
+    """Return the verdict, what it means, and what no check looks at, in a few plain sentences."""
+    return " ".join(filter(None, (_headline(result), not_checked(unchecked(result.case)))))
+
+
+def not_checked(what: tuple[str, ...]) -> str:
+    """Return what no check looks at as a sentence; empty where every check is there."""
+    return f"Not checked: {'; '.join(what)}." if what else ""
+
+
+def _headline(result: CheckResult) -> str:
     checks = checks_of(result)
     worst = tightest(result)
     if worst is None:

@@ -59,7 +59,8 @@ def test_the_headline_of_a_pass_names_the_check_nearest_to_its_limit(result):
     beams = result.load_cases["weight"].links["AE"]
     assert wording.headline(result) == (
         "Pass: all 20 checks are met over the whole of every error band. Nearest to its limit: the safety factor of "
-        f"link AE under load case weight is {beams.safety_factor.value:.2f}, where at least 3 is asked for."
+        f"link AE under load case weight is {beams.safety_factor.value:.2f}, where at least 3 is asked for. "
+        "Not checked: pins, no check of them."
     )
 
 
@@ -113,10 +114,10 @@ def test_the_headline_of_an_open_answer_gives_the_reason(result, changed):
 
     text = wording.headline(changed(change))
     assert text.startswith("Undecided: 20 of 20 checks are left open")
-    assert text.endswith("Safety factor of GF: its band straddles the limit.")
+    assert "Safety factor of GF: its band straddles the limit." in text
 
 
 def test_nothing_checked_is_undecided(result):
     empty = {name: replace(case, checks=()) for name, case in result.load_cases.items()}
     text = wording.headline(replace(result, load_cases=empty, verdict=Verdict.UNDECIDED))
-    assert text == "Undecided: the case asks for no check, so nothing was decided."
+    assert text.startswith("Undecided: the case asks for no check, so nothing was decided.")

@@ -1,0 +1,73 @@
+"""What no check looks at is named, in the verdict's sentence and in the record."""
+
+import tomllib
+from importlib.resources import files
+
+import pytest
+
+from fea.check import check_case
+from fea.unchecked import unchecked
+from loads.case_file import validate
+from loads.check_spec import SafetyFactorCheck, SustainedCheck
+from reports.record import result_record
+from reports.wording import headline
+
+STRENGTH = {"type": "safety-factor", "minimum": 0.01}
+PINS = {"type": "pins", "minimum": 0.01}
+STIFF = {"type": "displacement", "maximum": "1 m"}
+NO_PINS = "pins, no check of them"
+
+
+def starter(checks, *bare):
+    """The starter case with these checks, some links without part."""
+    data = tomllib.loads((files("loads") / "cases" / "starter.toml.txt").read_text(encoding="utf-8"))
+    for link in bare:
+        del data["links"][link]["part"]
+    data["load_cases"]["lift"]["own_weight"] = False
+    return validate(data | {"checks": checks})
+
+
+@pytest.mark.parametrize(
+    ("checks", "bare", "left_out"),
+    [
+        ({"a": STRENGTH, "b": PINS}, (), ()),
+        ({"a": STRENGTH, "b": PINS}, ("coupler",), ("coupler, no part",)),
+        ({}, ("coupler",), ("coupler, no part", NO_PINS)),
+        ({"a": STRENGTH | {"links": ["rocker"]}, "b": PINS}, (), ("stress of crank, coupler, no check of it",)),
+        (
+            {"a": STRENGTH | {"links": ["rocker"]}, "b": STRENGTH | {"links": ["crank"]}, "c": PINS},
+            (),
+            ("stress of coupler, no check of it",),
+        ),
+        ({"a": STIFF, "b": PINS}, (), ("stress of crank, coupler, rocker, no check of it",)),
+        ({"a": STRENGTH}, (), (NO_PINS,)),
+        ({"a": STRENGTH, "b": PINS | {"joints": ["A", "B", "O4"]}}, (), ("pin O2, no check of it",)),
+        ({"a": STRENGTH, "b": PINS | {"joints": ["A", "B"]}}, (), ("pins O2, O4, no check of them",)),
+        # a pin between two links without part cannot be checked: it is named as well
+        (
+            {"a": STRENGTH, "b": PINS},
+            ("crank", "coupler"),
+            ("crank, no part", "coupler, no part", "pins O2, A, no check of them"),
+        ),
+    ],
+)
+def test_what_is_left_out(checks, bare, left_out):
+    assert unchecked(starter(checks, *bare)) == left_out
+
+
+def test_a_sustained_check_looks_at_stress_but_not_in_an_envelope():
+    lasting = starter({}).model_copy(update={"checks": {"long": SustainedCheck(type="sustained")}})
+    assert unchecked(lasting) == (NO_PINS,)
+    assert unchecked(lasting, (SafetyFactorCheck,)) == ("stress of crank, coupler, rocker, no check of it", NO_PINS)
+
+
+def test_verdict_and_record_name_a_link_without_part():
+    result = check_case(starter({"a": STRENGTH, "b": PINS}, "coupler"), fidelity="beam")
+    assert headline(result).endswith(" Not checked: coupler, no part.")
+    assert result_record(result)["not_checked"] == ["coupler, no part"]
+
+
+def test_nothing_is_said_where_all_is_checked():
+    result = check_case(starter({"a": STRENGTH, "b": PINS}), fidelity="beam")
+    assert "Not checked" not in headline(result)
+    assert result_record(result)["not_checked"] == []
