@@ -11,7 +11,7 @@ high   every pin stays where it is and keeps whatever angle it can: out of the p
        neighbours would keep, in the plane the driven link's at the drive's joint, and every angle where pins are
        bonded. No linkage whose joints stay where they are holds the link better, so that below 1 it buckles: a link
        fails on this end alone. Times the largest modulus over the modulus.
-low    a third of the value, since linear stress is not relied on below 3 (see below), times the least modulus over the
+low    a third of the value, since nothing is relied on below 3 (see below), times the least modulus over the
        modulus. Joints of a driven link and of bonded ones may move with the link as it bends: there it is a third of
        the lesser of the value and the factor of the link built in at the drive's joint, or at either of the
        outermost pins, and free elsewhere.
@@ -24,8 +24,8 @@ factor of 10, that answer rules and is the only outcome (``fea.outcomes``).
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
-(5.2.1(3)) and for n >= 3 where a factor may stand for it (section 5.2.2); below 3 stress by linear theory passes no
-link, and no linkage whose deformed shape is not known.
+(5.2.1(3)): below it stress and deflection are those of second-order theory (``fea.second_order``). For n >= 3 a factor
+may stand for it (section 5.2.2); below 3, where small faults of shape grow much, no link passes.
 """
 
 import itertools
@@ -124,7 +124,7 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
 def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
     """Return the factors of a link in every pose of ``force``, for the modulus of its card."""
     where, young = holding(case, link), case.material_of(link).youngs_modulus
-    in_plane, across = _columns(section, flanks_of(case.body(link)))
+    in_plane, across = columns(section, flanks_of(case.body(link)))
 
     def factors(
         column: tuple[float, Sequence[Stretch]], held: Sequence[float] = (), built_in: Sequence[float] = ()
@@ -148,7 +148,7 @@ def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> 
     return ColumnFactors(value=value, least=least, most=np.maximum(most, value))
 
 
-def _columns(
+def columns(
     section: Section, slots: Sequence[Flanks]
 ) -> tuple[tuple[float, Sequence[Stretch]], tuple[float, Sequence[Stretch]]]:
     """Second moment [mm⁴] and softer stretches of a link's column in the plane and out of it."""
@@ -208,7 +208,9 @@ def factor_band(material: Material, value: float, least: float, most: float) -> 
     )
 
 
-def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) -> Iterator[CheckOutcome]:
+def buckling_outcomes(
+    case: Case, title: str, beams: Mapping[str, BeamCheck], moved: LargeDisplacement
+) -> Iterator[CheckOutcome]:
     """Yield the outcome of every link that is compressed under the load case ``title``.
 
     A link fails where its compression buckles it however its joints hold it, whatever its stress says.
@@ -230,8 +232,14 @@ def buckling_outcomes(case: Case, title: str, beams: Mapping[str, BeamCheck]) ->
             value=band,
             limit=1.0,
             verdict=verdict,
-            reason=_reason(found, band, verdict) + beyond_strength({link: beam}),
+            reason=_reason(found, band, verdict, moved) + beyond_strength({link: beam}),
         )
+
+
+def grown(factor: float) -> str:
+    """Say how much bending grows at a factor, for the end of a reason."""
+    times = 1.0 / (1.0 - 1.0 / factor)
+    return f"bending grows to up to {times:.3g} times that of linear theory, which its stress and deflection hold"
 
 
 def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
@@ -291,7 +299,7 @@ def linkage_outcome(
     )
 
 
-def _reason(found: Column, band: Band, verdict: Verdict) -> str:
+def _reason(found: Column, band: Band, verdict: Verdict, moved: LargeDisplacement) -> str:
     pins = " and ".join(f"{x:.4g}" for x in found.outermost)
     held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
     load = f"up to {found.compression:.3g} N compress it, and {band.value:.3g} times that buckle it, {held}"
@@ -300,7 +308,9 @@ def _reason(found: Column, band: Band, verdict: Verdict) -> str:
     if verdict is Verdict.UNDECIDED and band.value < 1.0:
         return f"{load}; stiffer neighbours and a drive may hold it, up to {band.high:.3g} times"
     if verdict is Verdict.UNDECIDED:
-        return f"{load}; within {LEAST_LINEAR:g} times the load, stress by linear theory does not hold"
-    if band.value < LEAST_FACTOR:
-        return f"{load}; bending is up to {1.0 / (1.0 - 1.0 / band.value):.3g} times that of linear theory"
+        return f"{load}; within {LEAST_LINEAR:g} times the load, small faults of shape grow too much"
+    if band.value < LEAST_FACTOR and moved.state == "small":
+        return f"{load}; in the linkage, which buckles at {moved.buckling:.3g} times the load, bending grows little"
+    if band.value < LEAST_FACTOR and moved.state in ("deformed", "off", "unknown"):
+        return f"{load}; {grown(band.value)}"
     return load

@@ -24,6 +24,7 @@ from fea.pins import PinStress, stress_at
 from fea.refinement import START, Effort
 from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.scatter import compliance_scatter, load_scatter, strength_scatter
+from fea.second_order import second_order_loads
 from fea.solid import require_compressible
 from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
@@ -160,15 +161,7 @@ def check_case(
     clock("frames")
     sizes = {title: load_size(loads, case.linkage.longest) for title, loads in statics.loads.items()}
     cut = {
-        link: tuple(
-            without_rounding(
-                moved[title].links.get(link)
-                or link_loads(title, link, case.body(link), reactions, statics.loads[title]),
-                sizes[title],
-                case.linkage.longest,
-            )
-            for title, reactions in statics.reactions.items()
-        )
+        link: tuple(_cut(statics, link, what, title, sizes[title]) for title, what in moved.items())
         for link in case.checked_links
     }
     beams = {link: tuple(_beam(case, statics, link, loads) for loads in cut[link]) for link in cut}
@@ -211,7 +204,7 @@ def check_case(
         checks: Iterable[CheckOutcome] = (
             *outcomes(case, title, links, pins, moved[title]),
             *_bearing(case, title, reactions),
-            *buckling_outcomes(case, title, {link: beams[link][i].check for link in cut}),
+            *buckling_outcomes(case, title, {link: beams[link][i].check for link in cut}, moved[title]),
             *(found[title] for found in motors if title in found),
         )
         if title in idle:
@@ -241,6 +234,19 @@ def check_case(
             *_warnings(case, statics, moved),
         ),
     )
+
+
+def _cut(statics: CaseStatics, link: str, moved: LargeDisplacement, title: str, size: float) -> LinkLoads:
+    """Return what acts on a link, with the growth of its bending that the frame's answer leaves out.
+
+    On a deformed shape that is the bending between loaded places; where no frame told that it is small, all of it.
+    """
+    case, deformed = statics.case, moved.links.get(link)
+    loads = deformed or link_loads(title, link, case.body(link), statics.reactions[title], statics.loads[title])
+    loads = without_rounding(loads, size, case.linkage.longest)
+    if deformed is None and moved.state not in ("off", "unknown"):
+        return loads
+    return second_order_loads(case, link, loads, statics.masses.get(link), stays=deformed is not None)
 
 
 @dataclass(frozen=True, kw_only=True)

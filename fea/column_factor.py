@@ -21,6 +21,9 @@ ELEMENTS = 12
 """Along the whole column, at least; two at least between neighbouring stations."""
 MERGED = 1e-3
 """Share of the length below which two stations are one to the mesh; the force is integrated as it is."""
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+GAUSS = (_POINTS + 1.0) / 2.0, _WEIGHTS / 2.0
+"""Points and weights of Gauss on an element, as shares of it."""
 NOTHING = 1e-12
 """Largest eigenvalue over the force, below which no factor makes the column buckle."""
 
@@ -78,24 +81,12 @@ def column_factors(
     nodes = _nodes(force, supports, [x for stretch in stretches for x in (stretch.first, stretch.last)])
     start, length = nodes[0], nodes[-1] - nodes[0]
     sizes = np.diff(nodes) / length
-    points, weights = np.polynomial.legendre.leggauss(4)
-    points, weights = (points + 1.0) / 2.0, weights / 2.0
     unknown = np.asarray(np.isnan(force.values).any(axis=(0, 1)))
     known = AxialForce(breaks=force.breaks, values=np.where(unknown, 0.0, force.values))
-    stations = start + (nodes[:-1, None] - start) + (sizes[:, None] * points) * length
+    stations = start + (nodes[:-1, None] - start) + (sizes[:, None] * GAUSS[0]) * length
     pressed = known.at(stations.ravel()).reshape(*stations.shape, -1)
     count = 2 * len(nodes)
-    K, G = np.zeros((count, count)), np.zeros((len(unknown), count, count))
-    for e, h in enumerate(sizes):
-        own, middle = slice(2 * e, 2 * e + 4), (nodes[e] + nodes[e + 1]) / 2.0
-        soft = next((stretch for stretch in stretches if stretch.first < middle < stretch.last), None)
-        K[own, own] += (1.0 if soft is None else soft.bending) * _bending(h)
-        slope = _slopes(h, points)
-        G[:, own, own] += np.einsum("gp,gi,gj->pij", pressed[e] * (weights * h)[:, None], slope, slope)
-    for stretch in stretches:
-        ends = [2 * int(np.argmin(np.abs(nodes - x))) + 1 for x in (stretch.first, stretch.last)]
-        pair = stretch.pair * length / (stretch.last - stretch.first)
-        K[np.ix_(ends, ends)] += pair * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    K, G = stiffness_matrices(nodes, pressed, stretches)
     fixed = [2 * int(np.argmin(np.abs(nodes - x))) for x in supports]
     fixed += [2 * int(np.argmin(np.abs(nodes - x))) + 1 for x in built_in]
     free = np.setdiff1d(np.arange(count), fixed)
@@ -105,6 +96,30 @@ def column_factors(
     buckles = largest > NOTHING * size
     factor = np.where(buckles, stiffness / (length**2 * np.where(buckles, largest, 1.0)), math.inf)
     return np.where(unknown, np.nan, factor)
+
+
+def stiffness_matrices(nodes: Real, pressed: Real, stretches: Sequence[Stretch]) -> tuple[Real, Real]:
+    """Bending stiffness (2n, 2n) and what compression takes of it (P, 2n, 2n), by deflections and slopes at the nodes.
+
+    Lengths are counted in whole lengths L of the column: the first times E I/L², the second as it is [N].
+
+    nodes    (n,) x [mm]; ``pressed`` (n - 1, 4, P) compression at the elements' Gauss points [N]
+    """
+    length = nodes[-1] - nodes[0]
+    sizes, (points, weights) = np.diff(nodes) / length, GAUSS
+    count = 2 * len(nodes)
+    K, G = np.zeros((count, count)), np.zeros((pressed.shape[2], count, count))
+    for e, h in enumerate(sizes):
+        own, middle = slice(2 * e, 2 * e + 4), (nodes[e] + nodes[e + 1]) / 2.0
+        soft = next((stretch for stretch in stretches if stretch.first < middle < stretch.last), None)
+        K[own, own] += (1.0 if soft is None else soft.bending) * _bending(h)
+        slope = slopes(h, points)
+        G[:, own, own] += np.einsum("gp,gi,gj->pij", pressed[e] * (weights * h)[:, None], slope, slope)
+    for stretch in stretches:
+        ends = [2 * int(np.argmin(np.abs(nodes - x))) + 1 for x in (stretch.first, stretch.last)]
+        pair = stretch.pair * length / (stretch.last - stretch.first)
+        K[np.ix_(ends, ends)] += pair * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return K, G
 
 
 def _nodes(force: AxialForce, supports: Sequence[float], others: Sequence[float]) -> Real:
@@ -136,7 +151,7 @@ def _bending(h: float) -> Real:
     )
 
 
-def _slopes(h: float, t: Real) -> Real:
+def slopes(h: float, t: Real) -> Real:
     """V' (n, 4) of the shape functions of a cubic element of length h at shares t (n,) of it."""
     across = 6.0 * t * (1.0 - t) / h
     return np.stack([-across, 1.0 - 4.0 * t + 3.0 * t**2, across, 3.0 * t**2 - 2.0 * t], axis=1)
