@@ -181,8 +181,9 @@ def holding(case: Case, link: str) -> Holding:
     driven = case.drive is not None and case.drive.link == link
     drive = {case.drive.joint} if case.drive is not None and driven else set()
     # A pin that holds the link off its axis may keep its angle, held by other pins as well.
-    kept = set(joints) if bonded else drive | off
-    slides = {name for name in carried if bonded or linkage.joints[name].type == "slider"}
+    fixed = {name for name in joints if bonded and linkage.joints[name].type == "revolute"}
+    kept = fixed | drive | off
+    slides = {name for name in carried if linkage.joints[name].type == "slider"}
     alone = {first, last} if bonded else {foot[name] for name in drive & set(joints)}
     return Holding(
         outermost=(first, last) if last - first > slack else (first,),

@@ -11,7 +11,7 @@ from fea.linkage_frame import LinkageFrame, build_frame, out_of_plane
 from geometry.pose import Pose
 from loads.applied import Load
 from loads.case import Case
-from loads.statics import Drive, Reactions, assemble, solve_statics
+from loads.statics import Drive, Reactions, assemble, refuse_dead_point, solve_statics
 
 Real = NDArray[np.float64]
 
@@ -34,6 +34,11 @@ class JointForces:
     frame: LinkageFrame | None = None
     solution: FrameSolution | None = None
 
+    @property
+    def condition(self) -> float:
+        """Condition number of the scaled equations that gave the forces (2-norm; of a frame, 1-norm)."""
+        return self.reactions.system.condition if self.solution is None else self.solution.condition
+
 
 def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
     """Return the joint forces under loads in global axes, by the simplest model that has them.
@@ -53,6 +58,8 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
             model=PINNED_STATICS,
             reason="all loads act in the linkage's plane, where equilibrium alone gives the forces",
         )
+    if not bonded:
+        refuse_dead_point(assemble(pose, case.pinned_drive, ()), case.pinned_drive)
     frame = build_frame(case, pose, loads, held=case.pinned_drive, bonded=bonded)
     solution = solve_frame(frame.model)
     return JointForces(

@@ -5,7 +5,7 @@ a rigid arm, or where the link states an arm to it, on a beam of the same sectio
 beams of their own (``fea.flanks``), of which the pin pushes one. Links without a part are rigid. The
 link that the drive holds keeps its angle to the other link at the drive's joint, where the moment about z is the drive
 torque; at a slider it keeps its place, and the force along the guide is the drive force. In bonded linkages every pin
-carries all six components.
+of a revolute joint carries all six components; pins in slots and sliders slide as they do else.
 
 A pin in a slot stands at a station of its own of the slotted link. It presses on the slot's flanks: they take a force
 normal to the slot in the linkage's plane, and the moment about the slot of a pin that would tilt between them. It is
@@ -154,7 +154,8 @@ def build_frame(
     for name, joint in case.joints.items():
         held_here = held is not None and name == held.joint
         keeps = ALL_DOFS if joint.type == "slider" else TURNS
-        dofs = ALL_DOFS if bonded else JOINT_DOFS[joint.type] | (keeps if held_here else frozenset())
+        fixed = bonded and joint.type == "revolute"
+        dofs = ALL_DOFS if fixed else JOINT_DOFS[joint.type] | (keeps if held_here else frozenset())
         first, second = builder.pins[name]
         if first is not None and second is not None:
             places[second] = places[first]

@@ -140,7 +140,8 @@ class Case(CaseModel):
     """Material cards of the case's own; the library's are there by name without being listed."""
     parts: dict[Name, Part] = {}
     joint_model: Literal["pinned", "bonded"] = "pinned"
-    """Whether pins turn freely, or are bonded and carry moments about their own axis as well."""
+    """Whether pins turn freely, or are bonded and carry moments about their own axis as well. Sliders and pins in slots
+    slide all the same."""
     large_displacement: Literal["auto", "off"] = "auto"
     """auto: where the linkage moves by more than 5 % of its span, or may give way below ten times its load,
     equilibrium is sought on the deformed shape. off: never."""

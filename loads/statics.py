@@ -261,14 +261,7 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
             "from equilibrium; drive as many links as the linkage has degrees of freedom "
             f"(mobility {linkage.mobility})"
         )
-    smallest = float(system.singular_values[-1])
-    if smallest < NEARLY_SINGULAR:
-        who = f"driven link '{drive.link}'" if drive else "structure"
-        raise CaseError(
-            f"pose: it stands at (or within a hair of) a dead point of the {who}: the smallest singular value of "
-            f"the scaled equilibrium matrix is {smallest:.2g}, below {NEARLY_SINGULAR:g}, so joint forces would grow "
-            "without bound; change the pose or drive another link"
-        )
+    refuse_dead_point(system, drive)
     unknowns = np.linalg.solve(system.scaled, _scaled_rhs(system))
     # What is but rounding would stand as unbalanced loads on a link on which nothing acts.
     unknowns[np.abs(unknowns) <= ROUNDING * np.abs(unknowns).max(initial=0.0)] = 0.0
@@ -286,6 +279,18 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
         drive_force=float(unknowns[system.columns.index("P")]) if "P" in system.columns else 0.0,
         residual=float(np.max(np.abs(leftover / row_scale))) / load_size,
     )
+
+
+def refuse_dead_point(system: System, drive: Drive | None) -> None:
+    """Raise ``CaseError`` where the equations, square or redundant, leave a motion that hardly anything holds."""
+    smallest = float(system.singular_values[-1])
+    if smallest < NEARLY_SINGULAR:
+        who = f"driven link '{drive.link}'" if drive else "structure"
+        raise CaseError(
+            f"pose: it stands at (or within a hair of) a dead point of the {who}: the smallest singular value of "
+            f"the scaled equilibrium matrix is {smallest:.2g}, below {NEARLY_SINGULAR:g}, so joint forces would grow "
+            "without bound; change the pose or drive another link"
+        )
 
 
 def _scaled_rhs(system: System) -> Real:

@@ -107,7 +107,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "source": result.case.source,
         "verdict": result.verdict.value,
         "pose": _pose(result),
-        "statics": _statics(first.reactions),
+        "statics": _statics(first),
         "reactions": [entry for case in result.load_cases.values() for entry in _reactions(case)],
         "drive_torque": _drive_torque(first.reactions),
         "drive_force": _drive_force(first.reactions),
@@ -190,11 +190,11 @@ def _pose(result: CheckResult) -> dict[str, Any]:
     }
 
 
-def _statics(reactions: Reactions) -> dict[str, Any]:
+def _statics(case: LoadCaseResult) -> dict[str, Any]:
     return {
-        "size": len(reactions.system.rhs),
-        "condition": reactions.system.condition,
-        "residual": reactions.residual,
+        "size": len(case.reactions.system.rhs),
+        "condition": case.forces.condition,
+        "residual": case.reactions.residual,
     }
 
 
@@ -264,7 +264,7 @@ def _load_case(result: CheckResult, name: str) -> dict[str, Any]:
     case = result.load_cases[name]
     return {
         "title": result.case.load_cases[name].title,
-        "statics": _statics(case.reactions),
+        "statics": _statics(case),
         "drive_torque": _drive_torque(case.reactions),
         "drive_force": _drive_force(case.reactions),
         "anchor": anchor_record(case),
