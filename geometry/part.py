@@ -56,6 +56,22 @@ class Section:
         return 6.0 * (1.0 + nu) * (1.0 + m2) ** 2 / ((7.0 + 6.0 * nu) * (1.0 + m2) ** 2 + (20.0 + 12.0 * nu) * m2)
 
 
+def ring(outer_diameter: float, inner_diameter: float) -> Section:
+    """Return a circular tube, or a rod with inner diameter 0 (Roark, 8th ed., table A.1, case 16)."""
+    outer, inner = outer_diameter / 2.0, inner_diameter / 2.0
+    second = math.pi / 4.0 * (outer**4 - inner**4)
+    return Section(
+        area=math.pi * (outer**2 - inner**2),
+        i_y=second,
+        i_z=second,
+        torsion=2.0 * second,
+        half_y=outer,
+        half_z=outer,
+        round=True,
+        radius_ratio=inner / outer,
+    )
+
+
 def rectangle(width: float, thickness: float) -> Section:
     """Return a rectangle, its width in the linkage's plane; J after Roark, 8th ed., table 10.7, case 4."""
     a, b = max(width, thickness) / 2.0, min(width, thickness) / 2.0
@@ -117,19 +133,8 @@ class Tube(CaseModel):
 
     @property
     def section(self) -> Section:
-        """Cross-section of the tube between its eyes (Roark, 8th ed., table A.1, case 16)."""
-        outer, inner = self.outer_diameter / 2.0, self.inner_diameter / 2.0
-        second = math.pi / 4.0 * (outer**4 - inner**4)
-        return Section(
-            area=math.pi * (outer**2 - inner**2),
-            i_y=second,
-            i_z=second,
-            torsion=2.0 * second,
-            half_y=outer,
-            half_z=outer,
-            round=True,
-            radius_ratio=inner / outer,
-        )
+        """Cross-section of the tube between its eyes."""
+        return ring(self.outer_diameter, self.inner_diameter)
 
 
 class Bar(CaseModel):

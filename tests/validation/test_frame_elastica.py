@@ -10,9 +10,9 @@ from scipy.special import ellipeinc, ellipkinc
 from fea.beam import euler_load
 from fea.corotational import buckling_factor, solve_large_displacement
 from fea.frame import FrameElement, FrameModel, NodeLoad, Support
-from geometry.part import Bar, Tube
+from geometry.part import rectangle, ring
 
-ROD = Tube.model_construct(outer_diameter=0.5, inner_diameter=0.25).section
+ROD = ring(0.5, 0.25)
 E, NU, LENGTH = 1e4, 0.3, 100.0
 STIFFNESS = E * ROD.i_z
 FIXED = Support(node=0)
@@ -87,7 +87,7 @@ def test_bent_cantilever_in_space() -> None:
     """
     angle = np.linspace(0, np.pi / 4, 9)
     nodes = 100 * np.column_stack([1 - np.cos(angle), np.sin(angle), 0 * angle])
-    section = replace(Bar.model_construct(width=1.0, thickness=1.0).section, torsion=1 / 6)
+    section = replace(rectangle(1.0, 1.0), torsion=1 / 6)
     model = FrameModel(
         nodes=nodes,
         elements=tuple(FrameElement(nodes=(i, i + 1), section=section, young=1e7, poisson=0.0) for i in range(8)),

@@ -11,7 +11,7 @@ import pytest
 
 from fea.corotational import NoEquilibriumError, solve_large_displacement
 from fea.frame import FrameElement, FrameModel, NodeLoad, Support
-from geometry.part import Bar
+from geometry.part import rectangle
 
 DOWN = [(4.0306, 4.9238), (7.5944, 8.2901), (11.325, 10.487), (17.606, 13.032), (24.057, 14.798), (34.384, 17.026)]
 SIDE = [(0.45486, 6.2357), (2.1847, 10.247), (4.8272, 13.251), (8.3397, 15.520), (12.551, 17.002)]
@@ -22,7 +22,7 @@ HIGHEST = 18.761
 def lee(load: float) -> FrameModel:
     """The frame in the plane x-y under a load in thousands."""
     nodes = np.array([[0.0, 0, 0], [0, 120, 0], [24, 120, 0], [120, 120, 0]])
-    section = Bar.model_construct(width=2.0, thickness=3.0).section
+    section = rectangle(2.0, 3.0)
     assert (section.area, section.i_z) == pytest.approx((6.0, 2.0))
     pinned = frozenset({"ux", "uy", "uz", "rx", "ry"})
     return FrameModel(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fea.frame import FrameElement, FrameModel, NodeLoad, Support, solve_frame
-from geometry.part import Bar, Section, Tube
+from geometry.part import Section, rectangle, ring
 
 PLANE = frozenset({"uz", "rx", "ry"})
 
@@ -29,7 +29,7 @@ def test_timoshenko_cantilever_with_cowpers_coefficient(n: int) -> None:
 
     Tube 5 mm over 2.5 mm, L 88 mm, P 1 N, E 2900 MPa, ν 0.38.
     """
-    tube = Tube.model_construct(outer_diameter=5.0, inner_diameter=2.5).section
+    tube = ring(5.0, 2.5)
     assert tube.shear_coefficient(0.38) == pytest.approx(0.626817, abs=5e-7)
     tip = solve_frame(cantilever(88.0, tube, 2900.0, 0.38, [0, -1, 0, 0, 0, 0], n)).displacements[-1, 1]
     assert -tip == pytest.approx(2.732449, abs=5e-7)
@@ -44,7 +44,7 @@ def test_macneal_harder_straight_beam() -> None:
     6 x 0.2 x 0.1, E 1e7, ν 0.3, unit loads at the tip: extension 3e-5, in-plane 0.1081, out-of-plane 0.4321. The more
     digits 0.108094 and 0.432094 are Timoshenko's beam with κ = 5/6; Cowper's κ 0.8497 moves both by -1.8e-6.
     """
-    bar = Bar.model_construct(width=0.2, thickness=0.1).section
+    bar = rectangle(0.2, 0.1)
     for wrench, dof, published, digits in (
         ([1, 0, 0, 0, 0, 0], 0, 3e-5, 1e-12),
         ([0, 1, 0, 0, 0, 0], 1, 0.108094, 3e-6),
@@ -60,7 +60,7 @@ def test_macneal_harder_straight_beam_twist() -> None:
     Closed form T L/(G J) with J = 0.2287 a b³ for b/a = 1/2 (Timoshenko & Goodier, Theory of Elasticity, 3rd ed.,
     section 109, table: 0.229): 0.03411.
     """
-    bar = Bar.model_construct(width=0.2, thickness=0.1).section
+    bar = rectangle(0.2, 0.1)
     out = solve_frame(cantilever(6.0, bar, 1e7, 0.3, [0, 0, 0, 1, 0, 0], 3))
     assert out.displacements[-1, 3] == pytest.approx(0.03411, rel=2e-3)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fea.frame import FrameElement, FrameModel, FrameSolution, NodeLoad, Support, solve_frame
-from geometry.part import Tube
+from geometry.part import ring
 
 HINGES = (frozenset({"rz"}), frozenset({"rz"}))
 PLANE = frozenset({"uz", "rx", "ry"})
@@ -20,7 +20,7 @@ def truss(*, hinged: bool) -> FrameSolution:
     elements = tuple(
         FrameElement(
             nodes=pair,
-            section=Tube.model_construct(outer_diameter=2.0 * np.sqrt(area / np.pi), inner_diameter=0.0).section,
+            section=ring(2.0 * np.sqrt(area / np.pi), 0.0),
             young=196.2e3,
             poisson=0.3,
             releases=HINGES if hinged else (frozenset(), frozenset()),

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fea.beam import BeamLoads, LineLoad, PointLoad, deflection, internal_forces
-from geometry.part import Bar
+from geometry.part import rectangle
 
-SECTION = Bar.model_construct(width=7.0, thickness=3.0).section
+SECTION = rectangle(7.0, 3.0)
 number = st.floats(-10, 10).map(lambda v: round(v, 3))
 vector = st.tuples(number, number, number).map(np.array)
 station = st.floats(0, 100).map(lambda v: round(v, 2))

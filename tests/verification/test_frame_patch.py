@@ -10,11 +10,11 @@ from scipy.spatial.transform import Rotation
 
 from fea.beam import BeamLoads, PointLoad, deflection, internal_forces
 from fea.frame import FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
-from geometry.part import Bar, Section, Tube
+from geometry.part import Section, rectangle, ring
 
 E, NU = 2400.0, 0.35
-BAR = Bar.model_construct(width=6.0, thickness=2.0).section
-TUBE = Tube.model_construct(outer_diameter=5.0, inner_diameter=2.5).section
+BAR = rectangle(6.0, 2.0)
+TUBE = ring(5.0, 2.5)
 IRREGULAR = np.array([0.0, 3.0, 41.0, 43.0, 90.0, 100.0])
 
 

@@ -8,14 +8,14 @@ from scipy.spatial.transform import Rotation
 
 from fea.corotational_element import CorotationalElements
 from fea.frame import FrameElement, FrameModel
-from geometry.part import Bar
+from geometry.part import rectangle
 
 MODEL = FrameModel(
     nodes=np.array([[0.0, 0, 0], [88, 10, 5]]),
     elements=(
         FrameElement(
             nodes=(0, 1),
-            section=Bar.model_construct(width=6.0, thickness=2.0).section,
+            section=rectangle(6.0, 2.0),
             young=2900.0,
             poisson=0.38,
             offsets=np.array([[1.0, 2, 3], [-2, 1, 0.5]]),

@@ -13,10 +13,10 @@ from fea.beam import (
     uniform_cantilever,
 )
 from geometry.errors import CannotRunError
-from geometry.part import Bar, Tube
+from geometry.part import rectangle, ring
 
-TUBE = Tube.model_construct(outer_diameter=5.0, inner_diameter=2.5).section
-BAR = Bar.model_construct(width=6.0, thickness=2.0).section
+TUBE = ring(5.0, 2.5)
+BAR = rectangle(6.0, 2.0)
 
 
 def point(x: float, *force: float, y: float = 0.0, z: float = 0.0, moment: tuple[float, ...] = (0, 0, 0)) -> PointLoad:
@@ -144,7 +144,7 @@ def test_records_keep_their_own_copies() -> None:
 
 
 def test_section_stress_of_a_solid_round_and_a_rectangle() -> None:
-    solid = Tube.model_construct(outer_diameter=4.0, inner_diameter=0.0).section
+    solid = ring(4.0, 0.0)
     stress = section_stress(solid, np.array([0, 3.0, 4.0, 2.0, 6.0, 8.0]))
     assert stress.bending == pytest.approx(32 * 10 / (np.pi * 64))
     assert stress.torsion == pytest.approx(16 * 2 / (np.pi * 64))
@@ -158,7 +158,7 @@ def test_section_stress_of_a_solid_round_and_a_rectangle() -> None:
 
 
 def test_thin_tube_shear_tends_to_twice_the_mean() -> None:
-    thin = Tube.model_construct(outer_diameter=5.0, inner_diameter=4.998).section
+    thin = ring(5.0, 4.998)
     assert section_stress(thin, np.array([0, 1.0, 0, 0, 0, 0])).shear == pytest.approx(2 / thin.area, rel=1e-3)
 
 

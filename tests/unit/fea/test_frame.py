@@ -5,10 +5,10 @@ import pytest
 
 from fea.frame import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
 from geometry.errors import CannotRunError
-from geometry.part import Bar, Tube
+from geometry.part import rectangle, ring
 
-TUBE = Tube.model_construct(outer_diameter=5.0, inner_diameter=2.5).section
-BAR = Bar.model_construct(width=6.0, thickness=2.0).section
+TUBE = ring(5.0, 2.5)
+BAR = rectangle(6.0, 2.0)
 NONE: frozenset = frozenset()
 HINGE = frozenset({"rz"})
 PLANE = frozenset({"uz", "rx", "ry"})

@@ -7,10 +7,10 @@ from scipy.spatial.transform import Rotation
 from fea.corotational import buckling_factor, solve_large_displacement, subdivide
 from fea.frame import FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
 from geometry.errors import CannotRunError
-from geometry.part import Bar, Tube
+from geometry.part import rectangle, ring
 
-TUBE = Tube.model_construct(outer_diameter=5.0, inner_diameter=2.5).section
-BAR = Bar.model_construct(width=6.0, thickness=2.0).section
+TUBE = ring(5.0, 2.5)
+BAR = rectangle(6.0, 2.0)
 PIN = frozenset({"ux", "uy", "uz", "rx", "ry"})
 PLANE = frozenset({"uz", "rx", "ry"})
 HINGE = frozenset({"rz"})
@@ -141,7 +141,7 @@ def test_division_keeps_the_linear_answer() -> None:
 def toggle(force: float) -> FrameModel:
     hinges = (HINGE, HINGE)
     # E A 4000 N as of a bar 2 x 2 mm, but too stiff in bending to buckle before the truss snaps.
-    square = replace(Bar.model_construct(width=2.0, thickness=2.0).section, i_y=1e3, i_z=1e3)
+    square = replace(rectangle(2.0, 2.0), i_y=1e3, i_z=1e3)
     return FrameModel(
         nodes=np.array([[0.0, 0, 0], [100, 10, 0], [200, 0, 0]]),
         elements=tuple(element(*pair, section=square, young=1000.0, releases=hinges) for pair in ((0, 1), (1, 2))),
