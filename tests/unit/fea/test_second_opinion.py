@@ -3,13 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
+from scipy.spatial.transform import Rotation
 
-from fea import calculix
+from fea import calculix, second_opinion
 from fea.calculix import read_dat, read_frd_stress
 from fea.link_loads import LinkLoads, PinLoad
 from fea.second_opinion import Answer, SecondOpinion, ask, write_model
 from fea.solid import solve_solid
-from fea.stress import stress_field
+from fea.stress import stress_field, von_mises
 from geometry.errors import CannotRunError
 from loads.bearing import WIDE
 
@@ -58,6 +59,28 @@ def test_calculix_agrees_on_the_same_mesh(link, tmp_path):
     assert answer.von_mises_nodal == pytest.approx(stress.peak.value, rel=2e-2)
     assert answer.seconds > 0.0
     assert sorted(p.name for p in tmp_path.iterdir()) == ["bar.inp"]
+
+
+@pytest.mark.parametrize(("off", "agrees"), [(0.0, True), (0.03, False)])
+def test_gaps_are_the_largest_difference_over_our_largest_value(monkeypatch, tmp_path, off, agrees):
+    """An answer that is ours, moved as a rigid body, but for the stress at one point and the displacement of one node."""
+    _, case, stress = bar_link()
+    space = stress.space
+    turn = Rotation.from_rotvec([1e-7, -2e-7, 3e-7]).as_matrix() - np.eye(3)
+    moved = case.displacement + space.nodes @ turn.T + np.array([0.1, -0.2, 0.3])
+    node = int(np.argmax(np.linalg.norm(case.displacement, axis=1)))
+    moved[node, 1] += off * np.linalg.norm(case.displacement[node])
+    order = np.argsort(second_opinion._places(space))
+    theirs = stress.at_points[:, order].copy()
+    element, point = np.unravel_index(int(np.argmax(von_mises(theirs))), theirs.shape[:2])
+    theirs[element, point] *= 1.0 + off
+    monkeypatch.setattr(calculix, "run", lambda *a, **k: ("", ""))
+    monkeypatch.setattr(calculix, "read_dat", lambda *a, **k: (moved, theirs))
+    monkeypatch.setattr(calculix, "read_frd_stress", lambda *a: stress.nodal)
+    answer = ask(tmp_path / "bar.inp", case.displacement, stress, threads=1, time_limit=1.0)
+    assert answer.stress_gap == pytest.approx(off, abs=1e-9)
+    assert answer.displacement_gap == pytest.approx(off, abs=max(0.03 * off, 1e-9))  # the alignment takes a little
+    assert answer.agrees is agrees
 
 
 @needs_ccx
