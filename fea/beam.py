@@ -415,6 +415,8 @@ def deflection(
 ) -> Deflection:
     """Integrate the internal forces to the deflection relative to the line through two stations [mm].
 
+    One station twice is a line through it that turns with the section there, as where a single joint holds the link.
+
     Along a slot its ``flanks`` take the section's place: as both bend alike, M_z less the moment of the pair of forces
     that their ends' turning makes, (∫M_z dx/L) S/(S + I) with S the pair's second moment and I the flanks' own. How the
     pin bends the flank that it pushes further than the other is left out.
@@ -424,8 +426,6 @@ def deflection(
     u' = N/(E A), φ' = T/(G J). Exact for the polynomial loads of ``BeamLoads``. E (``young``) in MPa.
     """
     x_a, x_b = line
-    if x_a == x_b:
-        raise CannotRunError(f"a line needs two different stations, not x = {x_a:g} mm twice")
     forces = _divided(forces, [x for slot in flanks for x in (slot.first, slot.last)])
     middles = (forces.breaks[:-1] + forces.breaks[1:]) / 2.0
     out = np.zeros((len(forces.coefficients), 6, 6))
@@ -444,7 +444,7 @@ def deflection(
         state = _values(out[i], h)
     free = Piecewise(breaks=forces.breaks, coefficients=out)
     at_a, at_b = free.at(x_a), free.at(x_b)
-    tilt = (at_b[1:3] - at_a[1:3]) / (x_b - x_a)
+    tilt = np.array([at_a[5], -at_a[4]]) if x_a == x_b else (at_b[1:3] - at_a[1:3]) / (x_b - x_a)
     relative = out.copy()
     starts = forces.breaks[:-1]
     relative[:, [0, 3], 0] -= at_a[[0, 3]]

@@ -69,7 +69,7 @@ class LinkResult:
     fidelity           "solid" or "beam": the model that the numbers come from
     von_mises_max      [MPa]; ``principal_max`` the largest principal stress [MPa]
     safety_factor      strength over the stress that the material names
-    displacement_max   relative to the line through the link's first and last pin [mm]
+    displacement_max   relative to the line through the link's first and last pin, or that turns with its only bore [mm]
     location           (3,) place of the largest von Mises stress in the link's frame [mm]
     elements, unknowns size of the solid model; None when no solid ran
     beam               the hand calculation

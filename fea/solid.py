@@ -338,12 +338,14 @@ class LineReference:
     """Takes the rigid-body part out of displacements.
 
     Six conditions: the first hole does not move on average (3), the last one stays on the line through
-    both (2), and both together do not turn about it on average (1).
+    both (2), and both together do not turn about it on average (1). Where both are the same hole, that of the only
+    joint, it neither moves nor turns on average (3 + 3).
     """
 
     def __init__(self, space: DisplacementSpace, motions: NDArray[np.float64], line: tuple[str, str]) -> None:
         self._first, self._last = (surface_quadrature(space, name) for name in line)
-        span = self._last.centroid - self._first.centroid
+        self._alone = line[0] == line[1]
+        span = np.array([1.0, 0.0, 0.0]) if self._alone else self._last.centroid - self._first.centroid
         if np.linalg.norm(span) == 0.0:
             raise CannotRunError(
                 f"the surfaces {line[0]} and {line[1]} have the same centre: no line runs through them"
@@ -354,6 +356,11 @@ class LineReference:
         self._conditions = np.linalg.inv(np.array([self._values(motion) for motion in motions]).T)
 
     def _values(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
+        if self._alone:
+            hole = self._first
+            moved = np.einsum("qb,kbi->kqi", hole.phi, field[hole.nodes])
+            turned = np.einsum("kq,kqi->i", hole.w, np.cross(hole.x - hole.centroid, moved))
+            return np.array([*hole.mean(field), *turned])
         twist = 0.0
         for hole in (self._first, self._last):
             lever = np.cross(self._axis, hole.x - self._first.centroid)

@@ -64,11 +64,14 @@ def _net_chord(body: Body, part: Disc, x: float) -> float:
 def reference_line(body: Body) -> tuple[float, float]:
     """Return the two stations through which the line runs that hand calculation's displacements refer to [mm].
 
-    The first and last pin on the axis; where there is but one, its eye holds the direction, as does an arm on it.
+    The first and last pin on the axis. A link with a single pin has that station twice: the line turns with its bore.
+    Where there are pins off the axis besides, the eye of the one on it holds the direction, as does an arm on it.
     """
     on_axis = [pin.x for pin in body.pins if pin.foot is None]
     if len(on_axis) > 1 and on_axis[0] != on_axis[-1]:
         return on_axis[0], on_axis[-1]
+    if len(body.pins) == 1:
+        return on_axis[0], on_axis[0]
     first, last = extent(body)
     half = body.part.eye_diameter / 2.0
     return on_axis[0], on_axis[0] + (half if last - on_axis[0] >= on_axis[0] - first else -half)

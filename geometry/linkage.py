@@ -70,8 +70,8 @@ class Joint(CaseModel):
 class Linkage:
     """Links and joints that fit together.
 
-    Raises ``CaseError`` for unknown names, no or several ground links, a moving link with fewer
-    than two joints, or links that hang together with nothing.
+    Raises ``CaseError`` for unknown names, no or several ground links, a moving link without joint, or links that hang
+    together with nothing.
     """
 
     links: Mapping[str, Link]
@@ -88,11 +88,8 @@ class Linkage:
         for name, joint in self.joints.items():
             self._check_joint(name, joint)
         for name in self.moving:
-            if len(self.joints_of(name)) < 2:
-                raise CaseError(
-                    f"links.{name}: it has {len(self.joints_of(name))} joint(s), but a moving link needs at least two; "
-                    "add a joint or remove the link"
-                )
+            if not self.joints_of(name):
+                raise CaseError(f"links.{name}: it has no joint, so nothing holds it; add a joint or remove the link")
         reached = {self.ground}
         for _ in self.links:
             reached |= {other for j in self.joints.values() for other in j.links if reached & set(j.links)}

@@ -271,6 +271,8 @@ def solve_motion(
         q=q,
         first=first,
         second=second,
-        residual=max(float(np.max(np.abs(driven.gaps(q[i : i + _BLOCK])))) for i in range(0, len(q), _BLOCK)),
+        residual=max(
+            float(np.max(np.abs(driven.gaps(q[i : i + _BLOCK])), initial=0.0)) for i in range(0, len(q), _BLOCK)
+        ),
         track=track,
     )

@@ -22,7 +22,7 @@ class MotionSpec(CaseModel):
     """First and last travel of the slider or slot, in place of a range."""
     turn: bool = False
     """True for a full turn from the stated pose: counter-clockwise, or clockwise at a negative speed."""
-    poses: Annotated[int, Field(ge=3, le=100_000)] = 361
+    poses: Annotated[int, Field(ge=2, le=100_000)] = 361
     """Number of poses, evenly spaced in the angle or travel, both ends included."""
     speed: AngularSpeed = 0.0
     """Angular speed of the coordinate's link at the first pose; constant unless an acceleration is stated."""
@@ -54,6 +54,11 @@ class MotionSpec(CaseModel):
                 "turn_or_range",
                 'it needs either turn = true or a range such as range = ["0 deg", "90 deg"] or '
                 'travel = ["0 mm", "10 mm"]; state one of them',
+            )
+        if self.turn and self.poses < 3:
+            raise PydanticCustomError(
+                "poses_of_a_turn",
+                "a full turn of 2 poses is one pose twice, since it ends where it began; ask for 3",
             )
         if (self.speed, self.acceleration) != (0.0, 0.0) and self.travel is not None:
             raise PydanticCustomError(

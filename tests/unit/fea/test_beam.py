@@ -198,8 +198,19 @@ def test_deflection_under_pull_and_torque() -> None:
     assert at_end[0] == pytest.approx(3 * 80 / (2400 * TUBE.area))
     assert at_end[3] == pytest.approx(4 * 80 / (2400 / 2.7 * TUBE.torsion))
     assert result.largest == 0.0
-    with pytest.raises(CannotRunError, match="two different stations"):
-        deflection(internal_forces(loads), TUBE, young=2400.0, poisson=0.35, line=(5.0, 5.0))
+
+
+def test_deflection_from_the_section_at_one_station() -> None:
+    """A cantilever from x = 0: F x² (3 L - x)/(6 E I) and the shear's F x/(κ G A), both ways out of the axis."""
+    loads = BeamLoads(
+        points=(point(0, 0, -3, -2, moment=(0, 2 * 80, -3 * 80)), point(80, 0, 3, 2)),
+    )
+    line = deflection(internal_forces(loads), TUBE, young=2400.0, poisson=0.35, line=(0.0, 0.0)).functions
+    shear = TUBE.shear_coefficient(0.35) * 2400 / 2.7 * TUBE.area
+    for x in (20.0, 80.0):
+        per_force = x**2 * (240 - x) / (6 * 2400 * TUBE.i_z) + x / shear
+        assert line.at(x)[1:3] == pytest.approx([3 * per_force, 2 * per_force])
+    assert line.at(0.0)[4:] == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
 def test_euler_load_and_its_end_conditions() -> None:

@@ -63,7 +63,7 @@ def test_calculix_agrees_on_the_same_mesh(link, tmp_path):
 
 @pytest.mark.parametrize(("off", "agrees"), [(0.0, True), (0.03, False)])
 def test_gaps_are_the_largest_difference_over_our_largest_value(monkeypatch, tmp_path, off, agrees):
-    """An answer that is ours, moved as a rigid body, but for the stress at one point and the displacement of one node."""
+    """Our answer, moved as a rigid body, but for the stress at one point and the displacement of one node."""
     _, case, stress = bar_link()
     space = stress.space
     turn = Rotation.from_rotvec([1e-7, -2e-7, 3e-7]).as_matrix() - np.eye(3)

@@ -10,6 +10,7 @@ from fea.quadrature import surface_quadrature, volume_quadrature
 from fea.solid import solve_solid
 from fea.space import displacement_space
 from fea.stress import stress_field
+from fea.supports import rigid_motions
 from geometry.errors import CannotRunError
 from loads.bearing import WIDE
 
@@ -173,9 +174,16 @@ def test_case_without_load_is_refused(mesh):
         solve_solid(mesh, loads=[LinkLoads(name="idle")], **MATERIAL)
 
 
-def test_line_needs_two_places(mesh):
-    with pytest.raises(CannotRunError, match=r"no line runs through them"):
-        solve_solid(mesh, loads=[driven()], **{**MATERIAL, "line": ("bore:A", "bore:A")})
+def test_the_line_of_a_single_bore_moves_and_turns_with_it(mesh):
+    space = displacement_space(mesh)
+    nodes = space.nodes
+    reference = solid.LineReference(space, rigid_motions(nodes, nodes.mean(axis=0)), ("bore:A", "bore:A"))
+    moved = np.array([1.0, -2.0, 3.0]) + np.cross([0.01, -0.03, 0.02], nodes)
+    assert reference.relative(moved) == pytest.approx(np.zeros_like(nodes), abs=1e-9)
+    centre = surface_quadrature(space, "bore:A").centroid
+    beyond = np.linalg.norm(nodes[:, :2] - centre[:2], axis=1) > np.ptp(nodes[:, 0]) / 4.0
+    bent = np.where(beyond[:, None], [[0.0, 0.4, 0.1]], 0.0)  # nothing moves at the bore
+    assert reference.relative(bent + moved) == pytest.approx(bent, abs=1e-9)
 
 
 def test_inputs_stay_as_they_were(mesh):
