@@ -30,6 +30,7 @@ from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
 from fea.solid_result import link_task, solid_result
 from fea.threads import bounded_run
+from fea.unchecked import unusual_materials
 from fea.unloaded import acts, load_size, nothing_acts, undecided, without_rounding
 from fea.verdict import CheckOutcome, overall
 from geometry.body_rules import hand_section, reference_line
@@ -371,7 +372,7 @@ def _cantilever(case: Case, title: str) -> CantileverCheck:
 
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
-    found = []
+    found = unusual_materials(case)
     for model, reason in dict.fromkeys((f.model, f.reason) for f in statics.forces.values()):
         if model != PINNED_STATICS:
             titles = [title for title, f in statics.forces.items() if (f.model, f.reason) == (model, reason)]

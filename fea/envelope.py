@@ -21,6 +21,7 @@ from fea.solid import require_compressible
 from fea.solid_result import link_task
 from fea.space import DisplacementSpace, displacement_space
 from fea.threads import bounded_run
+from fea.unchecked import unusual_materials
 from fea.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
 from fea.verdict import overall
 from geometry.errors import AlulaError, CannotRunError, CaseError
@@ -169,7 +170,7 @@ def evaluated_poses(moved: CaseMotion, growth: float = TORQUE_GROWTH) -> NDArray
 
 
 def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growth: float) -> list[str]:
-    found = []
+    found = unusual_materials(case)
     left_out = int(np.count_nonzero(~evaluated))
     if moved.dead_points:
         at = ", ".join(f"{math.degrees(angle):.2f}" for angle in moved.dead_points)

@@ -1,7 +1,8 @@
-"""What no check of a case looks at: links without part, links and pins that no check of strength names."""
+"""What no check of a case looks at, and what of its materials is unusual."""
 
 from collections.abc import Sequence
 
+from geometry.plausible import unusual
 from loads.case import Case
 from loads.check_spec import PinCheck, SafetyFactorCheck, SustainedCheck
 
@@ -30,3 +31,12 @@ def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Sus
         which = "pins" if loose == pins else f"pin{'s' if len(loose) > 1 else ''} {', '.join(loose)}"
         found.append(f"{which}, no check of {'them' if len(loose) > 1 else 'it'}")
     return tuple(found)
+
+
+def unusual_materials(case: Case) -> list[str]:
+    """Return a sentence for every unusual value of the materials of links and of checked pins."""
+    used = [case.part_of(link).material for link in case.checked_links]
+    for check in case.all_checks.values():
+        if isinstance(check, PinCheck):
+            used += [case.joints[name].pin_material for name in check.joints or case.pinned_joints]
+    return [said for name in dict.fromkeys(used) for said in unusual(name, case.all_materials[name])]

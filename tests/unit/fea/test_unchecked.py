@@ -4,6 +4,7 @@ import tomllib
 from importlib.resources import files
 
 import pytest
+from materials import with_material
 
 from fea.check import check_case
 from fea.unchecked import unchecked
@@ -71,3 +72,13 @@ def test_nothing_is_said_where_all_is_checked():
     result = check_case(starter({"a": STRENGTH, "b": PINS}), fidelity="beam")
     assert "Not checked" not in headline(result)
     assert result_record(result)["not_checked"] == []
+
+
+@pytest.mark.parametrize(("checks", "warned"), [({"a": STRENGTH}, False), ({"a": STRENGTH, "b": PINS}, True)])
+def test_an_unusual_material_is_warned_of_where_it_is_used(checks, warned):
+    """The pins' material counts where pins are checked."""
+    case = starter(checks)
+    card = case.all_materials["steel-wire"].model_copy(update={"youngs_modulus": 200.0})
+    result = check_case(with_material(case, "steel-wire", card), fidelity="beam")
+    said = [text for text in result.warnings if text.startswith("materials.steel-wire.youngs_modulus is 0.2 GPa")]
+    assert len(said) == warned
