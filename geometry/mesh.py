@@ -9,7 +9,7 @@ import pickle
 import signal
 import subprocess
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from geometry import child, child_memory
 from geometry.body_rules import check_body
 from geometry.errors import AlulaError, CannotRunError, CaseError
-from geometry.locks import scratch_beside
 from geometry.mesh_settings import COARSE, MeshSettings
 from geometry.part import Body
 from geometry.reentrant import ReentrantEdge
@@ -37,6 +36,7 @@ __all__ = [
     "mesh_bodies",
     "mesh_body",
     "reentrant_edges",
+    "step_names",
 ]
 
 _T = TypeVar("_T")
@@ -112,23 +112,18 @@ def reentrant_edges(body: Body) -> list[ReentrantEdge]:
 def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:
     """Write each body as ``<name>.step`` (in mm) into an existing folder and return the paths.
 
-    A file appears whole or not at all; what a killed run left is removed. Raises as ``mesh_body`` does, with the body's
-    name before the sentence; ``CannotRunError`` too if the folder cannot be written.
+    Raises as ``mesh_body`` does, with the body's name before the sentence.
     """
-    paths: list[Path] = []
-    for name, body in bodies.items():
-        path = folder / f"{name}.step"
-        try:
-            with scratch_beside(folder, ".alula-step-") as scratch:
-                draft = scratch / "part.step"
-                _naming(name, _step, body, draft)
-                draft.replace(path)
-        except OSError as error:
-            raise CannotRunError(
-                f"cannot write '{path}': {error.strerror}; choose a folder that can be written"
-            ) from None
-        paths.append(path)
+    paths = []
+    for file, (name, body) in zip(step_names(bodies), bodies.items(), strict=True):
+        _naming(name, _step, body, folder / file)
+        paths.append(folder / file)
     return paths
+
+
+def step_names(bodies: Iterable[str]) -> list[str]:
+    """Return the names of the STEP files of bodies."""
+    return [f"{name}.step" for name in bodies]
 
 
 def _step(body: Body, path: Path) -> None:

@@ -104,6 +104,7 @@ def check(
     from fea.check import check_case, effort_of
     from loads.case_file import read_case
     from reports.console import print_result
+    from reports.folder import report_names
     from reports.limits import limited
     from reports.output import refuse_unusable
     from reports.record import as_json
@@ -112,7 +113,7 @@ def check(
         fidelity = "solid"  # a link that beam theory decides has no mesh that CalculiX could be given
     with limited(threads, memory), ExitStack() as scratch:
         parsed = read_case(case, overrides or ())
-        refuse_unusable(output)
+        refuse_unusable(output, "check", report_names(parsed))
         effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)
         decks = None
@@ -150,7 +151,8 @@ def statics(
 def motion(
     case: CaseArgument,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for tables, figures and the animation.")
+        Path | None,
+        typer.Option("-o", "--output", help="Folder in whose subfolder motion/ tables, figures and the animation go."),
     ] = None,
     json: JsonOption = False,
     overrides: SetOption = None,
@@ -165,20 +167,23 @@ def motion(
 
     with limited(threads):
         parsed = read_case(case, overrides or ())
-        refuse_unusable(output)
+        refuse_unusable(output, "motion")
         result = solve_case_motion(parsed)
         print_motion(result, case, json=json)
         if output is not None:
             _progress("Drawing figures and the animation ...")
-            write_folder(output, lambda folder: write_motion(result, folder, case))
-            _tell(f"\nTables and figures: {output}", json)
+            write_folder(output, "motion", lambda folder: write_motion(result, folder, case))
+            _tell(f"\nTables and figures: {output / 'motion'}", json)
 
 
 @app.command()
 def envelope(
     case: CaseArgument,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for result.json, the curves, pictures and VTU files.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", help="Folder in whose subfolder envelope/ result.json, curves, pictures and VTU files go."
+        ),
     ] = None,
     json: JsonOption = False,
     overrides: SetOption = None,
@@ -210,7 +215,7 @@ def envelope(
 
     with limited(threads, memory):
         parsed = read_case(case, overrides or ())
-        refuse_unusable(output)
+        refuse_unusable(output, "envelope")
         result = envelope_case(
             parsed,
             name=case,
@@ -223,7 +228,7 @@ def envelope(
         _show(result, as_json if json else None, print_envelope)
         if output is not None:
             write_envelope(result, output, progress=_progress)
-            _tell(f"Curves, pictures and fields: {output}", json)
+            _tell(f"Curves, pictures and fields: {output / 'envelope'}", json)
     raise SystemExit(result.verdict.exit_status)
 
 
@@ -284,7 +289,8 @@ def synth(
     ] = None,
     ground: Annotated[str, typer.Option("--ground", help="Length d of the ground link.")] = "10 m",
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for result.json and the drawing.")
+        Path | None,
+        typer.Option("-o", "--output", help="Folder in whose subfolder synth/ result.json and the drawing go."),
     ] = None,
     json: JsonOption = False,
 ) -> None:
@@ -292,12 +298,12 @@ def synth(
     from reports.output import refuse_unusable, write_folder
     from reports.synthesis import PUBLISHED_POINTS, print_synthesis, read_synthesis, write_synthesis
 
-    refuse_unusable(output)
+    refuse_unusable(output, "synth")
     found = read_synthesis(points or PUBLISHED_POINTS, ground)
     print_synthesis(found, json=json)
     if output is not None:
-        write_folder(output, lambda folder: write_synthesis(found, folder))
-        _tell(f"\nRecord and drawing: {output}", json)
+        write_folder(output, "synth", lambda folder: write_synthesis(found, folder))
+        _tell(f"\nRecord and drawing: {output / 'synth'}", json)
 
 
 @app.command()
@@ -351,14 +357,18 @@ def export(
 ) -> None:
     """Write the parts of a case to CAD files."""
     from geometry.errors import CaseError
-    from geometry.mesh import export_step
+    from geometry.mesh import export_step, step_names
     from loads.case_file import read_case
+    from reports.output import EXPORT, refuse_unusable, write_folder
 
     if not step:
         raise CaseError("export: name a format; STEP is the one there is: add --step")
     parsed = read_case(case, overrides or ())
-    for path in export_step({link: parsed.body(link) for link in parsed.checked_links}, output):
-        print(path)
+    bodies = {link: parsed.body(link) for link in parsed.checked_links}
+    refuse_unusable(output, EXPORT, step_names(bodies))
+    write_folder(output, EXPORT, lambda folder: export_step(bodies, folder))
+    for name in step_names(bodies):
+        print(output / name)
 
 
 def _show(result: Any, as_json: Callable[[Any], str] | None, show: Callable[[Any, "Console"], None]) -> None:

@@ -44,8 +44,7 @@ def write_envelope(
 ) -> None:
     """Write ``result.json``, ``envelope.csv``, ``envelope.png``, ``vtu/<link>.vtu`` and ``pictures/stress-<link>.png``.
 
-    VTU file and picture show the worst pose under the worst load case. Raises ``CaseError`` for a folder that
-    holds something else, ``CannotRunError`` where the disk refuses.
+    VTU file and picture show the worst pose under the worst load case. Raises as ``write_folder`` does.
     """
     from reports.envelope_figures import envelope_figure
     from reports.export import write_vtu
@@ -72,7 +71,7 @@ def write_envelope(
         for name, link in result.links.items():
             write_vtu(folder / "vtu" / f"{name}.vtu", link.displacement, link.field)
 
-    write_folder(target, fill)
+    write_folder(target, "envelope", fill)
 
 
 def write_curves(result: EnvelopeResult, path: Path) -> None:

@@ -6,13 +6,28 @@ from dataclasses import replace
 from pathlib import Path
 
 from fea.result import CheckResult
+from loads.case import Case
 from reports.output import MARK, write_folder
+from reports.pictures import diagram_name, linkage_name, stress_name
 from reports.record import as_json, worst_load_case
 
 REPORT = "report.html"
 PICTURES = "pictures"
 FIELDS = "vtu"
 DECKS = "calculix"
+
+
+def report_names(case: Case) -> set[str]:
+    """Return the names of all files that the report of a case can consist of."""
+    links, pictures = case.checked_links, set(map(linkage_name, case.load_cases))
+    pictures |= {name(link) for link in links for name in (diagram_name, stress_name)}
+    return {
+        REPORT,
+        MARK,
+        *(f"{PICTURES}/{name}.png" for name in pictures),
+        *(f"{FIELDS}/{link}.vtu" for link in links),
+        *(f"{DECKS}/{link}.inp" for link in links),
+    }
 
 
 def write_report(
@@ -27,8 +42,7 @@ def write_report(
     decks   folder whose CalculiX decks go into ``calculix/``
 
     The VTU file of a link holds the load case that stresses it most. Pictures that cannot be rendered are
-    left out with a warning in report and result. Raises ``CaseError`` for a folder that holds something
-    else, ``CannotRunError`` where the disk refuses.
+    left out with a warning in report and result. Raises as ``write_folder`` does.
     """
     from reports.export import write_vtu
     from reports.html import render
@@ -53,4 +67,4 @@ def write_report(
         if decks is not None and result.second_opinions:
             shutil.copytree(decks, folder / DECKS)
 
-    write_folder(target, fill)
+    write_folder(target, "check", fill)

@@ -16,7 +16,9 @@ BEAM = ("check", "owl-wing-static", "--fidelity", "beam")
 WRITING = (
     "import json, os, sys\n"
     "from pathlib import Path\n"
-    "from reports.output import write_folder\n"
+    "from reports import output\n"
+    "def write_folder(folder, fill):\n"
+    "    output.write_folder(folder, 'check', fill)\n"
     "def fill(text):\n"
     "    def write(folder):\n"
     "        (folder / 'report.html').write_text(text)\n"
@@ -64,11 +66,16 @@ def script(text: str, *arguments: str, **options: Any) -> subprocess.CompletedPr
 
 
 def text_of(folder: Path) -> str:
-    """Return the text in every file of a folder written by ``WRITING``; asserts that it is whole and of one run."""
+    """Return the text in every file of a folder written by ``WRITING``; asserts that it is whole and of one run.
+
+    "none" where there is no result; what is hidden and what the user put there do not count.
+    """
+    if not (folder / "result.json").exists():
+        return "none"
     files = [folder / "report.html", *(folder / "pictures" / f"{i}.png" for i in range(3))]
     record = json.loads((folder / "result.json").read_text())
     assert {file.read_text() for file in files} == {record["text"]}
-    assert sorted(p.name for p in folder.iterdir()) == ["pictures", "report.html", "result.json"]
+    assert sorted(p.name for p in (folder / "pictures").glob("*.png")) == ["0.png", "1.png", "2.png"]
     return str(record["text"])
 
 
@@ -85,8 +92,8 @@ def is_whole(folder: Path) -> bool:
 
 
 def hidden(folder: Path) -> list[str]:
-    """Return the names of what is hidden in a folder."""
-    return [path.name for path in folder.iterdir() if path.name.startswith(".")]
+    """Return what is hidden in a folder and in those in it, but for the lists of the files that alula wrote."""
+    return [path.name for path in folder.rglob(".*") if not (path.name.startswith(".alula-") and path.is_file())]
 
 
 def gone(scratch: Path, within: float = 15.0) -> bool:

@@ -60,14 +60,28 @@ def test_a_disk_that_is_full(tmp_path: Path) -> None:
         subprocess.run(["umount", str(disk)], check=True)
 
 
-@pytest.mark.parametrize("command", ["check", "envelope", "motion"])
-def test_a_folder_of_other_files_is_refused_before_anything_is_solved(tmp_path: Path, command: str) -> None:
-    (tmp_path / "thesis.txt").write_text("mine")
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [("check", "report.html"), ("envelope", "envelope/result.json"), ("motion", "motion/result.json")],
+)
+def test_a_file_in_the_way_is_refused_before_anything_is_solved(tmp_path: Path, command: str, name: str) -> None:
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("mine")
     done = programs.run(command, "ornithopter", "-o", str(tmp_path), scratch=tmp_path / "scratch")
     assert done.returncode == 2
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1, done.stderr  # not a word of progress
-    assert "holds other files and no earlier result" in done.stderr
+    assert f"'{tmp_path / name}' is not, or no longer, what alula wrote there" in done.stderr
+    assert (tmp_path / name).read_text() == "mine"
+
+
+def test_parts_that_do_not_fit(tmp_path: Path) -> None:
+    parts, scratch = tmp_path / "parts", tmp_path / "scratch"
+    done = programs.run(
+        "export", "owl-wing-static", "--step", "-o", str(parts), scratch=scratch, preexec_fn=small_files
+    )
+    assert done.returncode == 4, done.stderr
+    assert not parts.exists()
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")

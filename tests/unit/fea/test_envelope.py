@@ -418,10 +418,11 @@ def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch
     monkeypatch.setattr(figures, "plots_of", lambda scenes, points: ({}, ("no renderer",)))
     told = []
     write_envelope(result, tmp_path / "out", progress=told.append)
-    assert {p.relative_to(tmp_path / "out").as_posix() for p in (tmp_path / "out").rglob("*") if p.is_file()} == {
-        "result.json", "envelope.csv", "envelope.png", "vtu/rocker.vtu"
+    out = tmp_path / "out" / "envelope"
+    assert {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()} == {
+        ".alula-envelope.json", "result.json", "envelope.csv", "envelope.png", "vtu/rocker.vtu"
     }  # fmt: skip
-    assert (tmp_path / "out" / "envelope.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "envelope.png").read_bytes().startswith(b"\x89PNG")
     assert "Warning: no renderer" in told
 
 

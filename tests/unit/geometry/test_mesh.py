@@ -15,7 +15,6 @@ import geometry.mesh
 from geometry.child_memory import allowed
 from geometry.element_geometry import TETRA_EDGES, scaled_jacobians, shape_quality, volumes_and_moments
 from geometry.errors import CannotRunError, CaseError
-from geometry.locks import locked
 from geometry.mesh import COARSE, MeshSettings, export_step, mass_properties, mesh_bodies, mesh_body, reentrant_edges
 from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 from geometry.tagged_mesh import TaggedMesh
@@ -285,25 +284,6 @@ def _step_volume(path: Path) -> float:
     )
     done = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, check=True, text=True)
     return float(done.stdout.split()[-1])
-
-
-@pytest.mark.skipif(os.name == "nt", reason="locks are POSIX")
-def test_step_removes_what_a_killed_run_left_but_not_what_a_living_one_writes(tmp_path: Path) -> None:
-    for name in ("dead", "living"):
-        (tmp_path / f".alula-step-{name}").mkdir()
-        (tmp_path / f".alula-step-{name}" / "part.step").write_text("half")
-    held = locked(tmp_path / ".alula-step-living")
-    assert held is not None
-    export_step({"bar": bar_body()}, tmp_path)
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".alula-step-living", "bar.step"]
-    os.close(held)
-    export_step({"bar": bar_body()}, tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["bar.step"]
-
-
-def test_step_into_a_folder_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(CannotRunError, match="choose a folder that can be written"):
-        export_step({"AE": tube_body()}, tmp_path / "none")
 
 
 def _instead(script: str) -> Callable[[Path], list[str]]:

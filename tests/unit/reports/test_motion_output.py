@@ -10,11 +10,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from geometry.errors import CaseError
 from loads.case_file import read_case
 from loads.case_motion import solve_case_motion
 from reports.motion import print_motion, record, write_motion, write_tables
-from reports.output import write_folder
 
 CASE = """
 schema_version = 1
@@ -69,14 +67,14 @@ def run(*arguments, cwd):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A case file beside the folder that the command wrote for it."""
-    home = tmp_path_factory.mktemp("motion")
+    """The folder that the command wrote into; the case file stands two above it."""
+    home = tmp_path_factory.mktemp("home")
     (home / "crank.toml").write_text(CASE, encoding="utf-8")
     done = run("crank.toml", "-o", "out", cwd=home)
     assert done.returncode == 0, done.stderr
     assert "A slider-crank" in done.stdout
     assert "energy balance to" in done.stdout
-    return home / "out"
+    return home / "out" / "motion"
 
 
 @pytest.fixture(scope="module")
@@ -92,8 +90,8 @@ def columns(path):
 
 def test_everything_is_there(folder):
     assert {path.name for path in folder.iterdir()} == {
-        "result.json", "links.csv", "points.csv", "torque.csv", "joint-forces.csv", "link-angles.png", "paths.png",
-        "torque.png", "joint-forces-1.png", "joint-forces-2.png", "linkage.gif",
+        ".alula-motion.json", "result.json", "links.csv", "points.csv", "torque.csv", "joint-forces.csv",
+        "link-angles.png", "paths.png", "torque.png", "joint-forces-1.png", "joint-forces-2.png", "linkage.gif",
     }  # fmt: skip
 
 
@@ -159,18 +157,23 @@ def test_the_animation_moves_and_is_small(folder):
 
 
 def test_a_second_run_replaces_the_first_and_nothing_else(folder):
-    home = folder.parent
+    home = folder.parents[1]
+    (folder / "notes.txt").write_text("precious", encoding="utf-8")
     again = run("crank.toml", "-o", "out", "--json", "--set", "motion.poses=37", cwd=home)
     assert again.returncode == 0
     assert json.loads(again.stdout)["motion"]["poses"] == 37
     assert json.loads((folder / "result.json").read_text(encoding="utf-8"))["motion"]["poses"] == 37
+    assert (folder / "notes.txt").read_text(encoding="utf-8") == "precious"
+    (folder / "notes.txt").unlink()
+    links = (folder / "links.csv").read_bytes()
+    (folder / "links.csv").write_text("edited", encoding="utf-8")
+    refused = run("crank.toml", "-o", "out", cwd=home)
+    assert refused.returncode == 2
+    assert "links.csv' is not, or no longer, what alula wrote there" in refused.stderr
+    assert (folder / "links.csv").read_text(encoding="utf-8") == "edited"
+    (folder / "links.csv").write_bytes(links)
     restored = run("crank.toml", "-o", "out", cwd=home)
     assert restored.returncode == 0
-    (home / "mine").mkdir(exist_ok=True)
-    (home / "mine" / "thesis.txt").write_text("precious", encoding="utf-8")
-    refused = run("crank.toml", "-o", "mine", cwd=home)
-    assert refused.returncode == 2
-    assert (home / "mine" / "thesis.txt").read_text(encoding="utf-8") == "precious"
 
 
 @pytest.mark.parametrize(
@@ -182,7 +185,7 @@ def test_a_second_run_replaces_the_first_and_nothing_else(folder):
     ],
 )
 def test_bad_input_ends_with_status_2_and_one_sentence(folder, override, words):
-    done = run("crank.toml", "--set", override, cwd=folder.parent)
+    done = run("crank.toml", "--set", override, cwd=folder.parents[1])
     assert done.returncode == 2
     assert done.stdout == ""
     assert words in done.stderr
@@ -203,14 +206,14 @@ def test_a_dead_point_of_the_drive_is_told(wing, capsys):
 def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
     """Beside a standing motion: power and energies are there for every load case, in one table."""
     overrides = ["motion.inertia=false", 'motion.speed="0 rpm"', 'load_cases.idle.speed="600 rpm"', "motion.poses=25"]
-    result = solve_case_motion(read_case(str(folder.parent / "crank.toml"), overrides))
+    result = solve_case_motion(read_case(str(folder.parents[1] / "crank.toml"), overrides))
     print_motion(result, "crank", json=False)
     standing, moving = capsys.readouterr().out.split("Load case idle")
     assert "Load case push (without inertia)" in standing
     assert "drive power" not in standing
     assert "with inertia at 600 rpm" in moving
     assert "drive power at 600 rpm:" in moving
-    again = solve_case_motion(read_case(str(folder.parent / "crank.toml"), ["motion.poses=25"]))
+    again = solve_case_motion(read_case(str(folder.parents[1] / "crank.toml"), ["motion.poses=25"]))
     np.testing.assert_allclose(result.torque["idle"], again.torque["idle"], atol=1e-9)
     write_tables(result, folder.parent)
     torque = columns(folder.parent / "torque.csv")
@@ -220,8 +223,6 @@ def test_a_load_case_with_a_speed_of_its_own(folder, capsys):
 
 
 def test_a_range_is_shown_there_and_back(wing, tmp_path):
-    write_folder(tmp_path / "wing", lambda fresh: write_motion(wing, fresh, "owl-wing-static"))
-    with Image.open(tmp_path / "wing" / "linkage.gif") as picture:
+    write_motion(wing, tmp_path, "owl-wing-static")
+    with Image.open(tmp_path / "linkage.gif") as picture:
         assert picture.n_frames == 60
-    with pytest.raises(CaseError):
-        write_folder(tmp_path, lambda fresh: None)

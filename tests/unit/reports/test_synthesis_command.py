@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from geometry.errors import CaseError
-from reports.output import write_folder
+from reports.cli import app
 from reports.synthesis import (
     PUBLISHED_GROUND,
     PUBLISHED_POINTS,
@@ -91,8 +92,8 @@ def test_bad_input_is_told_in_one_sentence(points, ground, told) -> None:
         read_synthesis(points, ground)
 
 
-def test_an_earlier_synthesis_is_replaced(found, tmp_path: Path) -> None:
-    target = tmp_path / "synthesis"
+def test_the_command_writes_into_a_subfolder_again_and_again(tmp_path: Path) -> None:
     for _ in range(2):
-        write_folder(target, lambda folder: write_synthesis(found, folder))
-    assert {path.name for path in target.iterdir()} == {"result.json", "linkage.png"}
+        assert CliRunner().invoke(app, ["synth", "-o", str(tmp_path)]).exit_code == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["synth"]
+    assert {path.name for path in (tmp_path / "synth").iterdir()} == {".alula-synth.json", "result.json", "linkage.png"}
