@@ -1,6 +1,7 @@
 """Buckling factor of a link at every pose of a motion: the rules of ``fea.buckling_check``, for all poses at once."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,8 +9,10 @@ from numpy.typing import NDArray
 from fea.buckling_check import NO_COMPRESSION, ColumnFactors, link_factors
 from fea.column_factor import AxialForce
 from fea.cut_free import beam_loads
-from fea.link_history import LinkHistory
+from fea.large_displacement import LEAST_FACTOR
+from fea.link_history import LineHistory, LinkHistory
 from fea.link_loads import BodyLoad, LinkLoads
+from fea.second_order import second_order_loads
 from geometry.body_rules import hand_section
 from loads.case import Case
 
@@ -23,6 +26,32 @@ def factors_over_motion(case: Case, link: str, history: LinkHistory) -> ColumnFa
     idle = largest <= 0.0
     value, least, most = (np.where(idle, np.inf, factor) for factor in (found.value, found.least, found.most))
     return ColumnFactors(value=value, least=least, most=most)
+
+
+def with_second_order(case: Case, link: str, history: LinkHistory, evaluated: NDArray[np.bool_]) -> LinkHistory:
+    """Return a history with what bending under compression adds, at the evaluated poses near to buckling.
+
+    As ``fea.second_order`` does for one pose: on the outermost pins, or as a cantilever where the drive holds the link.
+    """
+    found = factors_over_motion(case, link, history)
+    near = np.flatnonzero(evaluated & (np.minimum(found.value, found.least) < LEAST_FACTOR))
+    if not near.size:
+        return history
+    pins = {name: wrench.copy() for name, wrench in history.pins.items()}
+    ends = {name: wrench.copy() for name, wrench in history.ends.items()}
+    lines: dict[tuple[float, float], Real] = {}
+    for pose in near:
+        loads = history.at(int(pose))
+        grown = second_order_loads(case, link, loads, history.mass, stays=False)
+        for pin, before in zip(grown.pins, loads.pins, strict=True):
+            pins[pin.name][pose] += (pin.wrench - before.wrench)[[0, 1, 5]]
+        for end, plain in zip(grown.ends, loads.ends, strict=True):
+            ends[end.name][pose] += (end.wrench - plain.wrench)[[0, 1, 5]]
+        for line in grown.lines[len(loads.lines) :]:
+            own = lines.setdefault((line.first, line.last), np.zeros((history.poses, 2, 2)))
+            own[pose] += line.intensity[:, :2]
+    more = tuple(LineHistory(first=a, last=b, intensity=q) for (a, b), q in lines.items())
+    return replace(history, pins=pins, ends=ends, lines=(*history.lines, *more))
 
 
 def axial_compression(case: Case, link: str, history: LinkHistory) -> tuple[Real, AxialForce]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.buckling_history import with_second_order
 from fea.check import effort_of
 from fea.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.envelope_result import EnvelopeResult, LinkEnvelope
@@ -80,7 +81,11 @@ def envelope_case(
     sizes = {title: stated_size(case, title) for title in case.load_cases}
     acting = partial(_acts, sizes=sizes, length=case.linkage.longest, evaluated=evaluated)
     histories = {link: tuple(filter(acting, link_histories(moved, link))) for link in case.checked_links}
-    loaded = {link: found for link, found in histories.items() if found}
+    loaded = {
+        link: tuple(with_second_order(case, link, history, evaluated) for history in found)
+        for link, found in histories.items()
+        if found
+    }
     timings = {"motion": time.perf_counter() - begin}
 
     def over_motion(link: str, space: DisplacementSpace, **options: Any) -> LinkEnvelope:

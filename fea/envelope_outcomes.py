@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fea.band import Band
 from fea.bearing_check import weakest_eye
 from fea.buckling_check import NAME as BUCKLING
-from fea.buckling_check import factor_band
+from fea.buckling_check import factor_band, grown
 from fea.buckling_history import factors_over_motion
 from fea.envelope_result import LinkEnvelope
 from fea.fatigue import LIFE_FACTOR, STRESS_FACTOR
@@ -131,7 +131,7 @@ def column_outcomes(
             if outcome.verdict is Verdict.UNDECIDED:
                 reason += f"; {outcome.reason}"
             elif factor < LEAST_FACTOR and outcome.verdict is Verdict.PASS:
-                reason += f"; bending is up to {1.0 / (1.0 - 1.0 / factor):.3g} times that of linear theory"
+                reason += f"; {grown(factor)}"
             yield replace(outcome, reason=reason)
 
 

@@ -92,7 +92,7 @@ def on_its_pins(
     One place alone is held in its angle too: the other joints of a driven link move with it, and the drive takes the
     moment that their forces so get. Unchanged where compression buckles the link, or it is held at no pin on its axis.
     """
-    stations = _stations(loads, on_arms)
+    stations = _stations(loads, {*on_arms, *(pin.name for pin in loads.pins if pin.slotted)})
     return _bowed(loads, forces, (in_plane, across), stations, held) if {*held} <= {*stations} else loads
 
 

@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 
 from fea.beam import internal_forces
+from fea.buckling_history import with_second_order
 from fea.check import check_case
 from fea.column_factor import Stretch
 from fea.cut_free import beam_loads
+from fea.link_history import link_histories
 from fea.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
 from fea.second_order import Bend, between_stations, on_its_pins
 from fea.verdict import Verdict
 from loads.case import Case
 from loads.case_file import validate
+from loads.case_motion import solve_case_motion
 
 L, EI = 100.0, 1e4
 EULER = math.pi**2 * EI / L**2
@@ -211,3 +214,25 @@ def test_a_post_bears_its_second_order_moment(way: str, state: str) -> None:
 def test_a_post_that_is_pulled_has_no_more_than_linear_theory_gives() -> None:
     found = check_case(post(38.6, "off"), fidelity="beam").load_cases["push"].links["post"].beam
     assert found.worst.equivalent == pytest.approx(6.386, rel=1e-6)
+
+
+def test_over_a_motion_every_pose_has_its_own_growth() -> None:
+    """The post turns from 80 to 100 degrees: along and across it the force differs, and so does tan u/u."""
+    tables = tomllib.loads(POST.format(way="auto", along=-38.6))
+    tables["motion"] = {"poses": 5, "range": ["80 deg", "100 deg"]}
+    case = validate(tables)
+    moved = solve_case_motion(case)
+    (history,) = link_histories(moved, "post")
+    evaluated = np.array([True, True, True, True, False])
+    grown = with_second_order(case, "post", history, evaluated)
+    stiffness = case.material_of("post").youngs_modulus * 1e4 / 12.0
+    for pose, angle in enumerate(moved.motion.angles):
+        push = 38.6 * math.sin(angle) - 5.0 * math.cos(angle)
+        across = abs(5.0 * math.sin(angle) + 38.6 * math.cos(angle))
+        u = 200.0 * math.sqrt(push / stiffness)
+        linear, found = (
+            internal_forces(beam_loads(own.at(pose), history.body, 0.0, None)).largest(lambda f: abs(float(f[5])))[2]
+            for own in (history, grown)
+        )
+        assert linear == pytest.approx(200.0 * across, rel=1e-9)
+        assert found == pytest.approx(linear * (math.tan(u) / u if evaluated[pose] else 1.0), rel=1e-5)
