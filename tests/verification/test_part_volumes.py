@@ -175,3 +175,15 @@ def _inertia(points: np.ndarray, cells: np.ndarray, about: np.ndarray) -> np.nda
         [[Functional(lambda w, i=i, j=j: w.x[i] * w.x[j]).assemble(basis) for i in range(3)] for j in range(3)]
     )
     return np.trace(second) * np.eye(3) - second
+
+
+@pytest.mark.parametrize(("unit", "length"), [(1.0, 3e6), (2e-12, 60.0), (2e14, 60.0)])
+def test_volume_at_the_ends_of_the_range_of_lengths(unit: float, length: float) -> None:
+    """Bar of 5 by 3 units: a million times as long as thick, and as small and as large as may be."""
+    part = bar(0.0).model_copy(update={n: unit * getattr(bar(0.0), n) for n in ("width", "thickness", "eye_diameter")})
+    part = part.model_copy(update={"eye_thickness": part.thickness})
+    pins = tuple(Pin(name=n, x=x * unit, y=0.0, diameter=1.5 * unit) for n, x in (("A", 0.0), ("B", length)))
+    strip = 2.5 * math.sqrt(4.5**2 - 2.5**2) + 4.5**2 * math.asin(2.5 / 4.5)  # of an eye's half, over the bar
+    exact = 3.0 * (5.0 * length + 2.0 * (math.pi * 4.5**2 - strip - math.pi * 0.75**2))
+    found = mass_properties(Body(part=part, pins=pins, ends=(), holes=())).volume / unit**3
+    assert found == pytest.approx(exact, rel=1e-8)

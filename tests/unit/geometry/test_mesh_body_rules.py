@@ -28,6 +28,12 @@ BAR = Bar(
 )
 
 
+def huge(unit: float) -> Tube:
+    """The tube, its sizes multiplied."""
+    sizes = {name: size * unit for name, size in TUBE.model_dump().items() if name not in ("shape", "material")}
+    return TUBE.model_copy(update=sizes)
+
+
 def pin(name: str, x: float, y: float = 0.0, diameter: float = 1.5) -> Pin:
     return Pin(name=name, x=x, y=y, diameter=diameter)
 
@@ -61,6 +67,10 @@ H = PlainEnd(name="H", x=60.0, patch=5.0)
     [
         (body(pins=(), ends=(H,)), "0 pins, but a part needs at least 1"),
         (body(pins=(pin("A", 3.0),)), "all lie at x = 3 mm"),
+        (body(pins=(pin("A", 0.0), pin("B", 1e14))), r"reaches 1e\+14 mm from .* 1e\+06 times .* 5e\+06 mm; shorten"),
+        (body(pins=(pin("A", 1e9), pin("B", 1e9 + 40.0))), r"reaches 1e\+09 mm from the origin of its frame"),
+        (body(part=huge(1e150)), r"section is 5e\+150 mm across, but the geometry kernel needs 1e-12 to 1e\+15 mm"),
+        (body(part=huge(1e-14)), r"section is 5e-14 mm across"),
         (
             body(pins=(pin("A", 0.0, diameter=8.0), pin("B", 40.0))),
             "hole at A has a diameter of 8 mm.*eye_diameter 8 mm",
