@@ -78,6 +78,7 @@ class LargeDisplacement:
     reactions   on the deformed shape, in global axes; None unless deformed
     links       loads of each link on the deformed shape, in its chord's frame; empty unless deformed
     sentence    for people
+    frame       the undeformed one and its linear ``solution``; None where there is no frame
     """
 
     state: State
@@ -92,6 +93,8 @@ class LargeDisplacement:
     reactions: Reactions | None = None
     links: Mapping[str, LinkLoads]
     sentence: str
+    frame: LinkageFrame | None = None
+    solution: FrameSolution | None = None
 
     @property
     def share(self) -> float:
@@ -142,7 +145,8 @@ def examine(
         return left("off", as_said) if off else left("unknown", f": {error}")
     near, points = dead_point_factor(frame, solution), frame.at_points(solution.displacements)
     if off:
-        return replace(left("off", as_said), buckling=factor, dead_point=near, points=points)
+        found = left("off", as_said)
+        return replace(found, buckling=factor, dead_point=near, points=points, frame=frame, solution=solution)
     linear, where = _largest(frame, solution)
     small = LargeDisplacement(
         state="small",
@@ -153,6 +157,8 @@ def examine(
         dead_point=near,
         points=points,
         links={},
+        frame=frame,
+        solution=solution,
         sentence=(
             f"the linear frame moves by at most {linear:.3g} mm ({where}), {100.0 * linear / size:.3g} % of the span "
             f"of {size:.4g} mm: the undeformed pose is good enough (limit {100.0 * LARGE:g} %)"
@@ -186,17 +192,31 @@ def _held_band(frame: LinkageFrame, found: LargeDisplacement, scatter: Scatter, 
 
 def _holds(frame: LinkageFrame, factor: float) -> float:
     """Share that is held of ``factor`` times load over modulus; 0 where the linkage becomes unstable on the way."""
-    elements = tuple(replace(element, young=element.young / factor) for element in frame.model.elements)
     try:
-        found = solve_large_displacement(
-            replace(frame.model, elements=elements),
-            SUBDIVISIONS,
-            least_step=LEAST_STEP,
-            most_iterations=MOST_ITERATIONS,
-        )
+        found = _followed(frame, factor)
     except NoEquilibriumError as error:
         return error.reached
     return 1.0 if found.stable else 0.0
+
+
+def displaced(frame: LinkageFrame, link: str, point: str, factor: float) -> float:
+    """Distance by which a point moves under ``factor`` times load over modulus [mm]; infinite where nothing holds."""
+    try:
+        found = _followed(frame, factor)
+    except NoEquilibriumError:
+        return math.inf
+    return float(np.linalg.norm(frame.at_points(found.displacements)[link, point])) if found.stable else math.inf
+
+
+def _followed(frame: LinkageFrame, factor: float) -> CorotationalSolution:
+    """Equilibrium under ``factor`` times load over modulus; raises ``NoEquilibriumError`` where it ends on the way."""
+    elements = tuple(replace(element, young=element.young / factor) for element in frame.model.elements)
+    return solve_large_displacement(
+        replace(frame.model, elements=elements),
+        SUBDIVISIONS,
+        least_step=LEAST_STEP,
+        most_iterations=MOST_ITERATIONS,
+    )
 
 
 def linkage_factor(frame: LinkageFrame) -> float:

@@ -41,6 +41,21 @@ RIGID = 1e3
 _SAME_PLACE = 1e-9
 
 
+@dataclass(frozen=True, kw_only=True)
+class LinkBeam:
+    """Which part of a link an element of the frame is.
+
+    start, end  x along the link's axis, or along its ``arm`` (the name of the point there) from the arm's foot [mm]
+    flank       True for one flank of a slot
+    """
+
+    link: str
+    start: float
+    end: float
+    arm: str = ""
+    flank: bool = False
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LinkageFrame:
     """The frame of a linkage in one pose under one set of loads.
@@ -51,6 +66,7 @@ class LinkageFrame:
     pins      joint -> nodes of its first and its second link, where the pin stands; None on the ground
     stations  link with a part -> (x in the link's frame, node) along its axis; the node may stand off the axis
     arms      node -> (3,) from it to its link's axis at that station, global axes [mm]; left out where zero
+    beams     element -> which part of a link it is; rigid ones are left out
     notes     what the reader must know about this frame
     """
 
@@ -63,6 +79,7 @@ class LinkageFrame:
     pins: Mapping[str, tuple[int | None, int | None]]
     stations: Mapping[str, tuple[tuple[float, int], ...]]
     arms: Mapping[int, Real]
+    beams: Mapping[int, LinkBeam]
     notes: tuple[str, ...]
 
     def reactions(self, joint_wrenches: Real, residual: float, displacements: Real | None = None) -> Reactions:
@@ -187,6 +204,7 @@ def build_frame(
         pins=builder.pins,
         stations=builder.stations,
         arms=builder.arms,
+        beams=builder.beams,
         notes=tuple(builder.notes),
     )
 
@@ -211,6 +229,7 @@ class _Builder:
         self.contacts: dict[tuple[str, str], int] = {}
         self.stations: dict[str, tuple[tuple[float, int], ...]] = {}
         self.arms: dict[int, Real] = {}
+        self.beams: dict[int, LinkBeam] = {}
         self.notes: list[str] = []
         self.slack = _SAME_PLACE * case.linkage.longest
         for link in case.linkage.moving:
@@ -306,6 +325,8 @@ class _Builder:
             tip = self.points[link, name] = self._node(link, *record.points[name], name)
             ends = (self.points[link, foot], tip)
             young, poisson = material.youngs_modulus, material.poissons_ratio
+            reach = float(np.linalg.norm(self.places[tip] - self.places[ends[0]]))
+            self.beams[len(self.elements)] = LinkBeam(link=link, start=0.0, end=reach, arm=name)
             self.elements.append(FrameElement(nodes=ends, section=section, young=young, poisson=poisson))
 
     def _along(
@@ -323,6 +344,7 @@ class _Builder:
         first, last = _line_between(lines, x0, x1)
         aside = np.zeros(3) if across is None else across
         material = self.case.material_of(link)
+        self.beams[len(self.elements)] = LinkBeam(link=link, start=x0, end=x1, flank=across is not None)
         self.elements.append(
             FrameElement(
                 nodes=(a, b),

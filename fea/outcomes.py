@@ -8,7 +8,8 @@ import numpy as np
 from fea.band import Band
 from fea.beam import BeamCheck
 from fea.buckling_check import beyond_strength, linkage_outcome
-from fea.large_displacement import LARGE, LargeDisplacement
+from fea.displacement_band import point_bounds
+from fea.large_displacement import LARGE, LargeDisplacement, displaced
 from fea.pins import PinStress
 from fea.result import LinkResult
 from fea.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
@@ -93,7 +94,7 @@ def _link(
 def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: LargeDisplacement) -> CheckOutcome:
     """Outcome of how far a point of the linkage moves, by the frame: linear, or on the deformed shape where that rules.
 
-    The band holds the moduli, and for the linear answer the growth of a toggle (``fea.toggle``).
+    Its band is that of ``_point_band``.
     """
     link, point = case.displaced_point(name, check)
     displacement, factor = moved.points.get((link, point)), moved.factor
@@ -103,22 +104,10 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
         size = float(np.linalg.norm(displacement))
         near = factor is not None and factor < SNAP
         if moved.followed or not (near or size > LARGE * moved.span):
-            materials = [case.material_of(other) for other in case.checked_links]
-            ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
-            load = load_scatter(case, title)
-            near_by = 0.0 if moved.followed or factor is None else load.high * max((*ratios, 1.0)) / factor
-            grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
-            value = Band(
-                value=size,
-                low=min((*ratios, 1.0)) * size,
-                high=max((*ratios, 1.0)) * grown * size,
-                holds=("the modulus",)
-                if moved.followed
-                else ("the modulus", "growth towards buckling or a dead point"),
-            )
-            value = load.on(value)
+            value = _point_band(case, title, moved, link, point, size)
             shape = "on its deformed shape" if moved.followed else "by linear theory"
             why = f"by the frame of the linkage, {shape}: {reason_for(value, limit, at_most(value, limit))}"
+            why += "".join(f"; {note}" for note in ([] if moved.frame is None else moved.frame.notes))
         else:
             far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
             what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
@@ -134,6 +123,31 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
         verdict=at_most(value, limit),
         reason=why,
     )
+
+
+def _point_band(case: Case, title: str, moved: LargeDisplacement, link: str, point: str, size: float) -> Band:
+    """Band of how far a point moves: eyes, bores and holes (``fea.displacement_band``), the moduli, and the load.
+
+    The linear answer may grow as a toggle does (``fea.toggle``); on the deformed shape equilibrium is sought again
+    with the ends of load over stiffness.
+    """
+    assert moved.frame is not None
+    assert moved.solution is not None
+    load, frame = load_scatter(case, title), moved.frame
+    materials = [case.material_of(other) for other in case.checked_links]
+    ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
+    linear = float(np.linalg.norm(moved.solution.displacements[frame.points[link, point], :3]))
+    least, largest = point_bounds(case, frame, moved.solution, link, point)
+    low, high = (least / linear, largest / linear) if linear > 0.0 else (1.0, 1.0)
+    low, high = low * min((*ratios, 1.0)) * load.low, high * max((*ratios, 1.0)) * load.high
+    holds = ("eyes, bores and holes", "the modulus", *load.holds)
+    if moved.followed:
+        ends = [displaced(frame, link, point, factor) for factor in (low, high) if factor > 0.0]
+        return Band(value=size, low=min(size, *ends) if low > 0.0 else 0.0, high=max(size, *ends), holds=holds)
+    near_by = 0.0 if moved.factor is None else high / moved.factor
+    grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
+    most = high * grown * size if size > 0.0 else 0.0
+    return Band(value=size, low=low * size, high=most, holds=(*holds, "growth towards buckling or a dead point"))
 
 
 def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str, PinStress]) -> Iterator[CheckOutcome]:

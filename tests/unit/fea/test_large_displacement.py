@@ -127,10 +127,12 @@ def test_a_point_is_checked_with_the_whole_linkage_and_a_link_from_its_own_pins(
     assert found.value.value == pytest.approx(size)
     # Linear theory leaves out that displacements grow towards a limit load, for a toggle as x (1 - x)(2 - x)/2 = 1/n.
     growth = moved.factor * np.roots([0.5, -1.5, 1.0, -1.0 / moved.factor]).real.min()
-    assert (found.value.low, found.value.high) == pytest.approx((size, growth * size))
-    assert size < 2.5 < growth * size
+    # Eyes make it stiffer, bores and holes softer; what is softer is nearer to the limit load as well.
+    assert 0.75 * size < found.value.low < 0.95 * size
+    assert found.value.high > 1.02 * growth * size
+    assert found.value.low < 2.5 < found.value.high
     assert found.verdict is Verdict.UNDECIDED
-    assert tip(3.0, *HELD_AT_GF, load=load)[1].verdict is Verdict.PASS
+    assert tip(3.5, *HELD_AT_GF, load=load)[1].verdict is Verdict.PASS
     assert tip(2.0, *HELD_AT_GF, load=load)[1].verdict is Verdict.FAIL
     each = [c for c in result.checks if c.name == "each"]
     assert len(each) == 5
@@ -165,12 +167,15 @@ def test_a_point_without_equilibrium_or_beyond_linear_theory_is_left_open():
 
 
 def test_a_card_with_a_range_of_moduli_widens_the_band_of_a_point():
-    stiff, soft = (tip(5.0, *HELD_AT_GF, f'parts.tube.material="{m}"')[1] for m in ("pvc-paredes-2018", "pvc-u"))
-    assert stiff.value.low == stiff.value.value
+    sharp, wide = (tip(5.0, *HELD_AT_GF, f'parts.tube.material="{m}"')[1] for m in ("pvc-paredes-2018", "pvc-u"))
     material = edited("owl-wing-static", ['parts.tube.material="pvc-u"']).material_of("CH")
     least, largest = material.youngs_modulus_range
-    assert soft.value.low == pytest.approx(soft.value.value * material.youngs_modulus / largest)
-    assert soft.value.high > soft.value.value * material.youngs_modulus / least
+    low, high = (
+        getattr(wide.value, end) / wide.value.value / (getattr(sharp.value, end) / sharp.value.value)
+        for end in ("low", "high")
+    )
+    assert low == pytest.approx(material.youngs_modulus / largest, rel=0.02)
+    assert high > material.youngs_modulus / least
 
 
 @pytest.mark.parametrize("load", [[0, -1.5], [0, -1.2, 0.4]])
