@@ -56,8 +56,8 @@ youngs_modulus = "{young} MPa"
 poissons_ratio = 0.38
 yield_strength = "{strength} MPa"
 strength = "yield"
-sources = {{}}
-status = {{}}
+sources = {{ density = "made up", youngs_modulus = "made up", poissons_ratio = "made up", yield_strength = "made up" }}
+status = {{ density = "assumed", youngs_modulus = "assumed", poissons_ratio = "assumed", yield_strength = "assumed" }}
 [load_cases.tip]
 forces = [{{ link = "arm", at = "H", force = ["0 N", "{force} N"] }}]
 [checks.strength]

@@ -13,6 +13,8 @@ from geometry.model import CaseModel, Text
 from geometry.units import NOT_NEGATIVE, POSITIVE, Density, Stress, Temperature
 
 Status = Literal["measured", "datasheet", "handbook", "assumed"]
+TOLD = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength")
+"""Entries whose source and status every card states, where it states the entry."""
 
 
 def _ordered(value: tuple[float, float]) -> tuple[float, float]:
@@ -70,9 +72,9 @@ class Material(CaseModel):
     minimum_safety_factor_tested: Annotated[float, Field(gt=0)] | None = None
     """Default limit where parts of the same make were tested."""
     sources: dict[str, Text]
-    """Entry -> where its value comes from."""
+    """Entry -> where its value comes from; at least of density, elastic constants and strengths."""
     status: dict[str, Status]
-    """Entry -> how well it is known."""
+    """Entry -> how well it is known; at least of density, elastic constants and strengths."""
 
     @model_validator(mode="after")
     def _strengths(self) -> "Material":
@@ -100,6 +102,18 @@ class Material(CaseModel):
                 "sources or status speak of '{entry}', but a material has no such entry; correct its name",
                 {"entry": unknown[0]},
             )
+        for where, told in (("sources", self.sources), ("status", self.status)):
+            for entry in TOLD:
+                if getattr(self, entry) is not None and entry not in told:
+                    raise PydanticCustomError(
+                        "not_told",
+                        "{where} says nothing of {entry}; add {entry} = {example} to {where}",
+                        {
+                            "where": where,
+                            "entry": entry,
+                            "example": '"data sheet of the maker"' if where == "sources" else '"datasheet"',
+                        },
+                    )
         return self
 
     @property

@@ -1,7 +1,14 @@
 """Cases with a changed material card."""
 
-from geometry.material import Material
+from geometry.material import TOLD, Material
 from loads.case import Case
+
+SOURCED_ENTRIES = tuple(
+    f"{where}={{" + ",".join(f'{entry}="{said}"' for entry in TOLD) + "}"
+    for where, said in (("sources", "a test"), ("status", "assumed"))
+)
+SOURCED = ",".join(SOURCED_ENTRIES)
+"""Source and status of all that a card needs them for, as TOML."""
 
 
 def with_material(case: Case, name: str, card: Material) -> Case:

@@ -24,8 +24,8 @@ youngs_modulus = "{young} MPa"
 poissons_ratio = 0.38
 yield_strength = "{strength} MPa"
 strength = "yield"
-sources = {{}}
-status = {{}}
+sources = {{ density = "made up", youngs_modulus = "made up", poissons_ratio = "made up", yield_strength = "made up" }}
+status = {{ density = "assumed", youngs_modulus = "assumed", poissons_ratio = "assumed", yield_strength = "assumed" }}
 """
 BAR = 'shape = "bar"\nwidth = "4 mm"\nthickness = "3 mm"'
 COARSE = MeshSettings(size=1.0, bore_elements=8, turn_elements=6, fillet_size=1.5, growth=1.0)

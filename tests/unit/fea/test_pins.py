@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from edited_cases import edited
+from materials import SOURCED
 
 from fea.check import check_case
 from fea.pins import lever, pin_stress, stress_at
@@ -92,7 +93,7 @@ def test_the_wings_pins_pass_and_thin_ones_fail():
         (
             [
                 'materials.tin={title="tin",density="7 g/cm^3",youngs_modulus="50 GPa",poissons_ratio=0.3,'
-                'yield_strength="10 MPa",strength="yield",sources={},status={}}',
+                'yield_strength="10 MPa",strength="yield",' + SOURCED + "}",
                 'joints.B.pin_material="tin"',
             ],
             r"checks\.pins\.minimum: it is missing, and 'tin', the material of the pin at joint 'B', states no",

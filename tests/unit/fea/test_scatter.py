@@ -8,6 +8,7 @@ import eye_link
 import numpy as np
 import pytest
 from edited_cases import edited
+from materials import SOURCED_ENTRIES
 from pydantic_core import PydanticCustomError
 
 from fea import large_displacement
@@ -31,7 +32,7 @@ FIXED = [  # a material without any range
     "materials.own.title=plastic", f'materials.own.density="{PLA.density * 1e12:.9g} kg/m^3"',
     f'materials.own.youngs_modulus="{PLA.youngs_modulus} MPa"', f"materials.own.poissons_ratio={PLA.poissons_ratio}",
     'materials.own.ultimate_strength="33 MPa"', "materials.own.strength=ultimate",
-    "materials.own.minimum_safety_factor=6.0", "materials.own.sources={}", "materials.own.status={}",
+    "materials.own.minimum_safety_factor=6.0", *(f"materials.own.{entry}" for entry in SOURCED_ENTRIES),
     "parts.bar.material=own",
 ]  # fmt: skip
 

@@ -7,6 +7,7 @@ from pydantic import ValidationError
 
 from geometry.material import Fatigue, Material, library
 
+KNOWN = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength")
 CARD: dict[str, Any] = {
     "title": "a plastic",
     "density": "1450 kg/m^3",
@@ -15,8 +16,8 @@ CARD: dict[str, Any] = {
     "yield_strength": "41.4 MPa",
     "ultimate_strength": "52 MPa",
     "strength": "yield",
-    "sources": {"density": "a book"},
-    "status": {"density": "handbook"},
+    "sources": dict.fromkeys(KNOWN, "a book"),
+    "status": dict.fromkeys(KNOWN, "handbook"),
 }
 
 
@@ -59,6 +60,9 @@ def test_a_brittle_card_uses_the_ultimate_strength() -> None:
         ({"sources": {"densty": "a book"}}, "'densty'.*no such entry; correct"),
         ({"status": {"densty": "handbook"}}, "'densty'.*no such entry"),
         ({"status": {"density": "guessed"}}, "'measured', 'datasheet', 'handbook' or 'assumed'"),
+        ({"sources": {}}, "sources says nothing of density; add density = "),
+        ({"status": {}}, 'status says nothing of density; add density = "datasheet"'),
+        ({"status": dict.fromkeys(KNOWN[:-1], "handbook")}, "status says nothing of ultimate_strength"),
         ({"minimum_safety_factor": 0.0}, "greater than 0"),
         ({"colour": "red"}, "Extra inputs"),
         ({"title": "\x1b[2J"}, "control characters"),

@@ -6,6 +6,7 @@ import jsonschema
 import numpy as np
 import pytest
 from edited_cases import edited
+from materials import SOURCED
 
 from geometry.body_rules import check_body
 from geometry.errors import CaseError
@@ -121,7 +122,7 @@ def test_a_structure_needs_neither_drive_nor_coordinate() -> None:
 def test_a_safety_factor_check_needs_a_limit_from_somewhere() -> None:
     bare = (
         'materials.bare={title="m",density="1 g/cm^3",youngs_modulus="2 GPa",poissons_ratio=0.3,'
-        'yield_strength="40 MPa",strength="yield",sources={},status={}}'
+        'yield_strength="40 MPa",strength="yield",' + SOURCED + "}"
     )
     use = 'parts.tube.material="bare"'
     assert edited(OWL, [bare, use]).material_of("ED").minimum_safety_factor is None

@@ -151,6 +151,11 @@ BAD = [
     # materials
     (
         'materials.m={title="m",density="1 g/cm^3",youngs_modulus="2 GPa",poissons_ratio=0.3,yield_strength="60 MPa",'
+        'strength="yield",sources={},status={}}',
+        ["materials.m", "sources says nothing of density", "add density ="],
+    ),
+    (
+        'materials.m={title="m",density="1 g/cm^3",youngs_modulus="2 GPa",poissons_ratio=0.3,yield_strength="60 MPa",'
         'ultimate_strength="50 MPa",strength="yield",sources={},status={}}',
         ["materials.m", "yield_strength 60 MPa", "above ultimate_strength 50 MPa", "check the units"],
     ),

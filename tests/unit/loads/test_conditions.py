@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from edited_cases import edited
-from materials import with_material
+from materials import SOURCED, with_material
 
 from fea.band import Band
 from fea.check import check_case
@@ -72,7 +72,8 @@ def test_ranges_follow_what_they_belong_to():
             [
                 'materials.half={title="half",density="1 g/cm^3",youngs_modulus="2 GPa",poissons_ratio=0.3,'
                 'yield_strength="40 MPa",strength="yield",minimum_safety_factor=2.0,sustained_stress="9 MPa",'
-                "sources={},status={}}",
+                + SOURCED
+                + "}",
                 'parts.tube.material="half"',
                 'conditions.duration="1 year"',
             ],
