@@ -179,7 +179,7 @@ def tube() -> Part:
 
 def section_peak(section: Any, forces: np.ndarray) -> float:
     """Largest von Mises stress that a beam's section forces make."""
-    from fea.beam import section_stress
+    from fea.section_stress import section_stress
 
     return float(section_stress(section, forces).equivalent)
 

@@ -1,19 +1,23 @@
 """Measures how solid models of links compare with hand calculation; writes the factors of ``fea/calibration.toml``.
 
-    python -m benchmarks.calibration
+    python -m benchmarks.calibration             solve every solid, keep what they say, and compare
+    python -m benchmarks.calibration estimates   compare the solids that were kept with the estimates of today
 
+What the solids say is kept in ``benchmarks/results/calibration.json``, so that a better estimate needs no new solid.
 Every part is solved on one moderate mesh under some twenty load cases with every pin pressure and torque transfer.
 The largest von Mises and principal stress within each spot (``fea.spots``) is divided by the spot's estimate.
 """
 
 import datetime
+import json
 import math
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from fea.beam import check_beam
+from fea.beam import BeamCheck, check_beam
 from fea.calibration import proportions
 from fea.cut_free import beam_loads
 from fea.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
@@ -24,6 +28,7 @@ from geometry.mesh import MeshSettings, mesh_body
 from geometry.part import RIM, Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 FILE = Path(__file__).resolve().parents[1] / "fea" / "calibration.toml"
+KEPT = Path(__file__).with_name("results") / "calibration.json"
 SETTINGS = MeshSettings(size=0.45, bore_elements=14, hole_elements=8, turn_elements=8, fillet_size=0.9, growth=0.8)
 YOUNG = 2400.0
 MARGIN = 1.15
@@ -181,55 +186,61 @@ def load_cases(body: Body) -> Iterator[LinkLoads]:
     yield case("drive by B", {"B": 5 * unit * ey + unit * ex}, couple=-b[0] * unit * 5)
 
 
-def measure(body: Body, nu: float) -> list[dict]:
-    """Every spot of every load case: its share of the peak, and least and largest ratio over the variants."""
+def solids(body: Body, nu: float) -> dict[str, dict[str, list[float]]]:
+    """What the solid model alone says: load case -> spot -> its share of the peak and its least and largest stresses.
+
+    The five numbers of a spot are the largest share over the variants, then least and largest von Mises stress, then
+    least and largest principal stress [MPa]; those of "displacement" least and largest [mm].
+    """
     mesh = mesh_body(body, SETTINGS)
     cases = list(load_cases(body))
     line = ("bore:A", "bore:C")
     solution = solve_solid(mesh, E=YOUNG, nu=nu, density=1e-9, loads=cases, line=line, threads=1)
     print(len(mesh.cells), "elements", flush=True)
-    rows = []
     nodes = solution.space.nodes
+    kept: dict[str, dict[str, list[float]]] = {}
     for loads in cases:
-        beam = check_beam(beam_loads(loads, body, 1e-9, None), body.part.section, 1.0)
-        places = spots(body, loads, beam)
-        hand = max(s.estimate for s in places)
-        moved = displacement_estimate(
-            body, loads, beam, young=YOUNG, poisson=nu, line=(body.pins[0].x, body.pins[-1].x)
-        )
         found = [s for s in solution.cases if s.load == loads.name]
-        rows.append(
-            {
-                "case": loads.name,
-                "kind": "displacement",
-                "name": "",
-                "share": 1.0,
-                "by_hand": 1.0,
-                "von_mises": [s.displacement_max / moved for s in found],
-                "principal": [1.0],
-            }
-        )
+        moved = [float(s.displacement_max) for s in found]
+        row = kept[loads.name] = {"displacement": _rounded(min(moved), max(moved))}
         fields = [stress_field(solution.space, s.displacement, E=YOUNG, nu=nu) for s in found]
         peaks = [f.von_mises.max() for f in fields]
         other = np.ones(len(nodes), dtype=bool)
-        for spot in places:
+        for spot in spots(body, loads, _beam(body, loads, nu)):
             inside = other if spot.kind == "section" else (nodes[:, 0] >= spot.low) & (nodes[:, 0] <= spot.high)
             other = other & ~inside
-            if spot.estimate <= 0.0:
-                continue
             von = [float(f.von_mises[inside].max()) for f in fields]
-            rows.append(
-                {
-                    "case": loads.name,
-                    "kind": spot.kind,
-                    "name": spot.name,
-                    "share": max(v / p for v, p in zip(von, peaks, strict=True)),
-                    "by_hand": spot.estimate / hand,
-                    "von_mises": [v / spot.estimate for v in von],
-                    "principal": [float(f.principal[inside, 0].max()) / spot.estimate for f in fields],
-                }
-            )
+            first = [float(f.principal[inside, 0].max()) for f in fields]
+            share = max(v / p for v, p in zip(von, peaks, strict=True))
+            row[spot.name] = _rounded(share, min(von), max(von), min(first), max(first))
+    return kept
+
+
+def compare(body: Body, nu: float, kept: dict[str, dict[str, list[float]]]) -> list[dict]:
+    """Every spot of every load case: its share of the peak, and least and largest ratio of solid to estimate."""
+    rows = []
+    for loads in load_cases(body):
+        beam, solid = _beam(body, loads, nu), kept[loads.name]
+        places = [spot for spot in spots(body, loads, beam) if spot.estimate > 0.0]
+        hand = max(spot.estimate for spot in places)
+        line = (body.pins[0].x, body.pins[-1].x)
+        moved = displacement_estimate(body, loads, beam, young=YOUNG, poisson=nu, line=line)
+        of_all = {"case": loads.name, "kind": "displacement", "share": 1.0, "by_hand": 1.0}
+        rows.append(of_all | {"von_mises": [value / moved for value in solid["displacement"]]})
+        for spot in places:
+            share, *stresses = solid[spot.name]
+            ratios = [value / spot.estimate for value in stresses]
+            row = {"case": loads.name, "kind": spot.kind, "share": share, "by_hand": spot.estimate / hand}
+            rows.append(row | {"von_mises": ratios[:2], "principal": ratios[2:]})
     return rows
+
+
+def _beam(body: Body, loads: LinkLoads, nu: float) -> BeamCheck:
+    return check_beam(beam_loads(loads, body, 1e-9, None), body.part.section, 1.0, nu)
+
+
+def _rounded(*values: float) -> list[float]:
+    return [float(f"{value:.5g}") for value in values]
 
 
 def factors(rows: list[dict], quantity: str) -> list[float]:
@@ -286,13 +297,22 @@ HEADER = """\
 
 
 def main() -> None:
-    """Measure every part of both shapes and write the table."""
+    """Measure every part of both shapes, or take what was kept, and write the table."""
+    kept: dict[str, dict] = json.loads(KEPT.read_text()) if sys.argv[1:] == ["estimates"] else {}
     found: dict[str, dict] = {}
-    for shape in ("tube", "bar"):
-        found[shape] = {"date": str(datetime.date.today()), "parts": []}
+    for shape, parts in (("tube", TUBES), ("bar", BARS)):
+        if shape not in kept:
+            kept[shape] = {"date": str(datetime.date.today()), "parts": []}
+            for number, (body, nu) in enumerate(bodies(shape)):
+                print(f"{shape} {number}: ", end="", flush=True)
+                kept[shape]["parts"].append({"proportions": parts[number], "solid": solids(body, nu)})
+            KEPT.write_text(json.dumps(kept, indent=None, separators=(",", ":")).replace('},"', '},\n"') + "\n")
+        found[shape] = {"date": kept[shape]["date"], "parts": []}
         for number, (body, nu) in enumerate(bodies(shape)):
-            print(f"{shape} {number}: ", end="", flush=True)
-            rows = measure(body, nu)
+            part = kept[shape]["parts"][number]
+            if tuple(part["proportions"]) != parts[number]:
+                raise SystemExit(f"{shape} {number} was solved with other proportions; solve every solid again")
+            rows = compare(body, nu, part["solid"])
             found[shape]["parts"].append({"number": number, "proportions": proportions(body, nu), "rows": rows})
     FILE.write_text(HEADER + "\n".join(table(shape, rows) for shape, rows in found.items()))
 

@@ -10,7 +10,7 @@ section 4.4, there with the opposite sign of V)
 
     dN/dx = -q_x,  dV_y/dx = -q_y,  dV_z/dx = -q_z,  dT/dx = 0,  dM_y/dx = V_z,  dM_z/dx = -V_y
 
-and the stress over the section is σ = N/A - M_z y/I_z + M_y z/I_y: M_z > 0 compresses the side y > 0.
+and M_z > 0 compresses the side y > 0 (``fea.section_stress``).
 Everything is a piecewise polynomial (N, V of degree 2, M of degree 3 under linearly varying line loads), kept as
 such and therefore exact at every station.
 """
@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fea.flanks import Flanks
+from fea.section_stress import SectionStress, equivalent_stress, section_stress
 from geometry.errors import CannotRunError
 from geometry.part import Section
 
@@ -265,53 +266,6 @@ def internal_forces(loads: BeamLoads) -> Piecewise:
     return Piecewise(breaks=breaks, coefficients=coefficients)
 
 
-@dataclass(frozen=True, kw_only=True)
-class SectionStress:
-    """Stresses of one section under N, V, T, M [MPa], all as magnitudes but the axial one.
-
-    axial      N/A, tension positive
-    bending    at the extreme fibre: round √(M_y² + M_z²) c/I, rectangular |M_z| c_y/I_z + |M_y| c_z/I_y (a corner)
-    torsion    largest shear stress of T: round T c/J; rectangular after Roark, 8th ed., table 10.7, case 4
-    shear      largest shear stress of V (at the neutral axis): round 4V/(3A) (1+m+m²)/(1+m²) with m the radius
-               ratio; rectangular 3V/(2A) (Gere & Goodno, 8th ed., sections 5.8 and 5.9)
-    """
-
-    axial: float
-    bending: float
-    torsion: float
-    shear: float
-
-    @property
-    def equivalent(self) -> float:
-        """Von Mises stress at the extreme fibre or at the neutral axis, whichever is larger.
-
-        √((|N/A| + bending)² + 3 torsion²) and √((N/A)² + 3 (torsion + shear)²); on a rectangle the largest torsion
-        stress is not at the corner, so this is on the safe side there.
-        """
-        fibre = np.hypot(abs(self.axial) + self.bending, np.sqrt(3.0) * self.torsion)
-        neutral = np.hypot(self.axial, np.sqrt(3.0) * (self.torsion + self.shear))
-        return float(max(fibre, neutral))
-
-
-def section_stress(section: Section, forces: Floats) -> SectionStress:
-    """Stresses of a section under forces (6,): N, V_y, V_z [N], T, M_y, M_z [N·mm]."""
-    n, v_y, v_z, t, m_y, m_z = map(float, forces)
-    transverse = float(np.hypot(v_y, v_z))
-    if section.round:
-        m = section.radius_ratio
-        bending = float(np.hypot(m_y, m_z)) * section.half_y / section.i_z
-        torsion = abs(t) * section.half_y / section.torsion
-        shear = 4.0 * transverse / (3.0 * section.area) * (1.0 + m + m**2) / (1.0 + m**2)
-    else:
-        bending = abs(m_z) * section.half_y / section.i_z + abs(m_y) * section.half_z / section.i_y
-        long, short = max(section.half_y, section.half_z), min(section.half_y, section.half_z)
-        r = short / long
-        series = 1.0 + 0.6095 * r + 0.8865 * r**2 - 1.8023 * r**3 + 0.9100 * r**4
-        torsion = 3.0 * abs(t) / (8.0 * long * short**2) * series
-        shear = 1.5 * transverse / section.area
-    return SectionStress(axial=n / section.area, bending=bending, torsion=torsion, shear=shear)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BeamCheck:
     """Internal forces and stresses along a link, and its safety factor by beam theory.
@@ -323,7 +277,7 @@ class BeamCheck:
     n, v_y, v_z        normal force, tension positive, and shear forces [N]
     t, m_y, m_z        torque and bending moments [N·mm]
     axial, bending     N/A, tension positive, and extreme-fibre bending stress, a magnitude [MPa]
-    equivalent         von Mises stress of all of them together [MPa]
+    equivalent         largest von Mises stress over the section [MPa]
     worst_x            station of the largest equivalent stress [mm], ``worst_side`` of a jump there
     worst              the stresses there
     strength           the stress that the safety factor counts from [MPa]
@@ -332,6 +286,7 @@ class BeamCheck:
 
     forces: Piecewise
     section: Section
+    poisson: float
     x: Floats
     n: Floats
     v_y: Floats
@@ -350,14 +305,15 @@ class BeamCheck:
 
     def stress_at(self, x: float, side: Side = "after") -> SectionStress:
         """Stresses at a station x [mm]."""
-        return section_stress(self.section, self.forces.at(x, side))
+        return section_stress(self.section, self.forces.at(x, side), self.poisson)
 
 
-def check_beam(loads: BeamLoads, section: Section, strength: float) -> BeamCheck:
+def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: float = 0.3) -> BeamCheck:
     """Hand calculation of a link of constant section under a balanced set of loads.
 
-    strength in MPa. Raises ``CannotRunError`` for unbalanced loads. Eyes and holes are left out: the section is
-    the one between the eyes, and stress concentration is not in these numbers.
+    strength in MPa; Poisson's ratio tells how the shear stress of V is spread. Raises ``CannotRunError`` for unbalanced
+    loads. Eyes and holes are left out: the section is the one between the eyes, and stress concentration is not in
+    these numbers.
     """
     forces = internal_forces(loads)
     stations, rows = [], []
@@ -366,12 +322,13 @@ def check_beam(loads: BeamLoads, section: Section, strength: float) -> BeamCheck
             stations.append(x0 + s)
             rows.append(_values(c, s))
     table = np.array(rows)
-    stresses = [section_stress(section, row) for row in rows]
-    x, side, peak = forces.largest(lambda f: section_stress(section, f).equivalent)
+    stresses = [section_stress(section, row, poisson) for row in rows]
+    x, side, peak = forces.largest(lambda f: equivalent_stress(section, f, poisson))
     n, v_y, v_z, t, m_y, m_z = table.T
     return BeamCheck(
         forces=forces,
         section=section,
+        poisson=poisson,
         x=np.array(stations),
         n=n,
         v_y=v_y,
@@ -384,7 +341,7 @@ def check_beam(loads: BeamLoads, section: Section, strength: float) -> BeamCheck
         equivalent=np.array([s.equivalent for s in stresses]),
         worst_x=x,
         worst_side=side,
-        worst=section_stress(section, forces.at(x, side)),
+        worst=section_stress(section, forces.at(x, side), poisson),
         strength=strength,
         safety_factor=strength / peak if peak > 0.0 else np.inf,
     )

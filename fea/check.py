@@ -8,7 +8,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from fea.band import Band
-from fea.beam import BeamCheck, CantileverCheck, SectionStress, check_beam, deflection, uniform_cantilever
+from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
 from fea.bearing_check import bearing_outcomes
 from fea.buckling_check import buckling_outcomes
 from fea.cut_free import beam_loads, link_loads
@@ -25,6 +25,7 @@ from fea.refinement import START, Effort
 from fea.result import CheckResult, LinkResult, LoadCaseResult
 from fea.scatter import compliance_scatter, load_scatter, strength_scatter
 from fea.second_order import second_order_loads
+from fea.section_stress import SectionStress
 from fea.solid import require_compressible
 from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
@@ -267,7 +268,8 @@ class _Beam:
 def _beam(case: Case, statics: CaseStatics, link: str, loads: LinkLoads) -> _Beam:
     material, body = case.material_of(link), case.body(link)
     section = hand_section(body)
-    check = check_beam(beam_loads(loads, body, material.density, statics.masses.get(link)), section, material.allowable)
+    acting = beam_loads(loads, body, material.density, statics.masses.get(link))
+    check = check_beam(acting, section, material.allowable, material.poissons_ratio)
     bent = deflection(
         check.forces,
         section,
@@ -276,7 +278,7 @@ def _beam(case: Case, statics: CaseStatics, link: str, loads: LinkLoads) -> _Bea
         line=reference_line(body),
         flanks=flanks_of(body),
     )
-    found = details(body, loads, check.forces)
+    found = details(body, loads, check.forces, material.poissons_ratio)
     return _Beam(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))
 
 

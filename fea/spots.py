@@ -14,9 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam import BeamCheck, Side, deflection, section_stress
+from fea.beam import BeamCheck, Side, deflection
 from fea.holes import eye_stress, tube_hole_factors
 from fea.link_loads import LinkLoads, PinLoad
+from fea.section_stress import equivalent_stress, rim_shear, section_stress
 from geometry.body_rules import extent, eye_reach, fillet_radius, patch_span, section_height, section_width
 from geometry.part import Body, HoleRow, Pin, Tube
 
@@ -90,11 +91,12 @@ def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float
 
     step     height of the shoulder on the radius [mm]; ``radius`` of the fillet [mm]
 
-    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, 3.10 and 3.12, and Roark, 8th ed.,
-    table 17.1, cases 16a to c: K = C1 + C2 s + C3 s² + C4 s³ with s = 2 step/D, for step/radius of 0.25 to 4 (clipped).
+    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, 3.10 and 3.12:
+    K = C1 + C2 s + C3 s² + C4 s³ with s = 2 step/D, for step/radius of 0.1 to 20 in tension and bending and of 0.25 to
+    4 in torsion (clipped).
     """
-    t = min(max(step / radius, 0.25), 4.0)
-    root, s = math.sqrt(t), 2.0 * step / (diameter + 2.0 * step)
+    t, s = min(max(step / radius, 0.1), 20.0), 2.0 * step / (diameter + 2.0 * step)
+    root = math.sqrt(t)
     if t <= 2.0:
         tension = (0.926 + 1.157 * root - 0.099 * t, 0.012 - 3.036 * root + 0.961 * t,
                    -0.302 + 3.977 * root - 1.744 * t, 0.365 - 2.098 * root + 0.878 * t)  # fmt: skip
@@ -105,6 +107,8 @@ def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float
                    2.198 - 0.486 * root + 0.165 * t, -0.593 - 0.028 * root - 0.106 * t)  # fmt: skip
         bending = (1.232 + 0.832 * root - 0.008 * t, -3.813 + 0.968 * root - 0.260 * t,
                    7.423 - 4.868 * root + 0.869 * t, -3.839 + 3.070 * root - 0.600 * t)  # fmt: skip
+    t = min(max(t, 0.25), 4.0)
+    root = math.sqrt(t)
     torsion = (0.905 + 0.783 * root - 0.075 * t, -0.437 - 1.969 * root + 0.553 * t,
                1.557 + 1.073 * root - 0.578 * t, -1.061 + 0.171 * root + 0.086 * t)  # fmt: skip
     found = [max(1.0, sum(c * s**power for power, c in enumerate(row))) for row in (tension, bending, torsion)]
@@ -133,9 +137,8 @@ def _largest(beam: BeamCheck, low: float, high: float) -> float:
     """Largest equivalent stress by beam theory between two stations."""
     stations = [x for x in beam.x if low <= x <= high] + [low, high]
     sides: tuple[Side, Side] = ("before", "after")
-    return max(
-        section_stress(beam.section, forces_at(beam, float(x), side)).equivalent for x in stations for side in sides
-    )
+    found = [forces_at(beam, float(x), side) for x in stations for side in sides]
+    return max(equivalent_stress(beam.section, forces, beam.poisson) for forces in found)
 
 
 def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> Spot:
@@ -147,16 +150,16 @@ def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> Spot:
     after = forces_at(beam, pin.x, "after") if pin.x < beam.forces.breaks[-1] else np.zeros(6)
     found = [_bore(body, pin, load, torque, before, after)]
     sides: tuple[tuple[float, Side], ...] = ((pin.x - reach, "after"), (pin.x + reach, "before"))
-    found += [_junction(body, forces_at(beam, x, side)) for x, side in sides if first < x < last]
+    found += [_junction(body, forces_at(beam, x, side), beam.poisson) for x, side in sides if first < x < last]
     far = reach + section_width(part) / 2.0
     return Spot(kind="eye", name=f"the eye at {pin.name}", x=pin.x, low=pin.x - far, high=pin.x + far,
                 estimate=max(found))  # fmt: skip
 
 
-def _junction(body: Body, forces: NDArray[np.float64]) -> float:
+def _junction(body: Body, forces: NDArray[np.float64], poisson: float) -> float:
     """Stress at the fillet between the section and an eye under the section's forces (6,)."""
     part, width = body.part, section_width(body.part)
-    stress = section_stress(part.section, forces)
+    stress = section_stress(part.section, forces, poisson)
     tension, bending, torsion = shoulder_factors(width, (part.eye_diameter - width) / 2.0, fillet_radius(part))
     direct = tension * abs(stress.axial) + bending * stress.bending
     return math.hypot(direct, math.sqrt(3.0) * (torsion * stress.torsion + stress.shear))
@@ -167,10 +170,11 @@ def _bore(
 ) -> float:
     """Stress at the edge of a pin hole.
 
-    Of the pin's push after Pilkey & Pilkey, 3rd ed., chart 4.67 (close-fitting pin, net section, d/D of 0.15 to 0.75,
-    clipped), its moments taken as the force pair 6M/t of a linear pressure; of what passes through the eye, with the
-    factors of a hole in a plate: 3 in tension and in bending out of the plane, 2 in bending in the plane; of a torque
-    that the bore takes by shear.
+    Of the pin's push after Pilkey & Pilkey, 3rd ed., chart 4.67 (close-fitting pin in a strip, net section, d/D of 0.15
+    to 0.75, clipped; it holds for an edge one width or more beyond the pin, and an eye has half a width, which the
+    calibration takes up), its moments taken as the force pair 6M/t of a linear pressure; of what passes through the
+    eye, with the factors of a hole in a plate: 3 in tension and in bending out of the plane, 2 in bending in the plane;
+    of a torque that the bore takes by shear.
     """
     part = body.part
     wide, thick, hole = part.eye_diameter, part.eye_thickness, pin.diameter
@@ -189,26 +193,32 @@ def _bore(
 
 
 def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> Spot:
-    """Stress at the rim of a cross hole: N and M with the handbook's factors on the gross section, torsion with 4."""
+    """Stress at the rim of a cross hole: N and M with the handbook's factors on the gross section, shear with 4.
+
+    The shear of V is that where the hole opens: on a tube the wall's mean at the neutral axis, 4V/3A (1+m+m²)/(1+m²)
+    with m the ratio of the radii (Gere & Goodno, 8th ed., section 5.9), on a bar that of the rim.
+    """
     part, section = body.part, body.part.section
     forces = forces_at(beam, x)
     n, v_y, v_z, _, m_y, m_z = map(float, forces)
-    stress = section_stress(section, forces)
+    stress = section_stress(section, forces, beam.poisson)
     opened, across = (m_z, m_y) if row.along == "y" else (m_y, m_z)
     shear = v_z if row.along == "y" else v_y
     if isinstance(part, Tube):
         tension, bending = tube_hole_factors(part.outer_diameter, part.inner_diameter, row.diameter)
         at_rim, aside = section.half_y / section.i_z, section.half_y / section.i_z
+        m = section.radius_ratio
+        transverse = 4.0 / 3.0 * (1.0 + m + m**2) / (1.0 + m**2) * abs(shear) / section.area
     else:
         width = section_width(part) if row.along == "z" else section_height(part)
         h = row.diameter / width
-        # Pilkey & Pilkey, 3rd ed., chart 4.1 (tension of a plate with a central hole), on the gross section.
+        # Roark, 8th ed., table 17.1, case 7a (tension of a plate with a central hole), on the gross section.
         tension = (3.0 - 3.14 * h + 3.667 * h**2 - 1.527 * h**3) / (1.0 - h)
         bending = tension
         half, second = (section.half_y, section.i_z) if row.along == "y" else (section.half_z, section.i_y)
         other, other_second = (section.half_z, section.i_y) if row.along == "y" else (section.half_y, section.i_z)
         at_rim, aside = half / second, other / other_second
-    transverse = 1.5 * abs(shear) / section.area
+        transverse = rim_shear(section, beam.poisson)[1 if row.along == "y" else 0] * abs(shear)
     rim = tension * abs(n) / section.area + bending * abs(opened) * at_rim + 4.0 * (stress.torsion + transverse)
     estimate = max(rim, stress.equivalent, abs(n) / section.area + abs(across) * aside + rim / 3.0)
     return Spot(kind="hole", name=f"hole at x = {x:g} mm of row {number + 1}", x=x, low=x - row.diameter,

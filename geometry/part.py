@@ -73,14 +73,18 @@ def ring(outer_diameter: float, inner_diameter: float) -> Section:
 
 
 def rectangle(width: float, thickness: float) -> Section:
-    """Return a rectangle, its width in the linkage's plane; J after Roark, 8th ed., table 10.7, case 4."""
+    """Return a rectangle, its width in the linkage's plane.
+
+    J = a b³ (16/3) (1 - 192/π⁵ b/a Σ tanh(nπa/2b)/n⁵), n odd, of half-sides a >= b (Timoshenko & Goodier, Theory of
+    Elasticity, 3rd ed., section 109), with Σ 1/n⁵ = 1.0045237628 taken out of the sum.
+    """
     a, b = max(width, thickness) / 2.0, min(width, thickness) / 2.0
-    ratio = b / a
+    series = 1.0045237627951 - sum(2.0 / (math.exp(min(n * math.pi * a / b, 700.0)) + 1.0) / n**5 for n in (1, 3, 5))
     return Section(
         area=width * thickness,
         i_y=width * thickness**3 / 12.0,
         i_z=thickness * width**3 / 12.0,
-        torsion=a * b**3 * (16.0 / 3.0 - 3.36 * ratio * (1.0 - ratio**4 / 12.0)),
+        torsion=16.0 / 3.0 * a * b**3 * (1.0 - 192.0 / math.pi**5 * b / a * series),
         half_y=width / 2.0,
         half_z=thickness / 2.0,
         round=False,

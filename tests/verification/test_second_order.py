@@ -213,7 +213,7 @@ def test_a_post_bears_its_second_order_moment(way: str, state: str) -> None:
 
 def test_a_post_that_is_pulled_has_no_more_than_linear_theory_gives() -> None:
     found = check_case(post(38.6, "off"), fidelity="beam").load_cases["push"].links["post"].beam
-    assert found.worst.equivalent == pytest.approx(6.386, rel=1e-6)
+    assert found.worst.equivalent == pytest.approx(6.386, rel=1e-5)
 
 
 def test_over_a_motion_every_pose_has_its_own_growth() -> None:

@@ -76,6 +76,19 @@ def test_shear_past_a_slot_bends_each_flank_by_half() -> None:
     assert abs(found.x - 20.0) == pytest.approx(length / 2.0)
 
 
+def test_a_torque_past_a_slot_twists_each_flank_by_half() -> None:
+    """Flanks of 3 x 5 mm: T/2 over k2 h² t of each, interpolated in Timoshenko & Goodier's table of section 109."""
+    wide = BAR.model_copy(update={"eye_diameter": 10.0, "eye_thickness": 5.0})
+    pins = (Pin(name="S", x=31.0, y=0.0, diameter=4.0, slot=38.0), Pin(name="B", x=80.0, y=0.0, diameter=3.0))
+    body = Body(part=wide, pins=(Pin(name="A", x=0.0, y=0.0, diameter=3.0), *pins), ends=(), holes=())
+    ends = pin("A", 0.0, 0.0, 0.0, 0.0, 0.0, -50.0), pin("S", 31.0, 0.0), pin("B", 80.0, 0.0, 0.0, 0.0, 0.0, 50.0)
+    loads = LinkLoads(name="twist", pins=ends)
+    (found,) = details(body, loads, check_beam(beam_loads(loads, body, 1e-9, None), BAR.section, 1.0).forces)
+    k2 = 0.231 + (0.239 - 0.231) * (5.0 / 3.0 - 1.5) / 0.25  # of the ratios 1.5 and 1.75
+    assert found.stress.torsion == pytest.approx(25.0 / (k2 * 3.0**2 * 5.0), rel=5e-3)
+    assert found.stress.equivalent == pytest.approx(np.sqrt(3.0) * found.stress.torsion)
+
+
 def test_short_flanks_are_said_to_be_an_estimate() -> None:
     loads = LinkLoads(name="pull", pins=(pin("A", 0.0, 0.0, -20.0), pin("S", 20.0, 0.0), pin("B", 60.0, 0.0, 20.0)))
     for slot, told in ((10.0, False), (2.0, True)):

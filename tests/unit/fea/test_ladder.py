@@ -124,9 +124,19 @@ def test_a_cross_hole_bears_the_handbooks_factors():
 
 
 def test_shoulder_factors_are_the_handbooks():
-    """Roark, 8th ed., table 17.1, case 16: D/d = 1.5, r/d = 0.25, hence h/r = 1 and 2h/D = 1/3, worked by hand."""
+    """Peterson, 3rd ed., charts 3.4, 3.10 and 3.12: D/d = 1.5, r/d = 0.25, hence h/r = 1 and 2h/D = 1/3, by hand."""
     s = 1.0 / 3.0
     tension = 1.984 - 2.063 * s + 1.931 * s**2 - 0.855 * s**3
     bending = 2.022 - 2.468 * s + 2.091 * s**2 - 0.648 * s**3
     torsion = 1.613 - 1.853 * s + 2.052 * s**2 - 0.804 * s**3
     assert shoulder_factors(4.0, 1.0, 1.0) == pytest.approx((tension, bending, torsion), rel=1e-12)
+
+
+def test_shoulder_factors_of_a_small_fillet_go_on_to_a_step_of_twenty_radii():
+    """h/r = 9 and 2h/D = 0.6, root 3: tension and bending by hand; torsion stays at the source's end, h/r = 4."""
+    tension, bending, torsion = shoulder_factors(4.0, 3.0, 1.0 / 3.0)
+    assert tension == pytest.approx(3.582 - 3.185 * 0.6 + 2.225 * 0.36 - 1.631 * 0.216)
+    assert bending == pytest.approx(3.656 - 3.249 * 0.6 + 0.640 * 0.36 - 0.029 * 0.216)
+    assert torsion == shoulder_factors(4.0, 3.0, 0.75)[2]
+    assert shoulder_factors(4.0, 3.0, 0.15) == pytest.approx(shoulder_factors(4.0, 3.0, 0.1))
+    assert shoulder_factors(4.0, 3.0, 0.2)[1] > bending
