@@ -1,12 +1,21 @@
 """Pins in shear and bending under their joint force.
 
-Two eyes lie side by side on the pin, so that it is in single shear: the joint force acts at the middle of each eye,
-and the two forces are a = t1/2 + gap + t2/2 apart. Their couple F a is taken by the eyes. How they share it depends
-on how tightly the pin sits: one eye takes it all (the pin is built in there; largest moment F a) or both take half
-(largest moment F a/2, at mid-gap). The first is the value, both are the band. Bending stress 32 M/(π d³), largest
-shear stress of a solid circle 4 F/(3 A) (Budynas & Nisbett, Shigley's Mechanical Engineering Design, 10th ed.,
-chapter 3, for beams in bending and shear; eyes as point loads, or a pin built in at one eye).
-Moments about x and y that the joint carries besides (loads out of the plane) add to the bending moment.
+Two eyes t1 and t2 thick lie side by side on the pin, g apart, so that it is in single shear: bearing along one eye
+brings the force F, bearing along the other takes it. The forces' middles are a = t1/2 + g + t2/2 apart, and the couple
+F a is taken by bearing that is not even: m1 in one eye and m2 in the other, m1 + m2 = F a. How they share it depends on
+how the pin sits and how the links are held, so that the moment is a band, from statics alone:
+
+* largest: one eye takes the whole couple and bears linearly along its thickness t (a stiff pin; a soft one has less
+  moment), the other, of t', evenly. From the face inwards V = F (1 - η)(1 - c η) with η = x/t and c = 6 a/t, hence
+  M = F (t'/2 + g + t²/(12 a) - t³/(216 a²)) at η = 1/c, and V = -F (c - 1)²/(4 c) at most. (A soft pin bears more shear
+  in that eye, but is so thin that its bending decides.)
+* least: the force crosses the gap, where M changes by F g, so that |M| is F g/2 or more, whatever the bearing. Without
+  a gap statics leaves nothing but shear. Both eyes bearing linearly alike, t thick without a gap, make 4/27 F t.
+
+Moments about x and y that the joint carries besides (loads out of the plane) add to the largest; from the least they
+may take off what the eyes' couple can make in the gap's middle, F (t + g)/2. Bending stress 32 M/(π d³); largest shear
+stress of a solid circle (3 + 2ν)/(2 + 2ν) V/A, in the middle, where nothing bends (Love, Mathematical Theory of
+Elasticity, 4th ed., section 230).
 """
 
 import math
@@ -19,51 +28,64 @@ from geometry.errors import CaseError
 from loads.case import Case
 from loads.statics import JointReaction
 
-HOLDS = ("one eye takes the couple of the joint force, or both take half",)
+HOLDS = ("how the two eyes share the couple of the joint force, and bear it",)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PinStress:
     """Stresses of a pin [MPa].
 
-    lever    distance between the middles of the two eyes [mm]
-    moment   largest bending moment, both ways to share the couple [N mm]
-    bending  extreme-fibre stress of that moment
-    shear    largest shear stress, at the neutral axis, where nothing bends
+    lever       distance between the middles of the two eyes [mm]
+    moment      largest bending moment, by how the eyes take the couple [N mm]
+    bending     extreme-fibre stress of that moment
+    shear       largest shear stress, at the neutral axis, where nothing bends
+    equivalent  von Mises stress: the bending at the extreme fibre, or √3 times the shear at the neutral axis
     """
 
     lever: float
     moment: Band
     bending: Band
     shear: float
-
-    @property
-    def equivalent(self) -> Band:
-        """Von Mises stress: the bending at the extreme fibre or √3 times the shear at the neutral axis."""
-        floor = math.sqrt(3.0) * self.shear
-        value, low, high = (max(b, floor) for b in (self.bending.value, self.bending.low, self.bending.high))
-        return Band(value=value, low=low, high=high, holds=HOLDS)
+    equivalent: Band
 
 
-def pin_stress(force: float, diameter: float, lever: float, moment: float = 0.0) -> PinStress:
-    """Return the stresses of a pin under a joint force [N] across it and a moment about x or y [N mm]; mm."""
+def pin_stress(
+    force: float,
+    diameter: float,
+    eyes: tuple[float, float],
+    gap: float = 0.0,
+    *,
+    moment: float = 0.0,
+    poisson: float = 0.3,
+) -> PinStress:
+    """Return the stresses of a pin under a joint force [N] across it and a moment about x or y [N mm].
+
+    Lengths in mm; ``eyes`` are the thicknesses of the two eyes, ``gap`` lies between them.
+    """
     if not diameter > 0.0:
         raise CaseError(f"a pin needs a diameter above zero, not {diameter:g} mm; state its pin_diameter")
-    most, least = force * lever + moment, force * lever / 2.0 + moment
-    section_modulus = math.pi * diameter**3 / 32.0
-    bending = Band(value=most, low=least, high=most, holds=HOLDS)
+    lever = sum(eyes) / 2.0 + gap
+    most, shear_force = 0.0, force
+    for taking, other in (eyes, eyes[::-1]):
+        arm = other / 2.0 + gap + taking**2 / (12.0 * lever) - taking**3 / (216.0 * lever**2)
+        c = 6.0 * lever / taking
+        most, shear_force = max(most, force * arm + moment), max(shear_force, force * (c - 1.0) ** 2 / (4.0 * c))
+    least = max(force * gap / 2.0, moment - force * (max(eyes) + gap) / 2.0)
+    bent = 32.0 / (math.pi * diameter**3)
+    sheared = (3.0 + 2.0 * poisson) / (2.0 + 2.0 * poisson) * 4.0 / (math.pi * diameter**2)
+    low = max(least * bent, math.sqrt(3.0) * force * sheared)
+    high = max(most * bent, math.sqrt(3.0) * shear_force * sheared)
     return PinStress(
         lever=lever,
-        moment=bending,
-        bending=Band(
-            value=most / section_modulus, low=least / section_modulus, high=most / section_modulus, holds=HOLDS
-        ),
-        shear=4.0 * force / (3.0 * math.pi * diameter**2 / 4.0),
+        moment=Band(value=most, low=least, high=most, holds=HOLDS),
+        bending=Band(value=most * bent, low=least * bent, high=most * bent, holds=HOLDS),
+        shear=shear_force * sheared,
+        equivalent=Band(value=high, low=low, high=high, holds=HOLDS),
     )
 
 
-def lever(case: Case, joint: str) -> float:
-    """Distance between the middles of a joint's two eyes [mm].
+def eyes(case: Case, joint: str) -> tuple[float, float]:
+    """Thicknesses of a joint's two eyes [mm].
 
     An eye of a link without part is taken as thick as the other link's. Raises ``CaseError`` where neither has a part.
     """
@@ -71,7 +93,7 @@ def lever(case: Case, joint: str) -> float:
     thicknesses = [case.part_of(link).eye_thickness for link in links]
     if not thicknesses:
         raise CaseError(f"joints.{joint}: neither link has a part, so the pin's length is unknown; give one a part")
-    return (thicknesses[0] + thicknesses[-1]) / 2.0 + case.joints[joint].pin_gap
+    return thicknesses[0], thicknesses[-1]
 
 
 def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
@@ -88,4 +110,5 @@ def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinS
     record = case.joints[joint]
     if record.pin_diameter is None:
         raise CaseError(f'joints.{joint}.pin_diameter: the check of its pin needs it; state it, for example "1.5 mm"')
-    return pin_stress(force, record.pin_diameter, lever(case, joint), moment)
+    poisson = case.all_materials[record.pin_material].poissons_ratio
+    return pin_stress(force, record.pin_diameter, eyes(case, joint), record.pin_gap, moment=moment, poisson=poisson)

@@ -9,8 +9,9 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from geometry.errors import CaseError
 from geometry.model import CaseModel, Text
-from geometry.units import NOT_NEGATIVE, POSITIVE, Density, Stress, Temperature
+from geometry.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress, Temperature
 
 Status = Literal["measured", "datasheet", "handbook", "assumed"]
 TOLD = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength")
@@ -60,6 +61,9 @@ class Material(CaseModel):
     youngs_modulus_range: Range | None = None
     strength_range: Range | None = None
     """Scatter of the strength that the safety factor uses."""
+    ultimate_strength_by_diameter: tuple[tuple[Annotated[Length, POSITIVE], Annotated[Stress, POSITIVE]], ...] = ()
+    """(largest diameter, least ultimate strength) of drawn wire, rising in diameter. The stated ultimate_strength is
+    that of one diameter, and the yield strength keeps its share of it."""
     sustained_stress: Annotated[Stress, NOT_NEGATIVE] | None = None
     """Largest stress under a load that stays."""
     sustained_modulus: Annotated[Stress, POSITIVE] | None = None
@@ -96,6 +100,17 @@ class Material(CaseModel):
             raise PydanticCustomError(
                 "temperatures_not_rising", "temperature_factors must rise in temperature; sort them and state each once"
             )
+        diameters = [diameter for diameter, _ in self.ultimate_strength_by_diameter]
+        if any(a >= b for a, b in itertools.pairwise(diameters)):
+            raise PydanticCustomError(
+                "diameters_not_rising",
+                "ultimate_strength_by_diameter must rise in diameter; sort it and state each diameter once",
+            )
+        if diameters and self.ultimate_strength is None:
+            raise PydanticCustomError(
+                "no_strength_to_scale",
+                "ultimate_strength_by_diameter needs ultimate_strength, that of one diameter; state it too",
+            )
         if unknown := [entry for entry in (*self.sources, *self.status) if entry not in type(self).model_fields]:
             raise PydanticCustomError(
                 "no_such_entry",
@@ -115,6 +130,29 @@ class Material(CaseModel):
                         },
                     )
         return self
+
+    def drawn(self, entry: str, diameter: float) -> "Material":
+        """Return the material as round wire of a diameter [mm]; ``entry`` of the case states it.
+
+        Raises ``CaseError`` for wire that is thicker than the card knows.
+        """
+        points = self.ultimate_strength_by_diameter
+        if not points:
+            return self
+        found = next((strength for limit, strength in points if diameter <= limit * (1.0 + 1e-9)), None)
+        if found is None:
+            raise CaseError(
+                f"{entry}: '{self.title}' has a strength up to {points[-1][0]:g} mm, not for {diameter:g} mm; make it "
+                "thinner or use another material"
+            )
+        assert self.ultimate_strength is not None
+        ratio = found / self.ultimate_strength
+        changed: dict[str, object] = {"ultimate_strength": found}
+        if self.yield_strength is not None:
+            changed["yield_strength"] = self.yield_strength * ratio
+        if self.strength_range is not None:
+            changed["strength_range"] = tuple(ratio * bound for bound in self.strength_range)
+        return self.model_copy(update=changed)
 
     @property
     def allowable(self) -> float:

@@ -10,7 +10,7 @@ from geometry.linkage import Joint, Link, Linkage
 from geometry.material import Material, library
 from geometry.model import CaseModel, Name, Text
 from geometry.ornithopter import OrnithopterRules
-from geometry.part import Body, Part, Pin, PlainEnd
+from geometry.part import Body, Part, Pin, PlainEnd, Tube
 from geometry.pose import Pose, solve_pose
 from geometry.units import (
     NOT_NEGATIVE,
@@ -190,7 +190,11 @@ class Case(CaseModel):
 
         Raises ``CaseError`` where its card lacks what the conditions ask for.
         """
-        return under(self.all_materials[self.part_of(link).material], self.conditions)
+        part = self.part_of(link)
+        material = self.all_materials[part.material]
+        if isinstance(part, Tube):
+            material = material.drawn(f"parts.{self.links[link].part}.outer_diameter", part.outer_diameter)
+        return under(material, self.conditions)
 
     @property
     def all_checks(self) -> dict[str, Check]:
@@ -228,7 +232,11 @@ class Case(CaseModel):
 
     def pin_material(self, joint: str) -> Material:
         """The material of a joint's pin; the case's conditions, which are those of the links, leave it alone."""
-        return self.all_materials[self.joints[joint].pin_material]
+        record = self.joints[joint]
+        material = self.all_materials[record.pin_material]
+        if record.pin_diameter is None:
+            return material
+        return material.drawn(f"joints.{joint}.pin_diameter", record.pin_diameter)
 
     @property
     def pinned_joints(self) -> tuple[str, ...]:

@@ -6,9 +6,10 @@ from edited_cases import edited
 from materials import SOURCED
 
 from fea.check import check_case
-from fea.pins import lever, pin_stress, stress_at
+from fea.pins import eyes, pin_stress, stress_at
 from fea.verdict import Verdict
 from geometry.errors import CaseError
+from geometry.material import library
 from loads.case_file import read_case
 from loads.statics import JointReaction
 
@@ -20,52 +21,125 @@ def reaction(*wrench):
 
 
 def test_stresses_by_hand():
-    """10 N on a 2 mm pin, eyes' middles 5 mm apart: W = π 8/32 = 0.7854 mm³, A = 3.1416 mm²."""
-    found = pin_stress(10.0, 2.0, 5.0)
-    assert (found.moment.value, found.moment.low, found.moment.high) == (50.0, 25.0, 50.0)
-    assert found.bending.value == pytest.approx(63.662, abs=5e-4)
-    assert found.bending.low == pytest.approx(31.831, abs=5e-4)
-    assert found.shear == pytest.approx(4.0 * 10.0 / (3.0 * 3.14159265), rel=1e-8)
-    assert found.equivalent == found.bending.__class__(
-        value=found.bending.value, low=found.bending.low, high=found.bending.high, holds=found.equivalent.holds
-    )
+    """10 N on a 2 mm pin, eyes of 4 mm 1 mm apart: a = 5, c = 7.5, M = 10 (2 + 1 + 16/60 - 64/5400) = 32.548 N mm."""
+    found = pin_stress(10.0, 2.0, (4.0, 4.0), 1.0, poisson=0.3)
+    assert found.moment.value == found.moment.high == pytest.approx(32.548, abs=5e-4)
+    assert found.moment.low == pytest.approx(5.0)  # 10 N over half of the gap
+    assert found.bending.value == pytest.approx(32.548 / 0.785398, abs=5e-3)
+    assert found.shear == pytest.approx(10.0 * 6.5**2 / 30.0 * 3.6 / 2.6 / np.pi)
+    assert found.equivalent.high == found.equivalent.value == found.bending.value
+    assert found.equivalent.low == pytest.approx(np.sqrt(3.0) * 10.0 * 3.6 / 2.6 / np.pi)
 
 
-def test_bending_stress_carries_its_moment_and_shear_stress_its_force():
-    """Integrate σ = σ_max y/r and τ = τ_max (1 - (y/r)²) over the circle: the moment and the force come back."""
-    force, diameter, distance = 7.0, 1.5, 6.0
-    found = pin_stress(force, diameter, distance)
-    r = diameter / 2.0
+def test_two_eyes_of_four_millimetres_without_a_gap():
+    """Both bearing linearly alike make 4/27 F t = 0.593 F; one taking the couple 2.315 F, from the integrals of q."""
+    t, x = 4.0, np.linspace(0.0, 4.0, 400_001)
+    alike = np.cumsum((6.0 * x / t - 2.0) / t) * x[1]
+    assert np.abs(np.cumsum(alike) * x[1]).max() == pytest.approx(4.0 / 27.0 * t, rel=1e-4)
+    taking = 1.0 - np.cumsum((1.0 + 6.0 * (1.0 - 2.0 * x / t)) / t) * x[1]  # the couple F t beside the even F/t
+    largest = (t / 2.0 + np.cumsum(taking) * x[1]).max()
+    found = pin_stress(1.0, 1.5, (t, t))
+    assert found.moment.high == pytest.approx(largest, rel=1e-4)
+    assert found.moment.low == 0.0
+    assert found.moment.low < 4.0 / 27.0 * t < found.moment.high
+
+
+def on_foundations(eyes, gap, stiffness, tilting):
+    """Largest moment and shear in a pin on two elastic foundations under 1 N, by beam elements (EI = 1).
+
+    The first eye is pushed by 1 N in its middle; it turns freely with its link (``tilting``) or keeps its direction.
+    """
+    steps = 60
+    parts = [e for e in (eyes[0], gap, eyes[1]) if e > 0.0]
+    x = np.concatenate([[0.0], *(np.linspace(0.0, p, steps + 1)[1:] + sum(parts[:i]) for i, p in enumerate(parts))])
+    n = len(x)
+    k = np.zeros((2 * n + 2, 2 * n + 2))  # last two: displacement of the first eye's middle, and its turn
+    elements, springs = [], []
+    points, weights = np.polynomial.legendre.leggauss(4)
+    for i, h in enumerate(np.diff(x)):
+        dofs = np.arange(2 * i, 2 * i + 4)
+        b = np.array([[12, 6 * h, -12, 6 * h], [6 * h, 4 * h**2, -6 * h, 2 * h**2],
+                      [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h**2, -6 * h, 4 * h**2]]) / h**3  # fmt: skip
+        k[np.ix_(dofs, dofs)] += b
+        elements.append((dofs, b))
+        middle = (x[i] + x[i + 1]) / 2.0
+        if eyes[0] < middle < eyes[0] + gap:
+            continue
+        for point, weight in zip((points + 1.0) / 2.0, weights / 2.0, strict=True):
+            row = np.zeros(2 * n + 2)
+            row[dofs] = [1 - 3 * point**2 + 2 * point**3, h * (point - 2 * point**2 + point**3),
+                         3 * point**2 - 2 * point**3, h * (point**3 - point**2)]  # fmt: skip
+            if middle < eyes[0]:
+                row[-2:] = -1.0, -(x[i] + h * point - eyes[0] / 2.0)
+            k += stiffness * weight * h * np.outer(row, row)
+            springs.append((dofs, row, stiffness * weight * h))
+    free = np.arange(2 * n + (2 if tilting else 1))
+    load = np.zeros(2 * n + 2)
+    load[-2] = 1.0
+    moved = np.zeros(2 * n + 2)
+    moved[free] = np.linalg.solve(k[np.ix_(free, free)], load[free])
+    moments, shears = [0.0], [0.0]
+    for dofs, b in elements:
+        own = b @ moved[dofs]
+        for at, row, weight in springs:
+            if at[0] == dofs[0]:
+                own = own + weight * row[at] * (row @ moved)
+        moments += [-own[1], own[3]]
+        shears += [own[0], -own[2]]
+    return np.abs(moments).max(), np.abs(shears).max()
+
+
+@pytest.mark.parametrize(("eyes", "gap"), [((4.0, 4.0), 0.0), ((7.0, 3.0), 0.0), ((2.0, 5.0), 1.5), ((3.0, 3.0), 12.0)])
+def test_pins_on_elastic_foundations_lie_in_the_band(eyes, gap):
+    """Softest to stiffest pin, links that tilt and links that do not: a stiff pin in a tilting link reaches the end."""
+    reached = []
+    for turned in (eyes, eyes[::-1]):
+        for stiffness in (1e-5, 1e-2, 1.0, 100.0):
+            for tilting in (True, False):
+                moment, shear = on_foundations(turned, gap, stiffness, tilting)
+                found = pin_stress(1.0, 1.0, eyes, gap)
+                assert found.moment.low * 0.999 <= moment <= found.moment.high * 1.001
+                if stiffness == 1e-5:
+                    assert shear <= found.shear * np.pi / 4.0 * 2.6 / 3.6 * 1.001
+                reached.append(moment)
+    assert max(reached) == pytest.approx(found.moment.high, rel=2e-3)
+
+
+def test_bending_stress_carries_its_moment():
+    """Integrate σ = σ_max y/r over the circle: the moment comes back."""
+    found = pin_stress(7.0, 1.5, (6.0, 6.0))
+    r = 0.75
     y = np.linspace(-r, r, 200_001)
     width = 2.0 * np.sqrt(np.maximum(r**2 - y**2, 0.0))
-    assert np.trapezoid(found.bending.value * y**2 / r * width, y) == pytest.approx(force * distance, rel=1e-6)
-    assert np.trapezoid(found.shear * (1.0 - (y / r) ** 2) * width, y) == pytest.approx(force, rel=1e-6)
+    assert np.trapezoid(found.bending.value * y**2 / r * width, y) == pytest.approx(found.moment.value, rel=1e-6)
 
 
 def test_a_short_pin_shears_before_it_bends():
-    found = pin_stress(10.0, 2.0, 0.1)
-    assert found.equivalent.value == pytest.approx(np.sqrt(3.0) * found.shear)
-    assert found.equivalent.low == found.equivalent.high
+    found = pin_stress(10.0, 2.0, (0.1, 0.1))
+    assert found.bending.high < np.sqrt(3.0) * found.shear
+    assert found.equivalent.high == pytest.approx(np.sqrt(3.0) * found.shear)
+    assert found.equivalent.high == pytest.approx(found.equivalent.low * 25.0 / 24.0)  # V = -F (c - 1)²/(4 c), c = 6
 
 
-def test_the_lever_is_half_of_each_eye_and_the_gap():
-    assert lever(read_case(WING), "B") == 7.0
+def test_the_eyes_of_a_joint_are_those_of_its_links():
+    assert eyes(read_case(WING), "B") == (7.0, 7.0)
     # The ground has no part: its eye is taken as thick as that of AE.
-    assert lever(edited(WING, ['joints.A.pin_gap="0.4 mm"']), "A") == pytest.approx(7.4)
+    assert stress_at(edited(WING, ['joints.A.pin_gap="0.4 mm"']), "A", reaction(1, 0, 0, 0, 0, 0)).lever == 7.4
     two = [
         'parts.thick={shape="tube",material="pvc-u",outer_diameter="5 mm",inner_diameter="2.5 mm",'
         'eye_diameter="8 mm",eye_thickness="9 mm",fillet_radius="0.8 mm"}',
         'links.AE.part="thick"',
     ]
-    assert lever(edited(WING, two), "B") == 8.0
+    assert sorted(eyes(edited(WING, two), "B")) == [7.0, 9.0]
 
 
 def test_moments_out_of_the_plane_add():
     case = read_case(WING)
     plain, turned = stress_at(case, "A", reaction(3, 4, 0, 0, 0, 99)), stress_at(case, "A", reaction(3, 4, 9, 6, 8, 0))
-    assert plain.moment.value == pytest.approx(5.0 * 7.0)
-    assert turned.moment.value == pytest.approx(5.0 * 7.0 + 10.0)
-    assert turned.moment.low == pytest.approx(5.0 * 3.5 + 10.0)
+    assert turned.moment.value == pytest.approx(plain.moment.value + 10.0)
+    # The eyes' couple makes up to 5 N x 3.5 mm in the middle, which may take off all of these 10 N mm, not all of 100.
+    assert turned.moment.low == plain.moment.low == 0.0
+    assert stress_at(case, "A", reaction(3, 4, 9, 60, 80, 0)).moment.low == pytest.approx(100.0 - 17.5)
 
 
 def test_the_wings_pins_pass_and_thin_ones_fail():
@@ -73,10 +147,11 @@ def test_the_wings_pins_pass_and_thin_ones_fail():
     pins = [c for c in result.load_cases["weight"].checks if c.name == "pins"]
     assert [c.link for c in pins] == [f"pin {name}" for name in "ABCDEFG"]
     assert all(c.verdict is Verdict.PASS and c.limit == 2.0 for c in pins)
-    # A: 0.9520 N x 7 mm over pi 1.5^3/32 = 0.33134 mm^3, against 1330 MPa.
-    assert pins[0].value.value == pytest.approx(1330.0 / (0.9520 * 7.0 / 0.33134), rel=1e-3)
-    assert pins[0].value.high == pytest.approx(2.0 * pins[0].value.low)
-    for minimum, verdict in ((100.0, Verdict.UNDECIDED), (1000.0, Verdict.FAIL)):
+    # A: 0.9520 N in eyes of 7 mm, 7 (1/2 + 1/12 - 1/216) N mm, over pi 1.5^3/32 = 0.33134 mm^3, against 1330 MPa.
+    assert pins[0].value.value == pytest.approx(1330.0 / (0.9520 * 7.0 * 125.0 / 216.0 / 0.33134), rel=1e-3)
+    # At least shear: 0.9520 N x 1.3876 (nu = 0.29) over 1.7671 mm^2, times root 3.
+    assert pins[0].value.high == pytest.approx(1330.0 / (1.73205 * 0.9520 * 1.3876 / 1.7671), rel=1e-3)
+    for minimum, verdict in ((500.0, Verdict.UNDECIDED), (2000.0, Verdict.FAIL)):
         limits = [f'checks.pins={{type="pins",minimum={minimum},joints=["A"]}}']
         result = check_case(edited(WING, limits), name=WING, fidelity="beam")
         (one,) = [c for c in result.load_cases["weight"].checks if c.name == "pins"]
@@ -103,3 +178,17 @@ def test_the_wings_pins_pass_and_thin_ones_fail():
 def test_what_is_wrong_with_a_pin(overrides, sentence):
     with pytest.raises(CaseError, match=sentence):
         edited(WING, overrides)
+
+
+@pytest.mark.parametrize(("diameter", "least"), [(0.3, 169e3 * 0.0118**-0.146), (1.5, 169e3 * 0.0591**-0.146),
+                                                 (3.0, 128e3 * 0.118**-0.263), (6.0, 90e3 * 0.236**-0.478)])  # fmt: skip
+def test_a_thicker_pin_of_drawn_wire_is_weaker(diameter, least):
+    """Shigley, 9th ed., table 10-4, A313 type 302: S = A/d^m in psi and inches."""
+    material = edited(WING, [f'joints.A.pin_diameter="{diameter} mm"']).pin_material("A")
+    assert material.ultimate_strength == pytest.approx(least * 6.894757e-3, rel=0.035)
+    assert material.allowable == pytest.approx(1330.0 / 1779.0 * material.ultimate_strength)
+
+
+def test_a_pin_thicker_than_any_wire_of_its_card_is_refused():
+    with pytest.raises(CaseError, match=r"^joints\.A\.pin_diameter: .*up to 11\.1\d* mm, not for 12 mm; make it"):
+        library()["steel-wire"].drawn("joints.A.pin_diameter", 12.0)
