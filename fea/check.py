@@ -18,7 +18,7 @@ from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_
 from fea.ladder import Climb, HandBands, by_hand, climb
 from fea.large_displacement import LargeDisplacement, examine
 from fea.link_loads import LinkLoads
-from fea.motor_check import motor_outcomes
+from fea.motor_check import limit_outcomes, motor_outcomes
 from fea.outcomes import outcomes
 from fea.pins import PinStress, stress_at
 from fea.refinement import START, Effort
@@ -194,7 +194,9 @@ def check_case(
             progress=progress,
         )
         clock("solid models")
-    motors = [motor_outcomes(case, n, check) for n, check in case.checks.items() if isinstance(check, MotorCheck)]
+    motors = [(n, check) for n, check in case.checks.items() if isinstance(check, MotorCheck)]
+    powers = [motor_outcomes(case, n, check) for n, check in motors]
+    limits = [limit_outcomes(case, n, check) for n, check in motors]
     load_cases = {}
     for i, (title, forces) in enumerate(statics.forces.items()):
         links = {
@@ -207,7 +209,8 @@ def check_case(
             *outcomes(case, title, links, pins, moved[title]),
             *_bearing(case, title, reactions),
             *buckling_outcomes(case, title, {link: beams[link][i].check for link in cut}, moved[title]),
-            *(found[title] for found in motors if title in found),
+            *(found[title] for found in powers if title in found),
+            *(outcome for found in limits for outcome in found.get(title, ())),
         )
         if title in idle:
             joints = {name: joint.magnitude for name, joint in reactions.joints.items()}

@@ -2,10 +2,11 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from geometry.model import CaseModel, Name
-from geometry.units import POSITIVE, Current, Length, Voltage
+from geometry.units import POSITIVE, AngularSpeed, Current, Length, Moment, Voltage
 
 
 class SafetyFactorCheck(CaseModel):
@@ -70,13 +71,31 @@ class BearingCheck(CaseModel):
 
 
 class MotorCheck(CaseModel):
-    """The motor must cover the drive power over the [motion], in every load case with a speed."""
+    """The motor must cover the drive power over the [motion], in every load case with a speed.
+
+    Where its speed and torque are stated, those of the driven link must keep to them too. All are at the driven link:
+    behind a gear they are those of its output.
+    """
 
     type: Literal["motor"]
     voltage: Annotated[Voltage, POSITIVE]
     current: Annotated[Current, POSITIVE]
     efficiency: Annotated[float, Field(gt=0, le=1)]
     """Share of the electrical power that reaches the crank."""
+    no_load_speed: Annotated[AngularSpeed, POSITIVE] | None = None
+    """Speed without load, which the drive must not exceed."""
+    stall_torque: Annotated[Moment, POSITIVE] | None = None
+    """Torque at standstill; the motor's torque falls from it in a straight line to nothing at no_load_speed."""
+    rated_torque: Annotated[Moment, POSITIVE] | None = None
+    """Torque that it may give for long, which the root mean square of the drive torque must not exceed."""
+
+    @model_validator(mode="after")
+    def _line(self) -> "MotorCheck":
+        if self.stall_torque is not None and self.no_load_speed is None:
+            raise PydanticCustomError(
+                "half_a_line", "stall_torque alone does not say how torque falls with speed; add no_load_speed"
+            )
+        return self
 
     @property
     def output_power(self) -> float:

@@ -185,7 +185,9 @@ def test_the_heaviest_wings_that_the_motor_drives(case) -> None:
     outcome = motor_outcomes(laden, "motor", laden.checks["motor"])["wings-12"]
     assert outcome.value.high == pytest.approx(outcome.limit, rel=3e-3)  # told to three digits
     heavy = read_case("ornithopter", [f'carried.{i}.mass="{20 * each} g"' for i in (0, 1)])
-    assert motor_outcomes(heavy, "motor", heavy.checks["motor"])["wings-12"].verdict is Verdict.FAIL
+    # Weight and inertia give back over a turn all that they took: with a flywheel the motor would do.
+    found = motor_outcomes(heavy, "motor", heavy.checks["motor"])["wings-12"]
+    assert (found.verdict, found.value.low) == (Verdict.UNDECIDED, pytest.approx(0.0, abs=1e-3 * found.value.high))
 
 
 def test_closed_form_agrees_on_the_heaviest_wings() -> None:

@@ -4,10 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from edited_cases import edited
 
-from fea.motor_check import demand, largest_factor
+from fea.motor_check import demand, largest_factor, limit_outcomes, line_share
+from fea.verdict import Verdict
 from geometry.errors import CaseError
 from loads.case_file import read_case
+from loads.case_motion import solve_case_motion
 
 
 def test_demand_of_a_sine() -> None:
@@ -15,7 +18,7 @@ def test_demand_of_a_sine() -> None:
     power = 3000.0 * np.sin(2.0 * math.pi * times)
     found = demand(power, -power / 10.0, times)
     assert found.peak_power == pytest.approx(3.0, rel=1e-6)
-    assert found.mean_positive_power == pytest.approx(3.0 / math.pi, rel=1e-6)
+    assert found.mean_power == pytest.approx(0.0, abs=1e-12)  # a flywheel takes what the other half gives back
     assert found.peak_torque == pytest.approx(300.0, rel=1e-6)
 
 
@@ -31,10 +34,69 @@ def test_no_load_fits_where_the_bare_linkage_asks_too_much() -> None:
     assert largest_factor(np.array([1.0]), np.array([-1.0]), 10.0) == math.inf
 
 
+def test_a_flywheel_stores_what_is_negative() -> None:
+    """Power 2 + 5 sin: the mean is 2, the positive part alone would be 2.6."""
+    times = np.linspace(0.0, 1.0, 4001)
+    power = 2000.0 + 5000.0 * np.sin(2.0 * math.pi * times)
+    found = demand(power, power, times)
+    assert (found.mean_power, found.peak_power) == pytest.approx((2.0, 7.0), rel=1e-6)
+
+
+def test_shares_of_a_straight_torque_speed_line() -> None:
+    """Stall torque 20 at 0, 0 at 100 rad/s: at 25 rad/s it drives with 15 and holds back with 25."""
+    times = np.linspace(0.0, 1.0, 5)
+    speed = np.full(5, -25.0)
+    pulling = np.array([-3.0, -12.0, -3.0, -3.0, -3.0])
+    mean, most = line_share(pulling, speed, times, 20.0, 100.0)
+    assert most == pytest.approx(12.0 / 15.0)
+    assert mean == pytest.approx((3.0 + (12.0 - 3.0) / 4.0) / 15.0)
+    assert line_share(-pulling, speed, times, 20.0, 100.0) == (0.0, pytest.approx(12.0 / 25.0))
+    assert line_share(pulling, 5.0 * speed, times, 20.0, 100.0) == (math.inf, math.inf)
+
+
+MOTOR = ['checks.motor.no_load_speed="3500 rpm"']
+
+
+def limits(*more: str, load_case: str = "wings-12"):
+    case = edited("ornithopter", [*MOTOR, *more])
+    return {o.quantity: o for o in limit_outcomes(case, "motor", case.checks["motor"])[load_case]}
+
+
+def test_the_drive_must_not_be_faster_than_the_motor_without_load() -> None:
+    found = limits(load_case="fast")["drive speed"]
+    assert (found.value.value, found.limit, found.verdict) == (
+        pytest.approx(3000.0),
+        pytest.approx(3500.0),
+        Verdict.PASS,
+    )
+    slow = limits('checks.motor.no_load_speed="2900 rpm"', load_case="fast")["drive speed"]
+    assert slow.verdict is Verdict.FAIL
+
+
+def test_torque_over_the_line_and_over_time() -> None:
+    """A stall torque twice what the peak needs at 720 rpm passes; one that it exceeds is for a flywheel to decide."""
+    case = read_case("ornithopter")
+    torque = solve_case_motion(case).forces["wings-12"].torque
+    peak = float(np.abs(torque).max())
+    line = "share of the motor's torque at its speed"
+    enough = limits(f'checks.motor.stall_torque="{2.0 * peak / (1.0 - 720.0 / 3500.0)} N*mm"')[line]
+    assert (enough.verdict, enough.value.high) == (Verdict.PASS, pytest.approx(0.5, rel=1e-3))
+    weak = limits(f'checks.motor.stall_torque="{0.5 * peak} N*mm"')[line]
+    assert weak.verdict is Verdict.UNDECIDED
+    effective = math.sqrt(float(np.mean(torque[:-1] ** 2)))  # evenly spaced over a whole turn
+    rated = limits(f'checks.motor.rated_torque="{1.01 * effective} N*mm"')["drive torque over time"]
+    assert (rated.verdict, rated.value.value) == (Verdict.PASS, pytest.approx(effective, rel=1e-3))
+    assert limits('checks.motor.rated_torque="1e-6 N*mm"')["drive torque over time"].verdict is not Verdict.PASS
+
+
 @pytest.mark.parametrize(
     ("overrides", "told"),
     [
         (["checks.motor.efficiency=1.5"], "efficiency"),
+        (
+            ['checks.motor={type="motor",voltage="6 V",current="1 A",efficiency=0.5,stall_torque="1 N*mm"}'],
+            "no_load_speed",
+        ),
         (['checks.motor.voltage="6 A"'], "not a unit of voltage"),
         (['checks.motor.current="-1 mA"'], "greater than zero"),
         ([f'load_cases.{name}.speed="0 rpm"' for name in ("slow", "fast", "wings-10", "wings-12")], "no load case"),

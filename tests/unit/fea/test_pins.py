@@ -180,8 +180,15 @@ def test_what_is_wrong_with_a_pin(overrides, sentence):
         edited(WING, overrides)
 
 
-@pytest.mark.parametrize(("diameter", "least"), [(0.3, 169e3 * 0.0118**-0.146), (1.5, 169e3 * 0.0591**-0.146),
-                                                 (3.0, 128e3 * 0.118**-0.263), (6.0, 90e3 * 0.236**-0.478)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("diameter", "least"),
+    [
+        (0.3, 169e3 * 0.0118**-0.146),
+        (1.5, 169e3 * 0.0591**-0.146),
+        (3.0, 128e3 * 0.118**-0.263),
+        (6.0, 90e3 * 0.236**-0.478),
+    ],
+)
 def test_a_thicker_pin_of_drawn_wire_is_weaker(diameter, least):
     """Shigley, 9th ed., table 10-4, A313 type 302: S = A/d^m in psi and inches."""
     material = edited(WING, [f'joints.A.pin_diameter="{diameter} mm"']).pin_material("A")

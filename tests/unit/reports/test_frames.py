@@ -102,7 +102,7 @@ def test_the_bands_are_told_check_by_check(wing):
     start = words.index("What the bands hold, and nothing else:")
     told = words[start : start + 1000]
     assert "strength: nothing (beam theory without stress concentration)." in told
-    assert "pins: one eye takes the couple of the joint force, or both take half." in told
+    assert "pins: how the two eyes share the couple of the joint force, and bear it." in told
     assert "buckling: the modulus, " in told
 
 
