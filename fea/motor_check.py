@@ -37,9 +37,11 @@ class MotorDemand:
 
 def demand(power: Real, torque: Real, times: Real) -> MotorDemand:
     """Return the demand from power [N mm/s] and torque [N mm] at the times [s] of a motion."""
+    mean = _mean(power, times)
+    rounding = 1e-9 * float(np.abs(power).max())
     return MotorDemand(
         peak_power=max(float(power.max()), 0.0) / 1000.0,
-        mean_power=max(_mean(power, times), 0.0) / 1000.0,
+        mean_power=mean / 1000.0 if mean > rounding else 0.0,
         peak_torque=float(np.abs(torque).max()),
     )
 
