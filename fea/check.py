@@ -315,13 +315,14 @@ def _scattered(case: Case, title: str, result: LinkResult) -> LinkResult:
 
 def _calibrated(result: LinkResult, material: Material, hand: HandBands) -> LinkResult:
     """Return a result by beam theory with the bands that solid models gave it."""
+    worst = max(hand.spots, key=lambda row: (row.principal if material.brittle else row.von_mises).high)
     return replace(
         result,
         von_mises_max=hand.von_mises,
         principal_max=hand.principal,
         safety_factor=hand.deciding(brittle=material.brittle).inverse(material.allowable),
         displacement_max=hand.displacement,
-        location=np.array([hand.spots[0].spot.x, 0.0, 0.0]),
+        location=np.array([worst.spot.x, 0.0, 0.0]),
         notes=(),
     )
 
@@ -353,6 +354,7 @@ def _beam_result(link: str, material: Material, beam: _Beam) -> LinkResult:
             else "beam theory alone: stress concentration at eyes and holes is not in these numbers",
             *beam.remarks,
         ),
+        brittle=material.brittle,
     )
 
 

@@ -28,7 +28,7 @@ from fea.traction import Transfer
 from fea.unit_loads import TRANSFERS, load_scale, unit_loads
 from fea.unit_solutions import UnitSolutions, solve_units
 from geometry.errors import CannotRunError
-from geometry.material import Material
+from geometry.material import Material, stress_measure
 from loads.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw, Span
 
 Real = NDArray[np.float64]
@@ -117,7 +117,7 @@ def link_envelope(
     raw = solved.field(number)
     return LinkEnvelope(
         link=link,
-        measure="largest principal" if material.brittle else "von Mises",
+        measure=stress_measure(brittle=material.brittle),
         strength=material.allowable,
         load_cases=found,
         elements=len(space.cells),

@@ -17,6 +17,7 @@ from fea.second_opinion import SecondOpinion
 from fea.solid import SolidCase, SolidSolution
 from fea.stress import StressField
 from fea.verdict import CheckOutcome, Verdict
+from geometry.material import stress_measure
 from geometry.pose import Pose
 from loads.case import Case
 from loads.published import StaticsAudit
@@ -70,7 +71,7 @@ class LinkResult:
     von_mises_max      [MPa]; ``principal_max`` the largest principal stress [MPa]
     safety_factor      strength over the stress that the material names
     displacement_max   relative to the line through the link's first and last pin, or that turns with its only bore [mm]
-    location           (3,) place of the largest von Mises stress in the link's frame [mm]
+    location           (3,) place of the largest decisive stress in the link's frame [mm]
     elements, unknowns size of the solid model; None when no solid ran
     beam               the hand calculation
     solid              the solid solutions of all load cases; None when no solid ran
@@ -79,6 +80,7 @@ class LinkResult:
                        (``solid_case``) and recovered stress (``stress``) for pictures and files
     comparisons        hand against solid, section by section
     notes              what the reader must know about this link's numbers
+    brittle            True where the largest principal stress decides, False where von Mises stress does
     discretisation     the error that the meshes leave; None when no solid ran
     decided_by         rung of ``fea.ladder`` that decided: "beam", "frame", "submodel" or "solid"; "" where a model
                        was forced that may not decide, with ``why``, for people
@@ -102,10 +104,21 @@ class LinkResult:
     stress: StressField | None
     comparisons: tuple[SectionComparison, ...]
     notes: tuple[str, ...]
+    brittle: bool
     discretisation: Discretisation | None = None
     decided_by: str = ""
     why: str = ""
     next_cost: str = ""
+
+    @property
+    def decisive(self) -> Band:
+        """The stress that the safety factor is counted from [MPa]."""
+        return self.principal_max if self.brittle else self.von_mises_max
+
+    @property
+    def measure(self) -> str:
+        """What that stress is called."""
+        return stress_measure(brittle=self.brittle)
 
     @property
     def severity(self) -> float:

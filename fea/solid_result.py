@@ -3,6 +3,8 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from fea.band import Band
 from fea.beam import BeamCheck
 from fea.compare import compare_sections
@@ -89,7 +91,7 @@ def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: Re
         principal_max=band("principal"),
         safety_factor=deciding.inverse(material.allowable),
         displacement_max=band("displacement"),
-        location=stress.peak.location,
+        location=solid.space.nodes[int(np.argmax(stress.decisive(brittle=material.brittle)))].copy(),
         elements=len(solid.space.cells),
         unknowns=solid.space.unknowns,
         beam=beam,
@@ -100,6 +102,7 @@ def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: Re
         stress=stress,
         comparisons=compare_sections(case.body(link), beam, stress),
         notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved)),
+        brittle=material.brittle,
         discretisation=precision,
     )
 

@@ -121,6 +121,10 @@ class StressField:
         """Principal stresses (n, 3) at the nodes, signed, the largest first."""
         return principal(self.nodal)
 
+    def decisive(self, *, brittle: bool) -> NDArray[np.float64]:
+        """The stress (n,) at the nodes that a strength is set against: the largest principal one where ``brittle``."""
+        return self.principal[:, 0] if brittle else self.von_mises
+
     @property
     def peak(self) -> Peak:
         """Largest von Mises stress of all nodes; no node is left out."""

@@ -172,6 +172,11 @@ class Material(CaseModel):
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
 
+def stress_measure(*, brittle: bool) -> str:
+    """Return the name of the stress that a strength is set against."""
+    return "largest principal" if brittle else "von Mises"
+
+
 @cache
 def library() -> dict[str, Material]:
     """Return the materials that alula ships (``geometry/materials.toml``), by name."""

@@ -7,67 +7,69 @@ from fea.result import CheckResult, LoadCaseResult
 from fea.verdict import DRIVE_POWER, Verdict
 from loads.aero import AirForces
 from reports.frames import frame_lines
-from reports.second_opinion import opinion_table
-from reports.wording import AGREEMENT, band, fixed, headline, joined, number, percent, plain, turning
+from reports.second_opinion import say_opinions
+from reports.terminal import KEPT, say, say_table
+from reports.wording import agreement, apart, band, fixed, headline, joined, number, percent, plain, turning
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.table import Table
 
 COLOURS = {Verdict.PASS: "green", Verdict.FAIL: "red", Verdict.UNDECIDED: "yellow"}
 
 
 def print_result(result: CheckResult, console: "Console") -> None:
-    """Print a compact account of a check, readable at 80 columns."""
-    from rich.text import Text
-
-    colour = COLOURS[result.verdict]
-    console.print(
-        Text.assemble((f" {result.verdict.value.upper()} ", f"bold reverse {colour}"), f" {result.case.title}")
-    )
-    console.print(Text(headline(result)))
+    """Print a compact account of a check; broken at spaces where the terminal is narrow."""
+    verdict_line(result.verdict, result.case.title, console)
+    say(console, headline(result))
     several = len(result.load_cases) > 1
     for case in result.load_cases.values():
-        console.print()
+        say(console, "")
         if several:
-            console.print(Text(f"Load case {case.name}", style="bold"))
+            say(console, f"Load case {case.name}", style="bold")
         for air in result.case.air_forces(case.name):
-            console.print(Text(_air(air)))
-        console.print(Text(_statics(case)))
+            say(console, _air(air))
+        say(console, _statics(case))
         for line in frame_lines(result, case):
-            console.print(Text(line))
-        console.print(Text(_anchor(case)))
-        console.print(_links(case))
+            say(console, line)
+        say(console, _anchor(case))
+        _links(case, console)
         if case.checks:
-            console.print(_checks(case))
+            _checks(case, console)
         for check in case.checks:
             if check.quantity == DRIVE_POWER:
-                console.print(Text(f"Motor: {check.reason}."))
+                say(console, f"Motor: {check.reason}.")
         for line in _hand(case):
-            console.print(Text(line))
+            say(console, line)
     for name, hand in result.hand.items():
-        console.print(
-            Text(
-                f"Hand calculation {name}: cantilever, M {number(hand.moment)} N·mm, "
-                f"bending stress {number(hand.stress)} MPa, n {number(hand.safety_factor)}."
-            )
+        say(
+            console,
+            f"Hand calculation {name}: cantilever, M {number(hand.moment)} N·mm, "
+            f"bending stress {number(hand.stress)} MPa, n {number(hand.safety_factor)}.",
         )
     if result.audit is not None:
         wrong = [str(row.number) for row in result.audit.rows if not row.valid]
         found = (
             f"equations {joined(wrong)} are no equilibrium equations" if wrong else "every equation is an equilibrium"
         )
-        console.print(Text(f"Published statics ({result.audit.source}): {found} of this linkage."))
+        say(console, f"Published statics ({result.audit.source}): {found} of this linkage.")
     if result.second_opinions:
-        console.print(opinion_table(result.second_opinions))
+        say_opinions(result.second_opinions, console)
     for warning in result.warnings:
-        console.print(Text(f"Warning: {warning}", style="yellow"))
+        say(console, f"Warning: {warning}", style="yellow")
+
+
+def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
+    """Print the verdict, in its colour, and the title of the case."""
+    from rich.text import Text
+
+    badge = (f" {verdict.value.upper()} ", f"bold reverse {COLOURS[verdict]}")
+    say(console, Text.assemble(badge, f" {title}"))
 
 
 def _statics(case: LoadCaseResult) -> str:
     largest = max((joint.magnitude for joint in case.reactions.joints.values()), default=0.0)
     forces = "  ".join(
-        f"{name} {number(joint.magnitude, beside=largest)}" for name, joint in case.reactions.joints.items()
+        f"{name}{KEPT}{number(joint.magnitude, beside=largest)}" for name, joint in case.reactions.joints.items()
     )
     torque = case.reactions.drive_torque
     drive = case.reactions.drive
@@ -95,52 +97,49 @@ def _anchor(case: LoadCaseResult) -> str:
     return "\n".join(lines)
 
 
-def _table(*columns: tuple[str, bool]) -> "Table":
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    for title, right in columns:
-        table.add_column(title, justify="right" if right else "left", vertical="bottom")
-    return table
-
-
-def _links(case: LoadCaseResult) -> "Table":
-    table = _table(
+def _links(case: LoadCaseResult, console: "Console") -> None:
+    measures = {link.measure for link in case.links.values()}
+    mixed = len(measures) > 1
+    columns = [
         ("link", False),
         ("model", False),
-        ("von Mises\n[MPa]", True),
+        ("decisive stress\n[MPa]" if mixed else f"{next(iter(measures), '')}\n[MPa]", True),
         ("safety factor n\n(band)", True),
         ("displacement\n[mm]", True),
         ("worst at x\n[mm]", True),
-    )
-    for name, link in case.links.items():
-        table.add_row(
+    ]
+    rows = [
+        (
             name,
             link.decided_by or link.fidelity,
-            number(link.von_mises_max.value, 3),
+            (f"{link.measure} " if mixed else "") + number(link.decisive.value, 3),
             band(link.safety_factor),
             number(link.displacement_max.value, 3),
             fixed(float(link.location[0]), 1),
         )
-    return table
+        for name, link in case.links.items()
+    ]
+    say_table(console, columns, rows)
 
 
-def _checks(case: LoadCaseResult) -> "Table":
+def _checks(case: LoadCaseResult, console: "Console") -> None:
     from rich.text import Text
 
-    table = _table(("check", False), ("link", False), ("value (band)", True), ("limit", True), ("verdict", False))
+    columns = (("check", False), ("link", False), ("value (band)", True), ("limit", True), ("verdict", False))
+    rows = []
     for check in case.checks:
         unit = f" {check.unit}" if check.unit else ""
         sign = "≥" if check.at_least else "≤"
-        table.add_row(
-            check.name,
-            check.link,
-            band(check.value) + unit,
-            f"{sign} {plain(check.limit)}{unit}",
-            Text(check.verdict.value, style=COLOURS[check.verdict]),
+        rows.append(
+            (
+                check.name,
+                check.link,
+                band(check.value) + unit,
+                f"{sign}{KEPT}{plain(check.limit)}{unit}",
+                Text(check.verdict.value, style=COLOURS[check.verdict]),
+            )
         )
-    return table
+    say_table(console, columns, rows)
 
 
 def _hand(case: LoadCaseResult) -> list[str]:
@@ -148,19 +147,11 @@ def _hand(case: LoadCaseResult) -> list[str]:
     compared = {name: link.comparisons for name, link in case.links.items() if link.comparisons}
     if not compared:
         return []
-    worst = {name: max(found, key=lambda c: abs(c.difference)) for name, found in compared.items()}
-    apart = {name: c for name, c in worst.items() if abs(c.difference) > AGREEMENT}
-    sections = sum(len(found) for found in compared.values())
-    most = max(abs(c.difference) for c in worst.values())
-    lines = [
-        f"Hand calculation against solid model at {sections} sections: "
-        + (
-            f"they agree within {100.0 * most:.1f} %."
-            if not apart
-            else f"more than {100.0 * AGREEMENT:.0f} % apart on {joined(list(apart))}."
-        )
-    ]
-    for name, c in apart.items():
+    far = {name: max(found, key=lambda c: abs(c.difference)) for name, found in compared.items() if apart(found)}
+    every = [c for found in compared.values() for c in found]
+    told = agreement(every) if not far else f"{agreement(every)} on {joined(list(far))}"
+    lines = [f"Hand calculation against solid model at {len(every)} sections: {told}."]
+    for name, c in far.items():
         lines.append(
             f"  {name}, {c.kind} stress at x = {c.x:.1f} mm: hand {number(c.hand)} MPa, "
             f"solid {number(c.solid)} MPa ({percent(c.difference)})"

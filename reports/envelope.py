@@ -17,14 +17,14 @@ from fea.unchecked import unchecked
 from fea.verdict import SAFETY_FACTOR
 from geometry.material import Material
 from loads.check_spec import SafetyFactorCheck
-from reports.console import COLOURS
+from reports.console import COLOURS, verdict_line
 from reports.meshes import solver_record
 from reports.output import MARK, write_folder
+from reports.terminal import KEPT, say, say_table
 from reports.wording import band, fixed, not_checked, number, plain
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.table import Table
 
 Real = NDArray[np.float64]
 
@@ -240,104 +240,104 @@ def scatter_of(material: Material) -> str:
 
 
 def print_envelope(result: EnvelopeResult, console: "Console") -> None:
-    """Print a compact account, readable at 80 columns."""
-    from rich.text import Text
-
-    colour = COLOURS[result.verdict]
-    console.print(
-        Text.assemble((f" {result.verdict.value.upper()} ", f"bold reverse {colour}"), f" {result.case.title}")
-    )
+    """Print a compact account; broken at spaces where the terminal is narrow."""
+    verdict_line(result.verdict, result.case.title, console)
     coordinate, (first, last) = result.moved.motion.coordinate, np.degrees(result.angles[[0, -1]])
-    console.print(
-        Text(
-            f"Motion: {coordinate} from {first:.6g} to {last:.6g} deg, driven at {result.drive.link}; "
-            f"{int(result.evaluated.sum())} of {len(result.angles)} poses."
-        )
+    say(
+        console,
+        f"Motion: {coordinate} from {first:.6g} to {last:.6g} deg, driven at {result.drive.link}; "
+        f"{int(result.evaluated.sum())} of {len(result.angles)} poses.",
     )
     if left_out := not_checked(unchecked(result.case, (SafetyFactorCheck,))):
-        console.print(Text(left_out))
-    console.print(_links(result))
+        say(console, left_out)
+    _links(result, console)
     fatigued = {n: link for n, link in result.links.items() if any(c.fatigue for c in link.load_cases.values())}
     if fatigued:
-        console.print(_fatigue(fatigued))
+        _fatigue(fatigued, console)
         for material in {result.case.part_of(n).material: result.case.material_of(n) for n in fatigued}.values():
-            console.print(Text(f"Fatigue of {material.title}: of {measure_of(material)}; {scatter_of(material)}."))
+            say(console, f"Fatigue of {material.title}: of {measure_of(material)}; {scatter_of(material)}.")
     missing: dict[str, list[str]] = {}
     for name, link in result.links.items():
         if link.no_fatigue:
             missing.setdefault(link.no_fatigue, []).append(name)
     for why, names in missing.items():
-        console.print(Text(f"No fatigue of {', '.join(names)}: {why}."))
-    console.print(_checks(result))
+        say(console, f"No fatigue of {', '.join(names)}: {why}.")
+    _checks(result, console)
     if result.idle:
-        console.print(Text(f"Nothing acts on {', '.join(result.idle)}."))
+        say(console, f"Nothing acts on {', '.join(result.idle)}.")
     for warning in result.warnings:
-        console.print(Text(f"Warning: {warning}.", style="yellow"))
+        say(console, f"Warning: {warning}.", style="yellow")
 
 
-def _table(columns: Mapping[str, bool]) -> "Table":
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
-    for title, right in columns.items():
-        keep = "(band)" in title or title in ("link", "verdict")
-        table.add_column(title, justify="right" if right else "left", vertical="bottom", no_wrap=keep)
-    return table
-
-
-def _links(result: EnvelopeResult) -> "Table":
-    drive = result.drive.link
-    table = _table(
-        {"link": False, "load case": False, "least safety\nfactor (band)": True, "stress\n[MPa]": True,
-         f"at {drive}\n[deg]": True, "at x, y, z\n[mm]": True}
-    )  # fmt: skip
-    for name, link in result.links.items():
-        for load_case, found in link.load_cases.items():
-            table.add_row(
-                name,
-                load_case,
-                band(found.safety_factor),
-                number(found.stress.value, 3),
-                fixed(drive_angle(result, found.pose), 1),
-                ", ".join(fixed(float(v), 1) for v in found.location),
-            )
-    return table
+def _links(result: EnvelopeResult, console: "Console") -> None:
+    measures = {link.measure for link in result.links.values()}
+    mixed = len(measures) > 1
+    columns = (
+        ("link", False),
+        ("load case", False),
+        ("least safety\nfactor (band)", True),
+        ("decisive stress\n[MPa]" if mixed else f"{next(iter(measures), '')}\n[MPa]", True),
+        (f"at {result.drive.link}\n[deg]", True),
+        ("at x, y, z\n[mm]", True),
+    )
+    rows = [
+        (
+            name,
+            load_case,
+            band(found.safety_factor),
+            (f"{link.measure} " if mixed else "") + number(found.stress.value, 3),
+            fixed(drive_angle(result, found.pose), 1),
+            ", ".join(fixed(float(v), 1) for v in found.location),
+        )
+        for name, link in result.links.items()
+        for load_case, found in link.load_cases.items()
+    ]
+    say_table(console, columns, rows)
 
 
-def _fatigue(links: Mapping[str, LinkEnvelope]) -> "Table":
-    table = _table(
-        {"link": False, "load case": False, "signed stress\n[MPa]": True, "range\n[MPa]": True,
-         "repetitions to\nfailure (band)": True}
-    )  # fmt: skip
-    for name, link in links.items():
-        for load_case, found in link.load_cases.items():
-            fatigue = found.fatigue
-            if fatigue is None:
-                continue
-            life = fatigue.life
-            table.add_row(
-                name,
-                load_case,
-                f"{number(life.smallest, 3)} to {number(life.largest, 3)}",
-                number(life.stress_range, 3),
-                "no exponent known" if fatigue.repetitions is None else band(fatigue.repetitions, 2),
-            )
-    return table
+def _fatigue(links: Mapping[str, LinkEnvelope], console: "Console") -> None:
+    columns = (
+        ("link", False),
+        ("load case", False),
+        ("signed stress\n[MPa]", True),
+        ("range\n[MPa]", True),
+        ("repetitions to\nfailure (band)", True),
+    )
+    rows = [
+        (
+            name,
+            load_case,
+            f"{number(fatigue.life.smallest, 3)} to {number(fatigue.life.largest, 3)}",
+            number(fatigue.life.stress_range, 3),
+            "no exponent known" if fatigue.repetitions is None else band(fatigue.repetitions, 2),
+        )
+        for name, link in links.items()
+        for load_case, found in link.load_cases.items()
+        if (fatigue := found.fatigue) is not None
+    ]
+    say_table(console, columns, rows)
 
 
-def _checks(result: EnvelopeResult) -> "Table":
+def _checks(result: EnvelopeResult, console: "Console") -> None:
     from rich.text import Text
 
-    table = _table({"check": False, "link": False, "load case": False, "value\n(band)": True, "limit": True,
-                    "verdict": False})  # fmt: skip
-    for check in result.checks:
-        table.add_row(
+    columns = (
+        ("check", False),
+        ("link", False),
+        ("load case", False),
+        ("value\n(band)", True),
+        ("limit", True),
+        ("verdict", False),
+    )
+    rows = [
+        (
             check.name if check.quantity == SAFETY_FACTOR else check.quantity,
             check.link,
             check.load_case,
             band(check.value),
-            f"≥ {plain(check.limit)}",
+            f"≥{KEPT}{plain(check.limit)}",
             Text(check.verdict.value, style=COLOURS[check.verdict]),
         )
-    return table
+        for check in result.checks
+    ]
+    say_table(console, columns, rows)

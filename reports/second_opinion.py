@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from fea.result import CheckResult
 from fea.second_opinion import SecondOpinion, second_opinions
+from reports.terminal import say_table
 from reports.wording import number
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from rich.console import Console
 
 UNITS = {
     "second_opinions.*.von_mises": "MPa",
@@ -72,25 +73,23 @@ def opinion_records(opinions: tuple[SecondOpinion, ...]) -> dict[str, Any]:
     }
 
 
-def opinion_table(opinions: tuple[SecondOpinion, ...]) -> "Table":
-    """Ours and CalculiX's values, in pairs, with the largest difference anywhere in the link."""
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), title="Second opinion", title_justify="left")
-    table.add_column("link", vertical="bottom")
+def say_opinions(opinions: tuple[SecondOpinion, ...], console: "Console") -> None:
+    """Print ours and CalculiX's values, in pairs, with the largest difference anywhere in the link."""
+    columns = [("link", False)]
     for quantity, unit in (("von Mises", "MPa"), ("displaced", "mm")):
-        for title in (f"{quantity}, ours\n[{unit}]", f"CalculiX\n[{unit}]", "differs\nby"):
-            table.add_column(title, justify="right", vertical="bottom")
+        columns += [(f"{quantity}, ours\n[{unit}]", True), (f"CalculiX\n[{unit}]", True), ("differs\nby", True)]
+    rows = []
     for opinion in opinions:
         theirs = opinion.answer
-        table.add_row(
-            opinion.link if opinion.known else f"{opinion.link} (no result)",
-            number(opinion.von_mises),
-            "-" if theirs is None else number(theirs.von_mises),
-            "-" if theirs is None else f"{theirs.stress_gap:.2%}",
-            number(opinion.displacement),
-            "-" if theirs is None else number(theirs.displacement),
-            "-" if theirs is None else f"{theirs.displacement_gap:.3%}",
+        rows.append(
+            (
+                opinion.link if opinion.known else f"{opinion.link} (no result)",
+                number(opinion.von_mises),
+                "-" if theirs is None else number(theirs.von_mises),
+                "-" if theirs is None else f"{theirs.stress_gap:.2%}",
+                number(opinion.displacement),
+                "-" if theirs is None else number(theirs.displacement),
+                "-" if theirs is None else f"{theirs.displacement_gap:.3%}",
+            )
         )
-    return table
+    say_table(console, columns, rows, title="Second opinion")

@@ -1,9 +1,10 @@
 """Numbers, bands and verdicts in words, for console and page alike."""
 
 import math
+from collections.abc import Sequence
 
 from fea.band import Band
-from fea.result import CheckResult
+from fea.result import CheckResult, SectionComparison
 from fea.unchecked import unchecked
 from fea.verdict import LOAD_SHARE, CheckOutcome, Verdict
 
@@ -65,6 +66,19 @@ def joined(words: tuple[str, ...] | list[str]) -> str:
 def turning(torque: float) -> str:
     """Return the sense of a torque about z."""
     return "none" if torque == 0.0 else "clockwise" if torque < 0.0 else "counter-clockwise"
+
+
+def apart(compared: Sequence[SectionComparison]) -> list[SectionComparison]:
+    """Return the sections at which hand calculation and solid model differ by more than ``AGREEMENT``."""
+    return [c for c in compared if abs(c.difference) > AGREEMENT]
+
+
+def agreement(compared: Sequence[SectionComparison]) -> str:
+    """Say how well hand calculation and solid model agree over some sections."""
+    if apart(compared):
+        return f"more than {100.0 * AGREEMENT:g} % apart"
+    most = max(abs(c.difference) for c in compared)
+    return f"they agree within {math.ceil(1000.0 * most - 1e-9) / 10.0:.1f} %"
 
 
 def checks_of(result: CheckResult) -> tuple[CheckOutcome, ...]:

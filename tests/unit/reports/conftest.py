@@ -79,6 +79,7 @@ def solid_result(beam, material, loads):
             SectionComparison(x=35.0, kind="axial", hand=-0.051, solid=-0.0474, difference=0.0706),
         ),
         notes=("2 elements were straightened",),
+        brittle=material.brittle,
     )
 
 

@@ -65,6 +65,16 @@ def test_the_terminal_and_its_json_hold_them_too():
     assert found["load_cases"]["as-published"]["reactions"][0]["wrench"][4] == pytest.approx(-21.85, abs=5e-3)
 
 
+def test_a_millionth_of_the_load_keeps_its_digits():
+    """Forces were once printed with four decimals and torques with two, so that small mechanisms read zero."""
+    from reports.cli import app
+
+    small = 'load_cases.weight.forces=[{link="CH", at="H", force=["0 N", "-2.5e-7 N"]}]'
+    shown = CliRunner().invoke(app, ["statics", WING, "--set", small]).output
+    assert "drive torque on AE: -0.00013058 N·mm" in shown
+    assert "( 5.011e-07,  8.095e-07) N, 9.52e-07 N" in shown
+
+
 def test_what_weighs_is_said():
     flapping = read_case("flapping-wing-chosen")
     assert "; crank turns at 180 rpm" in weight_sentence(flapping, "flapping")
