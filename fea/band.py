@@ -8,13 +8,15 @@ from dataclasses import dataclass
 class Band:
     """A value, the interval that it may lie in, and what that interval holds; all NaN where nothing is known.
 
-    holds   the sources of error that low and high cover, each in a few words
+    holds    the sources of error that low and high cover, each in a few words
+    without  why the number has no band of its own, or is not known; "" where the band holds something
     """
 
     value: float
     low: float
     high: float
     holds: tuple[str, ...]
+    without: str = ""
 
     def __post_init__(self) -> None:
         """Refuse a band that does not hold its value."""
@@ -27,14 +29,14 @@ class Band:
         return math.isnan(self.value) and math.isnan(self.low) and math.isnan(self.high)
 
     @classmethod
-    def unknown(cls, *holds: str) -> "Band":
+    def unknown(cls, without: str = "") -> "Band":
         """Return a band of what has no value; every check of it is undecided."""
-        return cls(value=math.nan, low=math.nan, high=math.nan, holds=holds)
+        return cls(value=math.nan, low=math.nan, high=math.nan, holds=(), without=without)
 
     @classmethod
-    def exact(cls, value: float, *holds: str) -> "Band":
+    def exact(cls, value: float, without: str = "") -> "Band":
         """Return a band of no width."""
-        return cls(value=value, low=value, high=value, holds=holds)
+        return cls(value=value, low=value, high=value, holds=(), without=without)
 
     @classmethod
     def around(cls, value: float, others: tuple[float, ...], *holds: str) -> "Band":
@@ -50,7 +52,13 @@ class Band:
             low=_ratio(numerator, self.high),
             high=_ratio(numerator, self.low),
             holds=self.holds,
+            without=self.without,
         )
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """What the band holds, or that it holds nothing and why, for people and files."""
+        return (f"nothing: {self.without}",) if self.without else self.holds
 
 
 def _ratio(numerator: float, denominator: float) -> float:

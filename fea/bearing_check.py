@@ -19,7 +19,7 @@ from loads.case import Case
 from loads.check_spec import BearingCheck
 from loads.statics import Reactions
 
-HOLDS = ("nothing: the joint force of statics, evenly over the pin's projected area",)
+WITHOUT = "the joint force of statics, evenly over the pin's projected area"
 
 
 def bearing_stress(force: float, diameter: float, thickness: float) -> float:
@@ -54,7 +54,7 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
             strength = material.ultimate_strength or material.allowable
             stress = bearing_stress(force, record.pin_diameter, case.part_of(link).eye_thickness)
             own = strength_scatter(material) if strength == material.allowable else Scatter()
-            factors[link] = own.on(load.on(Band.exact(stress, *HOLDS)).inverse(strength))
+            factors[link] = own.on(load.on(Band.exact(stress, WITHOUT)).inverse(strength))
     weakest = min(factors, key=lambda link: factors[link].low)
     return weakest, factors[weakest]
 

@@ -52,7 +52,7 @@ from loads.statics import Reactions
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "submodel", "solid")
 FORCED_BEAM = ("beam", "frame")
-BEAM_HOLDS = ("nothing: beam theory without stress concentration",)
+BEAM_ALONE = "beam theory without stress concentration"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -329,15 +329,15 @@ def _calibrated(result: LinkResult, material: Material, hand: HandBands) -> Link
 
 def _beam_result(link: str, material: Material, beam: _Beam) -> LinkResult:
     x, worst = beam.worst
-    stress = Band.exact(worst.equivalent, *BEAM_HOLDS)
-    principal = Band.exact(max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0), *BEAM_HOLDS)
+    stress = Band.exact(worst.equivalent, BEAM_ALONE)
+    principal = Band.exact(max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0), BEAM_ALONE)
     return LinkResult(
         link=link,
         fidelity="beam",
         von_mises_max=stress,
         principal_max=principal,
         safety_factor=(principal if material.brittle else stress).inverse(material.allowable),
-        displacement_max=Band.exact(beam.displacement, *BEAM_HOLDS),
+        displacement_max=Band.exact(beam.displacement, BEAM_ALONE),
         location=np.array([x, 0.0, 0.0]),
         elements=None,
         unknowns=None,

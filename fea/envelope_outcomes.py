@@ -27,7 +27,7 @@ from loads.check_spec import BearingCheck, PinCheck, SafetyFactorCheck
 FATIGUE_STRESS = "fatigue, stress"
 FATIGUE_LIFE = "fatigue, life"
 """Fatigue strength over stress, and life over the repetitions that are wanted."""
-BEYOND_CARD = "nothing: the material's card ends below the repetitions that are wanted"
+BEYOND_CARD = "the material's card ends below the repetitions that are wanted"
 FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck)
 """Checks of the case that are decided over the motion."""
 
@@ -140,7 +140,7 @@ def _when(moved: CaseMotion, pose: int) -> str:
 
 
 def _scaled(band: Band, factor: float) -> Band:
-    return Band(value=factor * band.value, low=factor * band.low, high=factor * band.high, holds=band.holds)
+    return replace(band, value=factor * band.value, low=factor * band.low, high=factor * band.high)
 
 
 def _outcome(

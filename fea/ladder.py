@@ -217,7 +217,7 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
         except CannotRunError as error:
             outside = str(error)
     if outside:
-        nothing = Band.unknown("nothing: hand calculation is not calibrated for this link")
+        nothing = Band.unknown("hand calculation is not calibrated for this link")
         return HandBands(von_mises=nothing, principal=nothing, displacement=nothing, spots=(), outside=outside)
     calibration = calibration_of(body.part)
     holds = _holds(calibration)

@@ -239,7 +239,7 @@ def _load_case(
             holds=(*_sources(governing), *series.holds),
         )
     else:
-        peak = Band.unknown("nothing: the peak has no limit")
+        peak = Band.unknown("the peak has no limit")
     return LoadCaseEnvelope(
         name=name,
         variants=tuple(variants),

@@ -12,9 +12,6 @@ from fea.band import Band
 from geometry.material import Material
 from loads.case import Case
 
-NOTHING = "nothing: "
-"""Begins what a band without any width holds."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Scatter:
@@ -32,7 +29,7 @@ class Scatter:
             value=band.value,
             low=band.low * self.low,
             high=band.high * self.high,
-            holds=(*(text.removeprefix(NOTHING) for text in band.holds), *self.holds),
+            holds=(*band.holds, *self.holds),
         )
 
     def times(self, other: "Scatter") -> "Scatter":

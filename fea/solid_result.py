@@ -21,7 +21,7 @@ from fea.stress import stress_field
 from loads.bearing import CONTACT_HOLDS
 from loads.case import Case
 
-NO_NUMBER = "nothing: no mesh tells what it is"
+NO_NUMBER = "no mesh tells what it is"
 PINNED_HOLDS = ("pin pressure over 180° and over 90°", CONTACT_HOLDS)
 DRIVEN_HOLDS = (*PINNED_HOLDS, "drive torque by eye-faces and by bore-shear")
 

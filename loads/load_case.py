@@ -48,7 +48,8 @@ class PointForce(CaseModel):
     at: Name
     force: Vector
     axes: Axes = "global"
-    """Axes of the components: global, or the link's own, so that the force turns with the link."""
+    """Axes of the components: global, or the link's own, so that the force turns with the link from pose to pose. While
+    the linkage deforms in a pose, the force keeps its direction either way."""
 
 
 class PointMoment(CaseModel):
@@ -67,7 +68,8 @@ class SpreadForce(CaseModel):
     end: Name
     total: Vector
     axes: Axes = "global"
-    """Axes of the components: global, or the link's own, so that the force turns with the link."""
+    """Axes of the components: global, or the link's own, so that the force turns with the link from pose to pose. While
+    the linkage deforms in a pose, the force keeps its direction either way."""
 
 
 class LoadCase(CaseModel):

@@ -211,7 +211,7 @@ def _band_record(value: Band) -> dict[str, Any]:
         "value": _finite(value.value),
         "low": _finite(value.low),
         "high": _finite(value.high),
-        "holds": list(value.holds),
+        "holds": list(value.told),
     }
 
 

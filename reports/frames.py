@@ -106,7 +106,7 @@ def frame_record(case: LoadCaseResult) -> dict[str, Any]:
 
 
 def _band(band: Band) -> dict[str, Any]:
-    return {"value": band.value, "low": band.low, "high": band.high, "holds": list(band.holds)}
+    return {"value": band.value, "low": band.low, "high": band.high, "holds": list(band.told)}
 
 
 def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:

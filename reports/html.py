@@ -2,18 +2,20 @@
 
 import base64
 import math
-import re
 from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
 from fea.claims import ClaimResult, check_claims
+from fea.joint_forces import PINNED_STATICS
+from fea.outcomes import reason_for
 from fea.result import CheckResult, LinkResult, LoadCaseResult
-from fea.verdict import Verdict
+from fea.verdict import DRIVE_POWER, Verdict
 from geometry.material import Material
 from geometry.pose import NEAR_DEAD_POINT
 from loads.case_file import built_in_cases
 from reports.claims import as_records, count
+from reports.coverage import not_covered
 from reports.frames import AXES, shown_components
 from reports.loads import air_record, anchor_record, weight_sentence
 from reports.mechanism import design_of
@@ -21,7 +23,8 @@ from reports.meshes import solver_sentence
 from reports.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
 from reports.record import alula_version, worst_load_case
 from reports.wording import (
-    AGREEMENT,
+    agreement,
+    apart,
     band,
     checks_of,
     fixed,
@@ -42,23 +45,9 @@ MEANING = {
     Verdict.UNDECIDED: "At least one answer cannot be given with the models that ran: its error band reaches over "
     "the limit, or the model leaves out what matters there. This is neither a pass nor a fail.",
 }
-NOT_COVERED = (
-    ("Other poses", "One pose was checked. Another pose of the linkage may load a link more."),
-    ("Stacking", "All links lie in one plane. In a real linkage they are stacked along the pins, and the offset "
-     "bends and twists them."),
-    ("Pins and contact", "A pin is a pressure on its hole. Clearance, friction, wear and what happens in the contact "
-     "itself are left out; a pin's own strength is checked only where the case asks for it."),
-    ("Fatigue", "The loads act once and stay. Loads that come and go break parts at lower stresses."),
-    ("Creep, temperature, moisture, ageing", "Plastics lose strength and stiffness under load that lasts, in warmth "
-     "and with the years; the material values are short-term ones at room temperature, unless the case states its "
-     "conditions. Moisture and ageing are left out in any case."),
-    ("Large displacements", "Up to 5 % of the span forces follow from the shape before loading; beyond, from the "
-     "deformed one, under loads that keep their direction."),
-    ("Buckling and impact", "A slender link in compression may give way sideways; a blow loads it more than the same "
-     "load at rest."),
-    ("Making", "Voids, layers, notches, scatter of dimensions and of strength are left to the safety factor."),
-    ("Discretisation", "The error of the mesh is not in the bands: they hold what their list says and no more."),
-)  # fmt: skip
+MODEL = {"solid": "Solid model", "submodel": "Solid models of eyes and holes", "beam": "Beam theory"}
+HAND = "Hand calculation"
+"""What gave the numbers of a link: ``HAND`` where beam theory has calibrated bands, so that it decides."""
 _PROPERTIES = (
     ("density", "density", "kg/m³", 1e12),
     ("youngs_modulus", "Young's modulus E", "GPa", 1e-3),
@@ -103,6 +92,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         "percent": percent,
         "joined": joined,
         "sentence": sentence,
+        "capitalize_first": lambda text: text[:1].upper() + text[1:],
         "solved": solver_sentence,
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
@@ -118,6 +108,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         meaning=MEANING[result.verdict],
         checks=checks_of(result),
         bands=_bands(result),
+        reasons=_reasons(result),
         drawings=[
             (name, result.load_cases[name], figures.get(linkage_name(name))) for name in governing_load_cases(result)
         ],
@@ -131,10 +122,11 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         weight_sentence=weight_sentence,
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
         links=[_link(result, link, figures) for link in first.links],
-        agreement=AGREEMENT,
+        agreement=agreement,
         materials=_materials(result),
         claims=_claims(result),
-        not_covered=NOT_COVERED,
+        not_covered=not_covered(result),
+        pinned_statics=PINNED_STATICS,
         design=design_of(result.case),
         version=alula_version(),
         data_uri=data_uri,
@@ -149,17 +141,27 @@ def data_uri(picture: bytes) -> str:
 def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
     """What the bands in the table of checks hold: name of the check -> each source of error once, without particulars.
 
-    A check without any width stands there only where its values say why (``nothing: ...``).
+    A check without any width stands there only where its values say why.
     """
     checks = checks_of(result)
     wide = {check.name for check in checks if check.value.low < check.value.high}
     found: dict[str, dict[str, None]] = {}
     for check in checks:
-        for held in check.value.holds:
-            if check.name in wide or held.startswith("nothing"):
-                told = held.partition(" (")[0]
-                found.setdefault(check.name, {})[re.sub(r"^nothing: (.*)$", r"nothing (\1)", told)] = None
+        held = [text.partition(" (")[0] for text in check.value.holds if check.name in wide]
+        for text in [f"nothing ({check.value.without})"] if check.value.without else held:
+            found.setdefault(check.name, {})[text] = None
     return {name: tuple(held) for name, held in found.items()}
+
+
+def _reasons(result: CheckResult) -> list[str]:
+    """What each check says beyond its row, which has value, limit and verdict; "" where it says no more."""
+    return [
+        ""
+        if check.quantity != DRIVE_POWER
+        and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
+        else check.reason
+        for check in checks_of(result)
+    ]
 
 
 def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
@@ -178,7 +180,6 @@ def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[
     """What the page tells of one link, under the load case that stresses it most."""
     worst: LoadCaseResult = worst_load_case(result, name)
     found: LinkResult = worst.links[name]
-    apart = [c for c in found.comparisons if abs(c.difference) > AGREEMENT]
     return {
         "name": name,
         "load_case": worst.name,
@@ -187,7 +188,8 @@ def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[
         "part": result.case.part_of(name),
         "plot": figures.get(stress_name(name)),
         "diagram": figures.get(diagram_name(name)),
-        "apart": apart,
+        "apart": apart(found.comparisons),
+        "model": HAND if found.fidelity == "beam" and found.decided_by else MODEL[found.fidelity],
         "checks": [c for c in worst.checks if c.link == name],
         "others": [(case.name, case.links[name]) for case in result.load_cases.values() if case is not worst],
     }

@@ -162,7 +162,7 @@ def worst_load_case(result: CheckResult, link: str) -> LoadCaseResult:
 
 
 def _band(band: Band) -> dict[str, Any]:
-    return {"value": band.value, "low": band.low, "high": band.high, "holds": list(band.holds)}
+    return {"value": band.value, "low": band.low, "high": band.high, "holds": list(band.told)}
 
 
 def _pose(result: CheckResult) -> dict[str, Any]:

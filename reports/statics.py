@@ -32,9 +32,10 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
         forces, moments = [i for i in places if i < 3], [i for i in places if i >= 3]
         for joint in reactions.joints.values():
             force = ", ".join(_column(joint.wrench[i], largest) for i in forces)
+            size = _column(joint.magnitude, largest).strip()
             turned = "".join(f", {AXES[i]} {joint.wrench[i]:.4g}" for i in moments)
             print(
-                f"  {joint.joint:<{width}} {joint.by} pushes {joint.on} with ({force}) N, {_column(joint.magnitude, largest).strip()} N"
+                f"  {joint.joint:<{width}} {joint.by} pushes {joint.on} with ({force}) N, {size} N"
                 f"{turned}{' N·mm' if turned else ''}"
             )
         if reactions.drive:

@@ -14,9 +14,9 @@ def test_what_is_unknown_decides_nothing():
 
 
 def test_an_unknown_stress_gives_no_safety_factor():
-    factor = Band.unknown("nothing").inverse(41.4)
+    factor = Band.unknown("no mesh tells").inverse(41.4)
     assert factor.unknowable
-    assert factor.holds == ("nothing",)
+    assert factor.told == ("nothing: no mesh tells",)
 
 
 def test_half_a_band_is_refused():

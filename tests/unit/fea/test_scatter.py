@@ -66,7 +66,7 @@ def test_what_is_no_scatter(stated):
 
 
 def test_a_band_is_multiplied_at_its_ends():
-    band = Band(value=2.0, low=1.0, high=4.0, holds=("nothing: one mesh",))
+    band = Band(value=2.0, low=1.0, high=4.0, holds=("one mesh",))
     found = Scatter(low=0.5, high=3.0, holds=("load",)).on(band)
     assert (found.value, found.low, found.high, found.holds) == (2.0, 0.5, 12.0, ("one mesh", "load"))
     assert Scatter().on(band) is band

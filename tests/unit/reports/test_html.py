@@ -6,7 +6,8 @@ from html.parser import HTMLParser
 import pytest
 
 from fea.verdict import Verdict
-from reports.html import NOT_COVERED, render
+from reports.coverage import not_covered
+from reports.html import render
 from reports.pictures import diagram_name, linkage_name, stress_name
 
 PICTURES = {linkage_name("weight"): b"linkage", diagram_name("AE"): b"diagram", stress_name("GF"): b"stress"}
@@ -109,8 +110,8 @@ def test_what_a_reader_needs_is_there(page, words):
     assert words in re.sub(r"\s+([.,;:)])", r"\1", page.words)
 
 
-def test_what_is_not_covered_is_said(page):
-    for title, text in NOT_COVERED:
+def test_what_is_not_covered_is_said(page, result):
+    for title, text in not_covered(result):
         assert title in page.words
         assert text in page.words
 

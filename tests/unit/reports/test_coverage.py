@@ -1,0 +1,138 @@
+"""What a report says that it does not cover follows from what ran and from what the case states."""
+
+import tomllib
+from dataclasses import replace
+from importlib.resources import files
+
+import pytest
+
+from fea.band import Band
+from fea.check import check_case
+from fea.verdict import BUCKLING_FACTOR, LINKAGE
+from loads.case_file import read_case, read_text, validate
+from reports.coverage import not_covered
+from reports.html import render
+
+
+def told(result):
+    return dict(not_covered(result))
+
+
+@pytest.fixture(scope="module")
+def wing():
+    return check_case(read_case("owl-wing-static"), name="owl-wing-static", fidelity="beam")
+
+
+def test_the_error_of_the_mesh_is_said_of_the_links_that_have_one(result):
+    """The report once said of every case that the error of the mesh is in no band."""
+    text = told(result)["Bands"]
+    assert text.startswith("The error of the meshes of GF is in their bands as an estimate")
+    assert "AE, CF, CH and ED have no band of model error (nothing)" in text
+    assert "is not in the bands" not in render(result, {})
+
+
+def test_links_by_calibrated_hand_calculation_have_the_bands_of_other_solids(wing):
+    assert told(wing)["Bands"].startswith("No mesh of GF, AE, CF, CH and ED ran: their bands are what solid models")
+
+
+def test_buckling_is_not_called_left_out_where_it_is_judged(wing, result):
+    judged = {c.link for case in wing.load_cases.values() for c in case.checks if c.quantity == BUCKLING_FACTOR}
+    assert judged - {LINKAGE} == {"GF", "AE", "CF", "CH"}
+    assert told(wing)["Buckling"].startswith("GF, AE, CF and CH were judged as straight elastic columns")
+    assert told(result)["Buckling"].startswith("No link is in compression")  # its checks are of strength alone
+
+
+@pytest.mark.parametrize(
+    ("ranged", "loads", "words"),
+    [
+        (False, False, "scatter of strength, modulus and the loads, for which no range is stated"),
+        (True, False, "scatter of the loads, for which no range is stated"),
+        (False, True, "scatter of strength and modulus, for which no range is stated"),
+        (True, True, "left to the safety factor. Ranges that are stated are in the bands."),
+    ],
+)
+def test_scatter_that_is_stated_is_not_called_left_out(wing, ranged, loads, words):
+    tree = tomllib.loads(read_text("owl-wing-static")[0])
+    if ranged:
+        cards = tomllib.loads(files("geometry").joinpath("materials.toml").read_text(encoding="utf-8"))
+        [name] = {part["material"] for part in tree["parts"].values()}
+        ranges = {"strength_range": ["40 MPa", "43 MPa"], "youngs_modulus_range": ["2 GPa", "3 GPa"]}
+        tree["materials"] = {"ranged": cards[name] | ranges}
+        for part in tree["parts"].values():
+            part["material"] = "ranged"
+    if loads:
+        tree["load_cases"]["weight"]["scatter"] = "20 %"
+    assert words in told(replace(wing, case=validate(tree)))["Making and scatter"]
+
+
+def test_a_load_that_turns_with_its_link_is_told_apart_from_the_deformation(wing):
+    """The case file says that such a load turns with its link, the report that loads keep their direction."""
+    assert wing.load_cases["weight"].large_displacement.followed
+    assert "axes of its link" not in told(wing)["Large displacements"]
+    tree = tomllib.loads(read_text("owl-wing-static")[0])
+    tree["load_cases"]["weight"]["forces"][0]["axes"] = "link"
+    turned = replace(wing, case=validate(tree))
+    assert told(turned)["Large displacements"].endswith(
+        "a load in the axes of its link turns with it from pose to pose, but not as the linkage deforms."
+    )
+
+
+def test_conditions_that_are_stated_are_told(wing):
+    assert "since the case states no conditions" in told(wing)["Creep, temperature, moisture, ageing"]
+    warm = wing.case.conditions.model_copy(update={"temperature": 40.0})
+    warmed = replace(wing, case=wing.case.model_copy(update={"conditions": warm}))
+    assert "strengths are those at the stated temperature" in told(warmed)["Creep, temperature, moisture, ageing"]
+
+
+def test_pins_that_were_checked_are_named(wing, result):
+    assert "Of the pins themselves, A, B, C, D, E, F and G were checked." in told(wing)["Pins and contact"]
+    bare = {name: replace(case, pins={}) for name, case in result.load_cases.items()}
+    assert "No pin itself was checked." in told(replace(result, load_cases=bare))["Pins and contact"]
+
+
+def headings(page):
+    return [part.split("</th>")[0] for part in page.split('<thead><tr><th scope="col">')[1:]]
+
+
+@pytest.mark.parametrize(
+    ("fidelity", "heading"), [("submodel", "Solid models of eyes and holes"), ("solid", "Solid model")]
+)
+def test_a_link_is_headed_by_the_model_that_gave_its_numbers(result, fidelity, heading):
+    """The numbers of a submodel once stood under "Hand calculation"."""
+    case = result.load_cases["weight"]
+    link = replace(case.links["GF"], fidelity=fidelity, decided_by=fidelity)
+    page = render(replace(result, load_cases={"weight": replace(case, links={"GF": link})}), {})
+    assert heading in headings(page)
+    assert "Hand calculation" not in headings(page)
+
+
+def test_the_stress_that_decides_is_shown_and_named(result):
+    """The table of a brittle link once gave von Mises stress beside a factor from the principal one."""
+    case = result.load_cases["weight"]
+    link = replace(
+        case.links["GF"],
+        brittle=True,
+        von_mises_max=Band.exact(206.4),
+        principal_max=Band.exact(215.9),
+        safety_factor=Band.exact(215.9).inverse(500.0),
+    )
+    page = " ".join(render(replace(result, load_cases={"weight": replace(case, links={"GF": link})}), {}).split())
+    assert '<td>largest principal stress, which n is counted from</td><td class="num">215.9</td>' in page
+    assert "The largest principal stress is at x" in page
+
+
+def test_console_and_page_give_the_same_difference_of_hand_and_solid(result):
+    import io
+
+    from rich.console import Console
+
+    from reports.console import print_result
+
+    case = result.load_cases["weight"]
+    near = tuple(replace(c, difference=0.0007) for c in case.links["GF"].comparisons)
+    link = replace(case.links["GF"], comparisons=near)
+    told = replace(result, load_cases={"weight": replace(case, links={"GF": link})})
+    out = Console(file=io.StringIO(), width=100)
+    print_result(told, out)
+    assert "they agree within 0.1 %." in out.file.getvalue()
+    assert "They agree within 0.1 %." in render(told, {})
