@@ -7,9 +7,12 @@ from numpy.typing import NDArray
 
 from fea.beam import BeamCheck
 from reports.drawings import DPI, GROUND, INK, STYLE, WIDTH, as_png
+from reports.labels import heights, stacked, write_stacked
 from reports.wording import number
 
 Real = NDArray[np.float64]
+_BESIDE = 0.03
+"""Room beside the link, as a share of its length."""
 _NIL = 1e-9
 """Share of the largest value below which a quantity is drawn as zero."""
 _COLOURS = {"N": "#7a4fa3", "V": "#00795a", "M": "#c8460b", "T": "#0067a8"}
@@ -39,21 +42,22 @@ def internal_force_diagram(beam: BeamCheck, points: dict[str, float]) -> bytes:
         if np.abs(values).max() > _NIL * size:
             rows.append((kind, label, values))
     with rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, 1.25 * len(rows) + 0.7), dpi=DPI)
+        low = float(beam.x[0])
+        wide = (0.97 - 0.12) * WIDTH
+        names = stacked(points, [wide * (x - low + _BESIDE * length) / ((1.0 + 2.0 * _BESIDE) * length)
+                                 for x in points.values()])  # fmt: skip
+        top = 0.12 + heights(names)
+        figure = Figure(figsize=(WIDTH, 1.25 * len(rows) + 0.4 + top), dpi=DPI)
         FigureCanvasAgg(figure)
         all_axes = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
-        figure.subplots_adjust(left=0.12, right=0.97, top=1.0 - 0.3 / figure.get_figheight(),
+        figure.subplots_adjust(left=0.12, right=0.97, top=1.0 - top / figure.get_figheight(),
                                bottom=0.45 / figure.get_figheight(), hspace=0.22)  # fmt: skip
         for axes, (kind, label, values) in zip(all_axes, rows, strict=True):
             size = scale if kind == "N" or kind == "V" else scale * length
             _panel(axes, beam.x, np.where(np.abs(values) > _NIL * size, values, 0.0), label, _COLOURS[kind])
             for x in points.values():
                 axes.axvline(x, color=GROUND, linewidth=0.6, linestyle=(0, (2, 3)), zorder=0)
-        for name, x in points.items():
-            all_axes[0].annotate(
-                name, (x, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 3), textcoords="offset points",
-                ha="center", va="bottom", fontweight="bold",
-            )  # fmt: skip
+        write_stacked(all_axes[0], names, wide)
         all_axes[-1].spines["bottom"].set_visible(True)
         all_axes[-1].tick_params(axis="x", length=3.0)
         all_axes[-1].set_xlabel("x along the link [mm]")
@@ -70,7 +74,7 @@ def _panel(axes: Any, x: Real, values: Real, label: str, colour: str) -> None:
     axes.set_ylabel(label)
     low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
     room = high - low
-    axes.set_xlim(x[0] - 0.03 * np.ptp(x), x[-1] + 0.03 * np.ptp(x))
+    axes.set_xlim(x[0] - _BESIDE * np.ptp(x), x[-1] + _BESIDE * np.ptp(x))
     axes.spines[["top", "right", "bottom"]].set_visible(False)
     axes.tick_params(axis="x", length=0.0)
     if low == high:

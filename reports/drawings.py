@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.result import CheckResult
+from loads.actions import actions
 from loads.aero import shares
+from loads.applied import LineLoad, PointLoad
 from reports.labels import along, place_labels
 from reports.wording import number, turning
 
@@ -88,6 +90,9 @@ class _Sheet:
         self.result, self.pose, self.linkage = result, result.pose, result.pose.linkage
         self.reactions = result.load_cases[load_case].reactions
         self.stated = result.case.load_cases[load_case]
+        # The very loads that the statics had, turned as they are in this pose; the air's are told together below.
+        without_air = self.stated.model_copy(update={"air": ()})
+        self.applied = actions(result.case, without_air, self.pose, {})
         self.points = {
             (link, point): self.pose.position(link, point)
             for link, record in self.linkage.links.items()
@@ -118,17 +123,20 @@ class _Sheet:
         return self.pose.position(joint.links[1], self.linkage.joint_points(name)[1])
 
     def _loads(self) -> list[tuple[str, Real, Real]]:
+        """(label, point, force) of every load in the plane, as it acts in this pose."""
         found = []
-        for force in self.stated.forces:
-            vector = np.array(force.force[:2])
+        for load in self.applied:
+            if isinstance(load, PointLoad):
+                vector, at, how = load.wrench[:2], self.points[load.link, load.point], "on"
+            elif isinstance(load, LineLoad):
+                vector = (0.5 * (load.end - load.start) * (load.at_start + load.at_end))[:2]
+                middle = 0.5 * (load.start + load.end)
+                at = self.pose.origins[load.link] + middle * self.pose.rotation(load.link)[:, 0]
+                how = "spread on"
+            else:
+                continue
             if np.any(vector):
-                label = f"{number(float(np.linalg.norm(vector)), 3)} N\non {force.link}"
-                found.append((label, self.points[force.link, force.at], vector))
-        for spread in self.stated.spread:
-            vector = np.array(spread.total[:2])
-            if np.any(vector):
-                middle = (self.points[spread.link, spread.start] + self.points[spread.link, spread.end]) / 2.0
-                found.append((f"{number(float(np.linalg.norm(vector)), 3)} N\nspread on {spread.link}", middle, vector))
+                found.append((f"{number(float(np.linalg.norm(vector)), 3)} N\n{how} {load.link}", at, vector))
         points = self.result.case.link_points
         for air, forces in zip(self.stated.air, self.result.case.air_forces(self.name), strict=True):
             for patch, share in zip(air.spread, shares(air, points), strict=True):
@@ -170,10 +178,10 @@ class _Sheet:
             self._arrow(axes, at, tip, colour)
             obstacles.append(along(at, tip))
             labels.append((tip[None], text, colour))
-        torque = self._torque(axes)
-        if torque is not None:
-            labels.append(torque[0])
-            obstacles.append(torque[1])
+        for at, middle, moment, radius, text, colour in self._moments():
+            arc = self._arc(axes, at, middle, moment, radius, colour)
+            labels.append((arc[::6], text, colour))
+            obstacles.append(arc)
         names = [(at[None], name, INK) for name, at in self.pose.points.items()]
         for link in self.linkage.moving:
             pieces = [(self.points[link, a], self.points[link, b]) for a, b in self.linkage.links[link].pieces]
@@ -247,19 +255,27 @@ class _Sheet:
             zorder=7,
         )  # fmt: skip
 
-    def _torque(self, axes: Any) -> tuple[tuple[Real, str, str], Real] | None:
-        """Draw the drive torque as an arc about its joint, clear of the driven link; its label and points."""
+    def _moments(self) -> list[tuple[Real, float, float, float, str, str]]:
+        """(place, direction of its middle, moment, radius, label, colour) of the drive torque and of stated moments."""
+        found = []
         drive, torque = self.reactions.drive, self.reactions.drive_torque
-        if drive is None or torque == 0.0:
-            return None
-        at, radius = self._joint(drive.joint), 0.075 * self.size
-        middle = self.pose.angles[drive.link]
-        sweep = np.linspace(-1.0, 1.0, 40) * math.radians(60.0) * math.copysign(1.0, torque) + middle
-        arc = at + radius * np.column_stack([np.cos(sweep), np.sin(sweep)])
-        axes.plot(*arc[:-3].T, color=TORQUE, linewidth=1.5, zorder=7)
-        self._arrow(axes, arc[-5], arc[-1], TORQUE)
-        text = f"{number(abs(torque))} N·mm\n{turning(torque)} on {drive.link}"
-        return (arc[::6], text, TORQUE), arc
+        if drive is not None and torque != 0.0:
+            text = f"{number(abs(torque))} N·mm\n{turning(torque)} on {drive.link}"
+            found.append((self._joint(drive.joint), self.pose.angles[drive.link], torque, 0.075, text, TORQUE))
+        for load in self.applied:
+            if isinstance(load, PointLoad) and load.wrench[5] != 0.0:
+                moment, angle = float(load.wrench[5]), self.pose.angles.get(load.link, 0.0)
+                text = f"{number(abs(moment))} N·mm\n{turning(moment)} on {load.link}"
+                found.append((self.points[load.link, load.point], angle, moment, 0.055, text, LOAD))
+        return found
+
+    def _arc(self, axes: Any, at: Real, middle: float, moment: float, radius: float, colour: str) -> Real:
+        """Draw a moment as an arc about a point, clear of the link that points to its middle; returns its points."""
+        sweep = np.linspace(-1.0, 1.0, 40) * math.radians(60.0) * math.copysign(1.0, moment) + middle
+        arc = at + radius * self.size * np.column_stack([np.cos(sweep), np.sin(sweep)])
+        axes.plot(*arc[:-3].T, color=colour, linewidth=1.5, zorder=7)
+        self._arrow(axes, arc[-5], arc[-1], colour)
+        return np.asarray(arc)
 
     def legend(self) -> list[Any]:
         """Proxies for the legend, with the scale of the arrows."""
@@ -268,7 +284,7 @@ class _Sheet:
         key = _round_down(self.largest)
         scale = f"; {number(key, 1)} N is {number(key * self.per_newton, 2)} mm long" if key > 0.0 else ""
         handles = [Line2D([], [], color=JOINT_FORCE, linewidth=1.5, label=f"joint force{scale}")]
-        if self._loads():
+        if self._loads() or any(colour == LOAD for *_, colour in self._moments()):
             handles.append(Line2D([], [], color=LOAD, linewidth=1.5, label="applied load"))
         if self.reactions.drive is not None and self.reactions.drive_torque != 0.0:
             handles.append(Line2D([], [], color=TORQUE, linewidth=1.5, label="drive torque"))

@@ -57,7 +57,13 @@ def write_envelope(
         (folder / FIGURE).write_bytes(envelope_figure(result))
         progress("Rendering the stress plots ...")
         scenes = {
-            name: scene_from(link.field, link.displacement, link.worst.discretisation)
+            name: scene_from(
+                link.field,
+                link.displacement,
+                link.worst.discretisation,
+                result.case.part_of(name).section,
+                brittle=result.case.material_of(name).brittle,
+            )
             for name, link in result.links.items()
         }
         stations = {name: {p: x for p, (x, _) in result.case.links[name].points.items()} for name in result.links}

@@ -13,8 +13,10 @@ from reports.wording import number, plain
 
 Real = NDArray[np.float64]
 
-_HEADROOM = 30.0
-"""Largest safety factor shown, as a multiple of the least one."""
+_DECADES = 1e3
+"""Largest safety factor shown, as a multiple of the least ones and of the limits: unloaded poses have infinite ones."""
+_TITLE = 40
+"""Letters of a title beside which that of the next panel has room."""
 _MARKS = ("error band", "least of the motion", "limit of the check")
 _PANEL = 2.1
 """Height of a panel [inches]."""
@@ -70,29 +72,36 @@ def abscissa(result: EnvelopeResult) -> tuple[Real, str]:
 def _panel(
     axes: Any, angles: Real, link: LinkEnvelope, names: list[str], limits: set[float], handles: dict[str, Any]
 ) -> None:
-    least = np.inf
+    shown, marks = [], list(limits)
     for name, found in link.load_cases.items():
         i = names.index(name)
         colour, dash = COLOURS[i % len(COLOURS)], DASHES[i // len(COLOURS) % len(DASHES)]
         with np.errstate(divide="ignore"):
             value, low, high = (link.strength / np.maximum(s, 0.0) for s in (found.value, found.high, found.low))
-        top = 1e3 * link.strength / max(found.stress.value, 1e-300)
-        axes.fill_between(angles, np.minimum(low, top), np.minimum(high, top), color=colour, alpha=0.22, linewidth=0.0)
-        (handles[name],) = axes.plot(angles, np.minimum(value, top), color=colour, linestyle=dash, linewidth=1.6)
+        # Beyond any panel, so that curves leave it upwards where nothing acts.
+        far = [np.minimum(curve, 1e6 * _DECADES * np.nanmin(value, initial=np.inf)) for curve in (value, low, high)]
+        axes.fill_between(angles, far[1], far[2], color=colour, alpha=0.22, linewidth=0.0)
+        (handles[name],) = axes.plot(angles, far[0], color=colour, linestyle=dash, linewidth=1.6)
+        shown += [*value[np.isfinite(value)], *low[np.isfinite(low)]]
         worst = found.safety_factor.value
         if np.isfinite(worst):
-            least = min(least, found.safety_factor.low)
+            marks += [worst, found.safety_factor.low]
             (handles[_MARKS[1]],) = axes.plot(
                 angles[found.pose], worst, marker="o", color=INK, markersize=4.5, markerfacecolor="white",
                 linestyle="none", zorder=4, clip_on=False,
             )  # fmt: skip
     for limit in sorted(limits):
         handles[_MARKS[2]] = axes.axhline(limit, color=GROUND, linewidth=1.0, linestyle=(0, (4, 2)))
-        least = min(least, limit)
     axes.set_yscale("log")
-    if np.isfinite(least):
-        highest = max(f.safety_factor.value for f in link.load_cases.values() if np.isfinite(f.safety_factor.value))
-        axes.set_ylim(least / 1.5, _HEADROOM * max(highest, least) / 3.0)
+    marks = [mark for mark in marks if 0.0 < mark < np.inf]
+    if marks:
+        ceiling = _DECADES * max(marks)
+        axes.set_ylim(min([*marks, *(v for v in shown if v > 0.0)]) / 1.4, min(1.4 * max([*shown, *marks]), ceiling))
+        if shown and max(shown) > ceiling:
+            axes.annotate(
+                f"above {number(ceiling, 2)} not drawn", (0.99, 0.98), xycoords="axes fraction", ha="right", va="top",
+                fontsize=7.5,
+            )  # fmt: skip
     axes.set_xlim(float(np.min(angles)), float(np.max(angles)))
     axes.yaxis.set_major_formatter(lambda value, position: plain(value))
     axes.yaxis.set_minor_formatter(lambda value, position: "")
@@ -101,8 +110,10 @@ def _panel(
     axes.set_axisbelow(True)
     worst_case = link.worst
     at = angles[worst_case.pose]
+    told = f"least {number(worst_case.safety_factor.value, 3)} at {at:.1f} deg"
+    one_line = f"{link.link}: {told}"
     axes.set_title(
-        f"{link.link}: least {number(worst_case.safety_factor.value, 3)} at {at:.1f} deg",
+        one_line if len(one_line) <= _TITLE else f"{link.link}:\n{told}",
         loc="left",
         fontsize=9.0,
         parse_math=False,

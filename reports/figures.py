@@ -1,4 +1,4 @@
-"""Stress plots of links: von Mises stress on the deformed shape, and a close view of the hottest spot.
+"""Stress plots of links: the stress that decides on the deformed shape, and a close view of the hottest spot.
 
 The bodies are rendered in a child process (``figures_worker.py``), since the graphics library can crash
 where no display or no software renderer is to be had; then the pictures are left out with one warning.
@@ -22,7 +22,10 @@ from fea.discretisation import Discretisation, Status
 from fea.result import LinkResult
 from fea.stress import StressField
 from geometry import child
+from geometry.material import stress_measure
+from geometry.part import Section
 from reports.drawings import DPI, INK, STYLE, WIDTH, as_png
+from reports.labels import heights, stacked, write_stacked
 from reports.wording import fixed, number, plain
 
 Real = NDArray[np.float64]
@@ -80,7 +83,7 @@ class Scene:
     """What the plot of one link shows, in its frame: surface, stress, deformation and two views.
 
     points, displacement  (n, 3) nodes and their displacements [mm]
-    values                (n,) von Mises stress [MPa]
+    values                (n,) the stress that decides [MPa], called ``measure``
     triangles             (k, 3) of the surface
     cells                 (m, 4) tetrahedra near the hottest node
     hottest               number of the hottest node
@@ -93,6 +96,7 @@ class Scene:
     points: Real
     displacement: Real
     values: Real
+    measure: str
     triangles: Int
     cells: Int
     hottest: int
@@ -144,31 +148,37 @@ def scene_of(link: LinkResult) -> Scene:
     """Prepare the plot of a link that ran as a solid."""
     assert link.stress is not None
     assert link.solid_case is not None
-    return scene_from(link.stress, link.solid_case.displacement, link.discretisation)
+    return scene_from(
+        link.stress, link.solid_case.displacement, link.discretisation, link.beam.section, brittle=link.brittle
+    )
 
 
-def scene_from(stress: StressField, displacement: Real, meshes: Discretisation | None) -> Scene:
+def scene_from(
+    stress: StressField, displacement: Real, meshes: Discretisation | None, section: Section, *, brittle: bool
+) -> Scene:
     """Prepare the plot of a stress field with its displacements (n, 3) [mm].
 
+    section  of the link, by whose size the close view is chosen: arms and eyes would make it as large as the link
+    brittle  True where the largest principal stress decides
     meshes   what is known of its error. A singular peak does not set the colours: their upper end is the largest
              stress at a distance from sharp edges.
     """
     doubt = "" if meshes is None else DOUBTS.get(meshes.status, "")
-    space, values = stress.space, stress.von_mises
+    space, values = stress.space, stress.decisive(brittle=brittle)
     faces = space.boundary
     triangles = faces if faces.shape[1] == 3 else faces[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
     length = float(np.ptp(space.nodes[:, 0]))
-    thickness = float(np.ptp(space.nodes[:, 1:], axis=0).max())
     largest = float(np.linalg.norm(displacement, axis=1).max())
     scale = round_scale(_VISIBLE_SHIFT * length / largest) if largest > 0.0 else 1.0
     hottest = int(np.argmax(values))
-    reach = 0.65 * thickness
+    reach = 0.65 * min(2.0 * max(section.half_y, section.half_z), float(np.ptp(space.nodes[:, 1:], axis=0).max()))
     near = np.linalg.norm(space.nodes[space.cells[:, :4]].mean(axis=1) - space.nodes[hottest], axis=1) < 3.0 * reach
     cells = space.cells[near]
     return Scene(
         points=space.nodes,
         displacement=displacement,
         values=values,
+        measure=f"{stress_measure(brittle=brittle)} stress",
         triangles=triangles,
         cells=cells if cells.shape[1] == 4 else cells[:, list(map(list, _CORNERS_AND_EDGES))].reshape(-1, 4),
         hottest=hottest,
@@ -352,8 +362,11 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
 
     low, high = _limits(scene)
     with rc_context(STYLE):
-        side, margin, top, below, gap = 2.9, 0.1, 0.36, 0.1, 0.5  # inches
+        side, margin, below, gap = 2.9, 0.1, 0.1, 0.5  # inches
         wide = WIDTH - 2.0 * margin
+        shares = scene.strip.share(np.array([[x, 0.0, 0.0] for x in points.values()]).reshape(-1, 3))[:, 0]
+        names = stacked(points, wide * shares)
+        top = 0.17 + heights(names)
         tall = wide * scene.strip.half_height / scene.strip.half_width
         height = top + tall + gap + side + below
         figure = Figure(figsize=(WIDTH, height), dpi=DPI)
@@ -364,7 +377,7 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
 
         upper = box(margin, below + side + gap, wide, tall)
         upper.imshow(strip, extent=(0, 1, 0, 1), aspect="auto", interpolation="lanczos")
-        _name_points(upper, scene, points)
+        write_stacked(upper, names, wide)
         _scale_bar(upper, scene.strip, wide, below_image=True)
         lower = box(margin, below, side, side)
         lower.imshow(close, extent=(0, 1, 0, 1), aspect="auto", interpolation="lanczos")
@@ -391,7 +404,7 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
             orientation="horizontal",
             extend="max" if scene.top < scene.values.max() else "neither",
         )
-        legend.set_label("von Mises stress [MPa]")
+        legend.set_label(f"{scene.measure} [MPa]")
         legend.outline.set_linewidth(0.6)
         largest = float(np.linalg.norm(scene.displacement, axis=1).max())
         figure.text(
@@ -427,14 +440,6 @@ def peak_lines(scene: Scene) -> tuple[str, ...]:
 
 def _place(value: float) -> str:
     return fixed(float(value), 1)
-
-
-def _name_points(axes: Any, scene: Scene, points: Mapping[str, float]) -> None:
-    """Write the names of pins and load points above the link."""
-    for name, x in points.items():
-        share = float(scene.strip.share(np.array([x, 0.0, 0.0]))[0])
-        axes.annotate(name, (share, 1.0), xytext=(0, 4), textcoords="offset points", ha="center", va="bottom",
-                      fontweight="bold", annotation_clip=False)  # fmt: skip
 
 
 def _scale_bar(axes: Any, view: View, wide: float, *, below_image: bool) -> None:

@@ -127,6 +127,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         claims=_claims(result),
         not_covered=not_covered(result),
         pinned_statics=PINNED_STATICS,
+        out_of_plane=lambda load_case: len(shown_components(load_case.reactions)) > 3,
         design=design_of(result.case),
         version=alula_version(),
         data_uri=data_uri,

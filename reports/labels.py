@@ -2,17 +2,22 @@
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 _DIRECTIONS = 24
-_REACHES = (0.6, 1.2, 2.0, 3.0, 4.2)
+_REACHES = (0.6, 1.2, 2.0, 3.0, 4.2, 6.0, 8.0)
 """Distances that are tried, in heights of the label's text."""
 _LEADER = 2.5
 """Distance beyond which a label gets a line to its anchor."""
+
+
+_COVERS = 6.0
+"""Cost of a label over anything drawn, in heights of its text by which it would rather move away."""
 
 
 def place_labels(
@@ -54,7 +59,7 @@ def place_labels(
                 for x0, y0, x1, y1 in taken
             )
             outside = float(np.maximum(0.0, [*(inside.min - low), *(high - inside.max)]).sum())
-            cost = reach + 1.5 * covered + clash + 10.0 * outside
+            cost = reach + (_COVERS + 0.3 * covered if covered else 0.0) + clash + 10.0 * outside
             if best is None or cost < best[0]:
                 best = (cost, centre, reach, at)
         assert best is not None
@@ -67,6 +72,69 @@ def place_labels(
             axes.plot(*ends.T, color=colour, linewidth=0.5, alpha=0.6, zorder=4)
 
 
-def along(start: NDArray[np.float64], end: NDArray[np.float64], count: int = 60) -> NDArray[np.float64]:
+def along(start: NDArray[np.float64], end: NDArray[np.float64], count: int = 240) -> NDArray[np.float64]:
     """Points (count, 2) on a line: what a label must not cover."""
     return np.asarray(np.linspace(start, end, count))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stacked:
+    """A name above a station, in which row from below; ``at`` [inches] along the axis."""
+
+    text: str
+    at: float
+    row: int
+
+
+def stacked(names: Iterable[str], at: Iterable[float]) -> tuple[Stacked, ...]:
+    """Return names above their stations so that none is written over another.
+
+    at   place of each along the axis [inches]; names of one place stand together, others move to a higher row
+    """
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextPath
+
+    together: dict[float, list[str]] = {}
+    for name, place in zip(names, at, strict=True):
+        near = next((known for known in together if abs(known - place) < _TOGETHER), float(place))
+        together.setdefault(near, []).append(name)
+    ends: list[float] = []
+    found = []
+    for place, group in sorted(together.items()):
+        text = ", ".join(group)
+        drawn = TextPath(
+            (0.0, 0.0), text.replace("$", r"\$"), prop=FontProperties(weight="bold", size=_NAME_SIZE), usetex=False
+        )
+        half = float(drawn.get_extents().width) / 72.0 / 2.0 + _NAME_GAP
+        row = next((k for k, end in enumerate(ends) if end <= place - half), len(ends))
+        ends[row : row + 1] = [place + half]
+        found.append(Stacked(text=text, at=place, row=row))
+    return tuple(found)
+
+
+def heights(names: Sequence[Stacked]) -> float:
+    """Room that stacked names need above an axis [inches]."""
+    return _NAME_ROW * (1 + max((name.row for name in names), default=0))
+
+
+def write_stacked(axes: Any, names: Sequence[Stacked], width: float) -> None:
+    """Write stacked names above axes that are so wide [inches]."""
+    for name in names:
+        axes.annotate(
+            name.text,
+            (name.at / width, 1.0),
+            xycoords="axes fraction",
+            xytext=(0, 3 + 72.0 * _NAME_ROW * name.row),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontweight="bold",
+            fontsize=_NAME_SIZE,
+            parse_math=False,
+            annotation_clip=False,
+        )
+
+
+_TOGETHER = 0.005
+_NAME_SIZE, _NAME_ROW, _NAME_GAP = 9.0, 0.18, 0.03
+"""Points; inches."""

@@ -120,7 +120,8 @@ def test_no_room_for_renderings_costs_one_warning(tmp_path: Path, monkeypatch: p
     view = figures.View(right=cube[4], up=cube[2], toward=cube[1], focus=cube[0], half_width=1.0, half_height=1.0,
                         size=(10, 10), cut=None)  # fmt: skip
     faces = figures.np.array([[0, 1, 3]])
-    scene = figures.Scene(points=cube, displacement=cube, values=cube[:, 0], triangles=faces, cells=faces, hottest=0,
+    scene = figures.Scene(points=cube, displacement=cube, values=cube[:, 0], measure="stress",
+                          triangles=faces, cells=faces, hottest=0,
                           top=1.0, doubt="", scale=1.0, far_side=False, strip=view, close=view)  # fmt: skip
     pictures, [warning] = figures.plots_of({"AE": scene}, {"AE": {}})
     assert pictures == {}

@@ -19,7 +19,8 @@ def scene() -> figures.Scene:
         right=FAR[1], up=FAR[2], toward=FAR[3], focus=FAR[0], half_width=1.0, half_height=1.0, size=(50, 50), cut=None
     )
     return figures.Scene(
-        points=FAR, displacement=0.0 * FAR, values=np.arange(4.0), triangles=FACES, cells=np.array([[0, 1, 2, 3]]),
+        points=FAR, displacement=0.0 * FAR, values=np.arange(4.0), measure="stress", triangles=FACES,
+        cells=np.array([[0, 1, 2, 3]]),
         hottest=3, top=3.0, doubt="", scale=1.0, far_side=False, strip=view, close=view,
     )  # fmt: skip
 

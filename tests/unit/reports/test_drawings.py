@@ -1,14 +1,17 @@
 import io
 import itertools
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from fea.beam import BeamLoads, PointLoad, check_beam
+from loads.load_case import LoadCase
 from reports import diagrams, drawings
 from reports.labels import along, place_labels
 
@@ -68,6 +71,47 @@ def test_the_linkage_shows_joints_links_forces_and_torque(result, sheets):
     assert_legible(figure)
 
 
+def loaded(result, **loads):
+    """The same result with other stated loads in its load case, whose own forces are left out."""
+    case = LoadCase.model_validate({"title": "", **loads})
+    return replace(result, case=result.case.model_copy(update={"load_cases": {"weight": case}}))
+
+
+def arrows(figure, colour):
+    """(start, end) of the arrows of a colour."""
+    wanted = to_rgba(colour)
+    return [
+        (np.array(text.xyann), np.array(text.xy))
+        for text in figure.axes[0].texts
+        if getattr(text, "arrow_patch", None) is not None and text.arrow_patch.get_edgecolor() == wanted
+    ]
+
+
+@pytest.mark.parametrize(("axes", "turned"), [("global", 0.0), ("link", 1.0)])
+@pytest.mark.parametrize("kind", ["forces", "spread"])
+def test_a_load_points_where_it_acts(result, sheets, axes, turned, kind):
+    """A load in its link's axes was once drawn in global ones: 142 degrees off for the owl wing's outer link."""
+    where = {"forces": {"at": "H", "force": ["0 N", "-0.25 N"]},
+             "spread": {"start": "C", "end": "D", "total": ["0 N", "-0.25 N"]}}[kind]  # fmt: skip
+    drawings.linkage_drawing(loaded(result, **{kind: [{"link": "CH", "axes": axes, **where}]}), "weight")
+    [(start, end)] = arrows(sheets[0], drawings.LOAD)
+    at = result.pose.points
+    assert start == pytest.approx(at["H"] if kind == "forces" else (at["C"] + at["D"]) / 2.0)
+    away = at["H"] - at["C"]
+    expected = turned * math.atan2(away[1], away[0]) - math.pi / 2.0
+    assert (end - start) / np.linalg.norm(end - start) == pytest.approx([math.cos(expected), math.sin(expected)])
+
+
+@pytest.mark.parametrize(("moment", "sense"), [("5 N*mm", "counter-clockwise"), ("-5 N*mm", "clockwise")])
+def test_a_stated_moment_is_drawn_in_its_sense(result, sheets, moment, sense):
+    drawings.linkage_drawing(loaded(result, moments=[{"link": "CH", "at": "H", "moment": moment}]), "weight")
+    assert f"5.000 N·mm\n{sense} on CH" in {text for text, _ in boxes(sheets[0])}
+    [(start, end)] = arrows(sheets[0], drawings.LOAD)
+    arm = (start + end) / 2.0 - result.pose.points["H"]
+    turn = arm[0] * (end - start)[1] - arm[1] * (end - start)[0]
+    assert (turn > 0.0) == (sense == "counter-clockwise")
+
+
 def test_the_linkage_is_drawn_to_scale_and_whole(result, sheets):
     drawings.linkage_drawing(result, "weight")
     [axes] = sheets[0].axes
@@ -77,6 +121,18 @@ def test_the_linkage_is_drawn_to_scale_and_whole(result, sheets):
     for x, y in result.pose.points.values():
         assert x0 < x < x1
         assert y0 < y < y1
+
+
+@pytest.mark.parametrize("name", ["result", "slider"])
+def test_no_text_stands_on_the_arc_of_a_torque(name, sheets, request):
+    checked = request.getfixturevalue(name)
+    drawings.linkage_drawing(checked, next(iter(checked.load_cases)))
+    [figure] = sheets
+    [arc] = [line for line in figure.axes[0].lines if line.get_color() == drawings.TORQUE]
+    drawn = figure.axes[0].transData.transform(np.column_stack([arc.get_xdata(), arc.get_ydata()]))
+    for text, box in boxes(figure):
+        inside = ((drawn > (box.x0, box.y0)) & (drawn < (box.x1, box.y1))).all(axis=1)
+        assert not inside.any(), text
 
 
 def test_a_linkage_without_load_has_no_arrows(result, sheets):
@@ -180,3 +236,22 @@ def test_a_slider_runs_in_its_guide(slider, sheets):
         if len(line.get_xdata()) > 50 and np.allclose(line.get_ydata(), line.get_ydata()[0]) and line.get_xdata()[0] < x
     ]
     assert min(sides) < y < max(sides)
+
+
+CROWD = {"A": 0.0, "pin-left": 10.0, "pin-right": 10.0, "next-to-it": 12.0, "D": 100.0}
+
+
+def test_names_of_one_place_and_of_near_ones_are_not_written_over_each_other(result, sheets):
+    """Two pins of one arm stand at the same x along their link."""
+    section = result.case.parts["tube"].section
+    loads = BeamLoads(
+        points=(
+            PointLoad(point=np.array([0.0, 0.0]), wrench=np.array([0.0, -1.0, 0.0, 0.0, 0.0, 0.0])),
+            PointLoad(point=np.array([100.0, 0.0]), wrench=np.array([0.0, 1.0, 0.0, 0.0, 0.0, -100.0])),
+        )
+    )
+    diagrams.internal_force_diagram(check_beam(loads, section, 40.0), CROWD)
+    [figure] = sheets
+    texts = {text for text, _ in boxes(figure)}
+    assert {"A", "pin-left, pin-right", "next-to-it", "D"} <= texts
+    assert_legible(figure)

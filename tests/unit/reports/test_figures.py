@@ -78,6 +78,27 @@ def test_the_scene_states_a_round_scale_that_shows(solid):
     assert scene.close.share(scene.points[scene.hottest]) == pytest.approx([0.5, 0.5])
 
 
+def test_the_close_view_is_as_wide_as_the_section_whatever_stands_out_of_it(solid):
+    """An arm once made the close view as large as the link."""
+    link = solid["GF"]
+    slender = replace(link.beam.section, half_y=0.5, half_z=0.4)
+    scene = figures.scene_of(replace(link, beam=replace(link.beam, section=slender)))
+    assert scene.close.half_width == pytest.approx(0.65 * 1.0)
+    assert scene.close.half_width < 0.25 * np.ptp(scene.points[:, 1])
+
+
+def test_the_stress_that_decides_is_plotted(solid):
+    link = solid["GF"]
+    ductile, brittle = figures.scene_of(link), figures.scene_of(replace(link, brittle=True))
+    nodal = link.stress.nodal
+    tensors = nodal[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
+    largest = np.linalg.eigvalsh(tensors)[:, -1]
+    assert brittle.values == pytest.approx(largest)
+    assert brittle.hottest == np.argmax(largest)
+    assert (ductile.measure, brittle.measure) == ("von Mises stress", "largest principal stress")
+    assert figures.peak_lines(brittle)[0].startswith(f"largest: {largest.max():.4g}"[:12])
+
+
 def test_a_body_that_does_not_move_is_drawn_as_it_is(solid):
     link = solid["GF"]
     still = replace(link.solid_case, displacement=np.zeros_like(link.solid_case.displacement))
