@@ -148,7 +148,8 @@ def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
     wide = {check.name for check in checks if check.value.low < check.value.high}
     found: dict[str, dict[str, None]] = {}
     for check in checks:
-        held = [text.partition(" (")[0] for text in check.value.holds if check.name in wide]
+        every = check.value.holds if check.name in wide else ()
+        held = [text.partition(" (")[0] if text.endswith(")") else text for text in every]
         for text in [f"nothing ({check.value.without})"] if check.value.without else held:
             found.setdefault(check.name, {})[text] = None
     return {name: tuple(held) for name, held in found.items()}

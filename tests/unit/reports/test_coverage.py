@@ -136,3 +136,13 @@ def test_console_and_page_give_the_same_difference_of_hand_and_solid(result):
     print_result(told, out)
     assert "they agree within 0.1 %." in out.file.getvalue()
     assert "They agree within 0.1 %." in render(told, {})
+
+
+def test_a_source_of_error_is_told_to_its_end(result):
+    """The list once ended at the first bracket: "motor: from the mean of the positive power"."""
+    case = result.load_cases["weight"]
+    holds = ("from the mean (a flywheel lends the rest) to its peak", "discretisation (three meshes (of 9))")
+    band = Band(value=2.0, low=1.0, high=3.0, holds=holds)
+    checks = tuple(replace(check, value=band) for check in case.checks)
+    page = render(replace(result, load_cases={"weight": replace(case, checks=checks)}), {})
+    assert "from the mean (a flywheel lends the rest) to its peak and discretisation." in page
