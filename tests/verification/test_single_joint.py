@@ -33,8 +33,8 @@ youngs_modulus = "2.5 GPa"
 poissons_ratio = 0.36
 yield_strength = "40 MPa"
 strength = "yield"
-sources = {}
-status = {}
+sources = { density = "made up", youngs_modulus = "made up", poissons_ratio = "made up", yield_strength = "made up" }
+status = { density = "assumed", youngs_modulus = "assumed", poissons_ratio = "assumed", yield_strength = "assumed" }
 [load_cases.tip]
 forces = [{ link = "arm", at = "P", force = ["0 N", "-2 N"] }]
 """
