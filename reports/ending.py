@@ -1,7 +1,10 @@
 """How the program ends: every way has its exit status and at most one sentence on standard error."""
 
+import codecs
 import contextlib
 import errno
+import io
+import logging
 import os
 import sys
 from collections.abc import Callable
@@ -11,11 +14,14 @@ from geometry.errors import AlulaError
 
 INTERRUPTED = 130
 CRASHED = 4
+PIPE_CLOSED = 141
+"""As the shell says of a program that ends since nobody reads on: 128 and the number of SIGPIPE."""
 
 
 def run(app: Callable[[], object]) -> NoReturn:
     """Run the command line to its end."""
     end_cleanly_on_signals()
+    make_writable()
     try:
         try:
             app()
@@ -36,8 +42,8 @@ def run(app: Callable[[], object]) -> NoReturn:
     except MemoryError:
         _stop("memory ran out; use a coarser mesh (solid.mesh_size) or fewer links", CRASHED)
     except BrokenPipeError:
-        sys.stderr.close()
-        sys.exit(CRASHED)
+        _abandon_output()
+        sys.exit(PIPE_CLOSED)
     except OSError as error:
         _abandon_output()
         where = f"'{error.filename}'" if error.filename else "standard output"
@@ -51,6 +57,29 @@ def run(app: Callable[[], object]) -> NoReturn:
             CRASHED,
         )
     sys.exit(0)
+
+
+def make_writable() -> None:
+    """Let text be written whatever the streams are: closed ones take it and lose it, poor encodings escape it.
+
+    The escapes are those of JSON, so that a record stays one.
+    """
+
+    def escaped(error: UnicodeError) -> tuple[str, int]:
+        if not isinstance(error, UnicodeEncodeError):
+            raise error
+        units = error.object[error.start : error.end].encode("utf-16-be", "surrogatepass").hex()
+        return "".join(f"\\u{units[i : i + 4]}" for i in range(0, len(units), 4)), error.end
+
+    codecs.register_error("alula", escaped)
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+        elif isinstance(stream, io.TextIOWrapper) and stream.encoding.lower().replace("-", "") != "utf8":
+            stream.reconfigure(errors="alula")
+    # It tells of a folder for its cache where HOME cannot be written.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
 
 
 def end_cleanly_on_signals() -> None:
