@@ -16,6 +16,7 @@ from fea.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.envelope_result import EnvelopeResult, LinkEnvelope
 from fea.link_envelope import link_envelope
 from fea.link_history import LinkHistory, link_histories
+from fea.linkage_history import linkage_outcomes
 from fea.refinement import START, Effort, refine_links
 from fea.scatter import load_scatter
 from fea.solid import require_compressible
@@ -127,6 +128,7 @@ def envelope_case(
         links[link] = over_motion(link, space, repetitions=repetitions, refined=solid, notes=solid.solution.notes)
     timings["motion of the solids"] = time.perf_counter() - begin
     checks = [*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, loaded, evaluated)]
+    checks += linkage_outcomes(moved, evaluated)
     idle = set(case.load_cases) - {history.load_case for found in loaded.values() for history in found}
     for title in (title for title in case.load_cases if title in idle):
         forces = {name: np.linalg.norm(f[evaluated], axis=1).max() for name, f in moved.forces[title].forces.items()}

@@ -12,10 +12,12 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from fea.check import check_case
+from fea.linkage_history import linkage_outcomes
 from fea.toggle import SNAP, growth
 from fea.verdict import LINKAGE, Verdict
 from loads.case import Case
 from loads.case_file import validate
+from loads.case_motion import solve_case_motion
 
 HALF, LEVER = 50.0, 100.0
 TOGGLE = """
@@ -181,3 +183,14 @@ def test_just_outside_of_the_limits_the_linear_answer_is_near() -> None:
     true = np.linalg.norm(inside.points["left", "B"]) / 1.01
     linear = np.linalg.norm(outside.points["left", "B"]) / 0.99
     assert 1.1 < true / linear < growth(10.0)
+
+
+@pytest.mark.parametrize(("force", "found"), [(-3.0, True), (-0.5, False)])
+def test_a_motion_over_a_pose_that_may_snap_through_does_not_pass(force: float, found: bool) -> None:
+    """The lever turns by two degrees about the pose; under a sixth of the load all of it is clear of its limit."""
+    slope = math.degrees(math.atan2(10.0, HALF))
+    text = TOGGLE.format(force=force, length=math.hypot(HALF, 10.0), slope=slope, down=-slope, way="auto", bars="bar")
+    data = tomllib.loads(text) | {"motion": {"poses": 5, "range": ["90 deg", "92 deg"]}}
+    outcomes = list(linkage_outcomes(solve_case_motion(validate(data)), np.ones(5, dtype=bool)))
+    assert bool(outcomes) is found
+    assert all(c.verdict is Verdict.UNDECIDED and c.link == LINKAGE for c in outcomes)
