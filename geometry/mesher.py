@@ -50,9 +50,10 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
     stays invalid, or if an area or the volume is off by more than the elements' chord error.
     """
     first: CoarseMeshError | None = None
+    allowed = settings.chord_error  # what the size asked for may miss, finer ones may too
     for attempt in range(ATTEMPTS):
         try:
-            mesh = _mesh(gmsh, solid, settings)
+            mesh = _mesh(gmsh, solid, settings, allowed)
         except CoarseMeshError as error:
             first, settings = first or error, settings.scaled(FINER)
         except CannotRunError:  # too many elements
@@ -65,7 +66,7 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
     raise CannotRunError(f"{first}, and finer sizes fail as well; change the part's dimensions a little")
 
 
-def _mesh(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
+def _mesh(gmsh: Any, solid: Solid, settings: MeshSettings, allowed: float) -> TaggedMesh:
     """Return the mesh of one attempt; raises ``CoarseMeshError`` where a finer one may do."""
     gmsh.model.mesh.clear()
     order = 2 if settings.curved else 1
@@ -102,7 +103,7 @@ def _mesh(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
         if flattened:
             moved = np.linalg.norm(points - curved, axis=1).max() * solid.unit
             notes = (f"{flattened} of {len(cells)} curved elements were flattened, by up to {moved:.2g} mm",)
-    return _checked(gmsh, solid, settings, points, cells, numbers, notes)
+    return _checked(gmsh, solid, settings, points, cells, numbers, notes, allowed)
 
 
 def _read(gmsh: Any, order: int) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
@@ -128,6 +129,7 @@ def _checked(
     cells: NDArray[np.int64],
     numbers: NDArray[np.int64],
     notes: tuple[str, ...],
+    allowed: float,
 ) -> TaggedMesh:
     filled = element_volumes(points, cells)
     if (least := scaled_jacobians(points, cells).min()) <= 0.0 or (filled <= 0.0).any():
@@ -140,7 +142,7 @@ def _checked(
         triangles = numbers[np.asarray(flat, dtype=np.int64).reshape(-1, 3 if order == 1 else 6)]
         area = sum(gmsh.model.occ.getMass(2, tag) for tag in faces)
         meshed = triangle_areas(points, triangles).sum()
-        if abs(meshed - area) > settings.chord_error * area:
+        if abs(meshed - area) > allowed * area:
             raise CoarseMeshError(
                 f"surface '{name}' has {meshed * solid.unit**2:.6g} mm² in the mesh, but "
                 f"{area * solid.unit**2:.6g} mm² in the geometry"
@@ -149,7 +151,7 @@ def _checked(
         areas[name] = area * solid.unit**2
     volume = gmsh.model.occ.getMass(3, solid.volume)
     meshed = filled.sum()
-    if abs(meshed - volume) > settings.chord_error * volume:
+    if abs(meshed - volume) > allowed * volume:
         raise CoarseMeshError(
             f"the mesh has {meshed * solid.unit**3:.6g} mm³, but the geometry {volume * solid.unit**3:.6g} mm³"
         )

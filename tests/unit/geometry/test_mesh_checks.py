@@ -25,7 +25,7 @@ def checked(*, area: float = 0.5, volume: float = 1.0 / 6.0, cell: tuple[int, ..
     )
     solid: Any = SimpleNamespace(faces={"top:A": [7]}, volume=1, unit=1.0)
     settings = dataclasses.replace(COARSE, curved=False)
-    return _checked(gmsh, solid, settings, POINTS, np.array([cell]), np.arange(4), ())
+    return _checked(gmsh, solid, settings, POINTS, np.array([cell]), np.arange(4), (), settings.chord_error)
 
 
 def test_a_mesh_that_agrees_is_taken() -> None:
