@@ -8,7 +8,8 @@ A tree of mappings; its leaves are values with their dimensions, or words. Roots
     audit.reactions.COLUMN (the published system as its formulas give it), audit.printed.COLUMN (as rounded),
     audit.exact.ROW.COLUMN (coefficients), audit.rows.ROW.equilibrium ("yes"|"no")|defect
     beam.LOADCASE, solid.LOADCASE: largest_stress, least_safety_factor, most_stressed_link, most_stressed_joint,
-    links.LINK.von_mises|principal|safety_factor|displacement|moment
+    links.LINK.von_mises|principal|safety_factor|displacement|moment,
+    held.WAY (how far the case's point moves with the linkage held in that way)
     hand.NAME.moment|stress|safety_factor
     material.LINK.yield|ultimate|modulus|density|allowable, section.LINK.second_moment|area
 """
@@ -191,6 +192,7 @@ def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, A
         "least_safety_factor": Value.of(min(map(_safety_factor, load_case.links.values()))),
         "most_stressed_link": worst.link,
         "most_stressed_joint": near,
+        "held": {held.name: Value.of(held.size, "mm") for held in load_case.ways_to_hold},
         "links": {
             name: {
                 "von_mises": Value.of(_von_mises(link), "MPa"),
@@ -225,8 +227,7 @@ def _material(case: Case, link: str) -> Mapping[str, Any]:
 def system_tree(system: System, *, fidelity: str = "solid", threads: int = 2) -> Mapping[str, Any]:
     """Return the quantities of a system that a source describes."""
     if isinstance(system, CaseSystem):
-        overrides = [f'{path}="{value}"' for path, value in system.set.items()]
-        return case_tree(read_case(system.case, overrides), system.case, fidelity=fidelity, threads=threads)
+        return case_tree(read_case(system.case), system.case, fidelity=fidelity, threads=threads)
     if isinstance(system, FlappingSystem):
         return flapping_tree(
             FlappingWing(
@@ -247,15 +248,12 @@ def system_tree(system: System, *, fidelity: str = "solid", threads: int = 2) ->
 def flapping_tree(wing: FlappingWing) -> Tree:
     """Return ground, Grashof, and the metrics by the source's definition (``published``) and by their names."""
     rad = ("phase_lag", "oscillation", "asymmetry")
-    names = (*rad, "side_difference", "side_difference_at_zero", "beta_min", "beta_max")
-    more = ("transmission_min", "transmission_max", "lambda_min", "lambda_max")
     return Tree(
         ground=lambda: Value.of(wing.ground, "mm"),
         grashof=lambda: _yes(wing.grashof.satisfied),
         collides=lambda: _yes(wing.rocker > wing.width),
         published=lambda: _leaves(wing.published_metrics(), dict.fromkeys(rad, "rad")),
-        metrics=lambda: _leaves(wing.metrics(), dict.fromkeys((*names, *more), "rad")),
-        lengths=lambda: _leaves(wing, dict.fromkeys(("crank", "coupler", "rocker", "width", "height"), "mm")),
+        metrics=lambda: _leaves(wing.metrics(), dict.fromkeys((*rad, "mean_side_difference"), "rad")),
     )
 
 
@@ -295,20 +293,17 @@ def _synthesis(found: Synthesis) -> Tree:
         K1=lambda: Value.of(found.K[0]),
         K2=lambda: Value.of(found.K[1]),
         K3=lambda: Value.of(found.K[2]),
-        condition=lambda: Value.of(found.condition),
         a=lambda: Value.of(bar.a, "mm"),
         b=lambda: Value.of(bar.b, "mm"),
         c=lambda: Value.of(bar.c, "mm"),
         grashof=lambda: _grashof(bar.grashof),
         points=lambda: {
-            str(i): {"phi": Value.of(point.phi, "rad")}
-            | {f"branch_driven_by_{drive}": branch or "dead point" for drive, branch in point.branches.items()}
+            str(i): {f"branch_driven_by_{drive}": branch or "dead point" for drive, branch in point.branches.items()}
             for i, point in enumerate(found.points, 1)
         },
         lock_up=lambda: {
             drive: {
                 str(i): {
-                    "phi": Value.of(lock.phi, "rad"),
                     "theta": Value.of(lock.theta, "rad"),
                     "psi": Value.of(lock.psi, "rad"),
                 }

@@ -7,6 +7,9 @@ A claim has up to three expressions: ``stated`` (the source's own arithmetic), `
     does-not-hold        ``quantity`` gives another number
     cannot-be-rederived  neither can be worked out, since the source leaves out what they need
     holds                all else; with ``means`` apart from it, the note tells both
+
+Sources round their figures or cut them off: a figure of two digits or more holds where either gives it, and the note
+says which.
 """
 
 import csv
@@ -207,8 +210,10 @@ def check_claim(claim: Claim, names: Callable[[Path], Value | str]) -> ClaimResu
             note = f"This run leaves out {SOLID_LEFT_OUT}."
     else:
         finding = Finding.HOLDS
-        how = "within its printed digits" if not claim.tolerance else f"within {claim.tolerance}"
-        note = f"It follows {how}." if printed else "So it is."
+        how = " within its printed digits" if not claim.tolerance else f" within {claim.tolerance}"
+        if any(_cut_off(value, claim, printed, allowed) for value in (stated, ours)):
+            how = ", cut off after its printed digits and not rounded"
+        note = f"It follows{how}." if printed else "So it is."
         if means is not None and _apart(means, claim, printed):
             note = (
                 f"It follows from the source's own definition; what its name says is {_shown(means, claim, printed)}."
@@ -224,7 +229,17 @@ def _agrees(value: Value | str, claim: Claim, printed: Printed | None, allowed: 
                 "compare a number with a number, or words with words"
             )
         return value.casefold() == claim.published.strip().casefold()
-    return abs(_number(value, claim, printed) - printed.number) <= allowed
+    rounded = abs(_number(value, claim, printed) - printed.number) <= allowed
+    return rounded or _cut_off(value, claim, printed, allowed)
+
+
+def _cut_off(value: Value | str | None, claim: Claim, printed: Printed | None, allowed: float) -> bool:
+    """Whether the printed digits, two at least, begin the value but are not the nearest to it."""
+    if value is None or isinstance(value, str) or printed is None or claim.tolerance:
+        return False
+    beyond = math.copysign(1.0, printed.number) * _number(value, claim, printed) - abs(printed.number)
+    unit = 2.0 * printed.half
+    return abs(printed.number) > 9.5 * unit and allowed < beyond < unit * (1.0 - ZERO)
 
 
 def _apart(means: Value | str, claim: Claim, printed: Printed | None) -> bool:

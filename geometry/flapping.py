@@ -70,6 +70,8 @@ class FlappingMetrics:
     """Largest crank angle between the reversals of the two sides: the time by which one wing lags."""
     side_difference: float
     """Largest difference between the rocker angles of the two sides over the turn."""
+    mean_side_difference: float
+    """Mean size of that difference over the turn."""
     side_difference_at_zero: float
     """The same at crank angle 0, which is the published phase lag."""
     oscillation: float
@@ -230,6 +232,7 @@ class FlappingWing:
         return FlappingMetrics(
             phase_lag=max(lags),
             side_difference=periodic_maximum(np.abs(difference[:-1])),
+            mean_side_difference=float(np.abs(difference[:-1]).mean()),
             side_difference_at_zero=abs(float(difference[0])),
             oscillation=high - low,
             beta_min=low,

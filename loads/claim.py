@@ -167,11 +167,10 @@ class SynthesisSystem(CaseModel):
 
 
 class CaseSystem(CaseModel):
-    """A built-in case, with entries set anew."""
+    """A built-in case."""
 
     type: Literal["case"]
     case: Name
-    set: dict[str, str] = {}
 
 
 System = Annotated[

@@ -91,8 +91,10 @@ def test_the_case_tells_the_areas_that_the_source_implies(name):
 
 def test_the_source_contradicts_itself():
     lift, drag = np.array([areas(row) for row in TABLES]).T
-    assert lift[3:].min() / lift[:3].max() > 7.9  # one wing, eight times the area at 60 deg
-    assert drag.max() / drag.min() > 100.0
+    # At one angle one area serves all speeds: so it does for the lift, but not for the drag.
+    for angle in (slice(0, 3), slice(3, 6)):
+        assert lift[angle].max() / lift[angle].min() < 1.02
+        assert drag[angle].max() / drag[angle].min() > 90.0
     ratio = TABLES[3][3] / TABLES[3][2]
     assert ratio / (1.0 / math.tan(math.radians(60.0))) > 8.0  # separated air pushes normal to the wing
 
@@ -158,6 +160,30 @@ def test_the_force_when_braking_stands_normal_to_the_wing():
     np.testing.assert_allclose(normal, [0.0, 0.0, 1.0], atol=2e-3)
 
 
+@pytest.mark.parametrize("name", AIRBORNE)
+def test_the_plumage_that_the_source_derives_would_relieve_the_link_that_decides(name):
+    """The assumed plumage is a tenth of it; what the case says of AE's stress [MPa], by beam theory."""
+    case = read_case(name)
+    tenfold = [f'carried.{i}.mass="{carried.mass * 1e7:g} g"' for i, carried in enumerate(case.carried)]
+    stress = [
+        float(check_case(c, name=name, fidelity="beam").load_cases["complete"].links["AE"].beam.equivalent.max())
+        for c in (read_case(name, tenfold), case)
+    ]
+    assert stress == pytest.approx([28.8, 49.6] if "flight" in name else [85.0, 90.0], rel=5e-3)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_one_position_on_the_weight_of_the_wing(name):
+    """0.25 N is the bare mechanism's weight, 25 g; 254.8 g is one wing's plumage as the source derives it."""
+    case = read_case(name)
+    told = " ".join([case.description, *case.assumptions])
+    for figure in ("25 g by the", "254.8 g", "bare mechanism", "0.25 N"):
+        assert figure in told
+    assert pytest.approx(0.25, abs=5e-3) == 0.025 * 9.81
+    assert pytest.approx(0.2548) == 0.52 * 0.98 / 2
+    assert pytest.approx(2.7, abs=0.05) == (0.025 + 0.2548) * 9.81
+
+
 def test_plumage_and_links_weigh_in_the_complete_case(statics):
     found = statics["owl-wing-flight"]
     weight = sum(load.resultant(found.pose)[:3] for load in found.loads["complete"])
@@ -166,7 +192,7 @@ def test_plumage_and_links_weigh_in_the_complete_case(statics):
     expected = (links + 25.48e-6) * 9810.0
     np.testing.assert_allclose(weight - air.total, [0.0, -expected, 0.0], atol=1e-9)
     plumage = sum(mass.mass for mass in found.case.carried) * 9810.0
-    assert plumage == pytest.approx(0.25, abs=5e-3)  # what the source's weight of the wing is made of
+    assert plumage == pytest.approx(0.25, abs=5e-3)  # a tenth of the plumage that the source derives
 
 
 # ---- the anchor ------------------------------------------------------------------------------------------------------
