@@ -103,7 +103,10 @@ def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
     short, long = checked(), checked('conditions.duration="10 year"')
     assert short.links["AE"].beam.worst.equivalent == pytest.approx(11.35, abs=0.01)
     stress = short.links["AE"].von_mises_max.value
-    assert long.links["AE"].von_mises_max.value == pytest.approx(stress, rel=1e-12)
+    growth = long.links["AE"].von_mises_max.value / stress
+    assert 1.0 < growth < 1.02, "compression adds a little more to the bending of what has crept"
+    pulled = [case.links["ED"].von_mises_max.value for case in (long, short)]
+    assert pulled[0] == pytest.approx(pulled[1], rel=1e-12), "nothing bends ED"
     (root,) = [c for c in long.checks if c.quantity == "sustained stress" and c.link == "AE"]
     assert (root.verdict, root.limit, root.unit) == (Verdict.UNDECIDED, 11.0, "MPa")
     others = {c.link: c.verdict for c in long.checks if c.quantity == "sustained stress" and c.link != "AE"}
@@ -137,7 +140,7 @@ def test_sustained_stress_is_the_one_that_decides_the_material(strength, von_mis
 
 def test_creep_makes_links_give_more():
     short, long = checked(), checked('conditions.duration="10 year"')
-    for link in ("AE", "CF", "CH"):
+    for link, growth in (("GF", 1.0), ("ED", 1.0), ("AE", 1.02), ("CF", 1.02), ("CH", 1.02)):
         ratio = long.links[link].displacement_max.value / short.links[link].displacement_max.value
-        # Bending with Young's modulus; shear with the shear modulus, which follows it.
-        assert ratio == pytest.approx(2800.0 / 1200.0, rel=1e-9)
+        # Bending with Young's modulus; shear with the shear modulus, which follows it; compression adds to what bends.
+        assert 1.0 - 1e-9 < ratio / (2800.0 / 1200.0) < growth + 1e-9
