@@ -34,12 +34,13 @@ def test_no_load_fits_where_the_bare_linkage_asks_too_much() -> None:
     assert largest_factor(np.array([1.0]), np.array([-1.0]), 10.0) == math.inf
 
 
-def test_a_flywheel_stores_what_is_negative() -> None:
-    """Power 2 + 5 sin: the mean is 2, the positive part alone would be 2.6."""
+@pytest.mark.parametrize(("level", "mean", "peak"), [(2000.0, 2.0, 7.0), (-2000.0, 0.0, 3.0), (-6000.0, 0.0, 0.0)])
+def test_a_flywheel_stores_what_is_negative(level, mean, peak) -> None:
+    """Power 2 + 5 sin: the mean is 2, the positive part alone would be 2.6. Braking by 7 W asks the motor for none."""
     times = np.linspace(0.0, 1.0, 4001)
-    power = 2000.0 + 5000.0 * np.sin(2.0 * math.pi * times)
+    power = level + 5000.0 * np.sin(2.0 * math.pi * times)
     found = demand(power, power, times)
-    assert (found.mean_power, found.peak_power) == pytest.approx((2.0, 7.0), rel=1e-6)
+    assert (found.mean_power, found.peak_power) == pytest.approx((mean, peak), rel=1e-6)
 
 
 def test_shares_of_a_straight_torque_speed_line() -> None:

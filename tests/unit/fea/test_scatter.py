@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from importlib.resources import files
+from types import SimpleNamespace
 
 import eye_link
 import numpy as np
@@ -14,6 +15,7 @@ from pydantic_core import PydanticCustomError
 from fea import large_displacement
 from fea.band import Band
 from fea.check import check_case
+from fea.corotational import NoEquilibriumError
 from fea.envelope import envelope_case
 from fea.envelope_outcomes import envelope_outcomes
 from fea.ladder import decided_by_hand, hand_bands
@@ -191,6 +193,20 @@ def test_the_limit_load_holds_load_over_least_modulus(monkeypatch, state, held, 
     [outcome] = _large_displacement("lift", replace(found, held_band=band), {"link": _Idle()})
     expected = Verdict.PASS if band.low == 1.0 else Verdict.FAIL if band.high < 1.0 else Verdict.UNDECIDED
     assert outcome.verdict is expected
+
+
+@pytest.mark.parametrize(
+    ("answer", "share"),
+    [(SimpleNamespace(stable=True), 1.0), (SimpleNamespace(stable=False), 0.0), (NoEquilibriumError(0.7), 0.7)],
+)
+def test_what_is_unstable_on_the_way_holds_nothing(monkeypatch, answer, share):
+    def follow(frame, factor):
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    monkeypatch.setattr(large_displacement, "_followed", follow)
+    assert large_displacement._holds(None, 1.2) == share
 
 
 class _Idle:
