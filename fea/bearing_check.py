@@ -6,7 +6,7 @@ turn, 6.67 times as 14 CFR 23.657 asks of hinges that flight depends on. Both me
 for which the ultimate tensile strength of the card stands; that in bearing is rarely below it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -60,14 +60,21 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
 
 
 def bearing_outcomes(
-    case: Case, title: str, name: str, check: BearingCheck, reactions: Reactions
+    case: Case,
+    title: str,
+    name: str,
+    check: BearingCheck,
+    reactions: Reactions,
+    uneven: Mapping[str, Scatter] | None = None,
 ) -> Iterator[CheckOutcome]:
     """Yield the outcome of each joint under the load case ``title``: that of its softer or thinner eye.
 
+    uneven  joint -> how its force grows beside scattered loads (``fea.load_growth``)
+
     Raises ``CaseError`` for a joint without pin diameter.
     """
-    load = load_scatter(case, title)
     for joint in check.joints or case.bearing_joints:
+        load = load_scatter(case, title).times((uneven or {}).get(joint, Scatter()))
         eye, factor = weakest_eye(case, name, joint, float(np.hypot(*reactions.joints[joint].wrench[:2])), load)
         verdict = at_least(factor, check.limit)
         yield CheckOutcome(

@@ -8,33 +8,28 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from fea.band import Band
-from fea.beam import BeamCheck, CantileverCheck, check_beam, deflection, uniform_cantilever
+from fea.beam import CantileverCheck, uniform_cantilever
 from fea.bearing_check import bearing_outcomes
 from fea.buckling_check import buckling_outcomes
-from fea.cut_free import beam_loads, link_loads
-from fea.details import Detail, details, remarks
-from fea.flanks import flanks_of
 from fea.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
 from fea.ladder import Climb, HandBands, by_hand, climb
 from fea.large_displacement import LargeDisplacement, examine
-from fea.link_loads import LinkLoads
+from fea.link_by_hand import LinkByHand, cut_link, link_by_hand
+from fea.load_growth import Growths, growths
 from fea.motor_check import limit_outcomes, motor_outcomes
 from fea.outcomes import outcomes
 from fea.pins import PinStress, stress_at
 from fea.refinement import START, Effort
 from fea.result import CheckResult, LinkResult, LoadCaseResult
-from fea.scatter import compliance_scatter, load_scatter, strength_scatter
-from fea.second_order import second_order_loads
-from fea.section_stress import SectionStress
+from fea.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
 from fea.solid import require_compressible
 from fea.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
 from fea.solid_result import PINNED_HOLDS as PINNED_HOLDS
 from fea.solid_result import link_task, solid_result
 from fea.threads import bounded_run
 from fea.unchecked import unusual_materials
-from fea.unloaded import acts, load_size, nothing_acts, undecided, without_rounding
+from fea.unloaded import acts, load_size, nothing_acts, undecided
 from fea.verdict import CheckOutcome, overall
-from geometry.body_rules import hand_section, reference_line
 from geometry.errors import CaseError
 from geometry.material import Material
 from geometry.pose import NEAR_DEAD_POINT, Pose
@@ -163,10 +158,26 @@ def check_case(
     clock("frames")
     sizes = {title: load_size(loads, case.linkage.longest) for title, loads in statics.loads.items()}
     cut = {
-        link: tuple(_cut(statics, link, what, title, sizes[title]) for title, what in moved.items())
+        link: tuple(
+            cut_link(case, link, title, what, statics.reactions[title], statics.loads[title], statics.masses)
+            for title, what in moved.items()
+        )
         for link in case.checked_links
     }
-    beams = {link: tuple(_beam(case, statics, link, loads) for loads in cut[link]) for link in cut}
+    beams = {link: tuple(link_by_hand(case, link, loads, statics.masses) for loads in cut[link]) for link in cut}
+    uneven = {
+        title: growths(
+            case,
+            title,
+            statics.pose,
+            statics.loads[title],
+            statics.masses,
+            moved[title],
+            statics.reactions[title],
+            {link: beams[link][i] for link in cut},
+        )
+        for i, title in enumerate(moved)
+    }
     clock("hand calculations")
     climbs: dict[str, Climb] = {}
     loaded = {link: [x for x in loads if acts(x, sizes[x.name], case.linkage.longest)] for link, loads in cut.items()}
@@ -200,14 +211,16 @@ def check_case(
     load_cases = {}
     for i, (title, forces) in enumerate(statics.forces.items()):
         links = {
-            link: _scattered(case, title, _link_result(case, link, title, beams[link][i], climbs.get(link)))
+            link: _scattered(
+                case, title, _link_result(case, link, title, beams[link][i], climbs.get(link)), uneven[title]
+            )
             for link in cut
         }
         reactions = moved[title].reactions or forces.reactions
         pins = _pins(case, reactions)
         checks: Iterable[CheckOutcome] = (
-            *outcomes(case, title, links, pins, moved[title]),
-            *_bearing(case, title, reactions),
+            *outcomes(case, title, links, pins, moved[title], uneven[title].joints),
+            *_bearing(case, title, reactions, uneven[title]),
             *buckling_outcomes(case, title, {link: beams[link][i].check for link in cut}, moved[title]),
             *(found[title] for found in powers if title in found),
             *(outcome for found in limits for outcome in found.get(title, ())),
@@ -241,51 +254,7 @@ def check_case(
     )
 
 
-def _cut(statics: CaseStatics, link: str, moved: LargeDisplacement, title: str, size: float) -> LinkLoads:
-    """Return what acts on a link, with the growth of its bending that the frame's answer leaves out.
-
-    On a deformed shape that is the bending between loaded places; where no frame told that it is small, all of it.
-    """
-    case, deformed = statics.case, moved.links.get(link)
-    loads = deformed or link_loads(title, link, case.body(link), statics.reactions[title], statics.loads[title])
-    loads = without_rounding(loads, size, case.linkage.longest)
-    if deformed is None and moved.state not in ("off", "unknown"):
-        return loads
-    return second_order_loads(case, link, loads, statics.masses.get(link), stays=deformed is not None)
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Beam:
-    check: BeamCheck
-    displacement: float
-    details: tuple[Detail, ...]
-    remarks: tuple[str, ...]
-
-    @property
-    def worst(self) -> tuple[float, SectionStress]:
-        """Station and stresses of the plain section or the detail that bears most."""
-        found = [(self.check.worst_x, self.check.worst), *((d.x, d.stress) for d in self.details)]
-        return max(found, key=lambda place: place[1].equivalent)
-
-
-def _beam(case: Case, statics: CaseStatics, link: str, loads: LinkLoads) -> _Beam:
-    material, body = case.material_of(link), case.body(link)
-    section = hand_section(body)
-    acting = beam_loads(loads, body, material.density, statics.masses.get(link))
-    check = check_beam(acting, section, material.allowable, material.poissons_ratio)
-    bent = deflection(
-        check.forces,
-        section,
-        young=material.youngs_modulus,
-        poisson=material.poissons_ratio,
-        line=reference_line(body),
-        flanks=flanks_of(body),
-    )
-    found = details(body, loads, check.forces, material.poissons_ratio)
-    return _Beam(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))
-
-
-def _link_result(case: Case, link: str, title: str, beam: _Beam, climbed: Climb | None) -> LinkResult:
+def _link_result(case: Case, link: str, title: str, beam: LinkByHand, climbed: Climb | None) -> LinkResult:
     material = case.material_of(link)
     result = _beam_result(link, material, beam)
     if climbed is None:
@@ -301,15 +270,17 @@ def _link_result(case: Case, link: str, title: str, beam: _Beam, climbed: Climb 
     return replace(result, decided_by=decision.rung, why=decision.why, next_cost=decision.next_cost)
 
 
-def _scattered(case: Case, title: str, result: LinkResult) -> LinkResult:
+def _scattered(case: Case, title: str, result: LinkResult, uneven: Growths) -> LinkResult:
     """Return a result with the stated scatter of load, strength and modulus in its bands."""
-    material, load = case.material_of(result.link), load_scatter(case, title)
+    material = case.material_of(result.link)
+    load = load_scatter(case, title).times(uneven.stress.get(result.link, Scatter()))
+    bent = load_scatter(case, title).times(uneven.displacement.get(result.link, Scatter()))
     return replace(
         result,
         von_mises_max=load.on(result.von_mises_max),
         principal_max=load.on(result.principal_max),
         safety_factor=strength_scatter(material).times(load.inverse).on(result.safety_factor),
-        displacement_max=compliance_scatter(material).times(load).on(result.displacement_max),
+        displacement_max=compliance_scatter(material).times(bent).on(result.displacement_max),
     )
 
 
@@ -327,7 +298,7 @@ def _calibrated(result: LinkResult, material: Material, hand: HandBands) -> Link
     )
 
 
-def _beam_result(link: str, material: Material, beam: _Beam) -> LinkResult:
+def _beam_result(link: str, material: Material, beam: LinkByHand) -> LinkResult:
     x, worst = beam.worst
     stress = Band.exact(worst.equivalent, BEAM_ALONE)
     principal = Band.exact(max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0), BEAM_ALONE)
@@ -365,10 +336,12 @@ def _pins(case: Case, reactions: Reactions) -> dict[str, PinStress]:
     return {joint: stress_at(case, joint, reactions.joints[joint]) for joint in asked}
 
 
-def _bearing(case: Case, title: str, reactions: Reactions) -> list[CheckOutcome]:
+def _bearing(case: Case, title: str, reactions: Reactions, uneven: Growths) -> list[CheckOutcome]:
     """Outcomes of the checks that ask for bearing."""
     asked = [(name, check) for name, check in case.checks.items() if isinstance(check, BearingCheck)]
-    return [found for name, check in asked for found in bearing_outcomes(case, title, name, check, reactions)]
+    return [
+        found for name, check in asked for found in bearing_outcomes(case, title, name, check, reactions, uneven.joints)
+    ]
 
 
 def _cantilever(case: Case, title: str) -> CantileverCheck:

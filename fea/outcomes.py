@@ -33,8 +33,11 @@ def outcomes(
     links: Mapping[str, LinkResult],
     pins: Mapping[str, PinStress],
     moved: LargeDisplacement,
+    uneven: Mapping[str, Scatter] | None = None,
 ) -> tuple[CheckOutcome, ...]:
     """Return the outcome of every check of a load case called ``title``, but for motors, bearing and links' buckling.
+
+    uneven  joint -> how its force grows beside scattered loads (``fea.load_growth``)
 
     These are in ``fea.motor_check``, ``fea.bearing_check`` and ``fea.buckling_check``.
 
@@ -43,7 +46,7 @@ def outcomes(
     found: list[CheckOutcome] = []
     for name, check in case.all_checks.items():
         if isinstance(check, PinCheck):
-            found += _pins(case, name, check, title, pins)
+            found += _pins(case, name, check, title, pins, uneven or {})
         elif isinstance(check, DisplacementCheck) and check.at is not None:
             found.append(_point(case, name, check, title, moved))
         elif not isinstance(check, MotorCheck | BearingCheck):
@@ -150,11 +153,18 @@ def _point_band(case: Case, title: str, moved: LargeDisplacement, link: str, poi
     return Band(value=size, low=low * size, high=most, holds=(*holds, "growth towards buckling or a dead point"))
 
 
-def _pins(case: Case, name: str, check: PinCheck, title: str, pins: Mapping[str, PinStress]) -> Iterator[CheckOutcome]:
+def _pins(
+    case: Case,
+    name: str,
+    check: PinCheck,
+    title: str,
+    pins: Mapping[str, PinStress],
+    uneven: Mapping[str, Scatter],
+) -> Iterator[CheckOutcome]:
     for joint in check.joints or case.pinned_joints:
         material = case.pin_material(joint)
         limit = least_safety_factor(name, check.minimum, material, f"{PIN}{joint}")
-        stress = load_scatter(case, title).on(pins[joint].equivalent)
+        stress = load_scatter(case, title).times(uneven.get(joint, Scatter())).on(pins[joint].equivalent)
         value = strength_scatter(material).on(stress.inverse(material.allowable))
         verdict = at_least(value, limit)
         yield CheckOutcome(

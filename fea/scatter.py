@@ -1,11 +1,12 @@
 """The scatter that a case and its materials state, as factors on the ends of a band.
 
 Everything that a load case does in linear theory is in proportion to its loads, a safety factor to the strength, and a
-link's displacement to 1/E. So the ends of a band are multiplied by the ends of what scatters; independent sources are
-taken at their worst together. Conditions are in the material already (``loads.conditions``): a strength's range is as
-warm as the strength, and a creep modulus has none.
+link's displacement to 1/E. So the ends of a band are multiplied by the ends of what scatters, and by what grows beyond
+proportion (``fea.load_growth``); independent sources are taken at their worst together. Conditions are in the material
+already (``loads.conditions``): a strength's range is as warm as the strength, and a creep modulus has none.
 """
 
+import math
 from dataclasses import dataclass
 
 from fea.band import Band
@@ -27,8 +28,8 @@ class Scatter:
             return band
         return Band(
             value=band.value,
-            low=band.low * self.low,
-            high=band.high * self.high,
+            low=_product(band.low, self.low),
+            high=_product(band.high, self.high),
             holds=(*band.holds, *self.holds),
         )
 
@@ -40,6 +41,11 @@ class Scatter:
     def inverse(self) -> "Scatter":
         """The scatter of what goes with one over the number."""
         return Scatter(low=1.0 / self.high, high=1.0 / self.low, holds=self.holds)
+
+
+def _product(end: float, factor: float) -> float:
+    """End of a band times a factor; nothing stays nothing, and what no load breaks stays unbroken."""
+    return end if end in (0.0, math.inf) else end * factor
 
 
 def load_scatter(case: Case, load_case: str) -> Scatter:

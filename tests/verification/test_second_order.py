@@ -211,6 +211,35 @@ def test_a_post_bears_its_second_order_moment(way: str, state: str) -> None:
     assert column.verdict is not Verdict.FAIL
 
 
+@pytest.mark.parametrize("way", ["auto", "off"])
+def test_scattered_loads_bend_a_post_by_more_than_their_share(way: str) -> None:
+    """P/A + (H L/W) tan u/u at the ends of the scatter, and the bow of the same beam-column."""
+    tables = tomllib.loads(POST.format(way=way, along=-28.0))
+    plain = check_case(validate(tables), fidelity="beam").load_cases["push"].links["post"]
+    tables["load_cases"]["push"]["scatter"] = {"low": 0.5, "high": 1.9}
+    case = validate(tables)
+    found = check_case(case, fidelity="beam").load_cases["push"].links["post"]
+
+    def exact(share: float) -> np.ndarray:
+        """Stress [MPa], and the largest distance from the chord over H/(P k)."""
+        u = 200.0 * math.sqrt(share * 28.0 / (case.material_of("post").youngs_modulus * 1e4 / 12.0))
+        kx = np.linspace(0.0, u, 1001)
+        v = math.tan(u) * (1.0 - np.cos(kx)) + np.sin(kx) - kx
+        return np.array([share * (0.28 + 6.0 * math.tan(u) / u), np.abs(v - v[-1] * kx / u).max() / u])
+
+    ours, theirs = (
+        np.array(
+            [(one.von_mises_max.low, one.von_mises_max.high), (one.displacement_max.low, one.displacement_max.high)]
+        )
+        for one in (found, plain)
+    )
+    ends = np.column_stack([exact(0.5), exact(1.9)]) / exact(1.0)[:, None]
+    assert ends[0, 1] / 1.9 > 1.2
+    # The frame's head comes down as it goes aside.
+    np.testing.assert_allclose(ours / theirs, ends, rtol=0.015)
+    assert found.safety_factor.low == pytest.approx(plain.safety_factor.low / ends[0, 1], rel=0.015)
+
+
 def test_a_post_that_is_pulled_has_no_more_than_linear_theory_gives() -> None:
     found = check_case(post(38.6, "off"), fidelity="beam").load_cases["push"].links["post"].beam
     assert found.worst.equivalent == pytest.approx(6.386, rel=1e-5)

@@ -11,13 +11,16 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from fea.band import Band
 from fea.check import check_case
 from fea.linkage_history import linkage_outcomes
+from fea.scatter import Scatter
 from fea.toggle import SNAP, growth
-from fea.verdict import LINKAGE, Verdict
+from fea.verdict import LINKAGE, SAFETY_FACTOR, Verdict
 from loads.case import Case
 from loads.case_file import validate
 from loads.case_motion import solve_case_motion
+from loads.check_spec import BearingCheck, PinCheck
 
 HALF, LEVER = 50.0, 100.0
 TOGGLE = """
@@ -194,3 +197,36 @@ def test_a_motion_over_a_pose_that_may_snap_through_does_not_pass(force: float, 
     outcomes = list(linkage_outcomes(solve_case_motion(validate(data)), np.ones(5, dtype=bool)))
     assert bool(outcomes) is found
     assert all(c.verdict is Verdict.UNDECIDED and c.link == LINKAGE for c in outcomes)
+
+
+def scattered(force: float, way: str, high: float | None = None):
+    case = toggle(force, way=way)
+    load = case.load_cases["push"].model_copy(update={"scatter": (1.0, high)} if high else {})
+    checks = {"pins": PinCheck(type="pins", minimum=1.0), "bearing": BearingCheck(type="bearing", minimum=1.0)}
+    case = case.model_copy(update={"load_cases": {"push": load}, "checks": {**case.checks, **checks}})
+    return check_case(case, fidelity="beam").load_cases["push"]
+
+
+@pytest.mark.parametrize("way", ["auto", "off"])
+def test_the_upper_end_of_scatter_is_what_the_larger_load_does(way: str) -> None:
+    """The flatter a toggle gets, the more it presses: pins, eyes and bars bear more than the load's share."""
+    nominal, wide, larger = scattered(-1.0, way), scattered(-1.0, way, 1.7), scattered(-1.7, way)
+    for plain, ours, theirs in zip(nominal.checks, wide.checks, larger.checks, strict=True):
+        if ours.quantity == SAFETY_FACTOR:
+            assert (ours.value.value, ours.value.high) == (plain.value.value, plain.value.high), ours
+            assert ours.value.low == pytest.approx(theirs.value.low, rel=2e-3), ours
+            assert not (way == "auto" and ours.link == "pin B") or ours.value.low < plain.value.low / 1.8
+    assert sum(c.quantity == SAFETY_FACTOR for c in wide.checks) > 10
+
+
+def test_no_safety_factor_is_known_at_a_load_under_which_the_toggle_gives_way() -> None:
+    found = scattered(-1.0, "auto", 3.0)
+    assert all(c.value.low == 0.0 and c.verdict is Verdict.UNDECIDED for c in found.checks if c.link == "pin B")
+    assert found.links["left"].safety_factor.low == 0.0
+
+
+def test_what_bears_nothing_is_not_broken_by_a_load_that_nothing_holds() -> None:
+    band = Band.exact(0.0)
+    found = Scatter(high=math.inf, holds=("growth",)).on(band)
+    assert (found.low, found.high) == (0.0, 0.0)
+    assert Scatter(high=math.inf, holds=("growth",)).inverse.on(band.inverse(1.0)).low == math.inf
