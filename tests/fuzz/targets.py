@@ -139,7 +139,7 @@ def claim(text: str) -> bool:
             except CaseError as error:
                 _told(error)
             except ValidationError as error:
-                _told(CaseError(sentence(error)))
+                _told(CaseError(sentence(error, Claim)))
     return accepted
 
 

@@ -71,7 +71,7 @@ def test_stated_accuracy_refines_what_is_clear_already():
     ("limit", "words"),
     [
         ({"max_meshes": 2}, "2 meshes are as many"),
-        ({"max_unknowns": 1}, "more than the 1 allowed"),
+        ({"max_unknowns": 1, "max_meshes": 3}, "more than the 1 allowed"),
         ({"time_limit": 0.0}, "time limit of 0 s"),
     ],
 )

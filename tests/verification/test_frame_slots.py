@@ -284,16 +284,6 @@ def test_a_slider_crank_bends_as_its_chain_does() -> None:
     assert abs(block - extrapolated(coarse[1], fine[1])) < 1e-4 * moved
 
 
-def test_bonded_slots_do_not_slide() -> None:
-    case = quick_return().model_copy(update={"joint_model": "bonded"})
-    pose, loads = case.solve_pose(), loads_on(quick_return(), plane=True)
-    frame = build_frame(case, pose, loads, held=case.pinned_drive, bonded=True)
-    assert frame.model.guides == ()
-    moved = solve_frame(frame.model).displacements
-    first, second = frame.pins["B"]
-    assert moved[first] == pytest.approx(moved[second], abs=1e-12 * np.abs(moved).max())
-
-
 def test_what_no_guide_can_be_is_refused() -> None:
     frame = build_frame(quick_return(), quick_return().solve_pose(), (), held=quick_return().pinned_drive)
     for wrong, message in (

@@ -54,10 +54,7 @@ def renamed(mesh, names):
 
 def timoshenko():
     """Tip deflection PL³/3EI + PL/κGA [mm] of that cantilever, κ after Cowper (1966): 2.732449 mm."""
-    tube = Tube(
-        shape="tube", material="resin", outer_diameter="5 mm", inner_diameter="2.5 mm", eye_diameter="7 mm",
-        eye_thickness="6 mm", fillet_radius="0.5 mm",
-    )  # fmt: skip
+    tube = Tube(shape="tube", material="resin", outer_diameter="5 mm", inner_diameter="2.5 mm", fillet_radius="0.5 mm")
     section = tube.section
     shear = section.shear_coefficient(NU) * E / (2.0 * (1.0 + NU)) * section.area
     return 88.0**3 / (3.0 * E * section.i_z) + 88.0 / shear
