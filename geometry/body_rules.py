@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 from geometry.errors import CaseError
 from geometry.part import Bar, Body, Disc, HoleRow, Part, Pin, PlainEnd, Section, Tube, rectangle
@@ -18,7 +19,11 @@ SLENDEREST = 1e6
 volumes of bars are right to 1e-9 and of tubes to 1e-5 up to 1e8; at 1e9 a bar comes out as two solids."""
 SMALLEST, LARGEST = 1e-12, 1e15
 """Of a section's smaller size [mm]. Measured: volumes are right to 1e-13 at both ends; at 1e150 mm the kernel fails."""
+TOUCHING = 1e-4
+"""Share by which fillets must stay clear of one another. Measured: the kernel fails on two neighbouring eyes at 1e-7
+and on a thick eye at an arm's foot at 1e-5; from 1e-4 on no build failed."""
 _CHORDS = 200
+_Point = tuple[float, float]
 
 
 def extent(body: Body) -> tuple[float, float]:
@@ -152,6 +157,10 @@ def check_body(body: Body) -> None:
                 f"the pin holes at {one.name} and {other.name} run into each other; move the pins apart "
                 "or make their holes smaller"
             )
+    if not isinstance(body.part, Disc):
+        _check_neighbours(body)
+    if isinstance(body.part, Bar):
+        _check_arms(body, body.part)
     for end in body.ends:
         _check_end(body, end)
     for number, row in enumerate(body.holes, start=1):
@@ -231,6 +240,121 @@ def _check_arm(body: Body, pin: Pin, foot: tuple[float, float]) -> None:
             f"the eye at {pin.name}, at the end of an arm, is {max(clear, 0.0):g} mm from the bar along the link's "
             f"axis, but needs more than 2 fillet_radius = {2.0 * part.fillet_radius:g} mm; make the arm longer"
         )
+
+
+def _shoulder(body: Body, pin: Pin) -> float:
+    """Return half the length that an eye takes up on its tube, bar or arm, up to where its fillet ends [mm].
+
+    As ``eye_reach``, but beside an eye as thick as its bar the fillet ends where it touches the bar's side: its centre
+    lies w/2 + f from the axis and R + f from the pin. Where an arm starts, there is another fillet.
+    """
+    part = body.part
+    at_foot = any(arm.foot == (pin.x, pin.y) for arm in body.pins)
+    if plain_eye(body, pin) and not at_foot:
+        return 0.0
+    if pin.foot is not None:
+        pin = replace(pin, y=0.0, foot=None)
+    if at_foot or not isinstance(part, Bar) or part.has_step:
+        return eye_reach(body, pin)
+    radius, across = part.eye_diameter / 2.0, part.width / 2.0 + part.fillet_radius - abs(pin.y)
+    return max(radius, math.sqrt(max((radius + part.fillet_radius) ** 2 - across**2, 0.0))) + pin.slot / 2.0
+
+
+def _check_neighbours(body: Body) -> None:
+    """Refuse eyes that overlap along a tube, bar or arm, or whose fillets do: the kernel cannot round what is left."""
+    on_axis = [pin for pin in body.pins if pin.foot is None]
+    pairs = list(itertools.combinations(on_axis, 2))
+    pairs += [(foot, arm) for arm in body.pins for foot in on_axis if arm.foot == (foot.x, foot.y)]
+    for one, other in pairs:
+        distance = math.hypot(other.x - one.x, other.y - one.y if other.foot else 0.0)
+        shoulders = _shoulder(body, one), _shoulder(body, other)
+        if min(shoulders) > 0.0 and distance <= (1.0 + TOUCHING) * sum(shoulders):
+            raise CaseError(
+                f"the eyes at {one.name} and {other.name} overlap, or their fillets do: the points are {distance:g} mm "
+                f"apart, but eye_diameter {body.part.eye_diameter:g} mm and fillet_radius "
+                f"{fillet_radius(body.part):g} mm need more than {sum(shoulders):g} mm; move the points apart or make "
+                "eyes or fillets smaller"
+            )
+
+
+def _check_arms(body: Body, bar: Bar) -> None:
+    """Refuse arms that run into other arms or eyes, and corners at their feet that do not hold the fillets."""
+    arms = [pin for pin in body.pins if pin.foot is not None]
+    for foot in {arm.foot for arm in arms if arm.foot is not None}:
+        _check_foot(body, bar, foot)
+    eye, half = bar.eye_diameter / 2.0, bar.width / 2.0
+    found = []
+    for one, other in itertools.combinations(body.pins, 2):
+        places = (one.x, one.y), (other.x, other.y)
+        if (one.foot or other.foot) and one.foot != places[1] and other.foot != places[0]:
+            found.append((f"the eye at {one.name}", f"the eye at {other.name}", apart(one, other) - 2.0 * eye))
+        if one.foot and other.foot and one.foot != other.foot:
+            clear = _between((one.foot, places[0]), (other.foot, places[1])) - 2.0 * half
+            found.append((f"the arm to {one.name}", f"the arm to {other.name}", clear))
+    for arm, pin in itertools.product(arms, body.pins):
+        if arm.foot is not None and pin is not arm and arm.foot != (pin.x, pin.y):
+            line = (pin.span[0], pin.y), (pin.span[1], pin.y)
+            clear = _between((arm.foot, (arm.x, arm.y)), line) - eye - half
+            found.append((f"the arm to {arm.name}", f"the eye at {pin.name}", clear))
+    for what, beside, clear in found:
+        if clear <= 2.0 * bar.fillet_radius:
+            raise CaseError(
+                f"{what} is {max(clear, 0.0):g} mm from {beside}, but needs more than 2 fillet_radius = "
+                f"{2.0 * bar.fillet_radius:g} mm; move the points apart or make eyes or fillets smaller"
+            )
+
+
+def _check_foot(body: Body, bar: Bar, foot: _Point) -> None:
+    """Check each corner α < π between bar and arms at a foot, h = w/2 / sin(α/2) from the pin.
+
+    Sharp corners (f = 0) are built at any angle. Else the eye (a thick one with its fillet) hides in the corner, or its
+    own two fillets lie side by side in it, their centres asin((w/2 + f)/(R + f)) from either side's direction. The
+    kernel needs just that.
+    """
+    first, last = extent(body)
+    half, radius, fillet = bar.width / 2.0, bar.eye_diameter / 2.0, bar.fillet_radius
+    sides = [(0.0, "the bar")] * (last > foot[0]) + [(math.pi, "the bar")] * (first < foot[0])
+    for arm in body.pins:
+        if arm.foot == foot:
+            angle = math.atan2(arm.y - foot[1], arm.x - foot[0]) % (2.0 * math.pi)
+            sides.append((angle, f"the arm to {arm.name}"))
+    sides.sort()
+    for (start, one), (stop, other) in zip(sides, sides[1:] + sides[:1], strict=True):
+        angle = (stop - start) % (2.0 * math.pi)
+        if angle < LEAST_ARM_ANGLE:
+            raise CaseError(
+                f"{one} and {other} stand at {math.degrees(angle):.3g} degrees to each other, but need at least "
+                f"{math.degrees(LEAST_ARM_ANGLE):g}; turn the arm or let it start elsewhere"
+            )
+        if fillet == 0.0 or angle >= math.pi:
+            continue
+        sine = math.sin(angle / 2.0)
+        corner = half / sine
+        hidden = radius + (fillet if bar.has_step else 0.0) <= (1.0 - TOUCHING) * corner
+        if not hidden and half + fillet >= (1.0 - TOUCHING) * (radius + fillet) * sine:
+            most = (radius * sine - half) / (1.0 - sine) if radius > corner else corner - radius
+            raise CaseError(
+                f"fillet_radius {fillet:g} mm is too large for the corner of {math.degrees(angle):.3g} degrees between "
+                f"{one} and {other}, where beside the eye of {bar.eye_diameter:g} mm less than {max(most, 0.0):g} mm "
+                "fits; make the fillet smaller or turn the arm"
+            )
+
+
+def _between(one: tuple[_Point, _Point], other: tuple[_Point, _Point]) -> float:
+    """Return the distance of two straight lines from end to end, either of which may be a point [mm]."""
+
+    def side(a: _Point, b: _Point, p: _Point) -> float:
+        return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+
+    def to_line(p: _Point, a: _Point, b: _Point) -> float:
+        square = math.dist(a, b) ** 2
+        along = ((p[0] - a[0]) * (b[0] - a[0]) + (p[1] - a[1]) * (b[1] - a[1])) / square if square else 0.0
+        along = min(max(along, 0.0), 1.0)
+        return math.dist(p, (a[0] + along * (b[0] - a[0]), a[1] + along * (b[1] - a[1])))
+
+    if side(*one, other[0]) * side(*one, other[1]) < 0.0 > side(*other, one[0]) * side(*other, one[1]):
+        return 0.0
+    return min(*(to_line(p, *other) for p in one), *(to_line(p, *one) for p in other))
 
 
 def _check_disc(body: Body, disc: Disc) -> None:

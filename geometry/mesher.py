@@ -21,6 +21,8 @@ from geometry.tagged_mesh import TaggedMesh
 
 SLOT_ELEMENTS = 1.5
 """Element edges along a slot to those round a hole of its width: a pin pushes on a shorter stretch of a flank."""
+ROD_SIZE = 0.8
+"""Largest element edge in a rod, over its radius."""
 LEAST_JACOBIAN = 0.1
 """Least over greatest Jacobian determinant below which a curved element is flattened.
 
@@ -255,10 +257,17 @@ def _across(pin: Pin) -> str:
 
 
 def _wall_size(part: Part, size: float) -> float:
-    """Return the size, lessened in a thin-walled tube so that the chords of one side stay clear of the other."""
+    """Return the size, lessened in a tube so that chords of one side stay clear of the other, or of the axis.
+
+    In a rod, edges as long as the radius leave no node on the axis: then elements have two edges on the rim, whose
+    curved sides meet at 180°, and many are flattened. At 0.8 radii, of five rods, 24 or fewer elements in place of 254
+    to 326, and 0.1 % of the volume missed in place of 2 %.
+    """
     if not isinstance(part, Tube):
         return size
     radius, bore = part.outer_diameter / 2.0, part.inner_diameter / 2.0
+    if bore == 0.0:
+        return min(size, ROD_SIZE * radius)
     # Chord h of radius r has a sagitta of h²/(8r): a quarter of the wall here.
     return min(size, math.sqrt(2.0 * radius * (radius - bore)))
 

@@ -78,6 +78,24 @@ H = PlainEnd(name="H", x=60.0, patch=5.0)
         (body(pins=(pin("A", 0.0, y=1.5), pin("B", 40.0))), "pin A lies 1.5 mm off.*less than 1.5 mm"),
         (body(pins=(pin("A", 0.0), pin("B", 20.0, y=-4.0), pin("C", 40.0))), "pin B lies -4 mm off.*less than 4 mm"),
         (body(pins=(pin("A", 0.0), pin("C", 40.0), pin("B", 1.5))), "pin holes at A and B run into each other"),
+        (
+            body(pins=(pin("A", 0.0), pin("B", 9.6), pin("C", 40.0))),
+            "eyes at A and B overlap.*9.6 mm apart.*than 9.6 mm",
+        ),
+        (
+            body(pins=(pin("A", 0.0), pin("B", 8.9), pin("C", 40.0)), part=BAR),
+            "eyes at A and B overlap.*than 9 mm; move",
+        ),
+        (
+            body(
+                pins=(pin("A", 0.0), pin("B", 10.9), pin("C", 40.0)), part=BAR.model_copy(update={"eye_thickness": 6.0})
+            ),
+            "eyes at A and B overlap.*than 11 mm; move",
+        ),
+        (
+            body(pins=(pin("A", 0.0), Pin(name="S", x=15.0, y=0.0, diameter=1.5, slot=13.0), pin("C", 40.0)), part=BAR),
+            "eyes at A and S overlap.*15 mm apart.*than 15.5 mm",
+        ),
         (body(ends=(PlainEnd(name="H", x=60.0, patch=20.0),)), "patch of H, x = 40 to 60 mm, runs into the eye at B"),
         (body(ends=(PlainEnd(name="H", x=60.0, patch=80.0),)), "patch of H is 80 mm long.*x = -20 to 60"),
         (body(ends=(H, PlainEnd(name="I", x=54.0, patch=4.0))), "patches of H and I overlap"),
@@ -106,7 +124,11 @@ def test_what_is_wrong_is_named(wrong: Body, message: str) -> None:
         body(holes=(row(30.0, 10.0, count=3),)),
         body(holes=(row(10.0, 10.0, count=1),)),
         body(holes=(row(10.0, 20.0, diameter=4.5),), part=TUBE),
-        body(pins=(pin("A", 0.0), pin("B", 5.0), pin("C", 40.0))),
+        # Round a tube the fillet ends 4 + 0.8 mm from the pin; beside a flush eye of 9 mm, one of 3 mm has its centre
+        # 7.5 mm from the pin and 5.5 mm from the axis, so it ends 5.099 mm along it.
+        body(pins=(pin("A", 0.0), pin("B", 9.61), pin("C", 40.0))),
+        body(pins=(pin("A", 0.0), pin("B", 10.2), pin("C", 40.0)), part=BAR.model_copy(update={"fillet_radius": 3.0})),
+        body(pins=(pin("A", 0.0), pin("B", 2.0), pin("C", 40.0)), part=BAR.model_copy(update={"eye_diameter": 5.0})),
     ],
 )
 def test_what_is_right_passes(right: Body) -> None:

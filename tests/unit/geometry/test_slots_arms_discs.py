@@ -108,6 +108,59 @@ def test_what_is_wrong_is_named_with_its_remedy(wrong: Body, message: str) -> No
         check_body(wrong)
 
 
+def cornered(angle: float, fillet: float, eye: float, thickness: float = 4.0, width: float = 8.0) -> Body:
+    """A bar with an arm of 60 mm at an angle [deg] from the pin at its end."""
+    sizes = {"fillet_radius": fillet, "eye_diameter": eye, "eye_thickness": thickness, "width": width}
+    turn = math.radians(angle)
+    arm = moved(ARM, x=60.0 * math.cos(turn), y=60.0 * math.sin(turn))
+    return body(A, moved(B, x=90.0), arm, part=BAR.model_copy(update=sizes))
+
+
+@pytest.mark.parametrize(
+    ("angle", "fillet", "eye", "thickness", "most"),
+    [
+        # At 90° two fillets touch where (4 + f)/(6.4 + f) = sin 45°: f = 1.79411 mm.
+        (90.0, 1.80, 12.8, 4.0, 1.79411),
+        (90.0, 1.80, 12.8, 10.0, 1.79411),
+        # At 60° the corner is 8 mm from the pin: a thick eye of 7 mm hides in it with a fillet below 1 mm.
+        (60.0, 1.01, 14.0, 10.0, 1.0),
+        (60.0, 2.10, 18.0, 4.0, 1.0),
+    ],
+)
+def test_a_corner_at_an_arm_must_hold_the_fillets(
+    angle: float, fillet: float, eye: float, thickness: float, most: float
+) -> None:
+    with pytest.raises(CaseError, match=rf"fillet_radius .* too large for the corner of {angle:g} degrees") as refused:
+        check_body(cornered(angle, fillet, eye, thickness))
+    assert f"less than {most:g} mm fits" in str(refused.value)
+    check_body(cornered(angle, 0.99 * most, eye, thickness))
+
+
+def test_an_eye_as_thick_as_its_bar_hides_in_a_corner_with_any_fillet() -> None:
+    check_body(cornered(60.0, 2.1, 14.0))
+
+
+@pytest.mark.parametrize(
+    ("arms", "message"),
+    [
+        ((ARM, moved(ARM, name="R", x=30.0)), "arm to R and the arm to Q stand at 22.8 degrees.*at least 30; turn"),
+        (
+            (moved(ARM, x=40.0), moved(ARM, name="R", x=10.0, y=60.0, foot=(60.0, 0.0))),
+            "arm to Q is 0 mm from the arm to R",
+        ),
+        ((ARM, moved(ARM, name="R", x=24.0, foot=(60.0, 0.0))), "eye at Q is 2 mm from the eye at R.*radius = 4 mm"),
+        (
+            # From (40.15, 40) to the line of (60, 0) and (50, 60) are 13 mm, and the eye and half the arm take 10 mm.
+            (moved(ARM, x=40.15), moved(ARM, name="R", x=50.0, y=60.0, foot=(60.0, 0.0))),
+            r"arm to R is 3\.00\d* mm from the eye at Q",
+        ),
+    ],
+)
+def test_arms_must_stay_clear_of_each_other(arms: tuple[Pin, ...], message: str) -> None:
+    with pytest.raises(CaseError, match=message):
+        check_body(body(A, B, *arms))
+
+
 def test_slot_and_disc_sizes_are_checked_as_they_are_read() -> None:
     with pytest.raises(ValidationError, match="has no length; state first < last"):
         Slot(first="2 mm", last="2 mm")
