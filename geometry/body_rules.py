@@ -242,11 +242,12 @@ def _check_arm(body: Body, pin: Pin, foot: tuple[float, float]) -> None:
         )
 
 
-def _shoulder(body: Body, pin: Pin) -> float:
+def _shoulder(body: Body, pin: Pin, side: float) -> float:
     """Return half the length that an eye takes up on its tube, bar or arm, up to where its fillet ends [mm].
 
     As ``eye_reach``, but beside an eye as thick as its bar the fillet ends where it touches the bar's side: its centre
-    lies w/2 + f from the axis and R + f from the pin. Where an arm starts, there is another fillet.
+    lies w/2 + f from the axis and R + f from the pin. Off the axis it may stand out on one side (1 or -1) only, and on
+    the other take up none. Where an arm starts, there is another fillet.
     """
     part = body.part
     at_foot = any(arm.foot == (pin.x, pin.y) for arm in body.pins)
@@ -256,7 +257,9 @@ def _shoulder(body: Body, pin: Pin) -> float:
         pin = replace(pin, y=0.0, foot=None)
     if at_foot or not isinstance(part, Bar) or part.has_step:
         return eye_reach(body, pin)
-    radius, across = part.eye_diameter / 2.0, part.width / 2.0 + part.fillet_radius - abs(pin.y)
+    radius, across = part.eye_diameter / 2.0, part.width / 2.0 + part.fillet_radius - side * pin.y
+    if across - part.fillet_radius >= radius:
+        return 0.0
     return max(radius, math.sqrt(max((radius + part.fillet_radius) ** 2 - across**2, 0.0))) + pin.slot / 2.0
 
 
@@ -265,9 +268,9 @@ def _check_neighbours(body: Body) -> None:
     on_axis = [pin for pin in body.pins if pin.foot is None]
     pairs = list(itertools.combinations(on_axis, 2))
     pairs += [(foot, arm) for arm in body.pins for foot in on_axis if arm.foot == (foot.x, foot.y)]
-    for one, other in pairs:
+    for (one, other), side in itertools.product(pairs, (1.0, -1.0)):
         distance = math.hypot(other.x - one.x, other.y - one.y if other.foot else 0.0)
-        shoulders = _shoulder(body, one), _shoulder(body, other)
+        shoulders = _shoulder(body, one, side), _shoulder(body, other, side)
         if min(shoulders) > 0.0 and distance <= (1.0 + TOUCHING) * sum(shoulders):
             raise CaseError(
                 f"the eyes at {one.name} and {other.name} overlap, or their fillets do: the points are {distance:g} mm "

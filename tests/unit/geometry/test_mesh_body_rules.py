@@ -128,6 +128,8 @@ def test_what_is_wrong_is_named(wrong: Body, message: str) -> None:
         # 7.5 mm from the pin and 5.5 mm from the axis, so it ends 5.099 mm along it.
         body(pins=(pin("A", 0.0), pin("B", 9.61), pin("C", 40.0))),
         body(pins=(pin("A", 0.0), pin("B", 10.2), pin("C", 40.0)), part=BAR.model_copy(update={"fillet_radius": 3.0})),
+        # On either side of the bar: 2.2 mm off the axis an eye of 9 mm stands out by 4.2 mm above and not at all below.
+        body(pins=(pin("A", 0.0), pin("P", 20.0, y=2.2), pin("R", 20.0, y=-2.2), pin("C", 40.0)), part=BAR),
         body(pins=(pin("A", 0.0), pin("B", 2.0), pin("C", 40.0)), part=BAR.model_copy(update={"eye_diameter": 5.0})),
     ],
 )
