@@ -40,7 +40,7 @@ from fea.band import Band
 from fea.beam import BeamCheck
 from fea.column_factor import AxialForce, Stretch, column_factors
 from fea.flanks import Flanks, flanks_of
-from fea.large_displacement import LEAST_FACTOR, LargeDisplacement
+from fea.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
 from fea.scatter import load_scatter
 from fea.toggle import SNAP, growth
 from fea.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
@@ -51,8 +51,6 @@ from loads.case import Case
 Real = NDArray[np.float64]
 
 NAME = "buckling"
-LEAST_LINEAR = 3.0
-"""Factor below which stress by linear theory is not relied on."""
 NO_COMPRESSION = 1e-9
 """Share of the largest force in the link below which compression is rounding."""
 ON_AXIS = 1e-9

@@ -5,7 +5,8 @@ a good answer: joint forces then come from the co-rotational frame (``fea.corota
 what acts on it on the deformed shape, along the chord through its first and last station. So it is where the frame is
 within ten times its load of buckling by linear theory, below which EN 1993-1-1:2005, 5.2.1(3), asks for second-order
 analysis, or of a dead point by its linear displacements: a shallow toggle snaps through at 5.2 of either
-(``fea.toggle``). Stated scatter of load and modulus counts at its worst.
+(``fea.toggle``). Stated scatter of load and modulus counts at its worst, and what holds is undecided where the linear
+factor is below 3: a frame without faults of shape stands straight up to its buckling load.
 """
 
 import itertools
@@ -45,6 +46,8 @@ LARGE = 0.05
 """Share of the span above which a displacement is large."""
 LEAST_FACTOR = 10.0
 """Factor to buckling or to a dead point below which equilibrium is sought on the deformed shape."""
+LEAST_LINEAR = 3.0
+"""Buckling factor below which small faults of shape, which no frame knows, grow too much to be relied on."""
 SUBDIVISIONS = 2
 COARSE, FINE, NEAR = 2, 8, 30.0
 """Elements per beam for the buckling factor, and the factor by the coarse ones below which the fine ones are used."""
@@ -187,7 +190,12 @@ def _held_band(frame: LinkageFrame, found: LargeDisplacement, scatter: Scatter, 
         # It became unstable somewhere on the way.
         high = 1.0 if scatter.low < 1.0 and _holds(frame, scatter.low) == 1.0 else math.nextafter(1.0, 0.0)
         return Band(value=min(found.buckling or 1.0, high), low=0.0, high=high, holds=holds)
-    return Band(value=1.0, low=_holds(frame, scatter.high) if scatter.high > 1.0 else 1.0, high=1.0, holds=holds)
+    low = _holds(frame, scatter.high) if scatter.high > 1.0 else 1.0
+    faults = math.inf if found.buckling is None else found.buckling / scatter.high / LEAST_LINEAR
+    if faults < low:
+        # A straight linkage keeps its shape up to its buckling load, a real one is never straight.
+        low, holds = faults, (*holds, f"small faults of shape, within {LEAST_LINEAR:g} times the load of buckling")
+    return Band(value=1.0, low=low, high=1.0, holds=holds)
 
 
 def _holds(frame: LinkageFrame, factor: float) -> float:

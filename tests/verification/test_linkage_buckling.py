@@ -91,10 +91,16 @@ def test_the_factor_of_a_parallelogram_is_that_of_the_closed_form() -> None:
 
 @pytest.mark.parametrize(
     ("share", "state", "verdict"),
-    [(0.11, "deformed", Verdict.PASS), (0.97, "deformed", Verdict.PASS), (1.03, "unstable", Verdict.FAIL)],
+    [
+        (0.11, "deformed", Verdict.PASS),
+        (0.32, "deformed", Verdict.PASS),
+        (0.35, "deformed", Verdict.UNDECIDED),
+        (0.97, "deformed", Verdict.UNDECIDED),
+        (1.03, "unstable", Verdict.FAIL),
+    ],
 )
 def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, state, verdict) -> None:
-    """One limit load, one outcome: the factor of linear theory stands in its reason alone."""
+    """One limit load, one outcome: straight up to its buckling load, but within 3 times of it none passes."""
     result = check_case(parallelogram(share * critical()), fidelity="beam").load_cases["weight"]
     moved, (found,) = result.large_displacement, [c for c in result.checks if c.link == LINKAGE]
     assert found.name == "large displacement"
@@ -104,7 +110,8 @@ def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, stat
     assert "the linear frame buckles at" in moved.sentence
     assert f"buckling factor by linear theory is {moved.buckling:.3g}" in found.reason
     # Somewhere below the whole load where it became unstable on the way, else all of it.
-    assert (found.value.low, found.value.high) == pytest.approx((0.0, 1.0) if state == "unstable" else (1.0, 1.0))
+    low = 0.0 if state == "unstable" else min(1.0, 1.0 / share / 3.0)
+    assert (found.value.low, found.value.high) == pytest.approx((low, 1.0), rel=3e-3)
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(0.18, Verdict.PASS), (0.3, Verdict.UNDECIDED), (1.03, Verdict.FAIL)])

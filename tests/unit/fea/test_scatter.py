@@ -189,7 +189,13 @@ def test_repetitions_are_a_number(coupler, repetitions):
 def test_the_limit_load_holds_load_over_least_modulus(monkeypatch, state, held, shares, ends):
     monkeypatch.setattr(large_displacement, "_holds", lambda frame, factor: shares[factor])
     found = large_displacement.LargeDisplacement(
-        state=state, span=1.0, held=held, buckling=0.7, points={}, links={}, sentence=""
+        state=state,
+        span=1.0,
+        held=held,
+        buckling=0.7 if state == "unstable" else math.inf,
+        points={},
+        links={},
+        sentence="",
     )
     band = large_displacement._held_band(None, found, Scatter(low=0.8, high=1.25, holds=("E",)), ("E",))
     assert (band.low, band.high) == pytest.approx(ends, abs=0.0)
