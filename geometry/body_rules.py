@@ -22,6 +22,9 @@ SMALLEST, LARGEST = 1e-12, 1e15
 TOUCHING = 1e-4
 """Share by which fillets must stay clear of one another. Measured: the kernel fails on two neighbouring eyes at 1e-7
 and on a thick eye at an arm's foot at 1e-5; from 1e-4 on no build failed."""
+FINEST = 1e7
+"""Largest distance of any part of a link from its origin over the diameter of a pin hole. Measured: the kernel finds
+a hole in a bar that is 1e8 times as long, and loses it in one of 1e9."""
 _CHORDS = 200
 _Point = tuple[float, float]
 
@@ -184,6 +187,12 @@ def _check_range(body: Body) -> None:
             f"{SLENDEREST:g} times its section's smaller size, {SLENDEREST * small:g} mm; shorten the link or make its "
             "part thicker"
         )
+    for pin in body.pins:
+        if 0.0 < pin.diameter < reach / FINEST:
+            raise CaseError(
+                f"the pin hole at {pin.name} has a diameter of {pin.diameter:g} mm, but the geometry kernel sees "
+                f"none below {reach / FINEST:g} mm in a part that reaches {reach:g} mm; make the hole larger"
+            )
 
 
 def _check_pin(body: Body, pin: Pin, first: float, last: float) -> None:

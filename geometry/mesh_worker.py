@@ -4,6 +4,7 @@ Reads ``request`` and writes ``answer`` in the folder, both pickled (the folder 
 child). The answer is ("done", result), ("case", sentence) or ("cannot", sentence) for an error, or ("memory", "").
 """
 
+import os
 import pickle
 import sys
 from collections.abc import Callable
@@ -38,7 +39,10 @@ def step(gmsh: Any, body: Body, path: str) -> object:
     """Write a body as STEP."""
     from geometry.solid_model import build, write_step
 
-    write_step(gmsh, build(gmsh, body), Path(path))
+    os.chdir(Path(path).parent)  # gmsh takes names in UTF-8 alone, and a path need not be
+    draft = Path(".draft.step")  # no body's, since a name begins with a letter or a digit
+    write_step(gmsh, build(gmsh, body), draft)
+    draft.rename(Path(path).name)
     return None
 
 

@@ -59,6 +59,10 @@ EXAMPLES = {
     "current": "170 mA",
     "memory": "4 GB",
 }
+LEAST, LARGEST = 1e-20, 1e20
+"""Sizes in alula's units beyond which a quantity is taken for a mistake. Nothing that is built comes near, and what is
+computed from sizes between them stays finite (measured: statics, motion and hand calculation with one to three
+quantities at either end)."""
 _LONGEST_TEXT = 64
 _UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?[1-4])?"
 _TYPOGRAPHY = str.maketrans(
@@ -116,9 +120,12 @@ def parse(text: object, dimension: str) -> float:
         )
     factor, offset = conversion
     value = number * factor + offset
-    if not math.isfinite(value):
+    if value != 0.0 and not LEAST <= abs(value) <= LARGEST:
+        limit, zero = (f"at most {LARGEST:g}", "") if abs(value) > LARGEST else (f"at least {LEAST:g}", ", or write 0")
         raise PydanticCustomError(
-            "not_a_quantity", "the number is too large; write a finite {dimension}", {"dimension": dimension}
+            "implausible",
+            "the {dimension} must be {limit} {unit} in size; check the number and its unit{zero}",
+            {"dimension": dimension, "limit": limit, "unit": INTERNAL_UNITS[dimension], "zero": zero},
         )
     return value
 

@@ -67,7 +67,9 @@ def read_text(name_or_path: str) -> tuple[str, str]:
     except (OSError, ValueError):
         exists = False
     if not exists:
-        what = "it is a folder" if os.path.isdir(name_or_path) else "there is no such file or built-in case"
+        what = "there is no such file or built-in case"
+        if os.path.lexists(name_or_path):
+            what = "it is a folder" if os.path.isdir(name_or_path) else "it is no regular file that can be reached"
         choice = ", ".join(built_in_cases())
         raise CaseError(f"case '{shown}': {what}; give a path to a case file or one of {choice}")
     try:

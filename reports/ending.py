@@ -46,8 +46,17 @@ def run(app: Callable[[], object]) -> NoReturn:
         sys.exit(PIPE_CLOSED)
     except OSError as error:
         _abandon_output()
-        where = f"'{error.filename}'" if error.filename else "standard output"
+        missing = "the current folder" if isinstance(error, FileNotFoundError) else "standard output"
+        where = f"'{error.filename}'" if error.filename else missing
         _stop(f"{where} failed ({error.strerror or error}); free space on the disk or choose another place", CRASHED)
+    except UnicodeEncodeError as error:
+        if os.environ.get("ALULA_TRACEBACK"):
+            raise
+        _stop(
+            f"a name with {error.object[error.start : error.end]!a} cannot be given to a file under this locale, whose "
+            f"encoding is {error.encoding}; set LC_ALL=C.UTF-8",
+            CRASHED,
+        )
     except Exception as error:
         if os.environ.get("ALULA_TRACEBACK"):
             raise

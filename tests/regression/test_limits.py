@@ -1,16 +1,22 @@
 """Cases that are too large are refused before they are computed, with the limit and the remedy."""
 
+import json
 import time
 import tomllib
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from fea.check import check_case, solve_case_statics
+from fea.verdict import Verdict
 from geometry.errors import CaseError
 from loads.case_file import LARGEST_FILE, read_case, validate
+from loads.case_motion import solve_case_motion
 from loads.case_rules import MOST_RESULTS
+from reports.record import as_json
 
 OWL = "owl-wing-static"
 HOLES = '{count=%d,diameter="1 mm",first="40 mm",last="60 mm",along="z"}'
@@ -20,6 +26,75 @@ def refused(*overrides: str) -> str:
     with pytest.raises(CaseError) as error:
         read_case(OWL, overrides)
     return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "words"),
+    [
+        ("load_cases.lift.forces.0.force.1", "1e300 N", "the force must be at most 1e+20 N"),
+        ("load_cases.lift.forces.0.force.1", "-1e200 N", "the force must be at most 1e+20 N"),
+        ("load_cases.lift.forces.0.force.1", "1e-300 N", "the force must be at least 1e-20 N"),
+        ("load_cases.lift.forces.0.force.1", "nan N", "one finite number"),
+        ("load_cases.lift.forces.0.force.1", "inf N", "one finite number"),
+        ("load_cases.lift.speed", "1e100 rpm", "the angular speed must be at most 1e+20 rad/s"),
+        ("load_cases.lift.gravity", "1e-300 m/s^2", "the acceleration must be at least 1e-20 mm/s^2"),
+        ("links.rocker.points.P.0", "1e300 mm", "the length must be at most 1e+20 mm"),
+        ("links.rocker.points.P.1", "1e-300 mm", "the length must be at least 1e-20 mm"),
+        ("pose.angle", "1e-300 deg", "the angle must be at least 1e-20 rad"),
+        ("materials.plate.density", "1e300 kg/m^3", "the density must be at most 1e+20 tonne/mm^3"),
+        ("materials.plate.youngs_modulus", "1e-300 GPa", "the stress must be at least 1e-20 MPa"),
+        ("materials.plate.youngs_modulus", "1e300 GPa", "the stress must be at most 1e+20 MPa"),
+        ("parts.bar.fillet_radius", "1e300 mm", "the length must be at most 1e+20 mm"),
+    ],
+)
+def test_sizes_that_nothing_has(entry: str, text: str, words: str) -> None:
+    """Their squares overflowed or vanished: NumPy warned, or the run ended as a fault of alula's own."""
+    with pytest.raises(CaseError) as error:
+        validate(_starter({entry: text}))
+    sentence = str(error.value)
+    assert sentence.startswith(f"{entry} (it is '{text}'): ")
+    assert words in sentence
+    assert "check the number" in sentence or "write for example" in sentence
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"load_cases.lift.forces.0.force.1": "1e20 N", "load_cases.lift.gravity": "1e-20 mm/s^2"},
+        {"load_cases.lift.forces.0.force.1": "1e-20 N", "materials.plate.density": "1e-20 tonne/mm^3"},
+        {"materials.plate.youngs_modulus": "1e20 MPa", "load_cases.lift.speed": "1e-20 rad/s"},
+        {"materials.plate.youngs_modulus": "1e-20 MPa", "load_cases.lift.forces.0.force.1": "-1e20 N"},
+        {"materials.plate.density": "1e20 tonne/mm^3", "load_cases.lift.speed": "1e20 rad/s"},
+    ],
+)
+def test_the_ends_of_what_is_read_are_borne_by_all_that_solves(changes: dict[str, str]) -> None:
+    """No warning (which is an error in tests) and no number that is not finite."""
+    case = validate(_starter(changes))
+    for reactions in solve_case_statics(case, "starter").reactions.values():
+        assert np.isfinite([reactions.drive_torque, *(joint.magnitude for joint in reactions.joints.values())]).all()
+    result = check_case(case, name="starter", fidelity="beam")
+    assert result.verdict in set(Verdict)
+    json.loads(as_json(result), parse_constant=lambda name: pytest.fail(f"{name} in the record"))
+    moved = solve_case_motion(case)
+    assert np.isfinite(moved.torque["lift"]).all()
+
+
+def _starter(changes: dict[str, str]) -> dict[str, Any]:
+    """Tables of the starter with a material of its own and a motion under inertia; the changes by their paths."""
+    tables = tomllib.loads(files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8"))
+    card = tomllib.loads(files("geometry").joinpath("materials.toml").read_text(encoding="utf-8"))["pla-fdm-xy"]
+    tables["materials"] = {"plate": card}
+    tables["parts"]["bar"]["material"] = "plate"
+    tables["motion"] = {
+        "coordinate": "crank", "range": ["0 deg", "90 deg"], "poses": 3, "inertia": True, "speed": "1 rad/s"
+    }  # fmt: skip
+    for path, value in changes.items():
+        *above, last = (int(key) if key.isdigit() else key for key in path.split("."))
+        here: Any = tables
+        for key in above:
+            here = here[key]
+        here[last] = value
+    return tables
 
 
 def test_the_size_of_a_file(tmp_path: Path) -> None:

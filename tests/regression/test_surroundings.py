@@ -1,7 +1,10 @@
-"""Closed streams, poor encodings, closed pipes, a home that cannot be written: the verdict's status, and no fault."""
+"""Closed streams and pipes, poor encodings and environments, odd paths: the verdict's status, and no fault."""
 
 import json
+import os
 import subprocess
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
 
 import programs
@@ -57,3 +60,84 @@ def test_a_home_that_cannot_be_written(tmp_path: Path) -> None:
     done = shell("", "synth", "-o", str(tmp_path / "out"), **settings)
     assert done.returncode == 0
     assert done.stderr == ""
+
+
+@cache
+def plain_run() -> str:
+    done = shell("", *CHECK, COLUMNS="80")
+    assert done.returncode == 0
+    return done.stdout
+
+
+PLAIN = {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
+"""A locale of ASCII alone, which Python would else take for UTF-8."""
+
+
+@pytest.mark.parametrize(
+    "prefix",
+    [
+        "TERM=dumb NO_COLOR=1 COLUMNS=20",
+        "TMPDIR=/nonexistent/folder",
+        "-u HOME -u TMPDIR -u TERM -u LANG",
+    ],
+)
+def test_poor_environments(prefix: str, tmp_path: Path) -> None:
+    """The verdict and every number and name of the table are those of a plain run, and nothing is left behind."""
+    tmp_path.chmod(0o555)
+    poor = shell_in(tmp_path, f'env {prefix} "$@"', *CHECK)
+    assert poor.returncode == 0, poor.stderr
+    assert "\x1b" not in poor.stdout
+    assert "Traceback" not in poor.stderr
+    lost = {word for word in plain_run().split() if word.isalnum()} - set(poor.stdout.split())
+    assert not lost
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_current_folder_that_is_gone(tmp_path: Path) -> None:
+    folder = tmp_path / "gone"
+    folder.mkdir()
+    done = shell_in(folder, 'rmdir "$PWD"; "$@"', "synth", "--json")
+    assert done.returncode == 0, done.stderr
+    written = shell_in(tmp_path, 'mkdir gone && cd gone && rmdir "$PWD"; "$@"', "synth", "-o", "out")
+    assert written.returncode == 4
+    assert written.stderr.splitlines()[-1].startswith("alula: the current folder failed (No such file or directory)")
+
+
+def test_names_beyond_ascii_in_a_locale_of_ascii(tmp_path: Path) -> None:
+    """gmsh was handed a path that is no UTF-8 for Python there; a link's own file cannot be named (both status 4)."""
+    text = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
+    for old, new in (("links.rocker", 'links."Ärmel"'), ('"rocker"', '"Ärmel"'), ("rocker =", '"Ärmel" =')):
+        text = text.replace(old, new)
+    (tmp_path / "größe.toml").write_text(text, encoding="utf-8")
+    done = shell_in(tmp_path, '"$@"', "check", "größe.toml", "--fidelity", "beam", "--json", **PLAIN)
+    assert done.returncode in (0, 1, 3), done.stderr
+    assert "Ärmel" in json.loads(done.stdout)["pose"]["link_angles"]
+    done = shell_in(tmp_path, '"$@"', "export", "größe.toml", "--step", "-o", "teile", **PLAIN)
+    assert done.returncode == 4
+    assert done.stderr.startswith("alula: a name with '\\xc4' cannot be given to a file under this locale, whose enc")
+    assert not (tmp_path / "teile").exists()
+    done = shell_in(tmp_path, '"$@"', "export", "four-bar-synthesis", "--step", "-o", "größe", **PLAIN)
+    assert done.returncode == 0, done.stderr
+    assert {"a.step", "b.step", "c.step"} == {path.name for path in (tmp_path / "größe").glob("[!.]*")}
+
+
+@pytest.mark.parametrize("kind", ["folder", "pipe", "device"])
+@pytest.mark.parametrize("command", ["check", "motion"])
+def test_a_case_that_is_no_file_is_refused_at_once(kind: str, command: str, tmp_path: Path) -> None:
+    path = {"folder": tmp_path, "pipe": tmp_path / "pipe", "device": Path("/dev/zero")}[kind]
+    if kind == "pipe":
+        os.mkfifo(path)
+    done = shell_in(tmp_path, 'timeout 60 "$@"', command, str(path))
+    assert done.returncode == 2
+    assert done.stdout == ""
+    what = "it is a folder" if kind == "folder" else "it is no regular file"
+    assert done.stderr.startswith(f"alula: case '{path}': {what}")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def shell_in(folder: Path, script: str, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
+    """Run a script of the shell in a folder, the command standing for "$@"."""
+    command = ["bash", "-c", script, "bash", *programs.COMMAND, *arguments]
+    return subprocess.run(
+        command, cwd=folder, env=programs.environment(**more), capture_output=True, timeout=300, check=False, text=True
+    )

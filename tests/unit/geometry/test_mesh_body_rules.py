@@ -72,6 +72,10 @@ H = PlainEnd(name="H", x=60.0, patch=5.0)
         (body(part=huge(1e150)), r"section is 5e\+150 mm across, but the geometry kernel needs 1e-12 to 1e\+15 mm"),
         (body(part=huge(1e-14)), r"section is 5e-14 mm across"),
         (
+            body(pins=(pin("A", 0.0, diameter=1e-7), pin("B", 40.0))),
+            "hole at A has a diameter of 1e-07 mm, but the geometry kernel sees none below 4e-06 mm .* larger",
+        ),
+        (
             body(pins=(pin("A", 0.0, diameter=8.0), pin("B", 40.0))),
             "hole at A has a diameter of 8 mm.*eye_diameter 8 mm",
         ),
