@@ -11,7 +11,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo test verify bench fuzz clean distclean
+.PHONY: help setup libraries demo test verify bench fuzz golden clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -36,6 +36,9 @@ verify: setup ## the converged studies, on fine meshes
 
 bench: setup ## measure speed, accuracy and growth: an hour or so (BENCH="--quick": minutes)
 	$(BIN)/python benchmarks/run.py $(BENCH)
+
+golden: setup ## renew the golden results, after a change that is meant (GOLDEN="hand-*": only those)
+	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m golden $(GOLDEN)
 
 # The fuzzer has wheels for x86-64 Linux alone and is needed for nothing else, so set-up leaves it out.
 fuzz: setup ## a million hostile inputs for all that reads a case (FUZZ="--share 0.01": fewer)

@@ -1,0 +1,123 @@
+"""Golden results: the numbers that alula's commands gave for the built-in cases, kept to notice any change.
+
+They are regressions: they say that a number is what it was, not that it is right. A commit that changes one renews its
+file with ``make golden`` and says why.
+"""
+
+import contextlib
+import fnmatch
+import io
+import json
+import math
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from loads.case_file import built_in_cases, read_text
+
+FOLDER = Path(__file__).parent / "regression" / "golden"
+EXACT, MESHED = 1e-9, 1e-6
+"""Relative tolerance of what goes through no mesh, and of what does: solutions repeat to some 1e-8 there."""
+VOLATILE = ("schema_version", "timings", "seconds", "version", "next_cost", "work", "memory")
+"""Entries that differ from run to run or from machine to machine."""
+
+
+def commands() -> dict[str, list[str]]:
+    """Every golden result by its name: the arguments of the command that gives it as JSON."""
+    found = {"synth": ["synth", "--json"], "claims": ["claims", "--fidelity", "beam", "--json"]}
+    for case in built_in_cases():
+        found |= {
+            f"hand-{case}": ["check", case, "--fidelity", "beam", "--json"],
+            f"statics-{case}": ["statics", case, "--json"],
+            f"auto-{case}": ["check", case, "--json", "--threads", "1"],
+            f"solid-{case}": ["check", case, "--fidelity", "solid", "--json", "--threads", "1"],
+        }
+        if "[motion]" in read_text(case)[0]:
+            found |= {
+                f"motion-{case}": ["motion", case, "--json"],
+                f"envelope-{case}": ["envelope", case, "--json", "--threads", "1"],
+            }
+    return found
+
+
+def meshed(name: str) -> bool:
+    """True for a result that goes through a mesh."""
+    return name.startswith(("auto", "solid", "envelope"))
+
+
+def slow(name: str) -> bool:
+    """True for a result that ``make verify`` compares and ``make test`` does not."""
+    return meshed(name) or name == "claims"
+
+
+def numbers(data: Any, path: str = "") -> Iterator[tuple[str, float | str | None]]:
+    """Yield path and value of every number, verdict and finding in plain data."""
+    if isinstance(data, dict):
+        for key, value in data.items():
+            if key not in VOLATILE:
+                yield from numbers(value, f"{path}.{key}" if path else key)
+    elif isinstance(data, list):
+        for i, value in enumerate(data):
+            yield from numbers(value, f"{path}[{i}]")
+    elif path.endswith(("verdict", "finding")) or (isinstance(data, int | float) and not isinstance(data, bool)):
+        yield path, data
+
+
+def run(name: str) -> dict[str, float | str | None]:
+    """Run the command of a golden result and return its numbers by path."""
+    from reports.cli import app
+
+    told = io.StringIO()
+    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(io.StringIO()), contextlib.suppress(SystemExit):
+        app(commands()[name])
+    return dict(numbers(json.loads(told.getvalue())))
+
+
+def differences(kept: dict[str, Any], found: dict[str, Any], tolerance: float) -> list[str]:
+    """Return a line for every entry that is missing, new, or further off than ``tolerance`` of the largest of its kind.
+
+    Entries whose paths differ in indices alone are of one kind: a force that is zero but for rounding counts as zero
+    beside the others.
+    """
+    largest: dict[str, float] = {}
+    for path, value in kept.items():
+        if isinstance(value, int | float):
+            kind = re.sub(r"\[\d+\]", "[]", path)
+            largest[kind] = max(largest.get(kind, 0.0), abs(value))
+    lines = [f"{path}: gone, it was {kept[path]}" for path in kept.keys() - found.keys()]
+    lines += [f"{path}: new, {found[path]}" for path in found.keys() - kept.keys()]
+    for path in kept.keys() & found.keys():
+        old, new = kept[path], found[path]
+        if isinstance(old, int | float) and isinstance(new, int | float):
+            allowed = tolerance * largest[re.sub(r"\[\d+\]", "[]", path)]
+            if not math.isclose(old, new, rel_tol=tolerance, abs_tol=allowed):
+                limit = max(allowed, tolerance * abs(old))
+                lines.append(f"{path}: {new:.10g}, it was {old:.10g} (tolerance {limit:.1g})")
+        elif old != new:
+            lines.append(f"{path}: {new}, it was {old}")
+    return sorted(lines)
+
+
+def path_of(name: str) -> Path:
+    """The file of a golden result."""
+    return FOLDER / f"{name}.json"
+
+
+def renew(pattern: str) -> None:
+    """Write the golden results whose names match a pattern, and say what changed."""
+    FOLDER.mkdir(exist_ok=True)
+    for name in fnmatch.filter(commands(), pattern):
+        path = path_of(name)
+        old = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        found = run(name)
+        changed = differences(old, found, MESHED if meshed(name) else EXACT)
+        print(f"{name}: {len(found)} entries, {len(changed)} differ", *changed[:20], sep="\n  ", flush=True)
+        if changed:
+            rounded = {k: float(f"{v:.12g}") if isinstance(v, float) else v for k, v in found.items()}
+            path.write_text(json.dumps(rounded, indent=0) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    renew(sys.argv[1] if len(sys.argv) > 1 else "*")

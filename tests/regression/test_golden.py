@@ -1,0 +1,25 @@
+"""The built-in cases give the numbers that they gave before (regressions, not truths)."""
+
+import json
+
+import golden
+import pytest
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.converged] if golden.slow(n) else []) for n in golden.commands()]
+)
+def test_the_numbers_are_what_they_were(name: str) -> None:
+    kept = json.loads(golden.path_of(name).read_text(encoding="utf-8"))
+    found = golden.differences(kept, golden.run(name), golden.MESHED if golden.meshed(name) else golden.EXACT)
+    assert not found, "\n".join([f"{len(found)} entries differ; make golden renews them", *found[:20]])
+
+
+def test_a_difference_names_entry_values_and_tolerance() -> None:
+    kept = {"a.x[0]": 1.0, "a.x[1]": 1e-12, "verdict": "pass", "b": 2.0}
+    assert golden.differences(kept, {**kept, "a.x[1]": -3e-12}, 1e-9) == []
+    assert golden.differences(kept, {**kept, "a.x[0]": 1.0 + 2e-9}, 1e-9) == [
+        "a.x[0]: 1.000000002, it was 1 (tolerance 1e-09)"
+    ]
+    found = {"a.x[0]": 1.0, "a.x[1]": 1e-12, "verdict": "fail", "c": 3.0}
+    assert golden.differences(kept, found, 1e-9) == ["b: gone, it was 2.0", "c: new, 3.0", "verdict: fail, it was pass"]
