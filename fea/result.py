@@ -12,8 +12,8 @@ from fea.beam import BeamCheck, CantileverCheck
 from fea.discretisation import Discretisation
 from fea.joint_forces import Held, JointForces
 from fea.large_displacement import LargeDisplacement
+from fea.opinion import SecondOpinion
 from fea.pins import PinStress
-from fea.second_opinion import SecondOpinion
 from fea.solid import SolidCase, SolidSolution
 from fea.stress import StressField
 from fea.verdict import CheckOutcome, Verdict

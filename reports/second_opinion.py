@@ -5,8 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fea.opinion import SecondOpinion
 from fea.result import CheckResult
-from fea.second_opinion import SecondOpinion, second_opinions
+from fea.second_opinion import second_opinions
 from reports.terminal import say_table
 from reports.wording import number
 

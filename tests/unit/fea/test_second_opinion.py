@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 from fea import calculix, second_opinion
 from fea.calculix import read_dat, read_frd_stress
 from fea.link_loads import LinkLoads, PinLoad
-from fea.second_opinion import Answer, SecondOpinion, ask, write_model
+from fea.opinion import Answer, SecondOpinion
+from fea.second_opinion import ask, write_model
 from fea.solid import solve_solid
 from fea.stress import stress_field, von_mises
 from geometry.errors import CannotRunError

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 import fea.check
 from fea import calculix
-from fea.second_opinion import Answer
+from fea.opinion import Answer
 from reports.cli import app
 from reports.console import print_result
 from reports.html import render

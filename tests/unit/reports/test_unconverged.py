@@ -10,8 +10,8 @@ import fea.claim_data
 from fea.claim_data import case_tree
 from fea.convergence import grid_convergence
 from fea.discretisation import Discretisation
+from fea.opinion import SecondOpinion
 from fea.refinement import MeshRecord
-from fea.second_opinion import SecondOpinion
 from fea.singular import SharpPeak
 from geometry.errors import CannotRunError
 from loads.case_file import read_case

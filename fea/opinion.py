@@ -1,0 +1,71 @@
+"""What a second program says of a link: its numbers beside ours, and whether both agree."""
+
+from dataclasses import dataclass
+
+DISPLACEMENT_AGREEMENT = 1e-3
+STRESS_AGREEMENT = 1e-2
+"""Largest differences of displacements and von Mises stresses, each over its largest value, that count as agreement of
+two codes that share mesh, element and integration points, but not the rule of a curved element's stiffness."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer:
+    """What CalculiX found [MPa, mm], and how far its fields lie from ours.
+
+    von_mises          largest at the integration points
+    von_mises_nodal    largest at the nodes, carried there by CalculiX
+    displacement       largest of a node, once a rigid motion is fitted to ours
+    stress_gap         largest difference of von Mises stress at an integration point over our largest
+    displacement_gap   largest difference at a node over our largest
+    seconds            that CalculiX took
+    """
+
+    von_mises: float
+    von_mises_nodal: float
+    displacement: float
+    stress_gap: float
+    displacement_gap: float
+    seconds: float
+
+    @property
+    def agrees(self) -> bool:
+        """True where both fields agree everywhere."""
+        return self.displacement_gap <= DISPLACEMENT_AGREEMENT and self.stress_gap <= STRESS_AGREEMENT
+
+
+@dataclass(frozen=True, kw_only=True)
+class SecondOpinion:
+    """CalculiX beside our solution of one link under the load case that stresses it most.
+
+    link, load_case    names; ``variant`` of pin pressure and torque transfer
+    deck               name of the deck's file
+    von_mises          our largest at the integration points [MPa]; ``von_mises_nodal`` at the nodes
+    displacement       our largest [mm]
+    known              False where the peak of our mesh is no result: what two programs share then is its mesh alone
+    answer             None where CalculiX did not answer; ``reason`` says why
+    """
+
+    link: str
+    load_case: str
+    variant: str
+    deck: str
+    von_mises: float
+    von_mises_nodal: float
+    displacement: float
+    known: bool
+    answer: Answer | None
+    reason: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """What the reader must know, or nothing where both agree."""
+        if self.answer is None:
+            return f"{self.link}: no second opinion: {self.reason}; its deck is {self.deck}"
+        if self.answer.agrees:
+            return ""
+        return (
+            f"{self.link}: CalculiX differs by {self.answer.displacement_gap:.2%} in displacement and "
+            f"{self.answer.stress_gap:.2%} in von Mises stress on the same mesh (at most "
+            f"{DISPLACEMENT_AGREEMENT:.1%} and {STRESS_AGREEMENT:.0%} are expected); on coarse curved elements, whose "
+            "stiffness CalculiX integrates at fewer points, refining brings both together; else trust neither"
+        )
