@@ -56,7 +56,7 @@ distclean: clean ## remove .venv as well
 libraries:
 	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' || \
 	  { echo "alula needs Python 3.11 to 3.13, and $(PYTHON) is another: make PYTHON=python3.12 $(MAKECMDGOALS)" >&2; exit 1; }
-	@missing=$$($(PYTHON) -m geometry.system_libraries) || exit 1; \
+	@missing=$$($(PYTHON) -m geometry.base.system_libraries) || exit 1; \
 	if [ -z "$$missing" ]; then exit 0; fi; \
 	if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
 	  echo "Installing system libraries: $$missing"; \
@@ -64,7 +64,7 @@ libraries:
 	  apt-get update -qq && apt-get install -qq --yes --no-install-recommends $$missing >/dev/null; \
 	else \
 	  echo "System libraries are missing. Run this once, then make again:" >&2; \
-	  $(PYTHON) -m geometry.system_libraries --advice >&2; \
+	  $(PYTHON) -m geometry.base.system_libraries --advice >&2; \
 	  exit 1; \
 	fi
 

@@ -5,7 +5,7 @@
 
 What the solids say is kept in ``benchmarks/results/calibration.json``, so that a better estimate needs no new solid.
 Every part is solved on one moderate mesh under some twenty load cases with every pin pressure and torque transfer.
-The largest von Mises and principal stress within each spot (``fea.spots``) is divided by the spot's estimate.
+The largest von Mises and principal stress within each spot (``fea.beam.spots``) is divided by the spot's estimate.
 """
 
 import datetime
@@ -17,15 +17,15 @@ from pathlib import Path
 
 import numpy as np
 
-from fea.beam import BeamCheck, check_beam
-from fea.calibration import proportions
-from fea.cut_free import beam_loads
-from fea.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.solid import solve_solid
-from fea.spots import displacement_estimate, spots
-from fea.stress import stress_field
-from geometry.mesh import MeshSettings, mesh_body
-from geometry.part import RIM, Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from fea.beam.calibration import proportions
+from fea.beam.cut_free import beam_loads
+from fea.beam.spots import displacement_estimate, spots
+from fea.beam.theory import BeamCheck, check_beam
+from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from fea.solid.solution import solve_solid
+from fea.solid.stress import stress_field
+from geometry.meshing.mesh import MeshSettings, mesh_body
+from geometry.parts.part import RIM, Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 FILE = Path(__file__).resolve().parents[1] / "fea" / "calibration.toml"
 KEPT = Path(__file__).with_name("results") / "calibration.json"
@@ -289,7 +289,7 @@ def table(shape: str, found: dict) -> str:
 
 
 HEADER = """\
-# Largest stress and displacement of solid models over the estimates of hand calculation (fea/spots.py):
+# Largest stress and displacement of solid models over the estimates of hand calculation (fea/beam/spots.py):
 # [least, median, largest] per kind of place, the outer two widened by the margin; and the proportions measured.
 # Written by benchmarks/calibration.py; do not edit.
 

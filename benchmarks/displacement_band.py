@@ -1,4 +1,4 @@
-"""Measures how far solids of links lie from the plain beam, against the bounds of ``fea/displacement_band.py``.
+"""Measures how far solids of links lie from the plain beam, against the bounds of ``fea/frame/displacement_band.py``.
 
     python -m benchmarks.displacement_band [SEED [COUNT]]
 
@@ -14,15 +14,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.displacement_band import bore_gives, bounds, zones
-from fea.frame import FrameSolution, solve_frame
-from fea.frame_model import FrameElement, FrameModel, NodeLoad, Support
-from fea.link_loads import DriveCouple, LinkLoads, PinLoad
-from fea.solid import SolidSolution, solve_solid
-from geometry.body_rules import check_body
-from geometry.errors import CannotRunError, CaseError
-from geometry.mesh import MeshSettings, mesh_body
-from geometry.part import Bar, Body, HoleRow, Pin, Tube
+from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
+from fea.frame.displacement_band import bore_gives, bounds, zones
+from fea.frame.linear import FrameSolution, solve_frame
+from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from fea.solid.solution import SolidSolution, solve_solid
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.meshing.mesh import MeshSettings, mesh_body
+from geometry.parts.body_rules import check_body
+from geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
 
 FORCE = 100.0
 WAYS = {0: "pulled", 1: "bent", 2: "bent out of the plane"}

@@ -25,18 +25,18 @@ from typing import Any
 import numpy as np
 from record import save
 
-from fea.link_envelope import link_envelope
-from fea.link_history import link_histories
-from fea.solid import solve_solid
-from fea.solve import Method, available_methods
-from fea.space import displacement_space
-from fea.stress import stress_field
-from fea.threads import bounded
-from geometry.mesh import MeshSettings, mesh_body
-from loads.bearing import WIDE
-from loads.case import Case
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
+from fea.common.threads import bounded
+from fea.motion.link_envelope import link_envelope
+from fea.motion.link_history import link_histories
+from fea.solid.solution import solve_solid
+from fea.solid.solve import Method, available_methods
+from fea.solid.space import displacement_space
+from fea.solid.stress import stress_field
+from geometry.meshing.mesh import MeshSettings, mesh_body
+from loads.case.case import Case
+from loads.case.case_file import read_case
+from loads.records.bearing import WIDE
+from loads.states.case_motion import solve_case_motion
 
 POSES = 360
 REPEATS = 3

@@ -21,21 +21,21 @@ sys.path[:0] = [str(ROOT)]
 from record import Stopwatch, save  # noqa: E402
 from solvers import NU, E, grid  # noqa: E402
 
-from fea.elasticity import assemble_stiffness  # noqa: E402
-from fea.link_envelope import link_envelope  # noqa: E402
-from fea.link_history import link_histories  # noqa: E402
-from fea.solid import solve_solid  # noqa: E402
-from fea.solve import available_methods, factorise  # noqa: E402
-from fea.space import displacement_space  # noqa: E402
-from fea.stress import stress_field  # noqa: E402
-from fea.supports import isostatic_supports  # noqa: E402
-from fea.threads import bounded  # noqa: E402
-from fea.two_level import LinearLevel  # noqa: E402
-from geometry.mesh import MeshSettings, mesh_body  # noqa: E402
-from geometry.tagged_mesh import TaggedMesh  # noqa: E402
-from loads.bearing import WIDE  # noqa: E402
-from loads.case_file import read_case  # noqa: E402
-from loads.case_motion import solve_case_motion  # noqa: E402
+from fea.common.threads import bounded  # noqa: E402
+from fea.motion.link_envelope import link_envelope  # noqa: E402
+from fea.motion.link_history import link_histories  # noqa: E402
+from fea.solid.elasticity import assemble_stiffness  # noqa: E402
+from fea.solid.solution import solve_solid  # noqa: E402
+from fea.solid.solve import available_methods, factorise  # noqa: E402
+from fea.solid.space import displacement_space  # noqa: E402
+from fea.solid.stress import stress_field  # noqa: E402
+from fea.solid.supports import isostatic_supports  # noqa: E402
+from fea.solid.two_level import LinearLevel  # noqa: E402
+from geometry.meshing.mesh import MeshSettings, mesh_body  # noqa: E402
+from geometry.meshing.tagged_mesh import TaggedMesh  # noqa: E402
+from loads.case.case_file import read_case  # noqa: E402
+from loads.records.bearing import WIDE  # noqa: E402
+from loads.states.case_motion import solve_case_motion  # noqa: E402
 
 MOTION, ENVELOPE, LOADS = (36, 360, 3600, 36_000), (36, 360, 3600), (1, 2, 4, 8, 16)
 LINK = "AE"

@@ -11,11 +11,11 @@ import time
 
 import numpy as np
 
-from geometry.motion import solve_motion
-from loads.actions import PartMass, StatedLoad
-from loads.applied import PointLoad
-from loads.case_file import read_case
-from loads.kinetostatics import solve_kinetostatics
+from geometry.linkage.motion import solve_motion
+from loads.case.case_file import read_case
+from loads.records.applied import PointLoad
+from loads.states.actions import PartMass, StatedLoad
+from loads.states.kinetostatics import solve_kinetostatics
 
 POSES = 100_000
 REPEATS = 3

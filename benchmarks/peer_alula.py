@@ -8,14 +8,14 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from fea.elasticity import assemble_stiffness
-from fea.quadrature import surface_quadrature
-from fea.solve import factorise
-from fea.space import DisplacementSpace, displacement_space
-from fea.stress import stress_field, von_mises
-from fea.threads import bounded
-from fea.two_level import linear_level
-from geometry.tagged_mesh import TaggedMesh
+from fea.common.threads import bounded
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.quadrature import surface_quadrature
+from fea.solid.solve import factorise
+from fea.solid.space import DisplacementSpace, displacement_space
+from fea.solid.stress import stress_field, von_mises
+from fea.solid.two_level import linear_level
+from geometry.meshing.tagged_mesh import TaggedMesh
 
 E, NU = 2900.0, 0.38
 

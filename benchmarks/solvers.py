@@ -72,17 +72,17 @@ def measured(path: Path, solver: str, threads: int) -> dict[str, Any]:
         return value
 
     def imported() -> None:
-        import fea.solid  # noqa: F401
+        import fea.solid.solution  # noqa: F401
 
     stage("import", imported)
-    from fea.elasticity import assemble_stiffness
-    from fea.solve import factorise
-    from fea.space import displacement_space
-    from fea.stress import stress_field
-    from fea.supports import isostatic_supports, rigid_motions
-    from fea.threads import bounded
-    from fea.two_level import LinearLevel
-    from geometry.tagged_mesh import TaggedMesh
+    from fea.common.threads import bounded
+    from fea.solid.elasticity import assemble_stiffness
+    from fea.solid.solve import factorise
+    from fea.solid.space import displacement_space
+    from fea.solid.stress import stress_field
+    from fea.solid.supports import isostatic_supports, rigid_motions
+    from fea.solid.two_level import LinearLevel
+    from geometry.meshing.tagged_mesh import TaggedMesh
 
     def read() -> TaggedMesh:
         with np.load(path) as file:

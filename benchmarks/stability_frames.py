@@ -7,14 +7,14 @@ from scipy.sparse.linalg import splu
 
 from benchmarks.stability_report import Row, figure, table, timed
 from benchmarks.stability_solids import box
-from fea.beam import euler_load
-from fea.column_factor import AxialForce, column_factors
-from fea.corotational import buckling_factor
-from fea.elasticity import assemble_stiffness
-from fea.frame import ALL_DOFS, FrameElement, FrameModel, FrameSolution, NodeLoad, Support, solve_frame
-from fea.space import displacement_space
-from fea.supports import isostatic_supports
-from geometry.part import Section
+from fea.beam.column_factor import AxialForce, column_factors
+from fea.beam.theory import euler_load
+from fea.frame.corotational import buckling_factor
+from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, FrameSolution, NodeLoad, Support, solve_frame
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.space import displacement_space
+from fea.solid.supports import isostatic_supports
+from geometry.parts.part import Section
 
 SECTION = Section(area=8.0, i_y=2.0, i_z=3.0, torsion=4.0, half_y=1.0, half_z=1.0, round=False)
 YOUNG, LENGTH = 2900.0, 100.0

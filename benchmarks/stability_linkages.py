@@ -7,20 +7,20 @@ from contextlib import contextmanager
 import numpy as np
 
 from benchmarks.stability_report import Row, figure, table, timed
-from geometry.continuation import DeadPointError
-from geometry.errors import CaseError
-from geometry.fourbar import FourBar
-from geometry.grashof import classify
-from geometry.linkage import Joint, Link, Linkage
-from geometry.motion import solve_motion
-from geometry.pose import solve_pose
-from geometry.synthesis import synthesise
-from loads import statics
-from loads.applied import Load, PointLoad
-from loads.case_file import read_case
-from loads.inertia import acting_loads
-from loads.masses import part_mass
-from loads.statics import NEARLY_SINGULAR, Drive, Reactions, solve_statics
+from geometry.base.errors import CaseError
+from geometry.linkage.continuation import DeadPointError
+from geometry.linkage.linkage import Joint, Link, Linkage
+from geometry.linkage.motion import solve_motion
+from geometry.linkage.pose import solve_pose
+from geometry.mechanisms.fourbar import FourBar
+from geometry.mechanisms.grashof import classify
+from geometry.mechanisms.synthesis import synthesise
+from loads.case.case_file import read_case
+from loads.records.applied import Load, PointLoad
+from loads.states.inertia import acting_loads
+from loads.states.masses import part_mass
+from loads.statics import statics
+from loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions, solve_statics
 
 DECADES = tuple(10.0**-k for k in range(10))
 """Distance from the dead point [degrees]."""

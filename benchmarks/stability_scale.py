@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 
 from benchmarks.stability_report import Row, figure, table, timed
-from fea.check import check_case, solve_case_statics
-from fea.cut_free import link_loads
-from fea.solid import solve_solid
-from fea.solid_result import link_task
-from fea.stress import stress_field, von_mises
-from geometry.errors import AlulaError
-from geometry.mesh import MeshSettings, mesh_body
-from loads.bearing import WIDE
-from loads.case_file import validate
-from loads.statics import Reactions
+from fea.beam.cut_free import link_loads
+from fea.check.run import check_case, solve_case_statics
+from fea.check.solid_result import link_task
+from fea.solid.solution import solve_solid
+from fea.solid.stress import stress_field, von_mises
+from geometry.base.errors import AlulaError
+from geometry.meshing.mesh import MeshSettings, mesh_body
+from loads.case.case_file import validate
+from loads.records.bearing import WIDE
+from loads.statics.statics import Reactions
 
 CASE = """
 schema_version = 1

@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 
 from benchmarks.stability_report import Row, figure, table, timed
-from fea.beam import BeamLoads, PointLoad, deflection, internal_forces
-from fea.elasticity import assemble_stiffness
-from fea.error_estimate import ErrorEstimate, energy_density, estimate_error
-from fea.frame import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, solve_frame
-from fea.quadrature import surface_quadrature, volume_quadrature
-from fea.solve import Method, factorise
-from fea.space import DisplacementSpace, displacement_space
-from fea.stress import stress_field, von_mises
-from fea.supports import isostatic_supports
-from fea.two_level import linear_level
-from geometry.errors import CannotRunError
-from geometry.part import Section
-from geometry.tagged_mesh import TaggedMesh
+from fea.beam.theory import BeamLoads, PointLoad, deflection, internal_forces
+from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from fea.refine.error_estimate import ErrorEstimate, energy_density, estimate_error
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.quadrature import surface_quadrature, volume_quadrature
+from fea.solid.solve import Method, factorise
+from fea.solid.space import DisplacementSpace, displacement_space
+from fea.solid.stress import stress_field, von_mises
+from fea.solid.supports import isostatic_supports
+from fea.solid.two_level import linear_level
+from geometry.base.errors import CannotRunError
+from geometry.meshing.tagged_mesh import TaggedMesh
+from geometry.parts.part import Section
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "tests"))
 from known_solutions import NU, PRESSURE, kirsch, lame, tensor
@@ -332,8 +332,8 @@ def mesh_quality() -> Row:
 
 def stress_error(found: Solved, exact: Stress, nu: float) -> float:
     """True error in the energy norm [√(N mm)]: of the elements' own stress, against the exact one."""
-    from fea.elasticity import reference_basis
-    from fea.error_estimate import DEGREE, _own_stress
+    from fea.refine.error_estimate import DEGREE, _own_stress
+    from fea.solid.elasticity import reference_basis
 
     space = found.space
     _, W, phi, gradient = reference_basis(space, DEGREE)

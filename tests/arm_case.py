@@ -2,7 +2,7 @@
 
 import tomllib
 
-from loads.case_file import validate
+from loads.case.case_file import validate
 
 ARM = """
 schema_version = 1

@@ -4,10 +4,10 @@ import tomllib
 from collections.abc import Sequence
 from typing import Any
 
-from geometry.ornithopter import OrnithopterRules
-from loads.case import Case
-from loads.case_file import read_text, validate
-from loads.ornithopter_case import ornithopter_settings
+from geometry.mechanisms.ornithopter import OrnithopterRules
+from loads.case.case import Case
+from loads.case.case_file import read_text, validate
+from loads.case.ornithopter_case import ornithopter_settings
 
 
 def edited(name: str, entries: Sequence[str]) -> Case:

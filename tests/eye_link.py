@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from fea.beam import BeamCheck, check_beam
-from fea.cut_free import beam_loads
-from fea.link_loads import LinkLoads, PinLoad
-from fea.refinement import LinkTask
-from geometry.part import Body, HoleRow, Pin, Tube
+from fea.beam.cut_free import beam_loads
+from fea.beam.theory import BeamCheck, check_beam
+from fea.common.link_loads import LinkLoads, PinLoad
+from fea.refine.refinement import LinkTask
+from geometry.parts.part import Body, HoleRow, Pin, Tube
 
 TUBE = Tube(
     shape="tube",

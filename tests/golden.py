@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from loads.case_file import built_in_cases, read_text
+from loads.case.case_file import built_in_cases, read_text
 
 FOLDER = Path(__file__).parent / "regression" / "golden"
 EXACT, MESHED = 1e-9, 1e-6
@@ -67,7 +67,7 @@ def numbers(data: Any, path: str = "") -> Iterator[tuple[str, float | str | None
 
 def run(name: str) -> dict[str, float | str | None]:
     """Run the command of a golden result and return its numbers by path."""
-    from reports.cli import app
+    from reports.commands.cli import app
 
     told = io.StringIO()
     with contextlib.redirect_stdout(told), contextlib.redirect_stderr(io.StringIO()), contextlib.suppress(SystemExit):

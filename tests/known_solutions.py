@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from fea.elasticity import assemble_stiffness
-from fea.quadrature import surface_quadrature
-from fea.solve import factorise
-from fea.space import displacement_space
-from fea.supports import isostatic_supports
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.quadrature import surface_quadrature
+from fea.solid.solve import factorise
+from fea.solid.space import displacement_space
+from fea.solid.supports import isostatic_supports
 
 E, NU = 2900.0, 0.38
 PRESSURE, INNER, OUTER = 10.0, 1.0, 2.0

@@ -5,11 +5,11 @@ import math
 import numpy as np
 from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, scotch_yoke, six_bar, slider_crank
 
-from geometry.linkage import Linkage
-from geometry.pose import Pose, solve_pose
-from loads.actions import PartMass, StatedLoad
-from loads.applied import BodyForce, LineLoad, PointLoad
-from loads.statics import Drive
+from geometry.linkage.linkage import Linkage
+from geometry.linkage.pose import Pose, solve_pose
+from loads.records.applied import BodyForce, LineLoad, PointLoad
+from loads.states.actions import PartMass, StatedLoad
+from loads.statics.statics import Drive
 
 CRANK = math.radians(40.0)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
-COMMAND = [sys.executable, "-c", "from reports.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from reports.commands.cli import main; main()"]
 BEAM = ("check", "owl-wing-static", "--fidelity", "beam")
 WRITING = (
     "import json, os, sys\n"

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from loads.applied import shifted
-from loads.case import Case
-from loads.case_file import validate
+from loads.case.case import Case
+from loads.case.case_file import validate
+from loads.records.applied import shifted
 
 BAR = {
     "shape": "bar",

@@ -3,7 +3,7 @@
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
-from geometry.tagged_mesh import TaggedMesh
+from geometry.meshing.tagged_mesh import TaggedMesh
 
 
 def _quadratic(points, cells, holes):

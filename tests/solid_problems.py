@@ -1,6 +1,6 @@
 """Boundary-value problems on structured meshes, for the published benchmarks: fixed faces, symmetry, pressure.
 
-Links are free bodies, so ``fea.solid`` offers no fixed faces; here they are put on top of the same space,
+Links are free bodies, so ``fea.solid.solution`` offers no fixed faces; here they are put on top of the same space,
 stiffness, solver and quadrature.
 """
 
@@ -12,15 +12,15 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from fea.convergence import GridConvergence, grid_convergence, observed_order
-from fea.elasticity import assemble_stiffness, jacobians, reference_basis, stress
-from fea.error_estimate import energy_density, energy_factor, estimate_error
-from fea.quadrature import surface_quadrature
-from fea.solve import factorise
-from fea.space import EDGES, displacement_space
-from fea.stress import stress_field
-from fea.supports import rigid_motions
-from geometry.tagged_mesh import TaggedMesh
+from fea.refine.convergence import GridConvergence, grid_convergence, observed_order
+from fea.refine.error_estimate import energy_density, energy_factor, estimate_error
+from fea.solid.elasticity import assemble_stiffness, jacobians, reference_basis, stress
+from fea.solid.quadrature import surface_quadrature
+from fea.solid.solve import factorise
+from fea.solid.space import EDGES, displacement_space
+from fea.solid.stress import stress_field
+from fea.solid.supports import rigid_motions
+from geometry.meshing.tagged_mesh import TaggedMesh
 
 SIDES = ("u0", "u1", "v0", "v1", "w0", "w1")
 

@@ -98,5 +98,5 @@ def test_the_command_runs_from_another_folder(installed, tmp_path):
 
 def test_the_command_line_imports_late(installed, tmp_path):
     slow = {"numpy", "scipy", "skfem", "gmsh", "pyvista", "matplotlib", "pint", "pydantic", "meshio"}
-    script = f"import sys, reports.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
+    script = f"import sys, reports.commands.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
     assert run(installed / "bin" / "python", "-c", script, cwd=tmp_path).split() == []

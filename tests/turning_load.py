@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.link_history import LineHistory, LinkHistory
-from fea.quadrature import volume_quadrature
-from geometry.part import Bar, Body, Pin, PlainEnd
-from loads.actions import PartMass
+from fea.motion.link_history import LineHistory, LinkHistory
+from fea.solid.quadrature import volume_quadrature
+from geometry.parts.part import Bar, Body, Pin, PlainEnd
+from loads.states.actions import PartMass
 
 L, RHO, POSES = 20.0, 1.2e-9, 24
 TURN = np.linspace(0.0, 2.0 * math.pi, POSES, endpoint=False)

@@ -15,14 +15,14 @@ from fuzz.guard import watched
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from geometry.errors import CaseError
-from geometry.units import EXAMPLES, parse
-from loads.case import Case
-from loads.case_file import built_in_cases, read_case, read_companion, validate
-from loads.claim import Claim, read_printed
-from loads.explain import sentence
-from loads.expression import Path as NamePath
-from loads.expression import Value, evaluate
+from geometry.base.errors import CaseError
+from geometry.base.units import EXAMPLES, parse
+from loads.case.case import Case
+from loads.case.case_file import built_in_cases, read_case, read_companion, validate
+from loads.records.claim import Claim, read_printed
+from loads.text.explain import sentence
+from loads.text.expression import Path as NamePath
+from loads.text.expression import Value, evaluate
 
 LONGEST_SENTENCE = 6000
 """Characters: a sentence may list names, but never the file."""
@@ -89,7 +89,7 @@ def case_tables(tables: dict[str, Any]) -> bool:
 
 def override(text: str) -> bool:
     """Any text behind ``--set``."""
-    from loads import case_file
+    from loads.case import case_file
 
     tables = starter_tables()
     with watched():

@@ -8,11 +8,11 @@ from pathlib import Path
 import programs
 import pytest
 
-from geometry.child import run as run_child
-from geometry.errors import CannotRunError
-from geometry.mesh import COARSE, mesh_body
-from geometry.part import Bar, Body, Pin
-from reports import figures
+from geometry.base.child import run as run_child
+from geometry.base.errors import CannotRunError
+from geometry.meshing.mesh import COARSE, mesh_body
+from geometry.parts.part import Bar, Body, Pin
+from reports.figures import figures
 
 resource = pytest.importorskip("resource")
 BODY = Body(
@@ -157,7 +157,10 @@ def test_a_folder_that_may_not_be_written(tmp_path: Path, parent: str, own: str)
 
 
 def test_memory_that_runs_out_is_status_4(tmp_path: Path) -> None:
-    code = "import reports.cli as c, fea.check\ndef f(*a, **k): raise MemoryError\nfea.check.check_case = f\nc.main()"
+    code = (
+        "import reports.commands.cli as c, fea.check.run as run\n"
+        "def f(*a, **k): raise MemoryError\nrun.check_case = f\nc.main()"
+    )
     command = [sys.executable, "-c", code, *programs.BEAM]
     done = subprocess.run(command, env=programs.environment(), capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 4

@@ -5,10 +5,10 @@ import tomllib
 import numpy as np
 import pytest
 
-from geometry.closure import LoopClosure
-from geometry.errors import CaseError
-from loads.case_file import read_case, read_text, validate
-from loads.claim import read_printed
+from geometry.base.errors import CaseError
+from geometry.linkage.closure import LoopClosure
+from loads.case.case_file import read_case, read_text, validate
+from loads.records.claim import read_printed
 
 WING = "owl-wing-flight"
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry import child
-from reports import figures
+from geometry.base import child
+from reports.figures import figures
 
 FAR = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -57,7 +57,7 @@ def test_a_worker_reads_its_request_and_no_more(tmp_path: Path) -> None:
     """A request for nothing draws nothing and imports no graphics library."""
     (tmp_path / "pyvista.py").write_text("raise SystemExit(9)")
     (tmp_path / "none.json").write_text(json.dumps({}))
-    command = child.module_command("reports.figures_worker", str(tmp_path), "none.json")
+    command = child.module_command("reports.figures.figures_worker", str(tmp_path), "none.json")
     environment = child.environment() | {"PYTHONPATH": f"{Path(figures.__file__).parents[1]}:{tmp_path}"}
     assert child.run(command, environment=environment, time_limit=60.0)[0] == 0
     assert sys.executable in command

@@ -10,16 +10,16 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from fea.check import check_case
-from fea.claims import check_claims
-from geometry.errors import CaseError
-from loads.case import Case
-from loads.case_file import read_case, read_companion, read_text, validate
-from reports.claims import as_markdown, as_text
-from reports.console import print_result
-from reports.folder import write_report
-from reports.html import render
-from reports.record import as_json
+from fea.check.run import check_case
+from fea.claims.audit import check_claims
+from geometry.base.errors import CaseError
+from loads.case.case import Case
+from loads.case.case_file import read_case, read_companion, read_text, validate
+from reports.page.folder import write_report
+from reports.page.html import render
+from reports.tables.claims import as_markdown, as_text
+from reports.tables.console import print_result
+from reports.tables.record import as_json
 
 OWL = "owl-wing-static"
 HOSTILE = (

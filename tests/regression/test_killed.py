@@ -91,10 +91,11 @@ import itertools, signal
 os.fsync = lambda descriptor: None
 sys.path.insert(0, TESTS)
 import programs
-from fea.check import check_case
-from loads.case_file import read_case
-from reports import html, pictures
-from reports.folder import write_report
+from fea.check.run import check_case
+from loads.case.case_file import read_case
+from reports.page import html
+from reports.page import pictures
+from reports.page.folder import write_report
 result = check_case(read_case(sys.argv[1]), name="starter", fidelity="beam")
 drawn = pictures.draw_pictures(result)
 page = html.render(result, drawn[0])
@@ -210,8 +211,8 @@ CALCULIX = """
 import signal
 import sys
 from pathlib import Path
-from fea import calculix
-from geometry import child
+from fea.calculix import program as calculix
+from geometry.base import child
 def end(number, frame):
     child.stop_all()
     raise KeyboardInterrupt
@@ -259,8 +260,8 @@ def test_interrupted_while_it_writes(tmp_path: Path) -> None:
 def test_an_interruption_that_a_library_swallows_still_ends_the_run(tmp_path: Path) -> None:
     """Exceptions in callbacks and destructors are ignored; the earlier result must not be replaced all the same."""
     text = (
-        "import signal, reports.ending\n"
-        "reports.ending.end_cleanly_on_signals()\n"
+        "import signal, reports.commands.ending\n"
+        "reports.commands.ending.end_cleanly_on_signals()\n"
         "def swallowing(folder):\n"
         "    fill('new')(folder)\n"
         "    try:\n"
@@ -279,7 +280,7 @@ def test_an_interruption_that_a_library_swallows_still_ends_the_run(tmp_path: Pa
 def test_an_interruption_in_a_destructor_prints_no_traceback(tmp_path: Path) -> None:
     """Python told of it with "Exception ignored in ..." before the one sentence; other faults there are still told."""
     text = (
-        "import signal, reports.ending\n"
+        "import signal, reports.commands.ending\n"
         "class Fragile:\n"
         "    def __init__(self, act): self.act = act\n"
         "    def __del__(self): self.act()\n"
@@ -287,7 +288,7 @@ def test_an_interruption_in_a_destructor_prints_no_traceback(tmp_path: Path) -> 
         "    Fragile(lambda: 1 // 0)\n"
         "    Fragile(lambda: signal.raise_signal(signal.SIGTERM))\n"
         "    raise SystemExit(0)\n"
-        "reports.ending.run(app)\n"
+        "reports.commands.ending.run(app)\n"
     )
     done = programs.script(text)
     assert done.returncode == 130

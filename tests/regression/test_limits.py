@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.check import check_case, solve_case_statics
-from fea.verdict import Verdict
-from geometry.errors import CaseError
-from loads.case_file import LARGEST_FILE, read_case, validate
-from loads.case_motion import solve_case_motion
-from loads.case_rules import MOST_RESULTS
-from reports.record import as_json
+from fea.check.run import check_case, solve_case_statics
+from fea.common.verdict import Verdict
+from geometry.base.errors import CaseError
+from loads.case.case_file import LARGEST_FILE, read_case, validate
+from loads.case.case_rules import MOST_RESULTS
+from loads.states.case_motion import solve_case_motion
+from reports.tables.record import as_json
 
 OWL = "owl-wing-static"
 HOLES = '{count=%d,diameter="1 mm",first="40 mm",last="60 mm",along="z"}'

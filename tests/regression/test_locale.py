@@ -74,7 +74,7 @@ def test_decimal_comma(tmp_path: Path, german: dict[str, str]) -> None:
     """Even where the whole process has taken it on, which Python by itself never does for numbers."""
     out = tmp_path / "out"
     switch = "import locale; locale.setlocale(locale.LC_ALL, ''); assert locale.str(0.5) == '0,5'; "
-    code = switch + "from reports.cli import main; main()"
+    code = switch + "from reports.commands.cli import main; main()"
     command = [sys.executable, "-c", code, *programs.BEAM, "-o", str(out)]
     done = subprocess.run(
         command, env=programs.environment(**german), capture_output=True, text=True, timeout=300, check=False
@@ -90,8 +90,8 @@ def test_decimal_comma_in_the_mesher(tmp_path: Path, german: dict[str, str]) -> 
         "import locale; locale.setlocale(locale.LC_ALL, '')\n"
         "from pathlib import Path\n"
         "import sys\n"
-        "from loads.case_file import read_case\n"
-        "from geometry.mesh import COARSE, export_step, mass_properties, mesh_body\n"
+        "from loads.case.case_file import read_case\n"
+        "from geometry.meshing.mesh import COARSE, export_step, mass_properties, mesh_body\n"
         "body = read_case('owl-wing-static').body('GF')\n"
         "export_step({'GF': body}, Path(sys.argv[1]))\n"
         "print(repr(mass_properties(body).volume), len(mesh_body(body, COARSE).cells))\n"

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from geometry.errors import CannotRunError
-from geometry.mesh import mass_properties, mesh_body
-from geometry.part import Body, Pin, Tube
-from geometry.system_libraries import advice
+from geometry.base.errors import CannotRunError
+from geometry.base.system_libraries import advice
+from geometry.meshing.mesh import mass_properties, mesh_body
+from geometry.parts.part import Body, Pin, Tube
 
 FAULT = "libGLU.so.1: cannot open shared object file: No such file or directory"
 

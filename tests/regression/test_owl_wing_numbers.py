@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from loads.actions import actions
-from loads.case_file import read_case, read_companion
-from loads.published import audit
-from loads.statics import solve_statics
+from loads.case.case_file import read_case, read_companion
+from loads.claims.published import audit
+from loads.states.actions import actions
+from loads.statics.statics import solve_statics
 
 
 def test_numbers_of_the_open_wing() -> None:

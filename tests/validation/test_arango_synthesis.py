@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from geometry.synthesis import synthesise
+from geometry.mechanisms.synthesis import synthesise
 
 THETA, PSI = np.radians([0, 20, 5]), np.radians([30, 110, 130])
 

@@ -5,16 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from fea.check import check_case
-from fea.verdict import Verdict
-from geometry.motion import solve_motion
-from geometry.pose import freedom
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
-from loads.inertia import acting_loads
-from loads.masses import laden_masses, part_masses
-from loads.statics import solve_statics
-from reports.mechanism import design_lines, design_of
+from fea.check.run import check_case
+from fea.common.verdict import Verdict
+from geometry.linkage.motion import solve_motion
+from geometry.linkage.pose import freedom
+from loads.case.case_file import read_case
+from loads.states.case_motion import solve_case_motion
+from loads.states.inertia import acting_loads
+from loads.states.masses import laden_masses, part_masses
+from loads.statics.statics import solve_statics
+from reports.tables.mechanism import design_lines, design_of
 
 PUBLISHED = {
     "flapping-wing-reference": (1.9474, 39.085, 21.962),

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from fea.check import check_case
-from fea.verdict import Verdict
-from geometry.motion import solve_motion
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
-from reports.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
+from fea.check.run import check_case
+from fea.common.verdict import Verdict
+from geometry.linkage.motion import solve_motion
+from loads.case.case_file import read_case
+from loads.states.case_motion import solve_case_motion
+from reports.commands.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
 
 
 @pytest.fixture(scope="module")

@@ -5,20 +5,20 @@ import math
 import numpy as np
 import pytest
 
-from fea.check import check_case
-from fea.link_history import link_histories
-from fea.motor_check import motor_outcomes
-from fea.verdict import Verdict
-from geometry.errors import CaseError
-from geometry.ornithopter import OrnithopterRules, variants
-from geometry.pose import freedom
-from loads.actions import PartMass
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
-from loads.inertia import acting_loads, with_carried
-from loads.kinetostatics import solve_kinetostatics
-from loads.masses import part_masses
-from loads.statics import solve_statics
+from fea.check.run import check_case
+from fea.common.verdict import Verdict
+from fea.motion.link_history import link_histories
+from fea.outcomes.motor import motor_outcomes
+from geometry.base.errors import CaseError
+from geometry.linkage.pose import freedom
+from geometry.mechanisms.ornithopter import OrnithopterRules, variants
+from loads.case.case_file import read_case
+from loads.states.actions import PartMass
+from loads.states.case_motion import solve_case_motion
+from loads.states.inertia import acting_loads, with_carried
+from loads.states.kinetostatics import solve_kinetostatics
+from loads.states.masses import part_masses
+from loads.statics.statics import solve_statics
 
 RPM = math.pi / 30.0
 

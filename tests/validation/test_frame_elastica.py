@@ -7,10 +7,10 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipkinc
 
-from fea.beam import euler_load
-from fea.corotational import buckling_factor, solve_large_displacement
-from fea.frame import FrameElement, FrameModel, NodeLoad, Support
-from geometry.part import rectangle, ring
+from fea.beam.theory import euler_load
+from fea.frame.corotational import buckling_factor, solve_large_displacement
+from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support
+from geometry.parts.part import rectangle, ring
 
 ROD = ring(0.5, 0.25)
 E, NU, LENGTH = 1e4, 0.3, 100.0

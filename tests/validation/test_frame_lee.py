@@ -9,9 +9,9 @@ test/referenceData/LeeFrameDeadLoad): displacement of the loaded point down and 
 import numpy as np
 import pytest
 
-from fea.corotational import NoEquilibriumError, solve_large_displacement
-from fea.frame import FrameElement, FrameModel, NodeLoad, Support
-from geometry.part import rectangle
+from fea.frame.corotational import NoEquilibriumError, solve_large_displacement
+from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support
+from geometry.parts.part import rectangle
 
 DOWN = [(4.0306, 4.9238), (7.5944, 8.2901), (11.325, 10.487), (17.606, 13.032), (24.057, 14.798), (34.384, 17.026)]
 SIDE = [(0.45486, 6.2357), (2.1847, 10.247), (4.8272, 13.251), (8.3397, 15.520), (12.551, 17.002)]

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.frame import FrameElement, FrameModel, NodeLoad, Support, solve_frame
-from geometry.part import Section, rectangle, ring
+from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from geometry.parts.part import Section, rectangle, ring
 
 PLANE = frozenset({"uz", "rx", "ry"})
 

@@ -18,9 +18,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fea.corotational import buckling_factor, solve_large_displacement
-from fea.frame import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
-from geometry.part import Section
+from fea.frame.corotational import buckling_factor, solve_large_displacement
+from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
+from geometry.parts.part import Section
 
 YOUNG, HEIGHT, WIDTH, INERTIA = 2400.0, 100.0, 150.0, 3.0
 PLANE = frozenset({"uz", "rx", "ry"})

@@ -11,7 +11,7 @@ from importlib import resources
 
 import pytest
 
-from geometry.flapping import FlappingWing
+from geometry.mechanisms.flapping import FlappingWing
 
 MISPRINTS = {
     ("5", "10", "ground_d_mm"): 24.274,  # printed 24.7, the value of row 20 of the same table

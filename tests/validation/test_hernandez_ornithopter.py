@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from geometry.ornithopter import OrnithopterRules, WingDrive, variants
+from geometry.mechanisms.ornithopter import OrnithopterRules, WingDrive, variants
 
 RPM_150 = 150 * 2 * math.pi / 60
 

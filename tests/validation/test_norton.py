@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from geometry.fourbar import FourBar
-from geometry.slider_crank import SliderCrank
+from geometry.mechanisms.fourbar import FourBar
+from geometry.mechanisms.slider_crank import SliderCrank
 
 FOUR_BAR = FourBar(a=40, b=120, c=80, d=100)
 THETA2 = math.radians(40)

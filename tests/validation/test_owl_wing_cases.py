@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from fea.anchor import wrenches_on_ground
-from fea.check import check_case, solve_case_statics
-from geometry.errors import CaseError
-from loads.aero import air_loads
-from loads.case_file import read_case
-from loads.masses import part_mass
+from fea.check.anchor import wrenches_on_ground
+from fea.check.run import check_case, solve_case_statics
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_case
+from loads.records.aero import air_loads
+from loads.states.masses import part_mass
 
 AIRBORNE = ("owl-wing-flight", "owl-wing-braking")
 ALL = (*AIRBORNE, "owl-wing-closed", "owl-wing-static")

@@ -13,12 +13,12 @@ import math
 import numpy as np
 import pytest
 
-from geometry.pose import Pose
-from loads.actions import actions
-from loads.case import Case
-from loads.case_file import read_case, read_companion
-from loads.published import StaticsAudit, audit, read_matrix
-from loads.statics import Reactions, solve_statics
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.case.case_file import read_case, read_companion
+from loads.claims.published import StaticsAudit, audit, read_matrix
+from loads.states.actions import actions
+from loads.statics.statics import Reactions, solve_statics
 
 # Published unknowns R (section 3.9), N and N m, to four decimals.
 PUBLISHED = {

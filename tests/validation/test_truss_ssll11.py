@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fea.frame import FrameElement, FrameModel, FrameSolution, NodeLoad, Support, solve_frame
-from geometry.part import ring
+from fea.frame.linear import FrameElement, FrameModel, FrameSolution, NodeLoad, Support, solve_frame
+from geometry.parts.part import ring
 
 HINGES = (frozenset({"rz"}), frozenset({"rz"}))
 PLANE = frozenset({"uz", "rx", "ry"})

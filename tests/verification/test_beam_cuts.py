@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fea.beam import BeamLoads, LineLoad, PointLoad, deflection, internal_forces
-from geometry.part import rectangle
+from fea.beam.theory import BeamLoads, LineLoad, PointLoad, deflection, internal_forces
+from geometry.parts.part import rectangle
 
 SECTION = rectangle(7.0, 3.0)
 number = st.floats(-10, 10).map(lambda v: round(v, 3))

@@ -5,16 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from fea.beam import check_beam
-from fea.cut_free import beam_loads
-from fea.link_loads import BodyLoad, DriveCouple, LinkLoads, PinLoad
-from fea.solid import solve_solid
-from fea.stress import stress_field
-from geometry.body_rules import hand_section
-from geometry.mesh import MeshSettings, mass_properties, mesh_body
-from geometry.part import Body, Disc, Pin
-from loads.actions import PartMass
-from loads.bearing import NARROW
+from fea.beam.cut_free import beam_loads
+from fea.beam.theory import check_beam
+from fea.common.link_loads import BodyLoad, DriveCouple, LinkLoads, PinLoad
+from fea.solid.solution import solve_solid
+from fea.solid.stress import stress_field
+from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
+from geometry.parts.body_rules import hand_section
+from geometry.parts.part import Body, Disc, Pin
+from loads.records.bearing import NARROW
+from loads.states.actions import PartMass
 
 E, NU, RHO, OMEGA, HOLE, RADIUS = 2500.0, 0.38, 1.2e-9, 2000.0, 2.0, 10.0
 

@@ -8,15 +8,15 @@ import pytest
 from slotted_lever import slotted_lever
 
 from benchmarks.displacement_band import FORCE, Link
-from fea.check import check_case
-from fea.displacement_band import Zone, bounds, point_bounds, zones
-from fea.frame import solve_frame
-from fea.frame_model import NodeLoad
-from fea.linkage_frame import build_frame
-from geometry.part import Bar, Body, HoleRow, Pin, Tube
-from loads.actions import actions
-from loads.case import Case
-from loads.case_file import read_case
+from fea.check.run import check_case
+from fea.frame.displacement_band import Zone, bounds, point_bounds, zones
+from fea.frame.linear import solve_frame
+from fea.frame.linkage_frame import build_frame
+from fea.frame.model import NodeLoad
+from geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
+from loads.case.case import Case
+from loads.case.case_file import read_case
+from loads.states.actions import actions
 
 
 def two_pins(part, length: float, first: float, last: float, *holes: HoleRow) -> Body:

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 from planar_linkages import joint, link, oscillating_cylinder, slider_crank
 
-from fea.frame import solve_frame
-from fea.linkage_frame import build_frame
-from geometry.continuation import DeadPointError
-from geometry.errors import CaseError
-from geometry.linkage import Linkage
-from geometry.motion import solve_motion
-from geometry.pose import solve_pose
-from loads.actions import PartMass, StatedLoad
-from loads.applied import PointLoad
-from loads.kinetostatics import solve_kinetostatics, torque_by_virtual_work
-from loads.statics import Drive, solve_statics
+from fea.frame.linear import solve_frame
+from fea.frame.linkage_frame import build_frame
+from geometry.base.errors import CaseError
+from geometry.linkage.continuation import DeadPointError
+from geometry.linkage.linkage import Linkage
+from geometry.linkage.motion import solve_motion
+from geometry.linkage.pose import solve_pose
+from loads.records.applied import PointLoad
+from loads.states.actions import PartMass, StatedLoad
+from loads.states.kinetostatics import solve_kinetostatics, torque_by_virtual_work
+from loads.statics.statics import Drive, solve_statics
 
 A, B, OFFSET = 40.0, 120.0, -20.0
 LINKAGE = slider_crank(A, B, OFFSET)

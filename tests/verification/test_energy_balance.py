@@ -23,8 +23,8 @@ from motion_poses import (
     wing_pose,
 )
 
-from geometry.motion import solve_motion
-from loads.kinetostatics import solve_kinetostatics, torque_by_virtual_work
+from geometry.linkage.motion import solve_motion
+from loads.states.kinetostatics import solve_kinetostatics, torque_by_virtual_work
 
 SPEED = 12.0
 TURNING = {

@@ -5,15 +5,15 @@ import pytest
 import solid_meshes
 from turning_load import POSES, RHO, L, history
 
-from fea.link_envelope import link_envelope
-from fea.peaks import von_mises_peaks
-from fea.solid import solve_solid
-from fea.space import displacement_space
-from fea.stress import stress_field
-from fea.unit_loads import TRANSFERS, load_scale, unit_loads
-from fea.unit_solutions import solve_units
-from geometry.material import library
-from loads.bearing import NARROW, WIDE
+from fea.motion.link_envelope import link_envelope
+from fea.motion.peaks import von_mises_peaks
+from fea.motion.unit_loads import TRANSFERS, load_scale, unit_loads
+from fea.motion.unit_solutions import solve_units
+from fea.solid.solution import solve_solid
+from fea.solid.space import displacement_space
+from fea.solid.stress import stress_field
+from geometry.parts.material import library
+from loads.records.bearing import NARROW, WIDE
 
 MATERIAL = library()["pvc-u"]
 E, NU = MATERIAL.youngs_modulus, MATERIAL.poissons_ratio

@@ -7,12 +7,12 @@ import pytest
 import solid_meshes
 from turning_load import POSES, RHO, history
 
-from fea.link_envelope import FATIGUE_ELSEWHERE, link_envelope
-from fea.link_series import level_of, precision
-from fea.refinement import MeshRecord, RefinedSolid
-from fea.solid import solve_solid
-from fea.space import displacement_space
-from geometry.material import library
+from fea.motion.link_envelope import FATIGUE_ELSEWHERE, link_envelope
+from fea.refine.link_series import level_of, precision
+from fea.refine.refinement import MeshRecord, RefinedSolid
+from fea.solid.solution import solve_solid
+from fea.solid.space import displacement_space
+from geometry.parts.material import library
 
 MATERIAL = library()["pvc-u"]
 ELSEWHERE = "at this pose, for which no mesh was refined, fourfold estimate on one mesh"

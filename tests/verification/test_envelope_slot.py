@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from fea.link_envelope import link_envelope
-from fea.link_history import LinkHistory, link_histories
-from fea.solid import solve_solid
-from fea.space import displacement_space
-from fea.stress import stress_field
-from fea.unit_loads import load_scale, unit_loads
-from fea.unit_solutions import solve_units
-from geometry.errors import CaseError
-from geometry.mesh import MeshSettings, mesh_body
-from loads.bearing import NARROW, WIDE
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
+from fea.motion.link_envelope import link_envelope
+from fea.motion.link_history import LinkHistory, link_histories
+from fea.motion.unit_loads import load_scale, unit_loads
+from fea.motion.unit_solutions import solve_units
+from fea.solid.solution import solve_solid
+from fea.solid.space import displacement_space
+from fea.solid.stress import stress_field
+from geometry.base.errors import CaseError
+from geometry.meshing.mesh import MeshSettings, mesh_body
+from loads.case.case_file import read_case
+from loads.records.bearing import NARROW, WIDE
+from loads.states.case_motion import solve_case_motion
 
 LINK, LAWS = "lever-right", (WIDE, NARROW)
 EXACT = 5e-3

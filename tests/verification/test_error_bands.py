@@ -8,13 +8,13 @@ import pytest
 import solid_meshes
 from known_solutions import NU, E
 
-from fea.convergence import grid_convergence
-from fea.error_estimate import estimate_error
-from fea.link_loads import EndLoad, LinkLoads
-from fea.link_series import CHORD, DISPLACEMENT_ORDER, level_of
-from fea.solid import solve_solid
-from fea.stress import stress_field
-from loads.bearing import WIDE
+from fea.common.link_loads import EndLoad, LinkLoads
+from fea.refine.convergence import grid_convergence
+from fea.refine.error_estimate import estimate_error
+from fea.refine.link_series import CHORD, DISPLACEMENT_ORDER, level_of
+from fea.solid.solution import solve_solid
+from fea.solid.stress import stress_field
+from loads.records.bearing import WIDE
 
 FINEST = (32, 8, 4)
 SERIES = ((8, 2, 1), (16, 4, 2), (24, 6, 3), FINEST)

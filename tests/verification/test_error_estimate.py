@@ -6,9 +6,9 @@ import pytest
 import solid_meshes
 from known_solutions import NU, E
 
-from fea.elasticity import jacobians, reference_basis, stress
-from fea.error_estimate import energy_density, estimate_error
-from fea.stress import stress_field
+from fea.refine.error_estimate import energy_density, estimate_error
+from fea.solid.elasticity import jacobians, reference_basis, stress
+from fea.solid.stress import stress_field
 
 DEGREE = 5
 

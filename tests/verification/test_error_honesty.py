@@ -9,14 +9,14 @@ import pytest
 import solid_meshes
 from validation.test_cook import plane_stress
 
-from fea.check import check_case
-from fea.error_estimate import energy_factor
-from fea.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.link_series import Eye, energy_errors, level_of, precision
-from fea.refinement import Effort
-from fea.solid import solve_solid
-from fea.verdict import Verdict
-from loads.bearing import CONTACT_SHORTFALL, NARROW, WIDE
+from fea.check.run import check_case
+from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from fea.common.verdict import Verdict
+from fea.refine.error_estimate import energy_factor
+from fea.refine.link_series import Eye, energy_errors, level_of, precision
+from fea.refine.refinement import Effort
+from fea.solid.solution import solve_solid
+from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE
 
 
 def slender(length):

@@ -5,10 +5,10 @@ import math
 import arm_case
 import pytest
 
-from fea.check import check_case, effort_of
-from fea.refinement import Effort
-from fea.verdict import Verdict
-from geometry.errors import CaseError
+from fea.check.run import check_case, effort_of
+from fea.common.verdict import Verdict
+from fea.refine.refinement import Effort
+from geometry.base.errors import CaseError
 
 
 def checked(effort=None, **changes):

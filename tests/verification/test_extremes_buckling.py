@@ -7,15 +7,15 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from fea.beam import euler_load
-from fea.buckling_check import beyond_strength
-from fea.check import check_case
-from fea.column_factor import AxialForce, column_factors
-from fea.corotational import buckling_factor
-from fea.frame import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, solve_frame
-from fea.verdict import Verdict
-from geometry.part import Section
-from loads.case_file import validate
+from fea.beam.column_factor import AxialForce, column_factors
+from fea.beam.theory import euler_load
+from fea.check.run import check_case
+from fea.common.verdict import Verdict
+from fea.frame.corotational import buckling_factor
+from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from fea.outcomes.buckling import beyond_strength
+from geometry.parts.part import Section
+from loads.case.case_file import validate
 
 STRUT = """
 schema_version = 1

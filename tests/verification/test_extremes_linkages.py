@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from planar_linkages import four_bar
 
-from geometry.continuation import DeadPointError, Track
-from geometry.errors import CannotRunError, CaseError
-from geometry.fourbar import FourBar
-from geometry.grashof import classify
-from geometry.motion import solve_motion
-from geometry.pose import solve_pose
-from geometry.synthesis import synthesise
-from loads.applied import PointLoad
-from loads.case_file import read_case
-from loads.statics import Drive, solve_statics
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.linkage.continuation import DeadPointError, Track
+from geometry.linkage.motion import solve_motion
+from geometry.linkage.pose import solve_pose
+from geometry.mechanisms.fourbar import FourBar
+from geometry.mechanisms.grashof import classify
+from geometry.mechanisms.synthesis import synthesise
+from loads.case.case_file import read_case
+from loads.records.applied import PointLoad
+from loads.statics.statics import Drive, solve_statics
 
 DRIVE = Drive(link="crank", joint="A")
 

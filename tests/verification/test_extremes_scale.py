@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from arm_case import ARM
 
-from fea.check import check_case, solve_case_statics
-from fea.cut_free import link_loads
-from fea.solid import solve_solid
-from fea.solid_result import link_task
-from fea.stress import stress_field, von_mises
-from geometry.mesh import MeshSettings, mesh_body
-from loads.bearing import WIDE
-from loads.case_file import validate
+from fea.beam.cut_free import link_loads
+from fea.check.run import check_case, solve_case_statics
+from fea.check.solid_result import link_task
+from fea.solid.solution import solve_solid
+from fea.solid.stress import stress_field, von_mises
+from geometry.meshing.mesh import MeshSettings, mesh_body
+from loads.case.case_file import validate
+from loads.records.bearing import WIDE
 
 MATERIAL = """
 [materials.own]

@@ -12,21 +12,21 @@ import slender_tube
 from known_solutions import NU, kirsch, solved
 from solid_meshes import bar, box, ring
 
-from fea.check import check_case
-from fea.elasticity import assemble_stiffness
-from fea.error_estimate import estimate_error
-from fea.frame import FrameElement, FrameModel, NodeLoad, Support, solve_frame
-from fea.link_loads import LinkLoads, PinLoad
-from fea.quadrature import surface_quadrature
-from fea.solid import LARGEST_POISSON_RATIO, solve_solid
-from fea.solve import factorise
-from fea.space import displacement_space
-from fea.stress import stress_field
-from fea.supports import isostatic_supports
-from geometry.errors import CannotRunError, CaseError
-from geometry.part import Section
-from loads.bearing import WIDE
-from loads.case_file import read_case
+from fea.check.run import check_case
+from fea.common.link_loads import LinkLoads, PinLoad
+from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from fea.refine.error_estimate import estimate_error
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.quadrature import surface_quadrature
+from fea.solid.solution import LARGEST_POISSON_RATIO, solve_solid
+from fea.solid.solve import factorise
+from fea.solid.space import displacement_space
+from fea.solid.stress import stress_field
+from fea.solid.supports import isostatic_supports
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.parts.part import Section
+from loads.case.case_file import read_case
+from loads.records.bearing import WIDE
 
 
 def pulled(nu, **options):
@@ -200,7 +200,7 @@ def test_a_slender_tube_through_the_whole_program(ratio):
 
 
 def test_poissons_ratio_beyond_the_boundary_is_refused_before_anything_is_meshed(monkeypatch):
-    monkeypatch.setattr("fea.refinement.mesh_body", lambda *a, **k: pytest.fail("meshed"))
-    monkeypatch.setattr("fea.solid.LARGEST_POISSON_RATIO", 0.3)
+    monkeypatch.setattr("fea.refine.refinement.mesh_body", lambda *a, **k: pytest.fail("meshed"))
+    monkeypatch.setattr("fea.solid.solution.LARGEST_POISSON_RATIO", 0.3)
     with pytest.raises(CaseError, match=r"poissons_ratio: it is 0\.38"):
         check_case(read_case("owl-wing-static"), name="owl-wing-static", fidelity="solid")

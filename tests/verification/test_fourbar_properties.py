@@ -7,9 +7,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from geometry.errors import CaseError
-from geometry.fourbar import FourBar
-from geometry.slider_crank import SliderCrank
+from geometry.base.errors import CaseError
+from geometry.mechanisms.fourbar import FourBar
+from geometry.mechanisms.slider_crank import SliderCrank
 
 lengths = st.floats(0.05, 20.0)
 angles = st.floats(-math.pi, math.pi)

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fea.frame import solve_frame
-from fea.linkage_frame import build_frame
-from loads.applied import PointLoad
-from loads.case import Case
-from loads.case_file import validate
+from fea.frame.linear import solve_frame
+from fea.frame.linkage_frame import build_frame
+from loads.case.case import Case
+from loads.case.case_file import validate
+from loads.records.applied import PointLoad
 
 SIDE, ARM, FORCE = 60.0, 40.0, 2.0
 CASE = {

@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.corotational import solve_large_displacement
-from fea.frame import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
-from geometry.errors import CannotRunError
-from geometry.part import ring
+from fea.frame.corotational import solve_large_displacement
+from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
+from geometry.base.errors import CannotRunError
+from geometry.parts.part import ring
 
 TUBE = ring(5.0, 2.5)
 PIN = ALL_DOFS - {"rz"}

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from fea.beam import BeamLoads, PointLoad, deflection, internal_forces
-from fea.frame import FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
-from geometry.part import Section, rectangle, ring
+from fea.beam.theory import BeamLoads, PointLoad, deflection, internal_forces
+from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
+from geometry.parts.part import Section, rectangle, ring
 
 E, NU = 2400.0, 0.35
 BAR = rectangle(6.0, 2.0)

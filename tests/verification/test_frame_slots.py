@@ -21,16 +21,16 @@ from slotted_cases import (
     slider_crank,
 )
 
-from fea.corotational import _gap, _Path, _State, solve_large_displacement, subdivide
-from fea.frame import FrameModel, Guide, solve_frame
-from fea.joint_forces import PINNED_FRAME, joint_forces
-from fea.large_displacement import examine
-from fea.linkage_frame import build_frame
-from geometry.errors import CannotRunError
-from loads.applied import PointLoad
-from loads.case import Case
-from loads.case_file import read_case
-from loads.statics import solve_statics
+from fea.frame.corotational import _gap, _Path, _State, solve_large_displacement, subdivide
+from fea.frame.joint_forces import PINNED_FRAME, joint_forces
+from fea.frame.large_displacement import examine
+from fea.frame.linear import FrameModel, Guide, solve_frame
+from fea.frame.linkage_frame import build_frame
+from geometry.base.errors import CannotRunError
+from loads.case.case import Case
+from loads.case.case_file import read_case
+from loads.records.applied import PointLoad
+from loads.statics.statics import solve_statics
 
 
 def bent_cylinder() -> Case:

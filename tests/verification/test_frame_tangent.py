@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from fea.corotational_element import CorotationalElements
-from fea.frame import FrameElement, FrameModel
-from geometry.part import rectangle
+from fea.frame.corotational_element import CorotationalElements
+from fea.frame.linear import FrameElement, FrameModel
+from geometry.parts.part import rectangle
 
 MODEL = FrameModel(
     nodes=np.array([[0.0, 0, 0], [88, 10, 5]]),
@@ -62,8 +62,8 @@ def test_rigid_motion_strains_nothing(rigid: np.ndarray, shift: np.ndarray) -> N
 
 
 def test_tangent_at_rest_is_the_linear_stiffness() -> None:
-    from fea.frame_element import natural_deformations, natural_flexibility
-    from fea.frame_system import FrameSystem
+    from fea.frame.element import natural_deformations, natural_flexibility
+    from fea.frame.system import FrameSystem
 
     rest = np.zeros((1, 2, 3)), np.tile(np.eye(3), (1, 2, 1, 1))
     e, length = MODEL.elements[0], MODEL.length(0)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fea.check import check_case
-from fea.corotational import NoEquilibriumError, buckling_factor, solve_large_displacement
-from fea.linkage_frame import build_frame
-from fea.verdict import LINKAGE, Verdict
-from loads.applied import PointLoad
-from loads.case import Case
-from loads.case_file import read_case, validate
+from fea.check.run import check_case
+from fea.common.verdict import LINKAGE, Verdict
+from fea.frame.corotational import NoEquilibriumError, buckling_factor, solve_large_displacement
+from fea.frame.linkage_frame import build_frame
+from loads.case.case import Case
+from loads.case.case_file import read_case, validate
+from loads.records.applied import PointLoad
 
 HEIGHT, WIDTH = 120.0, 90.0
 

@@ -9,16 +9,16 @@ from hypothesis import strategies as st
 from motion_poses import drive_of, forces_of, masses_of, weights_of
 from planar_linkages import OPEN_WING, four_bar, joint, link, six_bar
 
-from geometry.continuation import DeadPointError
-from geometry.errors import CaseError
-from geometry.fourbar import FourBar
-from geometry.linkage import Linkage
-from geometry.motion import Motion, solve_motion
-from geometry.pose import solve_pose
-from loads.actions import PartMass, StatedLoad
-from loads.applied import PointLoad
-from loads.kinetostatics import solve_kinetostatics, torque_by_virtual_work
-from loads.statics import Drive
+from geometry.base.errors import CaseError
+from geometry.linkage.continuation import DeadPointError
+from geometry.linkage.linkage import Linkage
+from geometry.linkage.motion import Motion, solve_motion
+from geometry.linkage.pose import solve_pose
+from geometry.mechanisms.fourbar import FourBar
+from loads.records.applied import PointLoad
+from loads.states.actions import PartMass, StatedLoad
+from loads.states.kinetostatics import solve_kinetostatics, torque_by_virtual_work
+from loads.statics.statics import Drive
 
 RANGE = np.radians(np.linspace(228.15, 130.0, 25))
 factors = st.floats(0.93, 1.07)

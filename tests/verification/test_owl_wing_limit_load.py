@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from fea.corotational import NoEquilibriumError, solve_large_displacement
-from fea.linkage_frame import build_frame
-from loads.applied import PointLoad
-from loads.case_file import read_case
-from loads.statics import Drive
+from fea.frame.corotational import NoEquilibriumError, solve_large_displacement
+from fea.frame.linkage_frame import build_frame
+from loads.case.case_file import read_case
+from loads.records.applied import PointLoad
+from loads.statics.statics import Drive
 
 EI = 2400.0 * np.pi / 64.0 * (5.0**4 - 2.5**4)
 WEIGHT = 0.25

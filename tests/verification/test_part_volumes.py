@@ -10,9 +10,9 @@ import pytest
 from scipy.integrate import quad
 from skfem import Basis, ElementTetP2, Functional, MeshTet2
 
-from geometry.element_geometry import triangle_areas, volumes_and_moments
-from geometry.mesh import COARSE, mass_properties, mesh_body
-from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from geometry.meshing.element_geometry import triangle_areas, volumes_and_moments
+from geometry.meshing.mesh import COARSE, mass_properties, mesh_body
+from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 LENGTH = 20.0
 PINS = (Pin(name="A", x=0.0, y=0.0, diameter=1.5), Pin(name="B", x=LENGTH, y=0.0, diameter=1.5))

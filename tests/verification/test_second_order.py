@@ -7,18 +7,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fea.beam import internal_forces
-from fea.buckling_history import with_second_order
-from fea.check import check_case
-from fea.column_factor import Stretch
-from fea.cut_free import beam_loads
-from fea.link_history import link_histories
-from fea.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
-from fea.second_order import Bend, between_stations, on_its_pins
-from fea.verdict import Verdict
-from loads.case import Case
-from loads.case_file import validate
-from loads.case_motion import solve_case_motion
+from fea.beam.column_factor import Stretch
+from fea.beam.cut_free import beam_loads
+from fea.beam.theory import internal_forces
+from fea.check.run import check_case
+from fea.check.second_order import Bend, between_stations, on_its_pins
+from fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
+from fea.common.verdict import Verdict
+from fea.motion.buckling_history import with_second_order
+from fea.motion.link_history import link_histories
+from loads.case.case import Case
+from loads.case.case_file import validate
+from loads.states.case_motion import solve_case_motion
 
 L, EI = 100.0, 1e4
 EULER = math.pi**2 * EI / L**2

@@ -12,8 +12,8 @@ import pytest
 from skfem import Basis, ElementQuad2, ElementTriP2, LinearForm, MeshQuad, MeshTri, condense, solve
 from skfem.models.poisson import laplace
 
-from fea.section_stress import equivalent_stress, rim_shear, section_stress
-from geometry.part import rectangle, ring
+from fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
+from geometry.parts.part import rectangle, ring
 
 SECTIONS = {
     "tall": rectangle(10.0, 2.5),

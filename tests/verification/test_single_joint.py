@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from fea.check import check_case
-from fea.result import CheckResult
-from geometry.errors import CaseError
-from loads.case_file import validate
-from loads.case_motion import solve_case_motion
+from fea.check.run import check_case
+from fea.outcomes.result import CheckResult
+from geometry.base.errors import CaseError
+from loads.case.case_file import validate
+from loads.states.case_motion import solve_case_motion
 
 LENGTH, WIDTH, THICKNESS, FORCE, YOUNG, SHEAR = 60.0, 8.0, 4.0, 2.0, 2500.0, 2500.0 / 2.72
 SERVO = """

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from geometry.element_geometry import triangle_areas
-from geometry.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
-from geometry.part import Bar, Body, Disc, Pin, PlainEnd
+from geometry.meshing.element_geometry import triangle_areas
+from geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
+from geometry.parts.part import Bar, Body, Disc, Pin, PlainEnd
 
 T = 3.0
 

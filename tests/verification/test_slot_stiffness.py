@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 from slotted_lever import slotted_lever
 
-from fea.beam import deflection, internal_forces
-from fea.buckling_check import link_factors
-from fea.column_factor import AxialForce, Stretch, column_factors
-from fea.corotational import buckling_factor, solve_large_displacement
-from fea.cut_free import beam_loads, link_loads
-from fea.flanks import flanks_of
-from fea.frame import solve_frame
-from fea.frame_model import Support
-from fea.linkage_frame import build_frame
-from loads.actions import actions
-from loads.statics import solve_statics
+from fea.beam.column_factor import AxialForce, Stretch, column_factors
+from fea.beam.cut_free import beam_loads, link_loads
+from fea.beam.flanks import flanks_of
+from fea.beam.theory import deflection, internal_forces
+from fea.frame.corotational import buckling_factor, solve_large_displacement
+from fea.frame.linear import solve_frame
+from fea.frame.linkage_frame import build_frame
+from fea.frame.model import Support
+from fea.outcomes.buckling import link_factors
+from loads.states.actions import actions
+from loads.statics.statics import solve_statics
 
 WIDE, HIGH, THICK, SLOT = 9.9, 10.0, 5.0, 4.0
 FIRST, LAST, TIP = 11.0, 51.0, 80.0

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from fea.beam import BeamCheck, check_beam, deflection
-from fea.cut_free import beam_loads
-from fea.details import Detail, details, net_section
-from fea.flanks import flanks_of
-from fea.link_loads import LinkLoads, PinLoad
-from fea.solid import SolidSolution, solve_solid
-from fea.stress import StressField, stress_field
-from geometry.mesh import MeshSettings, mesh_body
-from geometry.part import Bar, Body, Pin
-from loads.bearing import NARROW, WIDE, PressureLaw
+from fea.beam.cut_free import beam_loads
+from fea.beam.details import Detail, details, net_section
+from fea.beam.flanks import flanks_of
+from fea.beam.theory import BeamCheck, check_beam, deflection
+from fea.common.link_loads import LinkLoads, PinLoad
+from fea.solid.solution import SolidSolution, solve_solid
+from fea.solid.stress import StressField, stress_field
+from geometry.meshing.mesh import MeshSettings, mesh_body
+from geometry.parts.part import Bar, Body, Pin
+from loads.records.bearing import NARROW, WIDE, PressureLaw
 
 E, NU, FORCE, SLOT, WIDTH, EYE, T = 2000.0, 0.38, 10.0, 16.0, 4.0, 8.0, 4.0
 PART = Bar(

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.link_loads import BodyLoad, DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.quadrature import volume_quadrature
-from fea.solid import solve_solid
-from fea.space import displacement_space
-from fea.stress import stress_field
-from geometry.part import Tube
-from loads.bearing import WIDE
+from fea.common.link_loads import BodyLoad, DriveCouple, EndLoad, LinkLoads, PinLoad
+from fea.solid.quadrature import volume_quadrature
+from fea.solid.solution import solve_solid
+from fea.solid.space import displacement_space
+from fea.solid.stress import stress_field
+from geometry.parts.part import Tube
+from loads.records.bearing import WIDE
 
 E, NU = 2900.0, 0.38
 

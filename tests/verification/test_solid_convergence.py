@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.elasticity import assemble_stiffness, jacobians, lame_constants, reference_basis, stress
-from fea.quadrature import surface_quadrature, volume_quadrature
-from fea.solve import factorise
-from fea.space import displacement_space
-from fea.stress import stress_field
+from fea.solid.elasticity import assemble_stiffness, jacobians, lame_constants, reference_basis, stress
+from fea.solid.quadrature import surface_quadrature, volume_quadrature
+from fea.solid.solve import factorise
+from fea.solid.space import displacement_space
+from fea.solid.stress import stress_field
 
 E, NU = 2900.0, 0.38
 A, WAVE = np.array([1.0, -0.6, 0.8]) * 1e-2, np.array([0.9, 0.5, -0.7])

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.elasticity import assemble_stiffness
-from fea.quadrature import surface_quadrature
-from fea.solve import factorise
-from fea.space import displacement_space
-from fea.stress import stress_field
-from fea.supports import isostatic_supports
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.quadrature import surface_quadrature
+from fea.solid.solve import factorise
+from fea.solid.space import displacement_space
+from fea.solid.stress import stress_field
+from fea.solid.supports import isostatic_supports
 
 E, NU = 2900.0, 0.38
 SLOPE = np.array([[1.0, 0.4, -0.2], [0.1, -0.5, 0.3], [0.0, 0.2, 0.7]]) * 1e-3

@@ -6,18 +6,18 @@ import eye_link
 import numpy as np
 import pytest
 
-from fea.beam import check_beam
-from fea.cut_free import beam_loads
-from fea.link_loads import BodyLoad, LinkLoads
-from fea.refinement import LinkTask
-from fea.resultant import resultant
-from fea.solid import solve_solid
-from fea.stress import stress_field
-from fea.submodel import CLEAR, eye_submodel, hole_submodel
-from geometry.mesh import MeshSettings, mass_properties, mesh_body
-from geometry.part import HoleRow
-from loads.actions import PartMass
-from loads.bearing import WIDE
+from fea.beam.cut_free import beam_loads
+from fea.beam.resultant import resultant
+from fea.beam.theory import check_beam
+from fea.check.submodel import CLEAR, eye_submodel, hole_submodel
+from fea.common.link_loads import BodyLoad, LinkLoads
+from fea.refine.refinement import LinkTask
+from fea.solid.solution import solve_solid
+from fea.solid.stress import stress_field
+from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
+from geometry.parts.part import HoleRow
+from loads.records.bearing import WIDE
+from loads.states.actions import PartMass
 
 MESH = MeshSettings(size=0.5, bore_elements=24, turn_elements=12, fillet_size=0.4, growth=0.5)
 

@@ -1,7 +1,7 @@
 """Toggles that snap through: the linear frame's factors, the deformed shape and the verdict against closed forms.
 
 Two bars of half-span 50 mm push a lever of 100 mm, built in by the drive. With a lever of stiffness k and bars that
-keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³), derived in ``fea.toggle``.
+keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³), derived in ``fea.frame.toggle``.
 """
 
 import math
@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from fea.band import Band
-from fea.check import check_case
-from fea.linkage_history import linkage_outcomes
-from fea.scatter import Scatter
-from fea.toggle import SNAP, growth
-from fea.verdict import LINKAGE, SAFETY_FACTOR, Verdict
-from loads.case import Case
-from loads.case_file import validate
-from loads.case_motion import solve_case_motion
-from loads.check_spec import BearingCheck, PinCheck
+from fea.check.run import check_case
+from fea.common.band import Band
+from fea.common.scatter import Scatter
+from fea.common.verdict import LINKAGE, SAFETY_FACTOR, Verdict
+from fea.frame.toggle import SNAP, growth
+from fea.motion.linkage_history import linkage_outcomes
+from loads.case.case import Case
+from loads.case.case_file import validate
+from loads.records.check_spec import BearingCheck, PinCheck
+from loads.states.case_motion import solve_case_motion
 
 HALF, LEVER = 50.0, 100.0
 TOGGLE = """

@@ -4,13 +4,13 @@ from functools import partial
 
 import pytest
 
-from fea import solve, two_level
-from fea.check import check_case
-from fea.envelope import envelope_case
-from fea.refinement import Effort
-from geometry.errors import CannotRunError
-from loads.case import Case
-from loads.case_file import read_case
+from fea.check.run import check_case
+from fea.motion.envelope import envelope_case
+from fea.refine.refinement import Effort
+from fea.solid import solve, two_level
+from geometry.base.errors import CannotRunError
+from loads.case.case import Case
+from loads.case.case_file import read_case
 
 NAME = "owl-wing-static"
 MOTION = ("drive.link=GF", "drive.joint=G", "motion.poses=3", "solid.mesh_size=3")

@@ -2,8 +2,8 @@ import math
 
 import pytest
 
-from fea.band import Band
-from fea.verdict import Verdict, at_least, at_most
+from fea.common.band import Band
+from fea.common.verdict import Verdict, at_least, at_most
 
 
 def test_what_is_unknown_decides_nothing():

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from fea.beam import (
+from fea.beam.theory import (
     BeamLoads,
     LineLoad,
     PointLoad,
@@ -12,8 +12,8 @@ from fea.beam import (
     section_stress,
     uniform_cantilever,
 )
-from geometry.errors import CannotRunError
-from geometry.part import rectangle, ring
+from geometry.base.errors import CannotRunError
+from geometry.parts.part import rectangle, ring
 
 TUBE = ring(5.0, 2.5)
 BAR = rectangle(6.0, 2.0)

@@ -1,7 +1,7 @@
 import pytest
 
-from fea.holes import eye_stress, tube_hole_factors
-from geometry.errors import CannotRunError
+from fea.beam.holes import eye_stress, tube_hole_factors
+from geometry.base.errors import CannotRunError
 
 
 def test_eye_under_its_pin() -> None:

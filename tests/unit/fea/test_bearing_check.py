@@ -4,11 +4,11 @@ import pytest
 from arm_case import ARM, BAR
 from edited_cases import edited
 
-from fea.bearing_check import bearing_stress
-from fea.check import check_case
-from fea.verdict import Verdict
-from geometry.errors import CaseError
-from loads.case_file import validate
+from fea.check.run import check_case
+from fea.common.verdict import Verdict
+from fea.outcomes.bearing import bearing_stress
+from geometry.base.errors import CaseError
+from loads.case.case_file import validate
 
 
 def bearing(lines, force=-2.0):

@@ -6,11 +6,11 @@ from importlib.resources import files
 
 import pytest
 
-from fea.check import check_case
-from fea.joint_forces import joint_forces
-from geometry.errors import CaseError
-from loads.actions import actions
-from loads.case_file import validate
+from fea.check.run import check_case
+from fea.frame.joint_forces import joint_forces
+from geometry.base.errors import CaseError
+from loads.case.case_file import validate
+from loads.states.actions import actions
 
 STARTER = files("loads") / "cases" / "starter.toml.txt"
 LENGTH = 200.0

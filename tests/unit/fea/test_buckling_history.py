@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from fea.beam import BeamCheck, check_beam, internal_forces
-from fea.buckling_check import column
-from fea.buckling_history import axial_compression, factors_over_motion
-from fea.cut_free import beam_loads
-from fea.link_history import LinkHistory, link_histories
-from geometry.body_rules import hand_section
-from loads.case import Case
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
+from fea.beam.cut_free import beam_loads
+from fea.beam.theory import BeamCheck, check_beam, internal_forces
+from fea.motion.buckling_history import axial_compression, factors_over_motion
+from fea.motion.link_history import LinkHistory, link_histories
+from fea.outcomes.buckling import column
+from geometry.parts.body_rules import hand_section
+from loads.case.case import Case
+from loads.case.case_file import read_case
+from loads.states.case_motion import solve_case_motion
 
 CASES = [
     ("owl-wing-static", ["motion.poses=7", 'motion.range=["228.15 deg", "200 deg"]']),

@@ -7,12 +7,12 @@ from itertools import combinations
 import pytest
 from pydantic import ValidationError
 
-import fea.claim_data
-from fea.claims import Finding, _Names, check_all, check_claim, check_claims
-from geometry.errors import CaseError
-from geometry.ornithopter import motors
-from loads.case_file import read_case
-from loads.claim import (
+import fea.claims.data
+from fea.claims.audit import Finding, _Names, check_all, check_claim, check_claims
+from geometry.base.errors import CaseError
+from geometry.mechanisms.ornithopter import motors
+from loads.case.case_file import read_case
+from loads.records.claim import (
     CaseSystem,
     Claim,
     FlappingSystem,
@@ -23,8 +23,8 @@ from loads.claim import (
     read_source,
     sources,
 )
-from loads.expression import Value, evaluate
-from reports.claims import as_json, as_markdown, as_text
+from loads.text.expression import Value, evaluate
+from reports.tables.claims import as_json, as_markdown, as_text
 
 TREE = {
     "pose": {
@@ -276,13 +276,13 @@ def test_claims_of_a_case_file(case_file):
 
 def test_only_what_a_claim_asks_for_is_computed(case_file, monkeypatch):
     asked = []
-    original = fea.claim_data.check_case
+    original = fea.claims.data.check_case
 
     def check(case, *, fidelity, **options):
         asked.append(fidelity)
         return original(case, fidelity="beam", **options)
 
-    monkeypatch.setattr(fea.claim_data, "check_case", check)
+    monkeypatch.setattr(fea.claims.data, "check_case", check)
     text = case_file.read_text(encoding="utf-8")
     case_file.write_text(text + CLAIMS, encoding="utf-8")
     check_claims(str(case_file))

@@ -2,9 +2,9 @@ import math
 
 import pytest
 
-from fea.convergence import grid_convergence, observed_order, williams_exponent
-from fea.discretisation import holds
-from geometry.errors import CannotRunError
+from fea.refine.convergence import grid_convergence, observed_order, williams_exponent
+from fea.refine.discretisation import holds
+from geometry.base.errors import CannotRunError
 
 SIZES = (1.0, 0.6, 0.4)
 SAFETY, DOUBT = 1.25, 3.0  # Roache (1998), section 5.6: with an observed order and without

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fea.beam import check_beam
-from fea.cut_free import beam_loads
-from fea.details import details, flank_moments, net_section, remarks
-from fea.link_loads import EndLoad, LinkLoads, PinLoad
-from geometry.part import Bar, Body, Disc, Pin, PlainEnd, rectangle
+from fea.beam.cut_free import beam_loads
+from fea.beam.details import details, flank_moments, net_section, remarks
+from fea.beam.theory import check_beam
+from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from geometry.parts.part import Bar, Body, Disc, Pin, PlainEnd, rectangle
 
 BAR = Bar(
     shape="bar",

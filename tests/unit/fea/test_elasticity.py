@@ -4,10 +4,11 @@ import solid_meshes
 from skfem import Basis, ElementVector
 from skfem.models.elasticity import linear_elasticity
 
-from fea import elasticity, memory
-from fea.elasticity import CURVED_DEGREE, assemble_stiffness, lame_constants, stress
-from fea.space import displacement_space
-from geometry.errors import CannotRunError
+from fea.common import memory
+from fea.solid import elasticity
+from fea.solid.elasticity import CURVED_DEGREE, assemble_stiffness, lame_constants, stress
+from fea.solid.space import displacement_space
+from geometry.base.errors import CannotRunError
 
 E, NU = 2900.0, 0.38
 

@@ -13,27 +13,27 @@ from edited_cases import edited
 from materials import with_material
 from result_paths import compare
 
-from fea.band import Band
-from fea.beam import check_beam
-from fea.bearing_check import bearing_outcomes
-from fea.buckling_check import buckling_outcomes
-from fea.check import solve_case_statics
-from fea.cut_free import beam_loads, link_loads
-from fea.envelope import envelope_case, evaluated_poses
-from fea.envelope_outcomes import FATIGUE_LIFE, FATIGUE_STRESS, envelope_outcomes
-from fea.link_envelope import closed_history, link_envelope
-from fea.link_history import link_histories
-from fea.peaks import deviator, largest_sizes, principal_peaks, size_parts, von_mises_peaks
-from fea.pins import stress_at, stress_of
-from fea.refinement import START, Effort
-from fea.space import displacement_space
-from fea.stress import principal, stress_field, von_mises
-from fea.unit_solutions import nodal_stress
-from fea.verdict import BUCKLING_FACTOR, SAFETY_FACTOR, Verdict
-from geometry.errors import CannotRunError, CaseError
-from geometry.mesh import mesh_body
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
+from fea.beam.cut_free import beam_loads, link_loads
+from fea.beam.theory import check_beam
+from fea.check.run import solve_case_statics
+from fea.common.band import Band
+from fea.common.verdict import BUCKLING_FACTOR, SAFETY_FACTOR, Verdict
+from fea.motion.envelope import envelope_case, evaluated_poses
+from fea.motion.envelope_outcomes import FATIGUE_LIFE, FATIGUE_STRESS, envelope_outcomes
+from fea.motion.link_envelope import closed_history, link_envelope
+from fea.motion.link_history import link_histories
+from fea.motion.peaks import deviator, largest_sizes, principal_peaks, size_parts, von_mises_peaks
+from fea.motion.unit_solutions import nodal_stress
+from fea.outcomes.bearing import bearing_outcomes
+from fea.outcomes.buckling import buckling_outcomes
+from fea.outcomes.pins import stress_at, stress_of
+from fea.refine.refinement import START, Effort
+from fea.solid.space import displacement_space
+from fea.solid.stress import principal, stress_field, von_mises
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.meshing.mesh import mesh_body
+from loads.case.case_file import read_case
+from loads.states.case_motion import solve_case_motion
 
 TOML = """
 schema_version = 1
@@ -394,7 +394,7 @@ def test_what_cannot_be_enveloped_is_refused(path, tmp_path):
 
 
 def test_curves_and_record_tell_the_same(result, tmp_path):
-    from reports.envelope import record, write_curves
+    from reports.commands.envelope import record, write_curves
 
     write_curves(result, tmp_path / "curves.csv")
     rows = list(csv.DictReader((tmp_path / "curves.csv").read_text(encoding="utf-8").splitlines()))
@@ -415,8 +415,8 @@ def test_curves_and_record_tell_the_same(result, tmp_path):
 
 
 def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch):
-    from reports import figures
-    from reports.envelope import write_envelope
+    from reports.commands.envelope import write_envelope
+    from reports.figures import figures
 
     monkeypatch.setattr(figures, "plots_of", lambda scenes, points: ({}, ("no renderer",)))
     told = []
@@ -434,7 +434,7 @@ def test_console_names_link_angle_and_verdict(result):
 
     from rich.console import Console
 
-    from reports.envelope import print_envelope
+    from reports.commands.envelope import print_envelope
 
     stream = StringIO()
     print_envelope(result, Console(file=stream, width=80))
@@ -446,7 +446,7 @@ def test_console_names_link_angle_and_verdict(result):
 
 
 def test_the_figure_is_drawn_over_the_coordinate_where_the_drive_turns_back(result):
-    from reports.envelope_figures import abscissa
+    from reports.figures.envelope_figures import abscissa
 
     angles, label = abscissa(result)
     assert label == "direction of crank (driven) [deg]"

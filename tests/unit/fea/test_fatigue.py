@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from fea.critical import critical_nodes
-from fea.fatigue import (
+from fea.motion.critical import critical_nodes
+from fea.motion.fatigue import (
     cycles_to_failure,
     equivalent_peak,
     fatigue_life,
@@ -16,7 +16,7 @@ from fea.fatigue import (
     strength_at,
     turning_points,
 )
-from geometry.material import Fatigue, library
+from geometry.parts.material import Fatigue, library
 
 PVC = library()["pvc-u"]
 RESIN = library()["resin-405nm"]

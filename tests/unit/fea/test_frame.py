@@ -3,9 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.frame import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
-from geometry.errors import CannotRunError
-from geometry.part import rectangle, ring
+from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
+from geometry.base.errors import CannotRunError
+from geometry.parts.part import rectangle, ring
 
 TUBE = ring(5.0, 2.5)
 BAR = rectangle(6.0, 2.0)
@@ -230,9 +230,9 @@ def test_unloaded_frame_rests() -> None:
 
 def test_forces_that_do_not_balance_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """A factor that leaves out a part of the element's answer: the whole frame no longer balances."""
-    import fea.frame
+    import fea.frame.linear
 
-    wrong = fea.frame.natural_deformations(60.0) * (1.0 + 1e-7)
-    monkeypatch.setattr(fea.frame, "natural_deformations", lambda length: wrong)
+    wrong = fea.frame.linear.natural_deformations(60.0) * (1.0 + 1e-7)
+    monkeypatch.setattr(fea.frame.linear, "natural_deformations", lambda length: wrong)
     with pytest.raises(CannotRunError, match=r"leave .* of the load unbalanced"):
         solve_frame(CANTILEVER)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from fea.corotational import buckling_factor, solve_large_displacement, subdivide
-from fea.frame import FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
-from geometry.errors import CannotRunError
-from geometry.part import rectangle, ring
+from fea.frame.corotational import buckling_factor, solve_large_displacement, subdivide
+from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
+from geometry.base.errors import CannotRunError
+from geometry.parts.part import rectangle, ring
 
 TUBE = ring(5.0, 2.5)
 BAR = rectangle(6.0, 2.0)

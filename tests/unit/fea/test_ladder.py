@@ -6,13 +6,13 @@ from dataclasses import replace
 import eye_link
 import pytest
 
-from fea.calibration import calibrations
-from fea.eye_models import plan
-from fea.ladder import climb, decided_by_hand, hand_bands
-from fea.refinement import START, Effort
-from fea.spots import shoulder_factors, spots
-from geometry.part import HoleRow
-from loads.bearing import CONTACT_SHORTFALL
+from fea.beam.calibration import calibrations
+from fea.beam.spots import shoulder_factors, spots
+from fea.check.eye_models import plan
+from fea.check.fidelity import climb, decided_by_hand, hand_bands
+from fea.refine.refinement import START, Effort
+from geometry.parts.part import HoleRow
+from loads.records.bearing import CONTACT_SHORTFALL
 
 
 def climbed(limit, **options):

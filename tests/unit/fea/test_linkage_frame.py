@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from fea.frame import solve_frame
-from fea.joint_forces import BONDED_FRAME, PINNED_FRAME, PINNED_STATICS, joint_forces, ways_to_hold
-from fea.linkage_frame import build_frame, out_of_plane
-from geometry.errors import CaseError
-from loads.actions import actions
-from loads.applied import BodyForce, LineLoad, PointLoad, shifted
-from loads.case_file import read_case, validate
-from loads.statics import Drive, Reactions, solve_statics
+from fea.frame.joint_forces import BONDED_FRAME, PINNED_FRAME, PINNED_STATICS, joint_forces, ways_to_hold
+from fea.frame.linear import solve_frame
+from fea.frame.linkage_frame import build_frame, out_of_plane
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_case, validate
+from loads.records.applied import BodyForce, LineLoad, PointLoad, shifted
+from loads.states.actions import actions
+from loads.statics.statics import Drive, Reactions, solve_statics
 
 WING = read_case("owl-wing-static")
 AE, GF = Drive(link="AE", joint="A"), Drive(link="GF", joint="G")

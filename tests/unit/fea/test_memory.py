@@ -1,7 +1,7 @@
 import pytest
 
-from fea import memory
-from geometry.errors import CannotRunError
+from fea.common import memory
+from geometry.base.errors import CannotRunError
 
 
 @pytest.fixture

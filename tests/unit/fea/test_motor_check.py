@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-from fea.motor_check import demand, largest_factor, limit_outcomes, line_share
-from fea.verdict import Verdict
-from geometry.errors import CaseError
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
+from fea.common.verdict import Verdict
+from fea.outcomes.motor import demand, largest_factor, limit_outcomes, line_share
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_case
+from loads.states.case_motion import solve_case_motion
 
 
 def test_demand_of_a_sine() -> None:

@@ -5,13 +5,13 @@ import pytest
 from edited_cases import edited
 from materials import SOURCED
 
-from fea.check import check_case
-from fea.pins import eyes, pin_stress, stress_at
-from fea.verdict import Verdict
-from geometry.errors import CaseError
-from geometry.material import library
-from loads.case_file import read_case
-from loads.statics import JointReaction
+from fea.check.run import check_case
+from fea.common.verdict import Verdict
+from fea.outcomes.pins import eyes, pin_stress, stress_at
+from geometry.base.errors import CaseError
+from geometry.parts.material import library
+from loads.case.case_file import read_case
+from loads.statics.statics import JointReaction
 
 WING = "owl-wing-static"
 

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fea.convergence import grid_convergence
-from fea.refinement import _Link, _ratio
-from fea.target_sizes import MOST_RATIO, SERIES_RATIO
-from geometry.mesh import ReentrantEdge
+from fea.refine.convergence import grid_convergence
+from fea.refine.refinement import _Link, _ratio
+from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO
+from geometry.meshing.mesh import ReentrantEdge
 
 EDGE = ReentrantEdge(points=np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]), angle=1.5 * math.pi)
 

@@ -12,21 +12,21 @@ from edited_cases import edited
 from materials import SOURCED_ENTRIES
 from pydantic_core import PydanticCustomError
 
-from fea import large_displacement
-from fea.band import Band
-from fea.check import check_case
-from fea.corotational import NoEquilibriumError
-from fea.envelope import envelope_case
-from fea.envelope_outcomes import envelope_outcomes
-from fea.ladder import decided_by_hand, hand_bands
-from fea.outcomes import _large_displacement
-from fea.refinement import Effort
-from fea.scatter import Scatter, compliance_scatter, strength_scatter
-from fea.verdict import Verdict
-from geometry.errors import CaseError
-from geometry.material import library
-from loads.case_motion import solve_case_motion
-from loads.scatter import parse_scatter
+from fea.check.fidelity import decided_by_hand, hand_bands
+from fea.check.run import check_case
+from fea.common.band import Band
+from fea.common.scatter import Scatter, compliance_scatter, strength_scatter
+from fea.common.verdict import Verdict
+from fea.frame import large_displacement
+from fea.frame.corotational import NoEquilibriumError
+from fea.motion.envelope import envelope_case
+from fea.motion.envelope_outcomes import envelope_outcomes
+from fea.outcomes.judge import _large_displacement
+from fea.refine.refinement import Effort
+from geometry.base.errors import CaseError
+from geometry.parts.material import library
+from loads.states.case_motion import solve_case_motion
+from loads.text.scatter import parse_scatter
 
 STARTER = files("loads") / "cases" / "starter.toml.txt"
 PLA = library()["pla-fdm-xy"]

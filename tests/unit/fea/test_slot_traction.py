@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from fea.link_loads import PinLoad
-from fea.quadrature import SurfaceQuadrature, surface_quadrature
-from fea.slot_traction import DEGREE, slot_traction
-from fea.slot_units import lagrange_weights, places_for
-from fea.space import displacement_space
-from geometry.errors import CannotRunError
-from geometry.mesh import COARSE, mesh_body
-from geometry.part import Bar, Body, Pin
-from loads.bearing import NARROW, WIDE, PressureLaw
+from fea.common.link_loads import PinLoad
+from fea.motion.slot_units import lagrange_weights, places_for
+from fea.solid.quadrature import SurfaceQuadrature, surface_quadrature
+from fea.solid.slot_traction import DEGREE, slot_traction
+from fea.solid.space import displacement_space
+from geometry.base.errors import CannotRunError
+from geometry.meshing.mesh import COARSE, mesh_body
+from geometry.parts.part import Bar, Body, Pin
+from loads.records.bearing import NARROW, WIDE, PressureLaw
 
 SLOT = Pin(name="S", x=6.0, y=0.0, diameter=2.1, slot=4.0, clearance=0.1)
 BODY = Body(

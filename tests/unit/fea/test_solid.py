@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea import solid
-from fea.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
-from fea.quadrature import surface_quadrature, volume_quadrature
-from fea.solid import solve_solid
-from fea.space import displacement_space
-from fea.stress import stress_field
-from fea.supports import rigid_motions
-from geometry.errors import CannotRunError
-from loads.bearing import WIDE
+from fea.common.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
+from fea.solid import solution as solid
+from fea.solid.quadrature import surface_quadrature, volume_quadrature
+from fea.solid.solution import solve_solid
+from fea.solid.space import displacement_space
+from fea.solid.stress import stress_field
+from fea.solid.supports import rigid_motions
+from geometry.base.errors import CannotRunError
+from loads.records.bearing import WIDE
 
 E, NU, RHO = 2900.0, 0.38, 1.2e-9
 L = 20.0

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea import mkl
-from fea.direct import PardisoFactor
-from fea.elasticity import assemble_stiffness
-from fea.solve import available_methods, factorise
-from fea.solved import ENERGY_TARGET, refined, sampled_error
-from fea.space import displacement_space
-from fea.supports import isostatic_supports
-from geometry.errors import CannotRunError
+from fea.solid import mkl
+from fea.solid.direct import PardisoFactor
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.solve import available_methods, factorise
+from fea.solid.solved import ENERGY_TARGET, refined, sampled_error
+from fea.solid.space import displacement_space
+from fea.solid.supports import isostatic_supports
+from geometry.base.errors import CannotRunError
 
 METHODS = available_methods()
 

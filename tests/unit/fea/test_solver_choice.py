@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea import memory, mkl, solve
-from fea.elasticity import assemble_stiffness
-from fea.solve import available_methods, direct_estimate, factorise, iterations_estimate, two_level_estimate
-from fea.space import displacement_space
-from fea.supports import isostatic_supports
-from fea.two_level import LinearLevel
-from geometry.errors import CannotRunError
+from fea.common import memory
+from fea.solid import mkl, solve
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.solve import available_methods, direct_estimate, factorise, iterations_estimate, two_level_estimate
+from fea.solid.space import displacement_space
+from fea.solid.supports import isostatic_supports
+from fea.solid.two_level import LinearLevel
+from geometry.base.errors import CannotRunError
 
 
 @pytest.fixture(scope="module")

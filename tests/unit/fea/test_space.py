@@ -6,9 +6,9 @@ import pytest
 import solid_meshes
 from skfem import Basis, ElementVector
 
-from fea.quadrature import surface_quadrature, volume_quadrature
-from fea.space import displacement_space
-from geometry.errors import CannotRunError
+from fea.solid.quadrature import surface_quadrature, volume_quadrature
+from fea.solid.space import displacement_space
+from geometry.base.errors import CannotRunError
 
 
 @pytest.mark.parametrize(("order", "curved"), [(1, False), (2, False), (2, True)])

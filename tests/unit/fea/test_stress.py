@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.space import displacement_space
-from fea.stress import extreme_principal, principal, stress_field, von_mises
-from geometry.errors import CannotRunError
+from fea.solid.space import displacement_space
+from fea.solid.stress import extreme_principal, principal, stress_field, von_mises
+from geometry.base.errors import CannotRunError
 
 E, NU = 2900.0, 0.38
 

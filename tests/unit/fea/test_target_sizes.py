@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.space import displacement_space
-from fea.target_sizes import GROWTH, MOST_RATIO, SERIES_RATIO, LocalGoal, element_sizes, next_sizes, reduction
+from fea.refine.target_sizes import GROWTH, MOST_RATIO, SERIES_RATIO, LocalGoal, element_sizes, next_sizes, reduction
+from fea.solid.space import displacement_space
 
 
 @pytest.fixture(scope="module")

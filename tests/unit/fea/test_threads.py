@@ -10,12 +10,12 @@ import pytest
 from threadpoolctl import threadpool_info
 from typer.testing import CliRunner
 
-from fea.check import check_case
-from fea.threads import VARIABLES, bounded, bounded_run
-from geometry import child
-from geometry.errors import CaseError
-from loads.case_file import read_case
-from reports.cli import app
+from fea.check.run import check_case
+from fea.common.threads import VARIABLES, bounded, bounded_run
+from geometry.base import child
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_case
+from reports.commands.cli import app
 
 
 def threads_of_libraries() -> set[int]:
@@ -62,10 +62,10 @@ def test_a_whole_run_is_bounded_by_its_keyword_or_default(options, seen):
 @pytest.mark.parametrize(
     ("stage", "arguments"),
     [
-        ("fea.check.solve_case_statics", ("check", "--threads", "1")),
-        ("fea.envelope.solve_case_motion", ("envelope", "--threads", "1")),
-        ("loads.case_motion.solve_case_motion", ("motion", "--threads", "1")),
-        ("fea.claims.check_claims", ("claims", "--threads", "1")),
+        ("fea.check.run.solve_case_statics", ("check", "--threads", "1")),
+        ("fea.motion.envelope.solve_case_motion", ("envelope", "--threads", "1")),
+        ("loads.states.case_motion.solve_case_motion", ("motion", "--threads", "1")),
+        ("fea.claims.audit.check_claims", ("claims", "--threads", "1")),
     ],
 )
 def test_commands_are_bounded_as_a_whole(monkeypatch, stage, arguments):
@@ -85,7 +85,7 @@ def test_commands_are_bounded_as_a_whole(monkeypatch, stage, arguments):
 
 def test_a_check_is_bounded_without_the_command(monkeypatch):
     seen = []
-    monkeypatch.setattr("fea.check.solve_case_statics", lambda *_: seen.append(threads_of_libraries()) or 1 / 0)
+    monkeypatch.setattr("fea.check.run.solve_case_statics", lambda *_: seen.append(threads_of_libraries()) or 1 / 0)
     with pytest.raises(ZeroDivisionError):
         check_case(read_case("owl-wing-static"), threads=1)
     assert seen == [{1}]

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.link_loads import BodyLoad, LineLoad, PinLoad
-from fea.quadrature import surface_quadrature, volume_quadrature
-from fea.space import displacement_space
-from fea.supports import rigid_motions
-from fea.traction import (
+from fea.common.link_loads import BodyLoad, LineLoad, PinLoad
+from fea.solid.quadrature import surface_quadrature, volume_quadrature
+from fea.solid.space import displacement_space
+from fea.solid.supports import rigid_motions
+from fea.solid.traction import (
     body_density,
     couple_traction,
     line_density,
@@ -17,8 +17,8 @@ from fea.traction import (
     thrust_traction,
     wrench_density,
 )
-from geometry.errors import CannotRunError
-from loads.bearing import NARROW, WIDE
+from geometry.base.errors import CannotRunError
+from loads.records.bearing import NARROW, WIDE
 
 CENTRE = np.array([20.0, 0.0, 0.0])
 

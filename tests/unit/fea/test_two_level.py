@@ -5,13 +5,13 @@ import pytest
 import solid_meshes
 from scipy.sparse import csr_array
 
-from fea import two_level
-from fea.elasticity import assemble_stiffness
-from fea.solve import factorise
-from fea.space import EDGES, displacement_space
-from fea.supports import isostatic_supports, rigid_motions
-from fea.two_level import LinearLevel, linear_level
-from geometry.errors import CannotRunError
+from fea.solid import two_level
+from fea.solid.elasticity import assemble_stiffness
+from fea.solid.solve import factorise
+from fea.solid.space import EDGES, displacement_space
+from fea.solid.supports import isostatic_supports, rigid_motions
+from fea.solid.two_level import LinearLevel, linear_level
+from geometry.base.errors import CannotRunError
 
 E = 2900.0
 
@@ -178,7 +178,7 @@ def test_largest_eigenvalue_is_found_from_below():
 
 
 def test_works_without_mkl(monkeypatch):
-    from fea import mkl
+    from fea.solid import mkl
 
     K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)), columns=2)
     expected = _iterated(K, level, rhs)

@@ -6,12 +6,12 @@ from importlib.resources import files
 import pytest
 from materials import with_material
 
-from fea.check import check_case
-from fea.unchecked import unchecked
-from loads.case_file import validate
-from loads.check_spec import SafetyFactorCheck, SustainedCheck
-from reports.record import result_record
-from reports.wording import headline
+from fea.check.run import check_case
+from fea.outcomes.unchecked import unchecked
+from loads.case.case_file import validate
+from loads.records.check_spec import SafetyFactorCheck, SustainedCheck
+from reports.tables.record import result_record
+from reports.words.wording import headline
 
 STRENGTH = {"type": "safety-factor", "minimum": 0.01}
 PINS = {"type": "pins", "minimum": 0.01}

@@ -6,15 +6,15 @@ import pytest
 import solid_meshes
 from turning_load import BODY, POSES, RHO, L, history
 
-from fea.link_loads import PinLoad
-from fea.quadrature import surface_quadrature
-from fea.space import displacement_space
-from fea.supports import rigid_motions
-from fea.traction import pin_traction
-from fea.unit_loads import TRANSFERS, fourier_coefficients, load_scale, unit_loads
-from geometry.errors import CannotRunError
-from loads.actions import PartMass
-from loads.bearing import NARROW, WIDE
+from fea.common.link_loads import PinLoad
+from fea.motion.unit_loads import TRANSFERS, fourier_coefficients, load_scale, unit_loads
+from fea.solid.quadrature import surface_quadrature
+from fea.solid.space import displacement_space
+from fea.solid.supports import rigid_motions
+from fea.solid.traction import pin_traction
+from geometry.base.errors import CannotRunError
+from loads.records.bearing import NARROW, WIDE
+from loads.states.actions import PartMass
 
 ORIGIN = np.zeros(3)
 

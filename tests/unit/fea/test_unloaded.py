@@ -5,10 +5,10 @@ from importlib.resources import files
 import pytest
 from edited_cases import edited
 
-from fea.check import check_case
-from fea.envelope import envelope_case
-from fea.verdict import Verdict
-from geometry.errors import CaseError
+from fea.check.run import check_case
+from fea.common.verdict import Verdict
+from fea.motion.envelope import envelope_case
+from geometry.base.errors import CaseError
 
 STARTER = files("loads") / "cases" / "starter.toml.txt"
 MOTION = ["motion.turn=true", "motion.poses=13"]

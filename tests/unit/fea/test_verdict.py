@@ -1,7 +1,7 @@
 import pytest
 
-from fea.band import Band
-from fea.verdict import Verdict, at_least, at_most, overall
+from fea.common.band import Band
+from fea.common.verdict import Verdict, at_least, at_most, overall
 
 
 def band(low: float, value: float, high: float) -> Band:

@@ -1,6 +1,6 @@
 import pytest
 
-from geometry.grashof import classify
+from geometry.mechanisms.grashof import classify
 
 
 @pytest.mark.parametrize(

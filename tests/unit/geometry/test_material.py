@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from geometry.material import Fatigue, Material, library
+from geometry.parts.material import Fatigue, Material, library
 
 KNOWN = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength")
 CARD: dict[str, Any] = {

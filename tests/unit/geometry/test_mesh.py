@@ -11,13 +11,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import geometry.mesh
-from geometry.child_memory import allowed
-from geometry.element_geometry import TETRA_EDGES, scaled_jacobians, shape_quality, volumes_and_moments
-from geometry.errors import CannotRunError, CaseError
-from geometry.mesh import COARSE, MeshSettings, export_step, mass_properties, mesh_bodies, mesh_body, reentrant_edges
-from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
-from geometry.tagged_mesh import TaggedMesh
+import geometry.meshing.mesh
+from geometry.base.child_memory import allowed
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.meshing.element_geometry import TETRA_EDGES, scaled_jacobians, shape_quality, volumes_and_moments
+from geometry.meshing.mesh import (
+    COARSE,
+    MeshSettings,
+    export_step,
+    mass_properties,
+    mesh_bodies,
+    mesh_body,
+    reentrant_edges,
+)
+from geometry.meshing.tagged_mesh import TaggedMesh
+from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 
 def tube_body(unit: float = 1.0, **changes: str) -> Body:
@@ -242,7 +250,7 @@ def test_flattened_elements_are_told() -> None:
 
 
 def test_fillet_that_the_kernel_cannot_make_though_the_rules_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("geometry.mesh.check_body", lambda body: None)
+    monkeypatch.setattr("geometry.meshing.mesh.check_body", lambda body: None)
     with pytest.raises(CaseError, match=r"fillet_radius 20 mm does not fit .* make the fillet smaller"):
         mesh_body(bar_body("20 mm"), COARSE)
 
@@ -317,13 +325,13 @@ def _instead(script: str) -> Callable[[Path], list[str]]:
     ],
 )
 def test_a_crash_of_the_mesher_is_contained(monkeypatch: pytest.MonkeyPatch, script: str, message: str) -> None:
-    monkeypatch.setattr(geometry.mesh, "_command", _instead(script))
+    monkeypatch.setattr(geometry.meshing.mesh, "_command", _instead(script))
     with pytest.raises(CannotRunError, match=message):
         mesh_body(bar_body(), COARSE)
 
 
 def test_an_endless_mesher_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(geometry.mesh, "_command", _instead("while True: pass"))
+    monkeypatch.setattr(geometry.meshing.mesh, "_command", _instead("while True: pass"))
     with pytest.raises(CannotRunError, match=r"stopped after its time limit of 0\.5 s"):
         mesh_body(bar_body(), dataclasses.replace(COARSE, time_limit=0.5))
 

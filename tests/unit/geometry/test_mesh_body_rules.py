@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from geometry.body_rules import check_body, extent, eye_reach, patch_span
-from geometry.errors import CaseError
-from geometry.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from geometry.base.errors import CaseError
+from geometry.parts.body_rules import check_body, extent, eye_reach, patch_span
+from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 TUBE = Tube(
     shape="tube",

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.errors import CannotRunError
-from geometry.mesh_settings import COARSE
-from geometry.mesher import _checked
-from geometry.tagged_mesh import TaggedMesh
+from geometry.base.errors import CannotRunError
+from geometry.meshing.mesh_settings import COARSE
+from geometry.meshing.mesher import _checked
+from geometry.meshing.tagged_mesh import TaggedMesh
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 

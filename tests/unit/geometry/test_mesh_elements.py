@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.element_geometry import (
+from geometry.meshing.element_geometry import (
     TETRA_EDGES,
     TRIANGLE_EDGES,
     flatten,

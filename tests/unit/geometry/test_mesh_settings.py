@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.mesh_settings import MeshSettings
+from geometry.meshing.mesh_settings import MeshSettings
 
 
 def test_a_factor_scales_every_size() -> None:

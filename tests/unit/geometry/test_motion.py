@@ -16,12 +16,12 @@ from motion_poses import (
 )
 from planar_linkages import four_bar
 
-from geometry.continuation import DeadPointError
-from geometry.errors import CaseError
-from geometry.fourbar import FourBar
-from geometry.motion import solve_motion
-from geometry.pose import solve_pose
-from geometry.slider_crank import SliderCrank
+from geometry.base.errors import CaseError
+from geometry.linkage.continuation import DeadPointError
+from geometry.linkage.motion import solve_motion
+from geometry.linkage.pose import solve_pose
+from geometry.mechanisms.fourbar import FourBar
+from geometry.mechanisms.slider_crank import SliderCrank
 
 TURN = CRANK + np.linspace(0.0, 2.0 * math.pi, 97)
 WING = np.radians(np.linspace(228.15, 124.62, 97))

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from geometry.errors import CaseError
-from geometry.ornithopter import OrnithopterRules, WingDrive, motors
-from geometry.periodic import periodic_maximum, periodic_minimum
+from geometry.base.errors import CaseError
+from geometry.mechanisms.ornithopter import OrnithopterRules, WingDrive, motors
+from geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
 
 DRIVE = OrnithopterRules().drive()
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from geometry.body_rules import check_body
-from geometry.errors import CaseError
-from geometry.part import Bar, Body, HoleRow, Part, Pin, PlainEnd, Section, Tube
+from geometry.base.errors import CaseError
+from geometry.parts.body_rules import check_body
+from geometry.parts.part import Bar, Body, HoleRow, Part, Pin, PlainEnd, Section, Tube
 
 TUBE: dict[str, Any] = {
     "shape": "tube",

@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from geometry.errors import CaseError
-from geometry.slider_crank import SliderCrank
+from geometry.base.errors import CaseError
+from geometry.mechanisms.slider_crank import SliderCrank
 
 
 def test_bad_lengths():

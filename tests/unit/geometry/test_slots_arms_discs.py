@@ -5,7 +5,9 @@ import math
 import pytest
 from pydantic import ValidationError
 
-from geometry.body_rules import (
+from geometry.base.errors import CaseError
+from geometry.mechanisms.ornithopter import OrnithopterRules, variants
+from geometry.parts.body_rules import (
     apart,
     check_body,
     extent,
@@ -15,9 +17,7 @@ from geometry.body_rules import (
     section_height,
     section_width,
 )
-from geometry.errors import CaseError
-from geometry.ornithopter import OrnithopterRules, variants
-from geometry.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Slot, Tube
+from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Slot, Tube
 
 BAR = Bar(
     shape="bar",

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from geometry.errors import CaseError
-from geometry.fourbar import FourBar
-from geometry.synthesis import DRIVES, driven, synthesise
+from geometry.base.errors import CaseError
+from geometry.mechanisms.fourbar import FourBar
+from geometry.mechanisms.synthesis import DRIVES, driven, synthesise
 
 
 def pairs(bar: FourBar, phis, branch="open"):

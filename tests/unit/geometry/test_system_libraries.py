@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from geometry import system_libraries
+from geometry.base import system_libraries
 
 
 def without(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
-from geometry import units
-from geometry.model import CaseModel
-from geometry.units import EXAMPLES, INTERNAL_UNITS, NOT_NEGATIVE, POSITIVE, parse
+from geometry.base import units
+from geometry.base.model import CaseModel
+from geometry.base.units import EXAMPLES, INTERNAL_UNITS, NOT_NEGATIVE, POSITIVE, parse
 
 # (dimension, text, value in alula's unit), worked out by hand from the definitions of the units.
 KNOWN = [

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from loads.bearing import NARROW, WIDE, bearing_stress
+from loads.records.bearing import NARROW, WIDE, bearing_stress
 
 
 @pytest.mark.parametrize("law", [WIDE, NARROW])

@@ -8,14 +8,14 @@ import pytest
 from edited_cases import edited
 from materials import SOURCED
 
-from geometry.body_rules import check_body
-from geometry.errors import CaseError
-from geometry.pose import CLOSED
-from loads.actions import PartMass, actions, needs_masses
-from loads.applied import BodyForce, LineLoad, PointLoad
-from loads.case import Case
-from loads.case_file import read_case, read_text, validate
-from loads.load_case import vector3
+from geometry.base.errors import CaseError
+from geometry.linkage.pose import CLOSED
+from geometry.parts.body_rules import check_body
+from loads.case.case import Case
+from loads.case.case_file import read_case, read_text, validate
+from loads.records.applied import BodyForce, LineLoad, PointLoad
+from loads.records.load_case import vector3
+from loads.states.actions import PartMass, actions, needs_masses
 
 OWL = "owl-wing-static"
 

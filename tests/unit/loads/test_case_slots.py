@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
-from fea.cut_free import link_loads
-from geometry.errors import CaseError
-from geometry.part import Pin
-from loads.applied import PointLoad
-from loads.statics import solve_statics
+from fea.beam.cut_free import link_loads
+from geometry.base.errors import CaseError
+from geometry.parts.part import Pin
+from loads.records.applied import PointLoad
+from loads.statics.statics import solve_statics
 
 
 def ornithopter(*settings: str):

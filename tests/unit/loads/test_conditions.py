@@ -7,15 +7,15 @@ import pytest
 from edited_cases import edited
 from materials import SOURCED, with_material
 
-from fea.band import Band
-from fea.check import check_case
-from fea.outcomes import outcomes
-from fea.scatter import compliance_scatter, strength_scatter
-from fea.verdict import Verdict
-from geometry.errors import CaseError
-from geometry.material import library
-from loads.check_spec import SustainedCheck
-from loads.conditions import Conditions, temperature_factor, under
+from fea.check.run import check_case
+from fea.common.band import Band
+from fea.common.scatter import compliance_scatter, strength_scatter
+from fea.common.verdict import Verdict
+from fea.outcomes.judge import outcomes
+from geometry.base.errors import CaseError
+from geometry.parts.material import library
+from loads.records.check_spec import SustainedCheck
+from loads.records.conditions import Conditions, temperature_factor, under
 
 WING = "owl-wing-static"
 PVC = library()["pvc-u"]

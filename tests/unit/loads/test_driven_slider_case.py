@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from slotted_cases import piston_entries
 
-from fea.anchor import anchor_loads
-from fea.check import check_case
-from fea.verdict import LINKAGE
-from geometry.errors import CaseError
-from loads.case import Case
-from loads.case_file import validate
-from loads.case_motion import solve_case_motion
-from reports.motion import print_motion, record, write_tables
+from fea.check.anchor import anchor_loads
+from fea.check.run import check_case
+from fea.common.verdict import LINKAGE
+from geometry.base.errors import CaseError
+from loads.case.case import Case
+from loads.case.case_file import validate
+from loads.states.case_motion import solve_case_motion
+from reports.commands.motion import print_motion, record, write_tables
 
 A = 40.0
 
@@ -66,7 +66,7 @@ def test_its_tables_and_summary_tell_travels_and_forces(tmp_path, capsys) -> Non
 
 
 def test_figures_of_it_are_drawn(tmp_path) -> None:
-    from reports.motion_figures import draw_figures
+    from reports.figures.motion_figures import draw_figures
 
     draw_figures(solve_case_motion(validate(piston_entries())), tmp_path)
     assert {path.suffix for path in tmp_path.iterdir()} == {".png"}
@@ -136,14 +136,14 @@ def test_a_braked_piston_stops_where_its_energy_ends() -> None:
 
 
 def test_an_envelope_over_a_travel_is_refused() -> None:
-    from fea.envelope import envelope_case
+    from fea.motion.envelope import envelope_case
 
     with pytest.raises(CaseError, match=r"motion.travel: an envelope is drawn over the direction of a link"):
         envelope_case(validate(piston_entries()))
 
 
 def test_the_report_of_its_check_tells_the_travel_and_the_force() -> None:
-    from reports.html import render
+    from reports.page.html import render
 
     result = check_case(validate(piston_entries()), fidelity="beam")
     page = render(result, {})

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from geometry.errors import CaseError
-from loads.expression import LONGEST, Value, evaluate, evaluate_number
+from geometry.base.errors import CaseError
+from loads.text.expression import LONGEST, Value, evaluate, evaluate_number
 
 LENGTHS = {("a",): Value.of(3, "mm"), ("link", "whole-wing"): Value.of(4, "cm"), ("kind",): "open"}
 

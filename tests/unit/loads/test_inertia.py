@@ -6,17 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.beam import check_beam
-from fea.cut_free import beam_loads, link_loads
-from geometry.errors import CaseError
-from geometry.motion import solve_motion
-from loads.actions import PartMass, stated_loads
-from loads.carried import CarriedBody, CarriedSpread
-from loads.case_file import read_case
-from loads.inertia import acting_loads, link_rates, with_carried
-from loads.kinetostatics import solve_kinetostatics
-from loads.masses import laden_masses
-from loads.statics import solve_statics
+from fea.beam.cut_free import beam_loads, link_loads
+from fea.beam.theory import check_beam
+from geometry.base.errors import CaseError
+from geometry.linkage.motion import solve_motion
+from loads.case.case_file import read_case
+from loads.records.carried import CarriedBody, CarriedSpread
+from loads.states.actions import PartMass, stated_loads
+from loads.states.inertia import acting_loads, link_rates, with_carried
+from loads.states.kinetostatics import solve_kinetostatics
+from loads.states.masses import laden_masses
+from loads.statics.statics import solve_statics
 
 SPEED = 31.0
 FILE = str(Path(__file__).with_name("four-bar-laden.toml"))

@@ -20,14 +20,14 @@ from motion_poses import (
 )
 from planar_linkages import four_bar
 
-from geometry.errors import CaseError
-from geometry.motion import solve_motion
-from geometry.pose import solve_pose
-from geometry.slider_crank import SliderCrank
-from loads.actions import PartMass, StatedLoad
-from loads.applied import PointLoad
-from loads.kinetostatics import is_determinate, solve_kinetostatics, torque_by_virtual_work
-from loads.statics import Drive, solve_statics
+from geometry.base.errors import CaseError
+from geometry.linkage.motion import solve_motion
+from geometry.linkage.pose import solve_pose
+from geometry.mechanisms.slider_crank import SliderCrank
+from loads.records.applied import PointLoad
+from loads.states.actions import PartMass, StatedLoad
+from loads.states.kinetostatics import is_determinate, solve_kinetostatics, torque_by_virtual_work
+from loads.statics.statics import Drive, solve_statics
 
 TURN = CRANK + np.linspace(0.0, 2.0 * math.pi, 49)
 WING = np.radians(np.linspace(228.15, 124.62, 49))

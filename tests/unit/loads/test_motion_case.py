@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from geometry.errors import CaseError
-from loads.actions import actions
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
-from loads.masses import laden_masses
-from loads.statics import solve_statics
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_case
+from loads.states.actions import actions
+from loads.states.case_motion import solve_case_motion
+from loads.states.masses import laden_masses
+from loads.statics.statics import solve_statics
 
 FOUR_BAR = """
 schema_version = 1

@@ -5,13 +5,13 @@ import pytest
 from planar_linkages import joint, link, six_bar
 from pydantic import ValidationError
 
-from geometry.errors import CaseError
-from geometry.linkage import Linkage
-from geometry.pose import Pose, solve_pose
-from loads.applied import PointLoad
-from loads.case import PublishedStatics
-from loads.published import StaticsAudit, audit, read_matrix
-from loads.statics import Drive, assemble, solve_statics
+from geometry.base.errors import CaseError
+from geometry.linkage.linkage import Linkage
+from geometry.linkage.pose import Pose, solve_pose
+from loads.case.case import PublishedStatics
+from loads.claims.published import StaticsAudit, audit, read_matrix
+from loads.records.applied import PointLoad
+from loads.statics.statics import Drive, assemble, solve_statics
 
 NEAR = {"AE": 2.5, "CF": 3.5, "CH": 2.48, "ED": 3.5}
 ORDER = ("GF", "CF", "AE", "ED", "CH")

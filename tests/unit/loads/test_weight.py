@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from geometry.errors import CaseError
-from loads.case import Case
-from loads.case_file import read_case
+from geometry.base.errors import CaseError
+from loads.case.case import Case
+from loads.case.case_file import read_case
 
 LADEN = str(Path(__file__).parent / "four-bar-laden.toml")
 

@@ -6,16 +6,16 @@ from dataclasses import replace
 import pytest
 from solid_meshes import bar
 
-from fea.band import Band
-from fea.check import check_case
-from fea.cut_free import link_loads
-from fea.result import LinkResult, SectionComparison, VariantPeak
-from fea.solid import solve_solid
-from fea.stress import stress_field
-from fea.verdict import CheckOutcome, Verdict, at_least, at_most, overall
-from loads.actions import actions
-from loads.case_file import read_case, validate
-from loads.load_case import LoadCase
+from fea.beam.cut_free import link_loads
+from fea.check.run import check_case
+from fea.common.band import Band
+from fea.common.verdict import CheckOutcome, Verdict, at_least, at_most, overall
+from fea.outcomes.result import LinkResult, SectionComparison, VariantPeak
+from fea.solid.solution import solve_solid
+from fea.solid.stress import stress_field
+from loads.case.case_file import read_case, validate
+from loads.records.load_case import LoadCase
+from loads.states.actions import actions
 
 NAME = "owl-wing-static"
 SOLID_LINK = "GF"

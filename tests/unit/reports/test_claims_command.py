@@ -5,9 +5,9 @@ from importlib.resources import files
 import pytest
 from typer.testing import CliRunner
 
-from geometry.errors import CaseError
-from loads.expression import _FUNCTIONS
-from reports.cli import app
+from geometry.base.errors import CaseError
+from loads.text.expression import _FUNCTIONS
+from reports.commands.cli import app
 
 
 def run(*arguments: str):

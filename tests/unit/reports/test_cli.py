@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-ALULA = [sys.executable, "-c", "from reports.cli import main; main()"]
+ALULA = [sys.executable, "-c", "from reports.commands.cli import main; main()"]
 
 
 def alula(*arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -91,12 +91,12 @@ def test_a_mistake_ends_with_status_2_and_says_why(arguments: list[str], words: 
 
 def test_a_fault_of_the_program_is_status_4_without_traceback(tmp_path: Path) -> None:
     (tmp_path / "sitecustomize.py").write_text(
-        "import loads.case_file\n"
+        "import loads.case.case_file\n"
         "def read_case(*args):\n    raise ZeroDivisionError('made up')\n"
-        "loads.case_file.read_case = read_case\n"
+        "loads.case.case_file.read_case = read_case\n"
     )
     root = str(Path(__file__).parents[3])
-    code = "import sitecustomize; from reports.cli import main; main()"
+    code = "import sitecustomize; from reports.commands.cli import main; main()"
     for more, shown in (({}, False), ({"ALULA_TRACEBACK": "1"}, True)):
         done = subprocess.run(
             [sys.executable, "-c", code, "statics", "owl-wing-static"],
@@ -114,7 +114,7 @@ def test_a_fault_of_the_program_is_status_4_without_traceback(tmp_path: Path) ->
 
 def test_a_closed_pipe_is_no_traceback() -> None:
     root = str(Path(__file__).parents[3])
-    code = "from reports.cli import main; main()"
+    code = "from reports.commands.cli import main; main()"
     command = f"{sys.executable} -c '{code}' schema | head -c 10"
     done = subprocess.run(
         ["bash", "-c", command],

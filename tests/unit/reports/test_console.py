@@ -3,7 +3,7 @@ import io
 import pytest
 from rich.console import Console
 
-from reports.console import print_result
+from reports.tables.console import print_result
 
 
 def printed(result, width=80):

@@ -6,12 +6,12 @@ from importlib.resources import files
 
 import pytest
 
-from fea.band import Band
-from fea.check import check_case
-from fea.verdict import BUCKLING_FACTOR, LINKAGE
-from loads.case_file import read_case, read_text, validate
-from reports.coverage import not_covered
-from reports.html import render
+from fea.check.run import check_case
+from fea.common.band import Band
+from fea.common.verdict import BUCKLING_FACTOR, LINKAGE
+from loads.case.case_file import read_case, read_text, validate
+from reports.page.coverage import not_covered
+from reports.page.html import render
 
 
 def told(result):
@@ -126,7 +126,7 @@ def test_console_and_page_give_the_same_difference_of_hand_and_solid(result):
 
     from rich.console import Console
 
-    from reports.console import print_result
+    from reports.tables.console import print_result
 
     case = result.load_cases["weight"]
     near = tuple(replace(c, difference=0.0007) for c in case.links["GF"].comparisons)

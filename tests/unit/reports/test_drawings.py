@@ -10,10 +10,10 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from fea.beam import BeamLoads, PointLoad, check_beam
-from loads.load_case import LoadCase
-from reports import diagrams, drawings
-from reports.labels import along, place_labels
+from fea.beam.theory import BeamLoads, PointLoad, check_beam
+from loads.records.load_case import LoadCase
+from reports.figures import diagrams, drawings
+from reports.figures.labels import along, place_labels
 
 
 @pytest.fixture
@@ -206,7 +206,7 @@ def test_forces_out_of_the_plane_get_panels_of_their_own(result, sheets):
 
 
 def test_the_worst_load_case_is_drawn(result):
-    from reports.pictures import governing_load_cases
+    from reports.page.pictures import governing_load_cases
 
     assert governing_load_cases(result) == ("weight",)
     turned = {name: result.load_cases[name] for name in ("idle", "weight")}

@@ -40,7 +40,7 @@ fillet_radius = "2 mm"
 
 def envelope(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-c", "from reports.cli import main; main()", "envelope", *arguments],
+        [sys.executable, "-c", "from reports.commands.cli import main; main()", "envelope", *arguments],
         env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from fea.band import Band
-from reports.envelope_figures import _panel
+from fea.common.band import Band
+from reports.figures.envelope_figures import _panel
 
 ANGLES = np.linspace(0.0, 360.0, 73)
 STRENGTH = 40.0

@@ -2,8 +2,8 @@ import json
 
 import pytest
 
-from reports import figures
-from reports.folder import report_names, write_report
+from reports.figures import figures
+from reports.page.folder import report_names, write_report
 
 
 @pytest.fixture

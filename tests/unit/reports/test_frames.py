@@ -11,15 +11,15 @@ import pytest
 from edited_cases import edited
 from rich.console import Console
 
-from fea.anchor import anchor_loads
-from fea.band import Band
-from fea.check import check_case
-from geometry.errors import CaseError
-from loads.case_file import read_case, read_text, validate
-from reports.console import print_result
-from reports.frames import frame_lines, frame_record
-from reports.html import render
-from reports.record import result_record
+from fea.check.anchor import anchor_loads
+from fea.check.run import check_case
+from fea.common.band import Band
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_case, read_text, validate
+from reports.page.html import render
+from reports.tables.console import print_result
+from reports.tables.frames import frame_lines, frame_record
+from reports.tables.record import result_record
 
 WING = "owl-wing-static"
 

@@ -5,10 +5,10 @@ from html.parser import HTMLParser
 
 import pytest
 
-from fea.verdict import Verdict
-from reports.coverage import not_covered
-from reports.html import render
-from reports.pictures import diagram_name, linkage_name, stress_name
+from fea.common.verdict import Verdict
+from reports.page.coverage import not_covered
+from reports.page.html import render
+from reports.page.pictures import diagram_name, linkage_name, stress_name
 
 PICTURES = {linkage_name("weight"): b"linkage", diagram_name("AE"): b"diagram", stress_name("GF"): b"stress"}
 VOID = {"meta", "img", "br", "hr", "link", "input"}
@@ -155,7 +155,7 @@ def test_no_zero_has_a_sign(page):
 
 
 def test_what_the_source_published_stands_in_the_report(result, monkeypatch) -> None:
-    from reports import html
+    from reports.page import html
 
     monkeypatch.setattr(html, "built_in_cases", lambda: ("owl-wing-static",))
     page = html.render(replace(result, name="owl-wing-static"), {})

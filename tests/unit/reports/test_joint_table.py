@@ -7,11 +7,11 @@ import re
 import pytest
 from typer.testing import CliRunner
 
-from fea.check import check_case, solve_case_statics
-from loads.case_file import read_case
-from reports.frames import shown_components
-from reports.html import render
-from reports.loads import weight_sentence
+from fea.check.run import check_case, solve_case_statics
+from loads.case.case_file import read_case
+from reports.page.html import render
+from reports.tables.frames import shown_components
+from reports.tables.loads import weight_sentence
 
 WING, FLIGHT = "owl-wing-static", "owl-wing-flight"
 BONDED = 'joint_model="bonded"'
@@ -57,7 +57,7 @@ def test_the_table_out_of_the_plane_holds_the_whole_wrench():
 
 
 def test_the_terminal_and_its_json_hold_them_too():
-    from reports.cli import app
+    from reports.commands.cli import app
 
     shown = CliRunner().invoke(app, ["statics", FLIGHT]).output
     assert "-0.1393) N, 0.9621 N, Mx -7.66, My -21.85 N·mm" in shown
@@ -67,7 +67,7 @@ def test_the_terminal_and_its_json_hold_them_too():
 
 def test_a_millionth_of_the_load_keeps_its_digits():
     """Forces were once printed with four decimals and torques with two, so that small mechanisms read zero."""
-    from reports.cli import app
+    from reports.commands.cli import app
 
     small = 'load_cases.weight.forces=[{link="CH", at="H", force=["0 N", "-2.5e-7 N"]}]'
     shown = CliRunner().invoke(app, ["statics", WING, "--set", small]).output

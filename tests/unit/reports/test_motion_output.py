@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from loads.case_file import read_case
-from loads.case_motion import solve_case_motion
-from reports.motion import print_motion, record, write_motion, write_tables
+from loads.case.case_file import read_case
+from loads.states.case_motion import solve_case_motion
+from reports.commands.motion import print_motion, record, write_motion, write_tables
 
 CASE = """
 schema_version = 1
@@ -60,7 +60,7 @@ forces = [{ link = "block", at = "P", force = ["-5 N", "0 N"] }]
 
 def run(*arguments, cwd):
     return subprocess.run(
-        [sys.executable, "-c", "from reports.cli import main; main()", "motion", *arguments],
+        [sys.executable, "-c", "from reports.commands.cli import main; main()", "motion", *arguments],
         capture_output=True, text=True, cwd=cwd, timeout=120, check=False,
     )  # fmt: skip
 

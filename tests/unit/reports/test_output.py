@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from geometry.errors import AlulaError, CannotRunError, CaseError
-from reports import output
-from reports.output import EXPORT, place, refuse_unusable, write_folder
+from geometry.base.errors import AlulaError, CannotRunError, CaseError
+from reports.page import output
+from reports.page.output import EXPORT, place, refuse_unusable, write_folder
 
 LIST = ".alula-check.json"
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from fea.band import Band
-from reports.record import FIELD_UNITS, as_json, result_record
+from fea.common.band import Band
+from reports.tables.record import FIELD_UNITS, as_json, result_record
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -4,12 +4,12 @@ import pytest
 from result_paths import compare, documented
 from slotted_cases import piston_entries
 
-from geometry.errors import CaseError
-from loads.case_file import read_case, validate
-from loads.case_motion import solve_case_motion
-from reports.motion import record as motion_record
-from reports.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
-from reports.synthesis import record as synthesis_record
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_case, validate
+from loads.states.case_motion import solve_case_motion
+from reports.commands.motion import record as motion_record
+from reports.commands.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
+from reports.commands.synthesis import record as synthesis_record
 
 
 def moved(name, *overrides):

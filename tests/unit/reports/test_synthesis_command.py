@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from geometry.errors import CaseError
-from reports.cli import app
-from reports.synthesis import (
+from geometry.base.errors import CaseError
+from reports.commands.cli import app
+from reports.commands.synthesis import (
     PUBLISHED_GROUND,
     PUBLISHED_POINTS,
     joints_at,

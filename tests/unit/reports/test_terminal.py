@@ -8,9 +8,9 @@ from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
 
-from fea.verdict import Verdict
-from reports.console import print_result
-from reports.terminal import KEPT, say, say_table
+from fea.common.verdict import Verdict
+from reports.tables.console import print_result
+from reports.words.terminal import KEPT, say, say_table
 
 LONG = "wing-of-the-left-side-outer-section"
 COLUMNS = (("link", False), ("safety factor n\n(band)", True), ("displacement\n[mm]", True))

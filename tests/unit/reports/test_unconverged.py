@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-import fea.claim_data
-from fea.claim_data import case_tree
-from fea.convergence import grid_convergence
-from fea.discretisation import Discretisation
-from fea.opinion import SecondOpinion
-from fea.refinement import MeshRecord
-from fea.singular import SharpPeak
-from geometry.errors import CannotRunError
-from loads.case_file import read_case
-from reports import figures
-from reports.second_opinion import opinion_records, say_opinions
+import fea.claims.data
+from fea.claims.data import case_tree
+from fea.outcomes.opinion import SecondOpinion
+from fea.refine.convergence import grid_convergence
+from fea.refine.discretisation import Discretisation
+from fea.refine.refinement import MeshRecord
+from fea.refine.singular import SharpPeak
+from geometry.base.errors import CannotRunError
+from loads.case.case_file import read_case
+from reports.figures import figures
+from reports.tables.second_opinion import opinion_records, say_opinions
 
 SERIES = grid_convergence([1.0], [5.0], estimate=0.1)
 
@@ -89,7 +89,7 @@ def test_no_claim_is_judged_on_a_stress_that_has_not_converged(monkeypatch, resu
         asked.append(effort.stated)
         return replace(result, load_cases={"weight": solids})
 
-    monkeypatch.setattr(fea.claim_data, "check_case", check)
+    monkeypatch.setattr(fea.claims.data, "check_case", check)
     tree = case_tree(read_case("owl-wing-static"), "owl-wing-static")
     with pytest.raises(CannotRunError, match="that of GF has not converged"):
         tree["solid"]

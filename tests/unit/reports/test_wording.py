@@ -3,9 +3,9 @@ from dataclasses import replace
 
 import pytest
 
-from fea.band import Band
-from fea.verdict import SAFETY_FACTOR, Verdict
-from reports import wording
+from fea.common.band import Band
+from fea.common.verdict import SAFETY_FACTOR, Verdict
+from reports.words import wording
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,136 @@
+"""How far solid models of links lie from the estimates of hand calculation: measured factors, and where they hold.
+
+``calibration.toml`` is written by ``benchmarks/calibration.py`` from solid models of parametrised tubes and bars.
+"""
+
+import itertools
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from fea.beam.spots import Kind
+from geometry.parts.body_rules import eye_reach, fillet_radius, patch_span, section_height, section_width
+from geometry.parts.part import Body, Disc, Part, Tube
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Factors:
+    """Solid over estimate: the least and the largest measured, widened by the margin, and the median."""
+
+    low: float
+    typical: float
+    high: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Calibration:
+    """What was measured on one shape.
+
+    measured    date; on ``parts`` parts under ``cases`` load cases in all
+    margin      the factor by which the largest and least measured ones were widened
+    ranges      proportion -> least and largest of the measured parts
+    von_mises, principal   kind of spot -> factors of the largest stress there
+    displacement           factors of the largest displacement
+    """
+
+    measured: str
+    parts: int
+    cases: int
+    margin: float
+    ranges: Mapping[str, Interval]
+    von_mises: Mapping[Kind, Factors]
+    principal: Mapping[Kind, Factors]
+    displacement: Factors
+
+    def outside(self, body: Body, nu: float) -> str:
+        """Say which proportion of a link lies outside of what was measured; "" where none does."""
+        if fillet_radius(body.part) == 0.0:
+            return "its junctions are sharp, where stress has no limit"
+        if any(pin.y != 0.0 for pin in body.pins):
+            return "a pin lies off its axis"
+        for name, value in proportions(body, nu).items():
+            low, high = self.ranges.get(name, (1.0, 0.0))
+            if not low * (1.0 - 1e-6) <= value <= high * (1.0 + 1e-6):
+                return f"its {name} {value:.3g} is outside of the calibrated {low:.3g} to {high:.3g}"
+        return ""
+
+
+def proportions(body: Body, nu: float) -> dict[str, float]:
+    """Return the ratios on which the factors may depend, by name; distances in section widths."""
+    part, width = body.part, section_width(body.part)
+    found = {
+        "Poisson's ratio": nu,
+        "eye diameter over width": part.eye_diameter / width,
+        "fillet over width": fillet_radius(part) / width,
+    }
+    if isinstance(part, Tube):
+        found["inner over outer diameter"] = part.inner_diameter / width
+        found["eye thickness over width"] = part.eye_thickness / width
+    else:
+        found["thickness over width"] = part.thickness / width
+        found["eye thickness over thickness"] = part.eye_thickness / part.thickness
+    pins = [pin.diameter / part.eye_diameter for pin in body.pins]
+    found |= {"largest pin over eye": max(pins), "smallest pin over eye": min(pins)}
+    for row in body.holes:
+        across = section_width(part) if row.along == "z" else section_height(part)
+        name = f"hole over size across ({row.along})"
+        found[name] = max(found.get(name, 0.0), row.diameter / across)
+    for end in body.ends:
+        found["patch over width"] = end.patch / width
+    eyes = sorted((p.x - eye_reach(body, p), p.x + eye_reach(body, p)) for p in body.pins)
+    holes = [(x - r.diameter / 2.0, x + r.diameter / 2.0) for r in body.holes for x in r.positions]
+    ends = [patch_span(body, end) for end in body.ends]
+    for name, features, others in (
+        ("gap between eyes over width", eyes, []),
+        ("gap at holes over width", holes, eyes),
+        ("gap at a loaded end over width", ends, eyes + holes),
+    ):
+        every = sorted(features + others)
+        gaps = [(after[0] - before[1]) / width for before, after in itertools.pairwise(every)
+                if before in features or after in features]  # fmt: skip
+        if gaps:
+            found[name] = min(gaps)
+    return found
+
+
+@cache
+def calibrations() -> Mapping[str, Calibration]:
+    """Shape ("tube", "bar") -> its calibration."""
+    data = tomllib.loads((files("fea") / "calibration.toml").read_text(encoding="utf-8"))
+    return {shape: _parsed(entry) for shape, entry in data.items()}
+
+
+def uncalibrated(body: Body, nu: float) -> str:
+    """Say why hand calculation is not calibrated for a link; "" where it is."""
+    if isinstance(body.part, Disc):
+        return "a disc is as wide as it is long, where beam theory does not hold"
+    if any(pin.slot > 0.0 for pin in body.pins):
+        return "it has a slot"
+    return calibration_of(body.part).outside(body, nu)
+
+
+def calibration_of(part: Part) -> Calibration:
+    """Return the calibration of a part's shape; a disc has none."""
+    return calibrations()[part.shape]
+
+
+def _parsed(entry: Mapping[str, object]) -> Calibration:
+    def factors(values: list[float]) -> Factors:
+        low, typical, high = values
+        return Factors(low=low, typical=typical, high=high)
+
+    data: dict[str, object] = dict(entry)
+    for quantity in ("von_mises", "principal"):
+        table = data[quantity]
+        assert isinstance(table, dict)
+        data[quantity] = {kind: factors(values) for kind, values in table.items()}
+    displacement, ranges = data["displacement"], data["ranges"]
+    assert isinstance(displacement, list)
+    assert isinstance(ranges, dict)
+    data["displacement"] = factors(displacement)
+    data["ranges"] = {name: (low, high) for name, (low, high) in ranges.items()}
+    return Calibration(**data)  # type: ignore[arg-type]

@@ -1,0 +1,143 @@
+"""Hand calculation where a link's plain section does not decide: the net section and the flanks of a slot, arms.
+
+A slot leaves two flanks side by side, joined by its round ends: a frame without diagonals. With c the distance of the
+flanks' axes, h their height and t their thickness, the section's moment M over the slot's length splits into its mean,
+which the net section bears as a whole, and what is left, which bends each flank by half of it (Vierendeel; the flanks'
+ends turn alike, so that it has no mean). The pin's push F on one flank is F/2 on both, which is in M, and F/2 to either
+side, which bends each flank as a beam built in at both ends (Roark, 8th ed., table 8.1, case 1d). The sizes of these
+moments are added, whatever their signs: pushed beside the middle of its slot, a bar's largest tension is so 2 % high,
+and with signs 6 % low (``tests/verification/test_slotted_bar.py``). The round ends give a little, so the flanks count a
+quarter of the slot's width longer at either end. Each flank twists under half of the torque; that the slot's ends hold
+its warping is left out. Where that counts, flanks of h << t bend instead of twisting, with at most 3 % more stress.
+
+An arm is a straight bar built in at the eye from which it starts, under the force of its pin alone.
+Lengths in mm, forces in N, moments in N·mm, stresses in MPa. The stress of a detail is given as that of its section:
+axial N/A of the net section, bending what comes on top at the worst fibre of a flank.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.flanks import flanks_of
+from fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
+from fea.beam.theory import Floats, Piecewise
+from fea.common.link_loads import LinkLoads, PinLoad
+from geometry.parts.part import Body, Disc, Pin, Section, rectangle
+
+_SAMPLES = 33
+SLENDER = 4.0
+"""Length over height from which a flank counts as a beam; below, its stress by hand is an estimate."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Detail:
+    """The largest stress by hand at one detail: ``name`` for people, station x, what its number holds."""
+
+    name: str
+    x: float
+    stress: SectionStress
+    remark: str
+
+
+def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.3) -> tuple[Detail, ...]:
+    """Return the details of a link under one load case, given the internal forces along its axis.
+
+    Poisson's ratio tells how the shear stress of V is spread.
+    """
+    pushed = {load.name: load for load in loads.pins}
+    found = [_slot(body, pin, pushed[pin.name], forces, poisson) for pin in body.pins if pin.slot > 0.0]
+    found += [_arm(body, pin, pin.foot, pushed[pin.name], poisson) for pin in body.pins if pin.foot is not None]
+    return tuple(found)
+
+
+def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
+    """Say what hand calculation found at the details, and where its section is but an estimate."""
+    said = [f"by hand {d.name} bears {d.stress.equivalent:.3g} MPa at x = {d.x:.3g} mm ({d.remark})" for d in found]
+    if any(pin.slot > 0.0 for pin in body.pins):
+        said.append("as a solid a pin pushes on half, and for the band on a quarter of its diameter, of a slot's flank")
+    if isinstance(body.part, Disc):
+        said.append(
+            "hand calculation takes the disc for a beam of its narrowest net section between its holes: an estimate, "
+            "since beam theory needs a length of several widths"
+        )
+    return tuple(said)
+
+
+def net_section(width: float, slot: float, thickness: float) -> Section:
+    """Return the two flanks that a slot leaves of a bar, as one section; J is that of two separate rectangles."""
+    flank = rectangle((width - slot) / 2.0, thickness)
+    return Section(
+        area=(width - slot) * thickness,
+        i_y=(width - slot) * thickness**3 / 12.0,
+        i_z=thickness * (width**3 - slot**3) / 12.0,
+        torsion=2.0 * flank.torsion,
+        half_y=width / 2.0,
+        half_z=thickness / 2.0,
+        round=False,
+    )
+
+
+def flank_moments(length: float, at: float, force: float, x: Floats) -> Floats:
+    """Moments along a beam built in at both ends under a force at a place (Roark, 8th ed., table 8.1, case 1d).
+
+    With b = length - at: M(0) = -F at b²/L², M(at) = 2 F at² b²/L³, M(L) = -F at² b/L², linear between.
+    """
+    b = length - at
+    ends = -force * at * b**2 / length**2, 2.0 * force * at**2 * b**2 / length**3, -force * at**2 * b / length**2
+    return np.interp(x, [0.0, at, length], ends)
+
+
+def _slot(body: Body, pin: Pin, load: PinLoad, forces: Piecewise, poisson: float) -> Detail:
+    part = body.part
+    wide, thick = part.eye_diameter, part.eye_thickness
+    (flanks,) = (found for found in flanks_of(body) if found.first < pin.x < found.last)
+    height, length = flanks.height, flanks.length
+    low, high = pin.span
+    net, flank = net_section(wide, pin.diameter, thick), flanks.one
+    place = float(load.centre[0])
+    stations = np.union1d(np.linspace(flanks.first, flanks.last, _SAMPLES), [low, place, high])
+    table = np.array([_inside(forces, x, side) for x in stations for side in ("before", "after")])
+    x = np.repeat(stations, 2)
+    mean = float(np.trapezoid(table[:, 5], x)) / length
+    force = abs(float(load.wrench[1])) / 2.0
+    push = flank_moments(length, place - flanks.first, force, x - x[0])
+    found = []
+    for station, row, apart in zip(x, table, push, strict=True):
+        for side in (1.0, -1.0):
+            # N of the mean moment, to either side; M of the net section's curvature, of what is left, of the push.
+            own = row / 2.0
+            own[0] += side * flank.area * mean * flanks.apart / 2.0 / net.i_z
+            own[5] = abs(mean) * flank.i_z / net.i_z + abs(row[5] - mean) / 2.0 + abs(apart)
+            found.append((equivalent_stress(flank, own, poisson), float(station), row[0] / net.area, own))
+    _, worst_x, axial, own = max(found, key=lambda entry: entry[0])
+    stress = section_stress(flank, own, poisson)
+    stress = replace(stress, axial=float(axial), bending=abs(stress.axial - float(axial)) + stress.bending)
+    slender = length / height
+    remark = f"net section of two flanks {height:.3g} mm high, and their own bending"
+    if slender < SLENDER:
+        remark += f"; an estimate, since they are but {slender:.2g} times as long as high"
+    return Detail(name=f"the slot at {pin.name}", x=worst_x, stress=stress, remark=remark)
+
+
+def _inside(forces: Piecewise, x: float, side: str) -> NDArray[np.float64]:
+    """Internal forces (6,) at a station, zero beyond the loads."""
+    first, last = forces.breaks[0], forces.breaks[-1]
+    if x < first or x > last or (x == first and side == "before") or (x == last and side == "after"):
+        return np.zeros(6)
+    return np.asarray(forces.at(x, "before" if side == "before" else "after"))
+
+
+def _arm(body: Body, pin: Pin, foot: tuple[float, float], load: PinLoad, poisson: float) -> Detail:
+    part = body.part
+    start, end = np.array([*foot, 0.0]), np.array([pin.x, pin.y, 0.0])
+    length = float(np.linalg.norm(end - start))
+    along = (end - start) / length
+    axes = np.array([along, [-along[1], along[0], 0.0], [0.0, 0.0, 1.0]])
+    root = start + along * part.eye_diameter / 2.0
+    moment = load.wrench[3:] + np.cross(end - root, load.wrench[:3])
+    stress = section_stress(part.section, np.concatenate([axes @ load.wrench[:3], axes @ moment]), poisson)
+    remark = "its own section at the eye from which it starts, under the pin's force alone"
+    return Detail(name=f"the arm to {pin.name}", x=foot[0], stress=stress, remark=remark)

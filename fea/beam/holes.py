@@ -1,0 +1,62 @@
+"""Handbook stresses at eyes and cross holes, for the hand calculations; the solid model is the better witness.
+
+Loads in N and N·mm, lengths in mm, stresses in MPa.
+"""
+
+from dataclasses import dataclass
+
+from geometry.base.errors import CannotRunError
+
+
+@dataclass(frozen=True, kw_only=True)
+class EyeStress:
+    """Mean stresses of an eye pulled by its pin [MPa].
+
+    net_tension  F/((D - d) t) in the section through the hole
+    bearing      F/(d t) on the projected area of the pin
+    """
+
+    net_tension: float
+    bearing: float
+
+
+def eye_stress(force: float, eye_diameter: float, hole_diameter: float, thickness: float) -> EyeStress:
+    """Net-section tension and bearing of an eye of width D and thickness t under a pin in a hole of diameter d.
+
+    Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., chapter 8. Raises ``CannotRunError``
+    where the hole leaves no section.
+    """
+    if not (0.0 < hole_diameter < eye_diameter and thickness > 0.0):
+        raise CannotRunError(
+            f"a hole of {hole_diameter:g} mm leaves no section in an eye of {eye_diameter:g} x {thickness:g} mm"
+        )
+    return EyeStress(
+        net_tension=abs(force) / ((eye_diameter - hole_diameter) * thickness),
+        bearing=abs(force) / (hole_diameter * thickness),
+    )
+
+
+def tube_hole_factors(outer_diameter: float, inner_diameter: float, hole_diameter: float) -> tuple[float, float]:
+    """Stress concentration factors (tension, bending) of a tube with a transverse hole, on the gross section.
+
+    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., 2008, chapter 4 (polynomial fits, used here
+    for d_i/D <= 0.9 and d/D <= 0.4). In bending the hole opens at the extreme fibre. Converged solid models lie up to
+    some 10 % lower in tension and more in bending. Raises ``CannotRunError`` outside that range.
+    """
+    r, h = inner_diameter / outer_diameter, hole_diameter / outer_diameter
+    if not (0.0 <= r <= 0.9 and 0.0 < h <= 0.4):
+        raise CannotRunError(
+            f"the handbook's factors for a cross hole hold up to d_i/D = 0.9 and d/D = 0.4, not {r:.3g} and {h:.3g}"
+        )
+    tension = (
+        3.0
+        + (0.427 - 6.770 * r + 22.698 * r**2 - 16.670 * r**3) * h
+        + (11.357 + 15.665 * r - 60.929 * r**2 + 41.501 * r**3) * h**2
+    )
+    bending = (
+        3.0
+        + (-6.250 - 0.585 * r + 3.115 * r**2) * h
+        + (41.000 - 1.071 * r - 6.746 * r**2) * h**2
+        + (-45.000 + 1.389 * r + 13.889 * r**2) * h**3
+    )
+    return tension, bending

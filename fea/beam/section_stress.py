@@ -1,0 +1,193 @@
+"""Stress over the cross-section of a prismatic beam: Saint-Venant's exact elastic fields and their largest von Mises.
+
+σ = N/A - M_z y/I_z + M_y z/I_y; the shear stress τ = (τ_y, τ_z) has no part across the rim and satisfies
+
+    div τ = -V_y y/I_z - V_z z/I_y,   curl τ = 2 G θ - ν/(1+ν) (V_y z/I_z - V_z y/I_y)
+
+(Timoshenko & Goodier, Theory of Elasticity, 3rd ed., sections 104 to 109 and 120 to 124; Love, Mathematical Theory of
+Elasticity, 4th ed., sections 229 to 231). It is closed for tubes and rods, and a series for rectangles. Forces pass
+through the section's centre. Lengths in mm, forces in N, moments in N·mm, stresses in MPa.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.parts.part import Section
+
+Floats = NDArray[np.float64]
+
+_ACROSS = 41
+"""Points across a rectangle, either way: Chebyshev's, which crowd at the rim."""
+_RADIAL, _AROUND = 17, 120
+_TERMS = 600
+"""Of a rectangle's series; what is left falls with the square of their number at the rim, exponentially inside."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SectionStress:
+    """Stresses of one section under N, V, T, M [MPa], the first four each by itself.
+
+    axial       N/A, tension positive
+    bending     at the extreme fibre: round √(M_y² + M_z²) c/I, rectangular |M_z| c_y/I_z + |M_y| c_z/I_y (a corner)
+    torsion     largest shear stress of T
+    shear       largest shear stress of V_y and V_z
+    equivalent  largest von Mises stress √(σ² + 3 τ²) over the section, of all of them together
+    """
+
+    axial: float
+    bending: float
+    torsion: float
+    shear: float
+    equivalent: float
+
+
+def section_stress(section: Section, forces: Floats, poisson: float = 0.3) -> SectionStress:
+    """Stresses of a section under forces (6,): N, V_y, V_z [N], T, M_y, M_z [N·mm].
+
+    Poisson's ratio tells how the shear stress of V is spread.
+    """
+    n, v_y, v_z, t, m_y, m_z = map(float, forces)
+    if section.round:
+        bending = float(np.hypot(m_y, m_z)) * section.half_y / section.i_z
+    else:
+        bending = abs(m_z) * section.half_y / section.i_z + abs(m_y) * section.half_z / section.i_y
+    root = math.sqrt(3.0)
+    return SectionStress(
+        axial=n / section.area,
+        bending=bending,
+        torsion=equivalent_stress(section, np.array([0.0, 0.0, 0.0, t, 0.0, 0.0]), poisson) / root,
+        shear=equivalent_stress(section, np.array([0.0, v_y, v_z, 0.0, 0.0, 0.0]), poisson) / root,
+        equivalent=equivalent_stress(section, np.asarray(forces, dtype=np.float64), poisson),
+    )
+
+
+def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) -> float:
+    """Largest von Mises stress over a section under forces (6,), the best of a grid refined by parabolas."""
+    fields = _fields(section, poisson)
+    normal, along_y, along_z = np.tensordot(fields, forces, axes=1)
+    square = normal**2 + 3.0 * (along_y**2 + along_z**2)
+    i, j = np.unravel_index(int(np.argmax(square)), square.shape)
+    peak = float(square[i, j])
+    rows, columns = square.shape
+    down, up = square[abs(i - 1), j], square[i + 1 if i + 1 < rows else i - 1, j]
+    if section.round:
+        left, right = square[i, j - 1], square[i, (j + 1) % columns]
+    else:
+        left, right = square[i, abs(j - 1)], square[i, j + 1 if j + 1 < columns else j - 1]
+    return math.sqrt(peak + _rise(down, peak, up) + _rise(left, peak, right))
+
+
+def rim_shear(section: Section, nu: float) -> tuple[float, float]:
+    """Shear stress per unit V_y at (0, ±half_z) and per unit V_z at (±half_y, 0) of a rectangle's rim [1/mm²]."""
+    fields, middle = _fields(section, nu), _ACROSS // 2
+    return float(fields[1, middle, 0, 1]), float(fields[2, 0, middle, 2])
+
+
+def _rise(before: float, peak: float, after: float) -> float:
+    """Height of a parabola through three neighbours above the middle one, the largest."""
+    curved = before - 2.0 * peak + after
+    return float((after - before) ** 2 / (-8.0 * curved)) if curved < 0.0 else 0.0
+
+
+@lru_cache(maxsize=64)
+def _fields(section: Section, nu: float) -> Floats:
+    """σ, τ_y, τ_z (3, i, j, 6) at the points (i, j) of a section under unit forces, read-only.
+
+    Along i and j a function that is smooth over the section is smooth and, at a rim, even: so its largest value
+    between points is that of a parabola.
+    """
+    fields = _round(section, nu) if section.round else _rectangle(section, nu)
+    fields.setflags(write=False)
+    return fields
+
+
+def _normal(section: Section, y: Floats, z: Floats) -> Floats:
+    """σ (i, j, 6) under unit forces."""
+    one, nought = np.ones_like(y), np.zeros_like(y)
+    return np.stack([one / section.area, nought, nought, nought, z / section.i_y, -y / section.i_z], axis=-1)
+
+
+def _round(section: Section, nu: float) -> Floats:
+    """Tube or rod, in polar coordinates r, φ from y: under V_y τ_r = R(r) cos φ, τ_φ = S(r) sin φ.
+
+    R' + R/r + S/r = -V r/I and S' + S/r + R/r = -κ r with κ = ν/(1+ν) V/I, and R = 0 at both walls a < b, give
+    R = A (a² + b² - r² - a²b²/r²), S = (V/I - 3κ) r²/8 - A (a² + b² + a²b²/r²), A = (3V/I - κ)/8.
+    """
+    outer = section.half_y
+    inner = outer * section.radius_ratio
+    r = (outer + inner) / 2.0 + (outer - inner) / 2.0 * np.cos(np.linspace(0.0, np.pi, _RADIAL))
+    angle = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
+    bore = inner**2 * (outer / r) ** 2 if inner > 0.0 else np.zeros_like(r)
+    unit, kappa = 1.0 / section.i_z, nu / (1.0 + nu) / section.i_z
+    a = (3.0 * unit - kappa) / 8.0
+    radial = (a * (inner**2 + outer**2 - r**2 - bore))[:, None]
+    around = ((unit - 3.0 * kappa) / 8.0 * r**2 - a * (inner**2 + outer**2 + bore))[:, None]
+    cos, sin = np.cos(angle), np.sin(angle)
+    fields = np.zeros((3, _RADIAL, _AROUND, 6))
+    fields[0] = _normal(section, r[:, None] * cos, r[:, None] * sin)
+    fields[1, ..., 1], fields[2, ..., 1] = radial * cos**2 - around * sin**2, (radial + around) * sin * cos
+    fields[1, ..., 2], fields[2, ..., 2] = (radial + around) * sin * cos, radial * sin**2 - around * cos**2
+    fields[1, ..., 3], fields[2, ..., 3] = -r[:, None] * sin / section.torsion, r[:, None] * cos / section.torsion
+    return fields
+
+
+def _rectangle(section: Section, nu: float) -> Floats:
+    """Flexure both ways and torsion of a rectangle."""
+    points = np.cos(np.linspace(0.0, np.pi, _ACROSS))
+    a, b = section.half_y, section.half_z
+    y, z = a * points, b * points
+    fields = np.zeros((3, _ACROSS, _ACROSS, 6))
+    fields[0] = _normal(section, *np.meshgrid(y, z, indexing="ij"))
+    kappa = nu / (1.0 + nu)
+    along, across = _flexure(a, b, y, z, kappa)
+    fields[1, ..., 1], fields[2, ..., 1] = along / section.i_z, across / section.i_z
+    along, across = _flexure(b, a, z, y, kappa)
+    fields[2, ..., 2], fields[1, ..., 2] = along.T / section.i_y, across.T / section.i_y
+    if a <= b:
+        along, across = _twist(a, b, y, z)
+        fields[1, ..., 3], fields[2, ..., 3] = along / section.torsion, across / section.torsion
+    else:
+        along, across = _twist(b, a, z, y)
+        fields[2, ..., 3], fields[1, ..., 3] = -along.T / section.torsion, -across.T / section.torsion
+    return fields
+
+
+def _flexure(a: float, b: float, s: Floats, r: Floats, kappa: float) -> tuple[Floats, Floats]:
+    """Shear stresses times I (i, j) along s (half-side a) and r (half-side b) under a unit force along s.
+
+    Timoshenko & Goodier, section 124: τ_s = (a² - s²)/2 + ∂φ/∂r, τ_r = -∂φ/∂s with ∇²φ = κ r and φ = 0 at the rim, here
+    φ = -κ Σ 2(-1)^m/(a λ³) (r - b sinh λr/sinh λb) cos λs, λ = (2m + 1)π/2a.
+    """
+    rate, sign = _rates(a)
+    decay = np.exp(-rate * b)
+    up, down = np.exp(rate * (r[:, None] - b)), np.exp(-rate * (r[:, None] + b))
+    weight = 2.0 * b * sign / (a * rate**2) / (1.0 - decay**2)
+    bracket = (a**2 - s[:, None] ** 2) / 2.0
+    along = (1.0 - kappa) * bracket + kappa * (np.cos(s[:, None] * rate) * weight) @ (up + down).T
+    across = kappa * ((np.sin(s[:, None] * rate) * weight) @ (up - down).T - s[:, None] * r)
+    return along, across
+
+
+def _twist(a: float, b: float, s: Floats, r: Floats) -> tuple[Floats, Floats]:
+    """Shear stresses times J (i, j) along s and r under a unit torque from s towards r; half-sides a and b.
+
+    Timoshenko & Goodier, section 109: τ_s = ∂ψ/∂r, τ_r = -∂ψ/∂s with
+    ψ = a² - s² - Σ 4(-1)^m/(a λ³) cosh λr/cosh λb cos λs.
+    """
+    rate, sign = _rates(a)
+    decay = np.exp(-rate * b)
+    up, down = np.exp(rate * (r[:, None] - b)), np.exp(-rate * (r[:, None] + b))
+    weight = 4.0 * sign / (a * rate**2) / (1.0 + decay**2)
+    along = -(np.cos(s[:, None] * rate) * weight) @ (up - down).T
+    across = 2.0 * s[:, None] - (np.sin(s[:, None] * rate) * weight) @ (up + down).T
+    return along, across
+
+
+def _rates(a: float) -> tuple[Floats, Floats]:
+    """λ and (-1)^m of a series in cos λs that vanishes at s = ±a."""
+    number = np.arange(_TERMS, dtype=np.float64)
+    return (2.0 * number + 1.0) * np.pi / (2.0 * a), 1.0 - 2.0 * (number % 2)

@@ -1,0 +1,225 @@
+"""Hand calculation of the stress at every place of a link that can bear its peak: eyes, holes, loaded ends, sections.
+
+Section stresses of beam theory times the handbooks' concentration factors. The factors are for neighbouring shapes
+(a shoulder for the junction of an eye, a plate for the eye itself), so that these numbers are estimates, to be used
+with the factors that solid models of such links gave (``fea.beam.calibration``). Lengths in mm, forces in N, moments in
+N·mm, stresses in MPa.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.holes import eye_stress, tube_hole_factors
+from fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
+from fea.beam.theory import BeamCheck, Side, deflection
+from fea.common.link_loads import LinkLoads, PinLoad
+from geometry.parts.body_rules import extent, eye_reach, fillet_radius, patch_span, section_height, section_width
+from geometry.parts.part import Body, HoleRow, Pin, Tube
+
+Kind = Literal["eye", "hole", "end", "section"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spot:
+    """A place of a link and the estimate of the largest von Mises stress there.
+
+    name      for people: "the eye at A"
+    x         station of its middle [mm]; it reaches from ``low`` to ``high``
+    estimate  by hand [MPa]
+    """
+
+    kind: Kind
+    name: str
+    x: float
+    low: float
+    high: float
+    estimate: float
+
+
+def spots(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[Spot, ...]:
+    """Return every spot of a link under one load case, what lies between eyes, holes and ends as one, the last.
+
+    Raises ``CannotRunError`` for a cross hole outside of the handbook's range.
+    """
+    first, last = extent(body)
+    found = [_eye(body, pin, loads, beam) for pin in body.pins]
+    found += [_hole(body, row, number, x, beam) for number, row in enumerate(body.holes) for x in row.positions]
+    for end in loads.ends:
+        place = next(e for e in body.ends if e.name == end.name)
+        low, high = patch_span(body, place)
+        force = float(np.linalg.norm(end.wrench[:3]))
+        stress = _largest(beam, low, high) + force / (place.patch * section_width(body.part))
+        found.append(Spot(kind="end", name=f"the loaded end at {end.name}", x=end.point[0], low=low, high=high,
+                          estimate=stress))  # fmt: skip
+    between = max((_largest(beam, low, high) for low, high in _gaps(found, first, last)), default=0.0)
+    middle = (first + last) / 2.0
+    return (*found, Spot(kind="section", name="the plain section", x=middle, low=first, high=last, estimate=between))
+
+
+def displacement_estimate(
+    body: Body, loads: LinkLoads, beam: BeamCheck, *, young: float, poisson: float, line: tuple[float, float]
+) -> float:
+    """Estimate of the largest displacement of any point, relative to the line through two stations [mm].
+
+    Of the axis by beam theory, straight on where the link stands out beyond its last load, with what the turning of
+    sections and eyes adds at the surface, and the give of the eyes under their pins, F/(E t).
+    """
+    section, part = beam.section, body.part
+    bent = deflection(beam.forces, section, young=young, poisson=poisson, line=line)
+    first, last = bent.functions.breaks[0], bent.functions.breaks[-1]
+    table = np.array([bent.functions.at(x) for x in np.linspace(first, last, 65)])
+    table[:, 3] -= (bent.functions.at(line[0])[3] + bent.functions.at(line[1])[3]) / 2.0
+    ends = extent(body)
+    beyond = [
+        (u, v + turn_z * overhang, w - turn_y * overhang)
+        for (u, v, w, _, turn_y, turn_z), overhang in ((table[0], ends[0] - first), (table[-1], ends[1] - last))
+    ]
+    axis = max(float(np.linalg.norm(moved)) for moved in (*table[:, :3], *beyond))
+    bending = max(section.half_y, section.half_z) * np.hypot(table[:, 4], table[:, 5])
+    twist = math.hypot(part.eye_diameter, part.eye_thickness) / 2.0 * np.abs(table[:, 3])
+    pinned = max((float(np.linalg.norm(p.wrench[:3])) for p in loads.pins), default=0.0)
+    return float(axis + (bending + twist).max() + pinned / (young * part.eye_thickness))
+
+
+def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float, float, float]:
+    """Stress concentration factors (tension, bending, torsion) of a shaft of that diameter at a filleted step up.
+
+    step     height of the shoulder on the radius [mm]; ``radius`` of the fillet [mm]
+
+    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, 3.10 and 3.12:
+    K = C1 + C2 s + C3 s² + C4 s³ with s = 2 step/D, for step/radius of 0.1 to 20 in tension and bending and of 0.25 to
+    4 in torsion (clipped).
+    """
+    t, s = min(max(step / radius, 0.1), 20.0), 2.0 * step / (diameter + 2.0 * step)
+    root = math.sqrt(t)
+    if t <= 2.0:
+        tension = (0.926 + 1.157 * root - 0.099 * t, 0.012 - 3.036 * root + 0.961 * t,
+                   -0.302 + 3.977 * root - 1.744 * t, 0.365 - 2.098 * root + 0.878 * t)  # fmt: skip
+        bending = (0.947 + 1.206 * root - 0.131 * t, 0.022 - 3.405 * root + 0.915 * t,
+                   0.869 + 1.777 * root - 0.555 * t, -0.810 + 0.422 * root - 0.260 * t)  # fmt: skip
+    else:
+        tension = (1.200 + 0.860 * root - 0.022 * t, -1.805 - 0.346 * root - 0.038 * t,
+                   2.198 - 0.486 * root + 0.165 * t, -0.593 - 0.028 * root - 0.106 * t)  # fmt: skip
+        bending = (1.232 + 0.832 * root - 0.008 * t, -3.813 + 0.968 * root - 0.260 * t,
+                   7.423 - 4.868 * root + 0.869 * t, -3.839 + 3.070 * root - 0.600 * t)  # fmt: skip
+    t = min(max(t, 0.25), 4.0)
+    root = math.sqrt(t)
+    torsion = (0.905 + 0.783 * root - 0.075 * t, -0.437 - 1.969 * root + 0.553 * t,
+               1.557 + 1.073 * root - 0.578 * t, -1.061 + 0.171 * root + 0.086 * t)  # fmt: skip
+    found = [max(1.0, sum(c * s**power for power, c in enumerate(row))) for row in (tension, bending, torsion)]
+    return found[0], found[1], found[2]
+
+
+def forces_at(beam: BeamCheck, x: float, side: Side = "after") -> NDArray[np.float64]:
+    """Internal forces (6,) at a station; zero on what stands out beyond the last loaded one."""
+    breaks = beam.forces.breaks
+    inside = breaks[0] <= x <= breaks[-1]
+    return np.asarray(beam.forces.at(x, side)) if inside else np.zeros(6)
+
+
+def _gaps(found: list[Spot], first: float, last: float) -> Iterator[tuple[float, float]]:
+    """Stretches between the spots."""
+    reach = first
+    for low, high in sorted((spot.low, spot.high) for spot in found):
+        if low > reach:
+            yield reach, low
+        reach = max(reach, high)
+    if last > reach:
+        yield reach, last
+
+
+def _largest(beam: BeamCheck, low: float, high: float) -> float:
+    """Largest equivalent stress by beam theory between two stations."""
+    stations = [x for x in beam.x if low <= x <= high] + [low, high]
+    sides: tuple[Side, Side] = ("before", "after")
+    found = [forces_at(beam, float(x), side) for x in stations for side in sides]
+    return max(equivalent_stress(beam.section, forces, beam.poisson) for forces in found)
+
+
+def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> Spot:
+    part, (first, last) = body.part, extent(body)
+    reach = eye_reach(body, pin)
+    load = next(p for p in loads.pins if p.name == pin.name)
+    torque = sum(c.torque for c in loads.couples if c.pin == pin.name) + float(load.wrench[5])
+    before = forces_at(beam, pin.x, "before") if pin.x > beam.forces.breaks[0] else np.zeros(6)
+    after = forces_at(beam, pin.x, "after") if pin.x < beam.forces.breaks[-1] else np.zeros(6)
+    found = [_bore(body, pin, load, torque, before, after)]
+    sides: tuple[tuple[float, Side], ...] = ((pin.x - reach, "after"), (pin.x + reach, "before"))
+    found += [_junction(body, forces_at(beam, x, side), beam.poisson) for x, side in sides if first < x < last]
+    far = reach + section_width(part) / 2.0
+    return Spot(kind="eye", name=f"the eye at {pin.name}", x=pin.x, low=pin.x - far, high=pin.x + far,
+                estimate=max(found))  # fmt: skip
+
+
+def _junction(body: Body, forces: NDArray[np.float64], poisson: float) -> float:
+    """Stress at the fillet between the section and an eye under the section's forces (6,)."""
+    part, width = body.part, section_width(body.part)
+    stress = section_stress(part.section, forces, poisson)
+    tension, bending, torsion = shoulder_factors(width, (part.eye_diameter - width) / 2.0, fillet_radius(part))
+    direct = tension * abs(stress.axial) + bending * stress.bending
+    return math.hypot(direct, math.sqrt(3.0) * (torsion * stress.torsion + stress.shear))
+
+
+def _bore(
+    body: Body, pin: Pin, load: PinLoad, torque: float, before: NDArray[np.float64], after: NDArray[np.float64]
+) -> float:
+    """Stress at the edge of a pin hole.
+
+    Of the pin's push after Pilkey & Pilkey, 3rd ed., chart 4.67 (close-fitting pin in a strip, net section, d/D of 0.15
+    to 0.75, clipped; it holds for an edge one width or more beyond the pin, and an eye has half a width, which the
+    calibration takes up), its moments taken as the force pair 6M/t of a linear pressure; of what passes through the
+    eye, with the factors of a hole in a plate: 3 in tension and in bending out of the plane, 2 in bending in the plane;
+    of a torque that the bore takes by shear.
+    """
+    part = body.part
+    wide, thick, hole = part.eye_diameter, part.eye_thickness, pin.diameter
+    h = min(max(hole / wide, 0.15), 0.75)
+    factor = 12.882 - 52.714 * h + 89.762 * h**2 - 51.667 * h**3
+    push = float(np.linalg.norm(load.wrench[:3]) + 6.0 * np.linalg.norm(load.wrench[3:5]) / thick)
+    pushed = factor * eye_stress(push, wide, hole, thick).net_tension
+    through = min(abs(before[0]), abs(after[0])) if before[0] * after[0] > 0.0 else 0.0
+    n, m_z = 3.0 * through / ((wide - hole) * thick), max(abs(before[5]), abs(after[5]))
+    in_plane = 2.0 * 6.0 * m_z * hole / (thick * (wide**3 - hole**3))
+    m_y, t = max(abs(before[4]), abs(after[4])), max(abs(before[3]), abs(after[3]))
+    out_of_plane = 3.0 * 6.0 * m_y / ((wide - hole) * thick**2)
+    twisted = math.sqrt(3.0) * 2.0 * t / (0.2 * (wide - hole) * thick * min(wide, thick))
+    sheared = math.sqrt(3.0) * 2.0 * abs(torque) / (math.pi * hole**2 * thick)
+    return float(pushed + n + in_plane + out_of_plane + twisted + sheared)
+
+
+def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> Spot:
+    """Stress at the rim of a cross hole: N and M with the handbook's factors on the gross section, shear with 4.
+
+    The shear of V is that where the hole opens: on a tube the wall's mean at the neutral axis, 4V/3A (1+m+m²)/(1+m²)
+    with m the ratio of the radii (Gere & Goodno, 8th ed., section 5.9), on a bar that of the rim.
+    """
+    part, section = body.part, body.part.section
+    forces = forces_at(beam, x)
+    n, v_y, v_z, _, m_y, m_z = map(float, forces)
+    stress = section_stress(section, forces, beam.poisson)
+    opened, across = (m_z, m_y) if row.along == "y" else (m_y, m_z)
+    shear = v_z if row.along == "y" else v_y
+    if isinstance(part, Tube):
+        tension, bending = tube_hole_factors(part.outer_diameter, part.inner_diameter, row.diameter)
+        at_rim, aside = section.half_y / section.i_z, section.half_y / section.i_z
+        m = section.radius_ratio
+        transverse = 4.0 / 3.0 * (1.0 + m + m**2) / (1.0 + m**2) * abs(shear) / section.area
+    else:
+        width = section_width(part) if row.along == "z" else section_height(part)
+        h = row.diameter / width
+        # Roark, 8th ed., table 17.1, case 7a (tension of a plate with a central hole), on the gross section.
+        tension = (3.0 - 3.14 * h + 3.667 * h**2 - 1.527 * h**3) / (1.0 - h)
+        bending = tension
+        half, second = (section.half_y, section.i_z) if row.along == "y" else (section.half_z, section.i_y)
+        other, other_second = (section.half_z, section.i_y) if row.along == "y" else (section.half_y, section.i_z)
+        at_rim, aside = half / second, other / other_second
+        transverse = rim_shear(section, beam.poisson)[1 if row.along == "y" else 0] * abs(shear)
+    rim = tension * abs(n) / section.area + bending * abs(opened) * at_rim + 4.0 * (stress.torsion + transverse)
+    estimate = max(rim, stress.equivalent, abs(n) / section.area + abs(across) * aside + rim / 3.0)
+    return Spot(kind="hole", name=f"hole at x = {x:g} mm of row {number + 1}", x=x, low=x - row.diameter,
+                high=x + row.diameter, estimate=float(estimate))  # fmt: skip

@@ -1,0 +1,89 @@
+"""What the ground must hold: force and moment that the linkage exerts on it at each of its joints, and in all."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.outcomes.result import LoadCaseResult
+from loads.records.applied import shifted
+from loads.statics.statics import Reactions
+
+Real = NDArray[np.float64]
+
+_ROUNDING = 1e-10
+"""Share of the solution's size below which a component is taken for rounding."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AnchorLoads:
+    """What the linkage does to the ground.
+
+    joints    joint on the ground -> wrench (6,) on the ground about the joint [N, N mm], global axes; the reaction of
+              the drive torque, where it goes to the ground, is in the moment about z at the drive's joint
+    about     the joint about which ``total`` is taken
+    total     wrench (6,) of all joints together about that joint
+    deformed  True where the forces are those on the deformed shape
+    unstable  True where they are those of the undeformed pose, since the deformed shape has no stable equilibrium
+
+    What rounding leaves of a force or a moment is zero.
+    """
+
+    joints: Mapping[str, Real]
+    about: str
+    total: Real
+    deformed: bool
+    unstable: bool
+
+
+def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
+    """Return what a load case asks of the ground, on the deformed shape where equilibrium was found there."""
+    moved = case.large_displacement.reactions
+    reactions = moved or case.reactions
+    joints = wrenches_on_ground(reactions)
+    pose = reactions.pose
+    ground = pose.linkage.ground
+    places = {}
+    for name in joints:
+        point = pose.position(ground, pose.linkage.point_of(name, ground))
+        # A pin has travelled from the ground's point along its slot; the wrench is about where it stands.
+        travelled = reactions.joints[name].arm if reactions.joints[name].by == ground else np.zeros(3)
+        places[name] = np.array([*point, 0.0]) + travelled
+    about = next(iter(joints))
+    total = np.zeros(6)
+    for name, wrench in joints.items():
+        total += shifted(wrench, places[name] - places[about])
+    size = _size(reactions)
+    return AnchorLoads(
+        joints={name: _rounded(wrench, size) for name, wrench in joints.items()},
+        about=about,
+        total=_rounded(total, size),
+        deformed=moved is not None,
+        unstable=moved is None and case.large_displacement.followed,
+    )
+
+
+def _size(reactions: Reactions) -> Real:
+    """Size (6,) of the forces and moments of a solution, of which single components may be what rounding leaves."""
+    wrenches = np.array([joint.wrench for joint in reactions.joints.values()])
+    arm = reactions.pose.linkage.longest
+    force = max(np.abs(wrenches[:, :3]).max(), np.abs(wrenches[:, 3:]).max() / arm, abs(reactions.drive_torque) / arm)
+    return np.array([force] * 3 + [force * arm] * 3)
+
+
+def _rounded(wrench: Real, size: Real) -> Real:
+    return np.where(np.abs(wrench) <= _ROUNDING * size, 0.0, wrench)
+
+
+def wrenches_on_ground(reactions: Reactions) -> dict[str, Real]:
+    """Return the wrench (6,) on the ground about each of its joints, the drive torque's reaction included."""
+    linkage, drive = reactions.pose.linkage, reactions.drive
+    found = {}
+    for name, reaction in reactions.joints.items():
+        if linkage.ground in (reaction.on, reaction.by):
+            wrench = reaction.wrench if reaction.on == linkage.ground else -reaction.wrench
+            if drive is not None and name == drive.joint:
+                wrench = wrench + np.array([0.0, 0.0, 0.0, 0.0, 0.0, reactions.torque_on(linkage.ground)])
+            found[name] = wrench
+    return found

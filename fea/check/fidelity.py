@@ -1,0 +1,340 @@
+"""The cheapest model that decides a link: hand calculation, frame, submodels of its eyes and holes, whole solid.
+
+A rung decides only where the whole band of its model, as calibrated against solid models (``fea.beam.calibration``),
+clears every limit on the link, and all that stated scatter makes of it; else the next one is taken. Hand calculation
+and frame give the stress of a link in the same way; a frame is a rung of its own where equilibrium alone does not give
+the joint forces.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from fea.beam.calibration import Calibration, Factors, calibration_of, uncalibrated
+from fea.beam.spots import Spot, displacement_estimate, spots
+from fea.beam.theory import BeamCheck
+from fea.check.eye_models import EyePeaks, covers, peaks, plan
+from fea.check.submodel import Submodel
+from fea.common.band import Band
+from fea.common.link_loads import LinkLoads
+from fea.refine.refinement import Effort, LinkTask, Progress, RefinedSolid, refine_links
+from geometry.base.errors import CannotRunError
+from geometry.meshing.mesh import MeshSettings
+from geometry.parts.body_rules import extent, eye_reach, reference_line, section_height, section_width
+from geometry.parts.part import Body
+from loads.records.bearing import CONTACT_HOLDS, CONTACT_SHORTFALL
+
+Rung = Literal["beam", "frame", "submodel", "solid"]
+RUNGS: tuple[Rung, ...] = ("beam", "frame", "submodel", "solid")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpotBand:
+    """A spot with the bounds of its largest von Mises and principal stress [MPa] by hand."""
+
+    spot: Spot
+    von_mises: Band
+    principal: Band
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandBands:
+    """Peaks of a link under one load case by calibrated hand calculation [MPa, mm].
+
+    spots     all places, the most stressed first
+    outside   why the calibration does not hold for this link; "" where it does. Then all bands are unknown
+    """
+
+    von_mises: Band
+    principal: Band
+    displacement: Band
+    spots: tuple[SpotBand, ...]
+    outside: str
+
+    def deciding(self, *, brittle: bool) -> Band:
+        """The stress that counts: the principal one of brittle materials."""
+        return self.principal if brittle else self.von_mises
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decision:
+    """Which rung decided a link under all load cases, why, and what the next one would have cost ("" on the last).
+
+    The rung is "" where one was asked for that cannot decide.
+    """
+
+    rung: Rung | Literal[""]
+    why: str
+    next_cost: str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Climb:
+    """How far one link had to climb, and what it found.
+
+    hands   load case -> bands by hand, with those of submodels where they were solved; empty where neither was asked
+            for
+    solid   the whole link's solutions; None where a lower rung decided
+    """
+
+    decision: Decision
+    hands: Mapping[str, HandBands] = field(default_factory=dict)
+    solid: RefinedSolid | None = None
+
+
+def climb(
+    tasks: Mapping[str, LinkTask],
+    beams: Mapping[str, Mapping[str, BeamCheck]],
+    start: MeshSettings,
+    effort: Effort,
+    *,
+    fidelity: str,
+    framed: bool,
+    threads: int | None = None,
+    progress: Progress = lambda message: None,
+) -> dict[str, Climb]:
+    """Take every link up the ladder until a rung decides it; ``fidelity`` "solid" goes straight to the top.
+
+    tasks    of the links on which something acts; ``beams`` link -> load case -> its hand calculation
+    framed   True where a frame gave the joint forces
+
+    Raises what ``refine_links`` raises.
+    """
+    hands: dict[str, dict[str, HandBands]] = {}
+    reasons: dict[str, str] = {}
+    found: dict[str, Climb] = {}
+    cuts: dict[str, tuple[Submodel, ...]] = {}
+    for link, task in tasks.items():
+        if fidelity == "solid" or effort.stated:
+            reasons[link] = "a solid was asked for" if fidelity == "solid" else "an accuracy was asked for"
+            continue
+        hands[link] = {loads.name: hand_bands(task, loads, beams[link][loads.name]) for loads in task.loads}
+        bands = [*hands[link].values()]
+        decision, reasons[link] = decided_by_hand(task, bands, "frame" if framed else "beam")
+        if decision is not None and fidelity == "auto":
+            found[link] = Climb(decision=decision, hands=hands[link])
+            continue
+        reasons[link] = reasons[link] or "submodels were asked for"
+        cuts[link] = _cuts(
+            task, [beams[link][loads.name] for loads in task.loads], bands, forced=fidelity == "submodel"
+        )
+    parts = {f"{link}, {cut.name}": cut.task for link in cuts for cut in cuts[link]}
+    solved = refine_links(parts, start, effort, threads=threads, progress=progress)
+    for link in cuts:
+        refined = [(cut, solved[f"{link}, {cut.name}"]) for cut in cuts[link]]
+        climbed = _decided_by_submodels(tasks[link], hands[link], refined, reasons[link]) if refined else None
+        if climbed is not None:
+            found[link] = climbed
+        elif refined:
+            reasons[link] += ", and submodels did not decide it"
+    rest = {link: task for link, task in tasks.items() if link not in found}
+    solids = refine_links(rest, start, effort, threads=threads, progress=progress)
+    for link, solid in solids.items():
+        decision = Decision(rung="solid", why=reasons[link], next_cost="")
+        found[link] = Climb(decision=decision, hands=hands.get(link, {}), solid=solid)
+    return {link: found[link] for link in tasks}
+
+
+def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck], *, framed: bool) -> Climb:
+    """Return what a link is by hand alone, where that was asked for; without decision where it has no bands.
+
+    beams   load case -> its hand calculation; ``framed`` True where a frame gave the joint forces
+    """
+    hands = {loads.name: hand_bands(task, loads, beams[loads.name]) for loads in task.loads}
+    rung: Rung = "frame" if framed else "beam"
+    outside = next((hand.outside for hand in hands.values() if hand.outside), "")
+    if outside:
+        why = f"hand calculation is not calibrated for it, since {outside}, so it cannot decide; run the solid model"
+        return Climb(decision=Decision(rung="", why=why, next_cost=""), hands=hands)
+    return Climb(decision=Decision(rung=rung, why="hand calculation was asked for", next_cost=""), hands=hands)
+
+
+def _cuts(
+    task: LinkTask, beams: Sequence[BeamCheck], hands: Sequence[HandBands], *, forced: bool
+) -> tuple[Submodel, ...]:
+    """Submodels of what hand calculation leaves open or, where ``forced``, of whatever may bear the peak."""
+    if any(hand.outside for hand in hands) or undecided(task, [], [hand.displacement for hand in hands]):
+        return ()
+
+    def critical(spot: Spot) -> bool:
+        rows = [(hand, row) for hand in hands for row in hand.spots if row.spot.name == spot.name]
+        if forced:
+            return any(_own(row, task).high >= hand.deciding(brittle=task.brittle).low for hand, row in rows)
+        return bool(undecided(task, [_own(row, task) for _, row in rows], []))
+
+    def elements(cut: Submodel) -> float:
+        return expected_elements(cut.body)
+
+    allowed = 1.0 if forced else LARGEST_SHARE
+    spots = [row.spot for row in hands[0].spots]
+    return plan(task, beams, spots, critical, elements, allowed * expected_elements(task.body))
+
+
+def _own(row: SpotBand, task: LinkTask) -> Band:
+    return row.principal if task.brittle else row.von_mises
+
+
+def _decided_by_submodels(
+    task: LinkTask, hands: Mapping[str, HandBands], refined: Sequence[tuple[Submodel, RefinedSolid]], reason: str
+) -> Climb | None:
+    """Return what submodels decide, with the bands of hand calculation where they do not reach; None if they do not."""
+    solved = [(cut, peaks(cut, solid)) for cut, solid in refined]
+    combined = {}
+    for load, hand in hands.items():
+        own: list[EyePeaks] = []
+        for _, found in solved:
+            if found is None:
+                return None
+            own.append(found[load])
+        others = [row for row in hand.spots if not any(covers(cut, row.spot) for cut, _ in solved)]
+        combined[load] = replace(
+            hand,
+            von_mises=largest([*(p.von_mises for p in own), *(row.von_mises for row in others)]),
+            principal=largest([*(p.principal for p in own), *(row.principal for row in others)]),
+        )
+    bands = [*combined.values()]
+    stresses = [hand.deciding(brittle=task.brittle) for hand in bands]
+    if undecided(task, stresses, [hand.displacement for hand in bands]):
+        return None
+    band = max(stresses, key=lambda band: band.high)
+    names = ", ".join(cut.name for cut, _ in refined)
+    elements = sum(solid.meshes[-1].elements for _, solid in refined)
+    why = (
+        f"{reason}; submodels of {names}, of {elements:,} elements, put it between {band.low:.3g} and "
+        f"{band.high:.3g} MPa, clear of it"
+    )
+    return Climb(decision=Decision(rung="submodel", why=why, next_cost=cost(task.body, "solid")), hands=combined)
+
+
+def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
+    """Return the calibrated bands of a link under one load case."""
+    body = task.body
+    outside = uncalibrated(body, task.nu)
+    found: tuple[Spot, ...] = ()
+    if not outside:
+        try:
+            found = spots(body, loads, beam)
+        except CannotRunError as error:
+            outside = str(error)
+    if outside:
+        nothing = Band.unknown("hand calculation is not calibrated for this link")
+        return HandBands(von_mises=nothing, principal=nothing, displacement=nothing, spots=(), outside=outside)
+    calibration = calibration_of(body.part)
+    holds = _holds(calibration)
+    rows = [
+        SpotBand(
+            spot=spot,
+            von_mises=_at_spot(spot, calibration.von_mises[spot.kind], holds),
+            principal=_at_spot(spot, calibration.principal[spot.kind], holds),
+        )
+        for spot in found
+    ]
+    line = reference_line(body)
+    moved = displacement_estimate(body, loads, beam, young=task.E, poisson=task.nu, line=line)
+    rows.sort(key=lambda row: row.von_mises.high, reverse=True)
+    return HandBands(
+        von_mises=largest([row.von_mises for row in rows]),
+        principal=largest([row.principal for row in rows]),
+        displacement=_band(moved, calibration.displacement, holds),
+        spots=tuple(rows),
+        outside="",
+    )
+
+
+def largest(bands: Sequence[Band]) -> Band:
+    """Band of the largest of several numbers, each within its band."""
+    holds = tuple(dict.fromkeys(text for band in bands for text in band.holds))
+    return Band(
+        value=max(band.value for band in bands),
+        low=max(band.low for band in bands),
+        high=max(band.high for band in bands),
+        holds=holds,
+    )
+
+
+def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[Band]) -> str:
+    """Say which limit lies in a band of any load case; "" where all limits are clear of all bands."""
+    for what, unit, bands, limits in (
+        ("peak stress", "MPa", stresses, task.stress_limits),
+        ("displacement", "mm", displacements, task.displacement_limits),
+    ):
+        for limit in limits:
+            for band in bands:
+                if band.unknowable or (band.low <= limit[1] and limit[0] <= band.high):
+                    return (
+                        f"the band of its {what}, {band.low:.3g} to {band.high:.3g} {unit}, holds the limit "
+                        f"{_limit(limit)}"
+                    )
+    return ""
+
+
+def _limit(ends: tuple[float, float]) -> str:
+    """Say a limit, with what stated scatter makes of it."""
+    low, high = ends
+    return f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g} (with stated scatter)"
+
+
+def decided_by_hand(task: LinkTask, hands: Sequence[HandBands], rung: Rung) -> tuple[Decision | None, str]:
+    """Return the decision if hand calculation makes it, else None and why not."""
+    name = "hand calculation" if rung == "beam" else "hand calculation with the frame's forces"
+    for hand in hands:
+        if hand.outside:
+            return None, f"{name} is not calibrated for it: {hand.outside}"
+    stresses = [hand.deciding(brittle=task.brittle) for hand in hands]
+    open_limit = undecided(task, stresses, [hand.displacement for hand in hands])
+    if open_limit:
+        return None, f"by {name} {open_limit}"
+    worst = max(range(len(hands)), key=lambda i: stresses[i].high)
+    band, spot = stresses[worst], hands[worst].spots[0].spot
+    limits = ", ".join(map(_limit, task.stress_limits))
+    why = f"by {name} its peak stress lies between {band.low:.3g} and {band.high:.3g} MPa, at most at {spot.name}"
+    why += f", clear of the limit {limits} MPa" if limits else ""
+    if task.displacement_limits:
+        moved = largest([hand.displacement for hand in hands])
+        why += f", and its displacement, {moved.low:.3g} to {moved.high:.3g} mm, of its limits"
+    return Decision(rung=rung, why=why, next_cost=cost(task.body, "solid")), ""
+
+
+def cost(body: Body, rung: Rung) -> str:
+    """Say what a first mesh of a link would cost."""
+    elements = expected_elements(body)
+    return f"a {rung} model of some {elements:,} elements, about {max(1, round(SECONDS * elements)):,} s"
+
+
+LARGEST_SHARE = 0.7
+"""Of a whole link's elements that its submodels may have: else the whole is solved at once."""
+SECONDS = 1.0e-3
+"""Of meshing, solving and judging per element, on one core."""
+
+
+def expected_elements(body: Body) -> int:
+    """Estimate of the elements of a link's first mesh, to two digits: per width of its length, per eye and per hole."""
+    first, last = extent(body)
+    width = min(section_width(body.part), section_height(body.part))
+    plain = last - first - sum(2.0 * eye_reach(body, pin) for pin in body.pins)
+    holes = sum(row.count for row in body.holes)
+    number = PER_WIDTH * max(plain, 0.0) / width + PER_EYE * len(body.pins) + PER_HOLE * holes
+    return int(float(f"{number:.2g}"))
+
+
+PER_WIDTH, PER_EYE, PER_HOLE = 140.0, 2400.0, 320.0
+"""Fitted to the first meshes of the owl wing's links: 5,613 elements of GF, 11,648 of AE, 14,419 of CF."""
+
+
+def _holds(calibration: Calibration) -> tuple[str, ...]:
+    return (
+        f"hand calculation against solid models of {calibration.parts} parts under {calibration.cases} load cases "
+        f"(least and largest factor, widened by {calibration.margin - 1.0:.0%})",
+    )
+
+
+def _at_spot(spot: Spot, factors: Factors, holds: tuple[str, ...]) -> Band:
+    """Band of a spot's stress; pin contact adds to what the solids of the calibration bore in their eyes."""
+    if spot.kind != "eye":
+        return _band(spot.estimate, factors, holds)
+    contact = replace(factors, high=factors.high / (1.0 - CONTACT_SHORTFALL))
+    return _band(spot.estimate, contact, (*holds, CONTACT_HOLDS))
+
+
+def _band(estimate: float, factors: Factors, holds: tuple[str, ...]) -> Band:
+    return Band(value=estimate * factors.typical, low=estimate * factors.low, high=estimate * factors.high, holds=holds)

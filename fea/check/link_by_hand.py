@@ -1,0 +1,74 @@
+"""What acts on one link cut free, with the growth of its bending, and its hand calculation."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from fea.beam.cut_free import beam_loads, link_loads
+from fea.beam.details import Detail, details, remarks
+from fea.beam.flanks import flanks_of
+from fea.beam.section_stress import SectionStress
+from fea.beam.theory import BeamCheck, check_beam, deflection
+from fea.check.second_order import second_order_loads
+from fea.common.link_loads import LinkLoads
+from fea.frame.large_displacement import LargeDisplacement
+from fea.outcomes.unloaded import load_size, without_rounding
+from geometry.parts.body_rules import hand_section, reference_line
+from loads.case.case import Case
+from loads.records.applied import Load
+from loads.states.actions import PartMass
+from loads.statics.statics import Reactions
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkByHand:
+    """The hand calculation of one link under one load case."""
+
+    check: BeamCheck
+    displacement: float
+    details: tuple[Detail, ...]
+    remarks: tuple[str, ...]
+
+    @property
+    def worst(self) -> tuple[float, SectionStress]:
+        """Station and stresses of the plain section or the detail that bears most."""
+        found = [(self.check.worst_x, self.check.worst), *((d.x, d.stress) for d in self.details)]
+        return max(found, key=lambda place: place[1].equivalent)
+
+
+def cut_link(
+    case: Case,
+    link: str,
+    title: str,
+    moved: LargeDisplacement,
+    reactions: Reactions,
+    loads: Sequence[Load],
+    masses: Mapping[str, PartMass],
+) -> LinkLoads:
+    """Return what acts on a link, with the growth of its bending that the frame's answer leaves out.
+
+    On a deformed shape that is the bending between loaded places; where no frame told that it is small, all of it.
+    """
+    deformed, longest = moved.links.get(link), case.linkage.longest
+    found = deformed or link_loads(title, link, case.body(link), reactions, loads)
+    found = without_rounding(found, load_size(loads, longest), longest)
+    if deformed is None and moved.state not in ("off", "unknown"):
+        return found
+    return second_order_loads(case, link, found, masses.get(link), stays=deformed is not None)
+
+
+def link_by_hand(case: Case, link: str, loads: LinkLoads, masses: Mapping[str, PartMass]) -> LinkByHand:
+    """Return the hand calculation of a link under what acts on it."""
+    material, body = case.material_of(link), case.body(link)
+    section = hand_section(body)
+    acting = beam_loads(loads, body, material.density, masses.get(link))
+    check = check_beam(acting, section, material.allowable, material.poissons_ratio)
+    bent = deflection(
+        check.forces,
+        section,
+        young=material.youngs_modulus,
+        poisson=material.poissons_ratio,
+        line=reference_line(body),
+        flanks=flanks_of(body),
+    )
+    found = details(body, loads, check.forces, material.poissons_ratio)
+    return LinkByHand(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))

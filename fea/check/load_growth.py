@@ -1,0 +1,131 @@
+"""What grows out of proportion to scattered loads: bending under compression, and the forces in a linkage that moves.
+
+A linkage of linear material has the shape that load over modulus gives it. So the case is calculated anew with its
+moduli divided by the ends of that ratio: its forces times the load's scatter are those of the scattered load.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
+from fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from fea.frame.joint_forces import joint_forces
+from fea.frame.large_displacement import LargeDisplacement, examine
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.records.applied import Load
+from loads.states.actions import PartMass
+from loads.statics.statics import Reactions
+
+HOLDS = ("growth beyond that of the load",)
+LEAST = 1e-3
+"""Growth below which it is left out."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Growths:
+    """Growth of links' stress and of joint forces beyond that of the load, of displacement beyond load over modulus.
+
+    Empty where all is in proportion; infinite at the upper end where nothing holds the scattered load.
+    """
+
+    stress: Mapping[str, Scatter] = field(default_factory=dict)
+    displacement: Mapping[str, Scatter] = field(default_factory=dict)
+    joints: Mapping[str, Scatter] = field(default_factory=dict)
+
+
+_Numbers = tuple[dict[str, float], dict[str, float], dict[str, float]]
+
+
+def growths(
+    case: Case,
+    title: str,
+    pose: Pose,
+    loads: Sequence[Load],
+    masses: Mapping[str, PartMass],
+    moved: LargeDisplacement,
+    reactions: Reactions,
+    hands: Mapping[str, LinkByHand],
+) -> Growths:
+    """Return what the scatter of load and modulus makes of a load case beyond proportion, by hand calculation."""
+    load, materials = load_scatter(case, title), [case.material_of(link) for link in hands]
+    slack = [compliance_scatter(material) for material in materials]
+    low = load.low * min((s.low for s in slack), default=1.0)
+    high = load.high * max((s.high for s in slack), default=1.0)
+    if low == high or moved.state not in ("deformed", "off", "unknown"):
+        return Growths()
+    plain = _numbers(hands, moved.reactions or reactions)
+    least, most = (_at(case, title, pose, loads, masses, factor) for factor in (low, high))
+    found = []
+    for i, kind in enumerate(plain):
+        # Displacement is in proportion to load over modulus, which its own scatter holds.
+        over = (low, high) if i == 1 else (1.0, 1.0)
+        ends = {
+            name: (
+                1.0 if least is None or value <= 0.0 else min(1.0, least[i][name] / value / over[0]),
+                1.0 if value <= 0.0 else math.inf if most is None else max(1.0, most[i][name] / value / over[1]),
+            )
+            for name, value in kind.items()
+        }
+        found.append(
+            {
+                name: Scatter(low=a, high=b, holds=HOLDS)
+                for name, (a, b) in ends.items()
+                if a < 1.0 - LEAST or b > 1.0 + LEAST
+            }
+        )
+    return Growths(stress=found[0], displacement=found[1], joints=found[2])
+
+
+def _at(
+    case: Case,
+    title: str,
+    pose: Pose,
+    loads: Sequence[Load],
+    masses: Mapping[str, PartMass],
+    factor: float,
+) -> _Numbers | None:
+    """Numbers of the load case where load over modulus is ``factor`` times its own; None where nothing holds it."""
+    soft = _softened(case, title, factor)
+    try:
+        forces = joint_forces(soft, pose, loads)
+        moved = examine(soft, title, forces, loads, masses)
+        if moved.state in ("no equilibrium", "unstable"):
+            return None
+        cut = {link: cut_link(soft, link, title, moved, forces.reactions, loads, masses) for link in soft.checked_links}
+        hands = {link: link_by_hand(soft, link, what, masses) for link, what in cut.items()}
+    except (CaseError, CannotRunError):
+        return None
+    return _numbers(hands, moved.reactions or forces.reactions)
+
+
+def _numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> _Numbers:
+    return (
+        {link: hand.worst[1].equivalent for link, hand in hands.items()},
+        {link: hand.displacement for link, hand in hands.items()},
+        {name: float(np.linalg.norm(joint.wrench[:3])) for name, joint in reactions.joints.items()},
+    )
+
+
+def _softened(case: Case, title: str, factor: float) -> Case:
+    """Return the case with all moduli divided by a factor and no range of them, and no scatter of the load."""
+    materials = {
+        name: material.model_copy(
+            update={
+                "youngs_modulus": material.youngs_modulus / factor,
+                "youngs_modulus_range": None,
+                "sustained_modulus": None
+                if material.sustained_modulus is None
+                else material.sustained_modulus / factor,
+            }
+        )
+        for name, material in case.all_materials.items()
+    }
+    load_case = case.load_cases[title].model_copy(update={"scatter": (1.0, 1.0)})
+    load_cases = {**case.load_cases, title: load_case}
+    # The cached materials would be copied as they are.
+    return case.model_copy(update={"materials": materials, "all_materials": materials, "load_cases": load_cases})

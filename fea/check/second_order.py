@@ -1,0 +1,206 @@
+"""Bending that grows with compression: second-order theory of one link, brought into the loads that act on it.
+
+A link that bends by v under a compression P has the moment of P on the bent shape as well. It is that of a transverse
+load -(P v')' on the straight link (Timoshenko & Gere, Theory of Elastic Stability, 2nd ed., section 1.2), where v is
+the deflection that all of it makes: E I v'''' + (P v')' = q, here by cubic elements, as the buckling factor
+(``fea.beam.column_factor``). With that load added, hand calculation, frame and solid bear the second-order moments,
+each with its own concentrations of stress. Tension, which straightens a link, is left out; so is compression that adds
+less than ``NEGLIGIBLE``.
+"""
+
+import itertools
+import math
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.column_factor import GAUSS, Stretch, slopes, stiffness_matrices
+from fea.beam.cut_free import beam_loads
+from fea.beam.flanks import flanks_of
+from fea.beam.theory import Piecewise, Side, internal_forces
+from fea.common.link_loads import LineLoad, LinkLoads
+from fea.outcomes.buckling import columns, holding
+from geometry.parts.body_rules import hand_section
+from loads.case.case import Case
+from loads.states.actions import PartMass
+
+Real = NDArray[np.float64]
+
+ELEMENTS = 6
+"""Along a link, at least; two at least between neighbouring stations."""
+NEGLIGIBLE = 0.01
+"""Growth of bending below which it is left out: compression over the load that buckles the link."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bend:
+    """How a link bends in one plane.
+
+    stiffness  E I [N mm²]
+    stretches  softer ones, over the same E I
+    """
+
+    stiffness: float
+    stretches: Sequence[Stretch] = ()
+
+
+def second_order_loads(case: Case, link: str, loads: LinkLoads, mass: PartMass | None, *, stays: bool) -> LinkLoads:
+    """Return the loads of a link with what its bending under compression adds.
+
+    stays   True where all loaded places stand where the loads have them, as on the deformed shape of a frame; else the
+            outermost pins stay, or the joint of the drive holds the link and its angle and the others move with it
+    """
+    body, material = case.body(link), case.material_of(link)
+    forces = internal_forces(beam_loads(loads, body, material.density, mass))
+    section, young = hand_section(body), material.youngs_modulus
+    planes = [Bend(stiffness=young * inertia, stretches=soft) for inertia, soft in columns(section, flanks_of(body))]
+    on_arms = {pin.name for pin in body.pins if pin.foot is not None}
+    if stays:
+        return between_stations(loads, forces, planes[0], planes[1], on_arms)
+    where = holding(case, link)
+    driven = case.drive is not None and case.drive.link == link and case.joint_model != "bonded"
+    held = where.alone if driven and len(where.alone) == 1 else where.outermost
+    return on_its_pins(loads, forces, planes[0], planes[1], held, on_arms)
+
+
+def between_stations(
+    loads: LinkLoads, forces: Piecewise, in_plane: Bend, across: Bend, on_arms: Collection[str] = ()
+) -> LinkLoads:
+    """Return the loads of a link whose pins and loaded ends stay where they are, with its bending between them.
+
+    So is a link on the deformed shape of its frame, which has the moments of what these places have moved.
+    Unchanged where compression buckles the link between them.
+    """
+    found, stations = loads, _stations(loads, on_arms)
+    for a, b in itertools.pairwise(stations):
+        found = _bowed(found, forces, (in_plane, across), [a, b], (a, b))
+    return found
+
+
+def on_its_pins(
+    loads: LinkLoads,
+    forces: Piecewise,
+    in_plane: Bend,
+    across: Bend,
+    held: Sequence[float],
+    on_arms: Collection[str] = (),
+) -> LinkLoads:
+    """Return the loads of a link with its bending, the places ``held`` staying where they are.
+
+    One place alone is held in its angle too: the other joints of a driven link move with it, and the drive takes the
+    moment that their forces so get. Unchanged where compression buckles the link, or it is held at no pin on its axis.
+    """
+    stations = _stations(loads, {*on_arms, *(pin.name for pin in loads.pins if pin.slotted)})
+    return _bowed(loads, forces, (in_plane, across), stations, held) if {*held} <= {*stations} else loads
+
+
+def _stations(loads: LinkLoads, on_arms: Collection[str]) -> list[float]:
+    pins = {float(pin.centre[0]) for pin in loads.pins if pin.name not in on_arms}
+    return sorted(pins | {float(end.point[0]) for end in loads.ends})
+
+
+def _bowed(
+    loads: LinkLoads, forces: Piecewise, planes: tuple[Bend, Bend], marks: Sequence[float], held: Sequence[float]
+) -> LinkLoads:
+    if len(marks) < 2:
+        return loads
+    nodes = _nodes(marks, [x for bend in planes for stretch in bend.stretches for x in (stretch.first, stretch.last)])
+    intensity, point, left = np.zeros((len(nodes) - 1, 2, 3)), np.zeros((len(marks), 3)), np.zeros(3)
+    for axis, bend in enumerate(planes, start=1):
+        found = _transverse(forces, bend, _MOMENT[axis], nodes, marks, held)
+        if found is None:
+            return loads
+        intensity[:, :, axis], point[:, axis], left[axis] = found
+    extra = {x: np.concatenate([force, np.zeros(3)]) for x, force in zip(marks, point, strict=True)}
+    first, last = min(held), max(held)
+    if first < last:
+        extra[first][:3] += left / (last - first)
+        extra[last][:3] -= left / (last - first)
+    else:
+        extra[first][4:] += left[2], -left[1]
+    none = np.zeros(6)
+    pins = [replace(pin, wrench=pin.wrench + extra.pop(float(pin.centre[0]), none)) for pin in loads.pins]
+    rest = [replace(end, wrench=end.wrench + extra.pop(float(end.point[0]), none)) for end in loads.ends]
+    lines = [
+        LineLoad(first=float(a), last=float(b), intensity=q)
+        for a, b, q in zip(nodes[:-1], nodes[1:], intensity, strict=True)
+        if np.any(q != 0.0)
+    ]
+    return replace(loads, pins=tuple(pins), ends=tuple(rest), lines=(*loads.lines, *lines))
+
+
+_MOMENT: dict[int, Callable[[Real], float]] = {1: lambda f: float(f[5]), 2: lambda f: -float(f[4])}
+"""E I times the curvature of v and of w."""
+
+
+def _nodes(marks: Sequence[float], others: Sequence[float]) -> Real:
+    first, last = marks[0], marks[-1]
+    breaks = sorted({*marks, *(x for x in others if first < x < last)})
+    found = [first]
+    for a, b in itertools.pairwise(breaks):
+        found += list(np.linspace(a, b, max(2, math.ceil(ELEMENTS * (b - a) / (last - first))) + 1)[1:])
+    return np.array(found)
+
+
+def _transverse(
+    forces: Piecewise,
+    bend: Bend,
+    moment: Callable[[Real], float],
+    nodes: Real,
+    marks: Sequence[float],
+    held: Sequence[float],
+) -> tuple[Real, Real, float] | None:
+    """Return -(P v')' between nodes (n - 1, 2) [N/mm] and at marks (m,) [N], and its moment that is left [N mm].
+
+    None where the compression P buckles the link.
+    """
+    points, weights = GAUSS
+    length = float(nodes[-1] - nodes[0])
+    at = nodes[:-1, None] + np.diff(nodes)[:, None] * points
+    inner = np.array([[forces.at(float(x)) for x in row] for row in at])
+    pressed = np.maximum(-inner[..., 0], 0.0)
+    K, G = stiffness_matrices(nodes, pressed[..., None], bend.stretches)
+    K, G = K * bend.stiffness / length**2, G[0]
+    load = np.zeros(len(K))
+    for e, h in enumerate(np.diff(nodes) / length):
+        bending = np.array([moment(f) for f in inner[e]])
+        load[2 * e : 2 * e + 4] += (weights * h * bending) @ _curvatures(h, points)
+    fixed = [2 * int(np.argmin(np.abs(nodes - x))) for x in held]
+    fixed += [fixed[0] + 1] if len(held) == 1 else []
+    free = np.setdiff1d(np.arange(len(K)), fixed)
+    inverse = np.linalg.inv(np.linalg.cholesky(K[np.ix_(free, free)]))
+    share = float(np.linalg.eigvalsh(inverse @ G[np.ix_(free, free)] @ inverse.T)[-1])
+    if share >= 1.0:
+        return None
+    cells, at_marks = np.zeros((len(nodes) - 1, 2)), np.zeros(len(marks))
+    if share < NEGLIGIBLE:
+        return cells, at_marks, 0.0
+    v = np.zeros(len(K))
+    v[free] = np.linalg.solve((K - G)[np.ix_(free, free)], load[free])
+    total = 0.0
+
+    def thrust(node: int, side: Side) -> float:
+        """P v' at a node [N]."""
+        return max(-float(forces.at(float(nodes[node]), side)[0]), 0.0) * float(v[2 * node + 1]) / length
+
+    numbers = {int(np.argmin(np.abs(nodes - x))): i for i, x in enumerate(marks)}
+    for e, h in enumerate(np.diff(nodes)):
+        # A jump of P at a node that is no mark goes with the load before it.
+        end = thrust(e + 1, "before" if e + 1 in numbers else "after")
+        force = thrust(e, "after") - end
+        turning = float((weights * h * pressed[e]) @ slopes(h / length, points) @ v[2 * e : 2 * e + 4]) / length
+        first = turning - h * end
+        cells[e] = 4.0 * force / h - 6.0 * first / h**2, 6.0 * first / h**2 - 2.0 * force / h
+        total += turning
+    for node, i in numbers.items():
+        at_marks[i] = (thrust(node, "before") if i else 0.0) - (thrust(node, "after") if i < len(marks) - 1 else 0.0)
+    return cells, at_marks, total
+
+
+def _curvatures(h: float, t: Real) -> Real:
+    """V'' (n, 4) of the shape functions of a cubic element of length h at shares t (n,) of it."""
+    return np.stack(
+        [(12.0 * t - 6.0) / h**2, (6.0 * t - 4.0) / h, (6.0 - 12.0 * t) / h**2, (6.0 * t - 2.0) / h], axis=1
+    )

@@ -1,0 +1,131 @@
+"""A link's result from its solid model: the peaks of every variant, their bands and what these hold."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from fea.beam.theory import BeamCheck
+from fea.common.band import Band
+from fea.common.link_loads import LinkLoads
+from fea.outcomes.compare import compare_sections
+from fea.outcomes.judge import displacement_limits, stress_limits
+from fea.outcomes.result import LinkResult, VariantPeak
+from fea.refine.convergence import GridConvergence
+from fea.refine.discretisation import holds, judged
+from fea.refine.link_series import CasePrecision, Quantity
+from fea.refine.refinement import LinkTask, RefinedSolid
+from fea.refine.singular import LOADED
+from fea.solid.solution import SolidCase
+from fea.solid.stress import stress_field
+from loads.case.case import Case
+from loads.records.bearing import CONTACT_HOLDS
+
+NO_NUMBER = "no mesh tells what it is"
+PINNED_HOLDS = ("pin pressure over 180° and over 90°", CONTACT_HOLDS)
+DRIVEN_HOLDS = (*PINNED_HOLDS, "drive torque by eye-faces and by bore-shear")
+
+
+def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
+    """Return what is to be solved for a link under all its load cases, and the limits that its numbers must clear."""
+    material, body = case.material_of(link), case.body(link)
+    return LinkTask(
+        body=body,
+        loads=tuple(loads),
+        E=material.youngs_modulus,
+        nu=material.poissons_ratio,
+        density=material.density,
+        line=(f"bore:{body.pins[0].name}", f"bore:{body.pins[-1].name}"),
+        brittle=material.brittle,
+        stress_limits=stress_limits(case, link),
+        displacement_limits=displacement_limits(case, link),
+    )
+
+
+def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: RefinedSolid) -> LinkResult | None:
+    """Return the result of a link under the load case ``title``; None where that load case was not solved."""
+    material, solid = case.material_of(link), refined.solution
+    solved = [number for number, found in enumerate(solid.cases) if found.load == title]
+    if not solved:
+        return None
+    stated = case.drive.transfer if case.drive else None
+    own = [number for number in solved if solid.cases[number].transfer in (None, stated)]
+
+    def decisive(number: int) -> GridConvergence:
+        found = refined.precision[number]
+        return found.principal if material.brittle else found.von_mises
+
+    governing = max(own, key=lambda number: decisive(number).value)
+    variant = solid.cases[governing]
+    stress = stress_field(solid.space, variant.displacement, E=solid.E, nu=solid.nu)
+    sources = PINNED_HOLDS if variant.transfer is None else DRIVEN_HOLDS
+    # A peak without limit under one variant leaves none for the link.
+    worst = max(
+        solved, key=lambda number: (not judged(refined, number, brittle=material.brittle).known, number == governing)
+    )
+    precision = judged(refined, worst, brittle=material.brittle)
+
+    def band(quantity: Quantity) -> Band:
+        every = [refined.precision[number] for number in solved]
+        if not all(found.known(quantity) for found in every):
+            return Band.unknown(NO_NUMBER)
+        value = max(refined.precision[number].series(quantity).value for number in own)
+        return Band(
+            value=value,
+            low=max(min(value, *(found.low(quantity) for found in every)), 0.0),
+            high=max(value, *(found.high(quantity) for found in every)),
+            holds=(
+                *(text for text in sources if text != CONTACT_HOLDS or quantity != "displacement"),
+                holds(
+                    refined.precision[governing].series(quantity),
+                    sharp_edges=0 if quantity == "displacement" else refined.sharp_edges,
+                ),
+            ),
+        )
+
+    deciding = band("principal" if material.brittle else "von_mises")
+    return LinkResult(
+        link=link,
+        fidelity="solid",
+        von_mises_max=band("von_mises"),
+        principal_max=band("principal"),
+        safety_factor=deciding.inverse(material.allowable),
+        displacement_max=band("displacement"),
+        location=solid.space.nodes[int(np.argmax(stress.decisive(brittle=material.brittle)))].copy(),
+        elements=len(solid.space.cells),
+        unknowns=solid.space.unknowns,
+        beam=beam,
+        solid=solid,
+        variants=tuple(_peak(solid.cases[number], refined.precision[number]) for number in solved),
+        governing=_peak(variant, refined.precision[governing]),
+        solid_case=variant,
+        stress=stress,
+        comparisons=compare_sections(case.body(link), beam, stress),
+        notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved)),
+        brittle=material.brittle,
+        discretisation=precision,
+    )
+
+
+def _edge_notes(refined: RefinedSolid, solved: Sequence[int]) -> tuple[str, ...]:
+    if refined.sharp_edges == 0 or any(refined.precision[number].sharp for number in solved):
+        return ()
+    return (
+        f"elasticity has no finite stress at the {refined.sharp_edges} sharp inner edges of this link; they bear less "
+        f"than {LOADED:.0%} of its peak here, or do not grow as such edges do, and were left at that",
+    )
+
+
+def _peak(variant: SolidCase, precision: CasePrecision) -> VariantPeak:
+    """Peaks of one variant; NaN for one without limit, which no number stands for."""
+
+    def known(quantity: Quantity) -> float:
+        return precision.series(quantity).value if precision.known(quantity) else math.nan
+
+    return VariantPeak(
+        span=variant.span,
+        transfer=variant.transfer,
+        von_mises=known("von_mises"),
+        principal=known("principal"),
+        displacement=known("displacement"),
+    )

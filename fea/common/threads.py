@@ -1,0 +1,64 @@
+"""A bound on the threads of a run: numpy's and scipy's OpenBLAS, MKL, OpenMP, and how many children work at once.
+
+threadpoolctl sets libraries that are loaded; those that are loaded later read the environment. Children (the mesher,
+the renderer) use one thread each (``geometry.base.child``), so that bounding their number bounds them.
+"""
+
+import functools
+import inspect
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import ParamSpec, TypeVar
+
+from geometry.base import child
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@contextmanager
+def bounded(threads: int | None) -> Iterator[None]:
+    """Let each library use at most that many threads; None leaves what it would use. It is never raised."""
+    if threads is None:
+        yield
+        return
+    from threadpoolctl import ThreadpoolController
+
+    controller = ThreadpoolController()
+    current: dict[str, int] = {}
+    for pool in controller.info():
+        current[pool["user_api"]] = max(pool["num_threads"], current.get(pool["user_api"], 1))
+    before = {name: os.environ.get(name) for name in VARIABLES}
+    os.environ.update({name: str(_least(threads, value)) for name, value in before.items()})
+    try:
+        limits = {api: min(threads, used) for api, used in current.items()}
+        with controller.limit(limits=limits), child.at_most(threads):
+            yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _least(threads: int, stated: str | None) -> int:
+    """The smaller of both; what is stated may be anything."""
+    return min(threads, int(stated)) if stated and stated.isdecimal() and int(stated) > 0 else threads
+
+
+def bounded_run(run: Callable[P, R]) -> Callable[P, R]:
+    """Bound a whole function by its keyword ``threads``."""
+    default = inspect.signature(run).parameters["threads"].default
+
+    @functools.wraps(run)
+    def within(*arguments: P.args, **options: P.kwargs) -> R:
+        threads = options.get("threads", default)
+        assert threads is None or isinstance(threads, int)
+        with bounded(threads):
+            return run(*arguments, **options)
+
+    return within

@@ -1,0 +1,236 @@
+"""The co-rotational Timoshenko beam: a small-strain beam on axes that follow its chord.
+
+Kinematics after Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1, 1991, chapter 7
+(in the plane) and vol. 2, 1997, chapter 17 (in space), with the element axes of Nour-Omid & Rankin, Comput. Methods
+Appl. Mech. Engrg. 93 (1991) 353-384: x along the chord, y by the mean of the two ends' y axes. The natural
+deformations are the lengthening and the rotation vectors of both ends relative to these axes; they meet the natural
+stiffness of the linear element (``fea.frame.element``), so that small displacements give the linear frame. The
+lengthening counts how the axis bows between its ends, L (2 a² - a b + 2 b²)/30 in either plane for a cubic (the
+shallow-arch strain, Crisfield, vol. 1, section 7.3; Oran, J. Struct. Div. ASCE 99 (1973) 987-1001): without it a
+divided column buckles some 1.3 % late at eight elements.
+
+Line loads are dead loads (fixed in direction and in force per original length). Their potential holds the work on
+the chord, on the bending of the element, and on the element's own deflection: one element is exact in the linear
+limit, and forces balance on the deformed shape.
+
+The potential of each element is written down once; its gradient (end forces) and Hessian (exact tangent) follow by
+second-order forward differentiation.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.element import line_load_effect, natural_flexibility
+from fea.frame.jet import Jet, cross, dot, stack, unit
+from fea.frame.model import FrameModel
+from geometry.base.errors import CannotRunError
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ElementResponse:
+    """What m elements answer to their end displacements; 12 variables: displacement and spin at both attachments.
+
+    forces    (m, 12) what the nodes do to the elements, global axes, moments about the nodes [N, N·mm]
+    tangent   (m, 12, 12) derivative of the forces by the spins (forces taken in global axes)
+    axes      (m, 3, 3) columns: the element's x, y, z in global axes
+    natural   (m, 6) natural forces
+    largest_rotation  of an end relative to its element's axes [rad]
+    """
+
+    forces: Floats
+    tangent: Floats
+    axes: Floats
+    natural: Floats
+    largest_rotation: float
+
+
+class CorotationalElements:
+    """All elements of a frame, ready to be evaluated together."""
+
+    def __init__(self, model: FrameModel) -> None:
+        m = len(model.elements)
+        self.start = np.array([model.nodes[e.nodes[0]] for e in model.elements])
+        self.end = np.array([model.nodes[e.nodes[1]] for e in model.elements])
+        self.arms = np.array([e.offsets for e in model.elements])
+        self.lengths = np.array([model.length(i) for i in range(m)])
+        self.axes = np.array([model.axes(i).T for i in range(m)])
+        self.stiffness = np.zeros((m, 6, 6))
+        self.load_bends = np.zeros((m, 6, 6))
+        self.load_sags = np.zeros((m, 6, 6))
+        self.loads = np.zeros((m, 2, 3))
+        for i, e in enumerate(model.elements):
+            length = self.lengths[i]
+            self.stiffness[i] = np.linalg.inv(natural_flexibility(e.section, e.young, e.poisson, length))
+            for k, q in enumerate(np.eye(6)):
+                self.load_bends[i, :, k] = line_load_effect(e.section, e.young, length, q[:3], q[3:])[0]
+            # The work along the chord goes to both ends alike, so lengthening is not coupled to the load.
+            self.load_bends[i, 0] = 0.0
+            self.load_sags[i] = _own_deflection(model, i)
+            first, last = model.line_load(i)
+            self.loads[i] = np.array([first, last]) @ model.axes(i)
+
+    def respond(self, displacements: Floats, rotations: Floats, factor: float) -> ElementResponse:
+        """Evaluate at attachment displacements (m, 2, 3) and rotations (m, 2, 3, 3), line loads times ``factor``.
+
+        Raises ``CannotRunError`` where an end turns by more than a right angle relative to its element.
+        """
+        potential, axes, natural, largest = self._potential(displacements, rotations, factor)
+        forces, tangent = _forces_and_tangent(potential)
+        return ElementResponse(forces=forces, tangent=tangent, axes=axes, natural=natural, largest_rotation=largest)
+
+    def geometric(self, natural: Floats) -> tuple[Floats, Floats]:
+        """Forces (m, 12) and geometric stiffness (m, 12, 12) of the undeformed elements under natural forces (m, 6)."""
+        m = len(self.lengths)
+        displacements, rotations = np.zeros((m, 2, 3)), np.tile(np.eye(3), (m, 2, 1, 1))
+        v, _ = self._natural(displacements, rotations)
+        potential = v.map(natural[:, None, :]) - self._work_on_chord(displacements, rotations, self.loads)
+        return _forces_and_tangent(potential)
+
+    def _natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, tuple[Jet, Jet, Jet]]:
+        """Natural deformations (m, 6) and the element's axes."""
+        chord = self._point(1, displacements, rotations) - self._point(0, displacements, rotations)
+        length2 = dot(chord, chord)
+        e1 = unit(chord)
+        ends = [[_turned(rotations[:, k], self.axes[:, :, j], 6 * k + 3) for j in range(3)] for k in range(2)]
+        e3 = unit(cross(e1, ends[0][1] + ends[1][1]))
+        e2 = cross(e3, e1)
+        angles = [_rotation_vector((e1, e2, e3), triad) for triad in ends]
+        length = self.lengths[:, None]
+        lengthening = length2.power(0.5)
+        # From the ends' difference in displacement, so that no rounding error of the positions comes in.
+        parted = displacements[:, 1] - displacements[:, 0]
+        for end, sign in ((0, -1.0), (1, 1.0)):
+            parted = parted + sign * np.einsum("mij,mj->mi", rotations[:, end] - np.eye(3), self.arms[:, end])
+        original = self.lengths[:, None] * self.axes[:, :, 0]
+        grown = ((2.0 * original + parted) * parted).sum(axis=1, keepdims=True)
+        lengthening = Jet(
+            value=grown / (lengthening.value + length),
+            gradient=lengthening.gradient,
+            hessian=lengthening.hessian,
+        )
+        a, b = angles
+        lengthening = lengthening + (_bowing(a[[2]], b[[2]]) + _bowing(a[[1]], b[[1]])).times(length / 30.0)
+        return stack(lengthening, a[[2]], b[[2]], a[[1]], b[[1]], b[[0]] - a[[0]]), (e1, e2, e3)
+
+    def _point(self, end: int, displacements: Floats, rotations: Floats) -> Jet:
+        """Position of a beam's end."""
+        arm = _turned(rotations[:, end], self.arms[:, end], 6 * end + 3)
+        gradient = arm.gradient.copy()
+        gradient[:, :, 6 * end : 6 * end + 3] += np.eye(3)
+        origin = (self.start, self.end)[end]
+        return Jet(value=arm.value + origin + displacements[:, end], gradient=gradient, hessian=arm.hessian)
+
+    def _work_on_chord(self, displacements: Floats, rotations: Floats, loads: Floats) -> Jet:
+        """Potential (m, 1) of the line loads (m, 2, 3) at the chord, counted as work done."""
+        first, last = loads[:, 0], loads[:, 1]
+        third = self.lengths[:, None] / 6.0
+        start, end = (self._point(k, displacements, rotations) for k in range(2))
+        return dot(start, _constant((2.0 * first + last) * third)) + dot(end, _constant((first + 2.0 * last) * third))
+
+    def _potential(self, displacements: Floats, rotations: Floats, factor: float) -> tuple[Jet, Floats, Floats, float]:
+        """Potential (m, 1), axes (m, 3, 3), natural forces (m, 6) and the largest rotation relative to the axes."""
+        loads = factor * self.loads
+        v, axes = self._natural(displacements, rotations)
+        local = stack(*(dot(e, _constant(loads[:, k])) for k in range(2) for e in axes))
+        strained = v - local.map(self.load_bends)
+        resisted = strained.map(self.stiffness)
+        potential = (dot(strained, resisted) - dot(local, local.map(self.load_sags))).times(0.5)
+        potential = potential - self._work_on_chord(displacements, rotations, loads)
+        largest = float(np.abs(v.value[:, 1:]).max())
+        return potential, np.stack([e.value for e in axes], axis=2), resisted.value, largest
+
+
+def _forces_and_tangent(potential: Jet) -> tuple[Floats, Floats]:
+    """Gradient (m, 12), and its derivative by the spins: the Hessian in rotation vectors less half of [moment]."""
+    forces, tangent = potential.gradient[:, 0], potential.hessian[:, 0].copy()
+    for k in (3, 9):
+        tangent[:, k : k + 3, k : k + 3] -= 0.5 * _skew(forces[:, k : k + 3])
+    return forces, tangent
+
+
+def _bowing(a: Jet, b: Jet) -> Jet:
+    """30/L times the lengthening of the axis as its ends turn by a and b: 2 a² - a b + 2 b²."""
+    return (a * a + b * b).times(2.0) - a * b
+
+
+def _own_deflection(model: FrameModel, i: int) -> Floats:
+    """(6, 6) compliance of an element with held ends to its own line load, by Gauss quadrature (exact).
+
+    The load is (first, last) in local axes; half its quadratic form is the strain energy of the element as a simply
+    supported beam, and of the axial load's part that is self-balanced over the chord.
+    """
+    e, length = model.elements[i], model.length(i)
+    shear = e.section.shear_coefficient(e.poisson) * e.young / (2.0 + 2.0 * e.poisson) * e.section.area
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    t = (1.0 + nodes) / 2.0
+    # Per unit load at the first and at the last end, over the span from 0 to 1: N - mean N, V and M.
+    n = np.array([-(t - t**2 / 2.0) + 1.0 / 3.0, -(t**2) / 2.0 + 1.0 / 6.0]) * length
+    v = np.array([1.0 / 3.0 - t + t**2 / 2.0, 1.0 / 6.0 - t**2 / 2.0]) * length
+    m = np.array([t / 3.0 - t**2 / 2.0 + t**3 / 6.0, t / 6.0 - t**3 / 6.0]) * length**2
+    dx = weights * length / 2.0
+    out = np.zeros((6, 6))
+    axial = n * dx @ n.T / (e.young * e.section.area)
+    for axis, inertia in ((1, e.section.i_z), (2, e.section.i_y)):
+        out[np.ix_([axis, axis + 3], [axis, axis + 3])] = m * dx @ m.T / (e.young * inertia) + v * dx @ v.T / shear
+    out[np.ix_([0, 3], [0, 3])] = axial
+    return out
+
+
+def _skew(w: Floats) -> Floats:
+    x, y, z = w.T
+    o = np.zeros_like(x)
+    return np.array([[o, -z, y], [z, o, -x], [-y, x, o]]).transpose(2, 0, 1)
+
+
+def _constant(values: Floats) -> Jet:
+    m, c = values.shape
+    return Jet(value=values, gradient=np.zeros((m, c, 12)), hessian=np.zeros((m, c, 12, 12)))
+
+
+def _turned(rotations: Floats, vectors: Floats, first: int) -> Jet:
+    """Vectors (m, 3) turned by exp(δ) R, with the spin δ the variables from ``first`` on, at δ = 0.
+
+    exp(δ) w = w + δ × w + δ × (δ × w)/2 + ... holds all that two derivatives see.
+    """
+    w = np.einsum("mij,mj->mi", rotations, vectors)
+    out = _constant(w)
+    spin = slice(first, first + 3)
+    out.gradient[:, :, spin] = -_skew(w)
+    eye = np.eye(3)
+    half = np.einsum("ij,mk->mijk", eye, w) / 2.0
+    out.hessian[:, :, spin, spin] = half + half.swapaxes(2, 3) - np.einsum("mi,jk->mijk", w, eye)
+    return out
+
+
+def _rotation_vector(axes: tuple[Jet, Jet, Jet], triad: list[Jet]) -> Jet:
+    """Rotation vector (m, 3), in the element's axes, that turns these axes into a triad; below a right angle."""
+    e1, e2, e3 = axes
+    t1, t2, t3 = triad
+    sine = stack(dot(e3, t2) - dot(e2, t3), dot(e1, t3) - dot(e3, t1), dot(e2, t1) - dot(e1, t2)).times(0.5)
+    trace = sum(np.einsum("mi,mi->m", e.value, t.value) for e, t in zip(axes, triad, strict=True))
+    if np.any(np.asarray(trace) <= 1.0 + 1e-3):
+        raise CannotRunError("a beam bends by a right angle within one element; divide it into more elements")
+    s = dot(sine, sine)
+    return sine * s.apply(*_arc_sine_ratio(s.value))
+
+
+def _arc_sine_ratio(s: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return f = asin(√s)/√s and its first two derivatives by s; by series below s = 0.01."""
+    series = np.array([1.0, 1 / 6, 3 / 40, 5 / 112, 35 / 1152, 63 / 2816, 231 / 13312, 143 / 10240, 6435 / 557056])
+    small = s < 0.01
+    polynomial = np.polynomial.Polynomial(series)
+    x = np.where(small, 0.25, s)
+    root, rest = np.sqrt(x), 1.0 - x
+    f = np.arcsin(root) / root
+    # f satisfies 2 s f' = 1/√(1 - s) - f.
+    first = (1.0 / np.sqrt(rest) - f) / (2.0 * x)
+    second = (0.5 * rest**-1.5 - first) / (2.0 * x) - first / x
+    return (
+        np.where(small, polynomial(s), f),
+        np.where(small, polynomial.deriv()(s), first),
+        np.where(small, polynomial.deriv(2)(s), second),
+    )

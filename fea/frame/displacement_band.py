@@ -1,0 +1,267 @@
+"""How far a point of the linkage may move beside the frame's answer: the bounds of what eyes, bores and holes do.
+
+The displacement of a point is a sum over beams of internal forces times those of a unit load there times flexibility
+(virtual work), and over bores of pin force times that of the unit load times how the bore gives. The frame of centre
+lines takes every beam as plain from pin to pin. Each term stands between two ends:
+
+low   eyes are rigid out to ``RIGID`` of their radius from the pin
+high  beams are as soft in their eyes as elsewhere, and softer where a bore or a cross hole leaves less than the plain
+      section; pins sink into their bores, turn and tilt in them (``bore_gives``); a slot's flanks are softer by
+      ``FLANKS``, a disc is as wide as its narrowest chord
+
+Terms of opposite sign are each taken at their worst. The constants hold the solids of 48 tubes and bars, clamped at one
+bore and pulled or bent at another, with some margin; ``benchmarks/displacement_band.py`` tries them on others. Discs,
+arms and slots were not among these. Lengths in mm, forces in N, moments in N·mm, moduli in MPa.
+"""
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.linear import FrameSolution, solve_frame
+from fea.frame.linkage_frame import LinkageFrame
+from fea.frame.model import NodeLoad
+from geometry.parts.body_rules import hand_section, section_height, section_width
+from geometry.parts.part import Body, Disc, HoleRow, Part, Pin, Section, Tube
+from loads.case.case import Case
+
+Real = NDArray[np.float64]
+
+RIGID = 1.0
+"""Share of an eye's radius from its pin within which the stiffest link does not give."""
+SINK = (1.3, 1.55)
+"""How far a pin sinks into its bore at the most, over F/(E t): a + b (R/h)³, as the ring about the bore bends.
+
+R is the mean radius of the ring from bore to rim and h its height."""
+TILT = 0.5
+"""The same along the pin, and where it tilts with 12/t² about the bore's middle, over that of a push across."""
+TURN = (1.6, 0.25)
+"""How far a pin turns in its bore at the most: a times the shear of a free ring, b (R/h)³ M/(E t R²) as it bends."""
+HOLE = 2.0
+"""Length of the net section that stands for a cross hole, over its diameter."""
+FLANKS = 0.15
+"""Share by which the flanks of a slot may be softer, or stiffer, than beams."""
+_POINTS = 6
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Zone:
+    """A stretch of a beam between two places along it [mm], and the least and largest factor on its flexibility.
+
+    least, most  (6,) for N, V_y, V_z, T, M_y, M_z
+    """
+
+    start: float
+    end: float
+    least: Real
+    most: Real
+
+
+def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank: bool = False) -> tuple[Zone, ...]:
+    """Return the zones of a link's beam between two places: x along its axis, or along an arm from its foot on.
+
+    flank  True for a flank of a slot
+    """
+    part = body.part
+    rigid: list[tuple[float, float]] = []
+    soft: list[tuple[float, float, Real]] = []
+    if arm is not None:
+        assert arm.foot is not None
+        reach = math.hypot(arm.x - arm.foot[0], arm.y - arm.foot[1])
+        holes = [(0.0, _diameter(body, arm.foot)), (reach, arm.diameter)]
+    else:
+        holes = [(pin.x, pin.diameter) for pin in body.pins if pin.foot is None and pin.slot == 0.0]
+        for row in body.holes:
+            net = _net(part, row)
+            soft += [(x - HOLE * row.diameter / 2.0, x + HOLE * row.diameter / 2.0, net) for x in row.positions]
+    for x, diameter in holes:
+        rigid.append((x - RIGID * part.eye_diameter / 2.0, x + RIGID * part.eye_diameter / 2.0))
+        soft.append((x - diameter / 2.0, x + diameter / 2.0, _at_bore(part, diameter)))
+    edges = [x for low, high in (*rigid, *(stretch[:2] for stretch in soft)) for x in (low, high)]
+    marks = sorted({start, end, *(x for x in edges if start < x < end)})
+    everywhere = _disc(body, part) if isinstance(part, Disc) else np.ones(6)
+    found = []
+    for a, b in itertools.pairwise(marks):
+        middle, least, most = (a + b) / 2.0, np.ones(6), everywhere
+        if flank:
+            least, most = least * (1.0 - FLANKS), most * (1.0 + FLANKS)
+        if any(low < middle < high for low, high in rigid):
+            least = np.zeros(6)
+        for low, high, factor in soft:
+            if low < middle < high:
+                most = np.maximum(most, factor)
+        found.append(Zone(start=a - start, end=b - start, least=least, most=most))
+    return tuple(found)
+
+
+def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
+    """Pin -> how far it moves at the most in its bore or slot per unit of what it bears (6,) [mm/N, 1/(N·mm)].
+
+    It sinks by ``SINK`` F/(E t), tilts as that along its length lets it, and turns about itself as the ring bends and,
+    held at its rim, shears: M/(4πG t) (1/r² - 1/R²), from τ = M/(2π r² t).
+    """
+    part = body.part
+    thick, outer = part.eye_thickness, part.eye_diameter / 2.0
+    shear = young / (2.0 + 2.0 * poisson)
+    found = {}
+    for pin in body.pins:
+        inner = pin.diameter / 2.0
+        mean = (outer + inner) / 2.0
+        slender = (mean / (outer - inner)) ** 3
+        sink = (SINK[0] + SINK[1] * slender) / (young * thick)
+        tilt = TILT * sink * 12.0 / thick**2
+        turn = TURN[0] * (1.0 / inner**2 - 1.0 / outer**2) / (4.0 * math.pi * shear * thick)
+        turn += TURN[1] * slender / (young * thick * mean**2)
+        found[pin.name] = np.array([sink, sink, TILT * sink, tilt, tilt, turn])
+    return found
+
+
+def bounds(
+    loaded: FrameSolution,
+    unit: FrameSolution,
+    beams: Mapping[int, Sequence[Zone]],
+    bores: Sequence[tuple[int, Real]],
+) -> tuple[float, float]:
+    """Least and largest displacement along a unit load [mm].
+
+    loaded, unit  the frame under the loads and under the unit load
+    beams         element -> its zones; those that are left out are as the frame has them
+    bores         (node, give (6,)) of every pin in a bore, for what acts on the node's link there
+    """
+    low = high = 0.0
+    for i in range(len(loaded.model.elements)):
+        ends = np.sort(_terms(loaded, unit, i, beams.get(i)), axis=0)
+        low, high = low + float(ends[0].sum()), high + float(ends[2].sum())
+    acting = [_on_nodes(solution) for solution in (loaded, unit)]
+    for node, give in bores:
+        terms = give * acting[0][node] * acting[1][node]
+        low, high = low + float(np.minimum(terms, 0.0).sum()), high + float(np.maximum(terms, 0.0).sum())
+    return low, high
+
+
+def point_bounds(
+    case: Case, frame: LinkageFrame, solution: FrameSolution, link: str, point: str
+) -> tuple[float, float]:
+    """Least and largest distance by which a point of a linkage moves in its linear frame [mm].
+
+    Where the frame is redundant, forces are those of the plain beams: exact to first order in what eyes and bores do.
+    """
+    node = frame.points[link, point]
+    bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)
+    beams, bores = _links(case, frame)
+    least, largest = np.zeros(3), np.zeros(3)
+    planar = not np.any(solution.displacements[:, 2:5])
+    for axis in range(2 if planar else 3):
+        load = NodeLoad(node=node, wrench=np.eye(6)[axis])
+        unit = solve_frame(replace(frame.model, elements=bare, loads=(load,)))
+        low, high = bounds(solution, unit, beams, bores)
+        least[axis] = max(low, -high, 0.0)
+        largest[axis] = max(abs(low), abs(high))
+    return float(np.linalg.norm(least)), float(np.linalg.norm(largest))
+
+
+def _links(case: Case, frame: LinkageFrame) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[int, Real]]]:
+    """Zones of every element that is part of a link, and the bores of all links with the nodes that stand in them."""
+    bodies = {link: case.body(link) for link in case.checked_links}
+    beams = {}
+    for i, beam in frame.beams.items():
+        body = bodies[beam.link]
+        arm = next((pin for pin in body.pins if beam.arm and pin.name == beam.arm), None)
+        beams[i] = zones(body, beam.start, beam.end, arm=arm, flank=beam.flank)
+    gives = {}
+    for link, body in bodies.items():
+        material = case.material_of(link)
+        gives[link] = bore_gives(body, material.youngs_modulus, material.poissons_ratio)
+    bores: dict[int, Real] = {}
+    for name, nodes in frame.pins.items():
+        for link, point, node in zip(case.joints[name].links, case.linkage.joint_points(name), nodes, strict=True):
+            if node is not None and point in gives.get(link, {}):
+                bores[node] = gives[link][point]
+    return beams, list(bores.items())
+
+
+def _terms(loaded: FrameSolution, unit: FrameSolution, i: int, zones: Sequence[Zone] | None) -> tuple[Real, Real, Real]:
+    """Virtual work (6,) of one element's internal forces: nominal, with the least and with the largest flexibility."""
+    element, length = loaded.model.elements[i], loaded.model.length(i)
+    real, virtual = loaded.internal_forces(i), unit.internal_forces(i)
+    flexible = _flexibility(element.section, element.young, element.poisson)
+    nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
+    whole = Zone(start=0.0, end=length, least=np.ones(6), most=np.ones(6))
+    nominal, least, most = np.zeros(6), np.zeros(6), np.zeros(6)
+    for zone in zones or (whole,):
+        start, end = min(zone.start, length), min(zone.end, length)
+        xs, dx = (start + end) / 2.0 + (end - start) / 2.0 * nodes, (end - start) / 2.0 * weights
+        work = np.array([real.at(float(x)) * virtual.at(float(x)) for x in xs])
+        term = flexible * (dx @ work)
+        nominal, least, most = nominal + term, least + zone.least * term, most + zone.most * term
+    return nominal, least, most
+
+
+def _on_nodes(solution: FrameSolution) -> Real:
+    """What acts on each node's link there (n, 6), global axes: joints and loads."""
+    found = solution.joint_wrenches.copy()
+    for load in solution.model.loads:
+        found[load.node] += load.wrench
+    return found
+
+
+def _flexibility(section: Section, young: float, poisson: float) -> Real:
+    """Strains (6,) per unit of N, V_y, V_z, T, M_y, M_z."""
+    shear = young / (2.0 + 2.0 * poisson)
+    across = 1.0 / (section.shear_coefficient(poisson) * shear * section.area)
+    return np.array(
+        [
+            1.0 / (young * section.area),
+            across,
+            across,
+            1.0 / (shear * section.torsion),
+            1.0 / (young * section.i_y),
+            1.0 / (young * section.i_z),
+        ]
+    )
+
+
+def _diameter(body: Body, foot: tuple[float, float]) -> float:
+    return next((pin.diameter for pin in body.pins if (pin.x, pin.y) == foot), 0.0)
+
+
+def _factors(area: float, i_y: float, i_z: float) -> Real:
+    """Flexibility (6,) over the plain section's, from what is left of its A, I_y, I_z as shares."""
+    worst = max(1.0 / area, 1.0 / i_y, 1.0 / i_z)
+    return np.array([1.0 / area, 1.0 / area, 1.0 / area, worst, 1.0 / i_y, 1.0 / i_z])
+
+
+def _net(part: Part, row: HoleRow) -> Real:
+    """Factors at a cross hole: the plain section less the hole's strip through its middle, a tube's bore apart."""
+    across, depth = section_width(part), section_height(part)
+    if row.along == "z":
+        across, depth = depth, across
+    inner = part.inner_diameter if isinstance(part, Tube) else 0.0
+    d, section = row.diameter, part.section
+    area = 1.0 - d * (across - inner) / section.area
+    along, aside = d * (across**3 - inner**3) / 12.0, d**3 * (across - inner) / 12.0
+    left = {"y": (aside, along), "z": (along, aside)}[row.along]
+    shares = [
+        max(area, 0.05),
+        *(max(1.0 - lost / i, 0.05) for lost, i in zip(left, (section.i_y, section.i_z), strict=True)),
+    ]
+    return _factors(*shares)
+
+
+def _at_bore(part: Part, diameter: float) -> Real:
+    """Factors at a pin's bore, where the eye's net section stands for the plain one; never below 1."""
+    wide, thick, section = part.eye_diameter, part.eye_thickness, part.section
+    area = (wide - diameter) * thick / section.area
+    i_z = thick * (wide**3 - diameter**3) / 12.0 / section.i_z
+    i_y = (wide - diameter) * thick**3 / 12.0 / section.i_y
+    return np.asarray(np.maximum(_factors(area, i_y, i_z), 1.0))
+
+
+def _disc(body: Body, part: Disc) -> Real:
+    """Factors of a disc: its narrowest chord between its holes instead of its diameter."""
+    chord, full = hand_section(body), part.section
+    return _factors(chord.area / full.area, chord.i_y / full.i_y, chord.i_z / full.i_z)

@@ -1,0 +1,216 @@
+"""Spatial frames of Timoshenko beams, in small displacements.
+
+Units and axes are those of ``fea.frame.model``: mm, N, N·mm, rad; x, y the linkage's plane, z along the pins. The
+unknowns are the natural forces q of the elements (``fea.frame.element``) together with the displacements u:
+
+    [-F  B] [q]   [v0    ]        F  natural flexibility of the elements, B  compatibility (v = B u),
+    [ Bᵀ 0] [u] = [p - p0]        v0, p0  effect of line loads on the elements, p  nodal loads
+
+(equilibrium and compatibility side by side: Strang, Introduction to Applied Mathematics, 1986, section 2.2; in the
+language of frames Przemieniecki, Theory of Matrix Structural Analysis, 1968, chapters 6 and 8). Forces so come out
+of equilibrium rather than as small differences of large displacements times large stiffnesses: nothing is lost
+where stiffnesses differ by many orders of magnitude, and a statically determinate frame gets its forces to rounding
+whatever its stiffness. Guides are further rows of B without flexibility, their forces further entries of q. Released
+ends are unknowns of their own. Line loads act on the axis of the beams and are
+treated exactly, so that one element per link is enough.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.theory import BeamLoads, LineLoad, Piecewise, PointLoad, deflection, internal_forces
+from fea.frame.element import line_load_effect, natural_deformations
+from fea.frame.model import (
+    ALL_DOFS,
+    DOFS,
+    PIN_DOFS,
+    Dof,
+    FrameElement,
+    FrameModel,
+    Guide,
+    NodeLoad,
+    Support,
+    Tie,
+)
+from fea.frame.system import FrameSystem, refuse_mechanism
+from geometry.base.errors import CannotRunError
+
+__all__ = [
+    "ALL_DOFS",
+    "DOFS",
+    "PIN_DOFS",
+    "Dof",
+    "FrameElement",
+    "FrameModel",
+    "FrameSolution",
+    "Guide",
+    "NodeLoad",
+    "Support",
+    "Tie",
+    "solve_frame",
+]
+
+Floats = NDArray[np.float64]
+
+LARGEST_RESIDUAL = 1e-8
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FrameSolution:
+    """Displacements and forces of a frame (n nodes, m elements).
+
+    displacements      (n, 6) [mm, rad], global axes; a rotation in which no element takes part stands as zero
+    end_displacements  (m, 2, 6) of the two ends of each beam, beyond arms and releases, local axes
+    end_forces         (m, 2, 6) what acts on the two ends of each beam, beyond the arms, local axes [N, N·mm]
+    joint_wrenches     (n, 6) what ties, guides and supports together do to the part of the frame at each node, global
+                       axes: the joint force at a pin; zero (to rounding) at nodes without any
+    reactions          (n, 6) what supports and guides on the ground do to the frame, global axes; of tied nodes the
+                       first supported has it
+    guide_forces       (g,) what each guide's carrier takes along its normal [N], or about axis x normal [N·mm]; the pin
+                       gets the opposite
+    residual           largest force left over at a node or in the balance of the whole frame, over the sum of loads
+    condition          1-norm condition number of the scaled equations (estimated)
+    redundancy         degree of static indeterminacy; 0 where equilibrium alone gives all forces
+    """
+
+    model: FrameModel
+    displacements: Floats
+    end_displacements: Floats
+    end_forces: Floats
+    joint_wrenches: Floats
+    reactions: Floats
+    guide_forces: Floats
+    residual: float
+    condition: float
+    redundancy: int
+
+    def beam_loads(self, i: int) -> BeamLoads:
+        """All that acts on the beam of element i, in its local axes with x = 0 at its first end."""
+        length = self.model.length(i)
+        ends = tuple(
+            PointLoad(point=np.array([x, 0.0, 0.0]), wrench=f)
+            for x, f in zip((0.0, length), self.end_forces[i], strict=True)
+        )
+        first, last = self.model.line_load(i)
+        return BeamLoads(points=ends, lines=(LineLoad(start=0.0, end=length, first=first, last=last),))
+
+    def internal_forces(self, i: int) -> Piecewise:
+        """N, V_y, V_z, T, M_y, M_z along element i; signs and axes as in ``fea.beam.theory``."""
+        return internal_forces(self.beam_loads(i))
+
+    def axis_displacements(self, i: int, stations: Floats) -> Floats:
+        """Displacements (k, 3) of the axis of element i at stations from its first end [mm], global axes."""
+        e, length = self.model.elements[i], self.model.length(i)
+        forces = self.internal_forces(i)
+        bent = deflection(forces, e.section, young=e.young, poisson=e.poisson, line=(0.0, length)).functions
+        start, end = self.end_displacements[i]
+        local = np.array([bent.at(float(x))[:3] for x in stations])
+        local[:, 0] += start[0]
+        local[:, 1:] += start[1:3] + np.outer(stations / length, end[1:3] - start[1:3])
+        return np.asarray(local @ self.model.axes(i))
+
+
+def solve_frame(model: FrameModel) -> FrameSolution:
+    """Solve a frame in small displacements.
+
+    Raises ``CannotRunError`` where the frame can move without strain (naming what moves most) and where the forces
+    found do not balance to 1e-8 of the load.
+    """
+    from scipy.sparse import bmat, csc_matrix
+    from scipy.sparse.linalg import LinearOperator, onenormest, splu
+
+    system = FrameSystem(model)
+    B, F, v0, p = system.equations()
+    refuse_mechanism(system, B)
+    # Displacements in units of the softest element's answer to unit force: no block of the matrix outgrows the rest.
+    scale = float(F.diagonal().max())
+    matrix = csc_matrix(bmat([[-F / scale, B], [B.T, None]]))
+    right = np.concatenate([v0 / scale, p])
+    factors = splu(matrix)
+    solution = factors.solve(right)
+    solution += factors.solve(right - matrix @ solution)
+    # The matrix is symmetric, and so is its inverse.
+    inverse = LinearOperator(matrix.shape, matvec=factors.solve, rmatvec=factors.solve, dtype=np.float64)
+    condition = float(abs(matrix).sum(axis=0).max() * onenormest(inverse))
+    q, u = solution[: len(v0)], solution[len(v0) :] * scale * system.unit
+    found = _collect(system, q, u, condition)
+    if not found.residual <= LARGEST_RESIDUAL:
+        raise CannotRunError(
+            f"the forces of the frame leave {found.residual:.3g} of the load unbalanced, where {LARGEST_RESIDUAL:g} "
+            f"is allowed (condition number {condition:.3g}); the frame is nearly a mechanism: change its pose"
+        )
+    return found
+
+
+def _collect(system: FrameSystem, q: Floats, u: Floats, condition: float) -> FrameSolution:
+    """Turn natural forces (scaled) and displacements into the record, and check their balance."""
+    model = system.model
+    n, m = len(model.nodes), len(model.elements)
+    displacements = np.where(system.number >= 0, u[system.number] if len(u) else 0.0, 0.0).reshape(n, 6)
+    ends, forces, joints = np.zeros((m, 12)), np.zeros((m, 12)), np.zeros((n, 6))
+    for i, e in enumerate(model.elements):
+        length = system.lengths[i]
+        numbers, matrix = system.place(i)
+        ends[i] = matrix @ u[numbers]
+        _, held = line_load_effect(e.section, e.young, length, *model.line_load(i))
+        forces[i] = natural_deformations(length).T @ (system.natural_unit(i) * q[6 * i : 6 * i + 6]) + held
+        np.add.at(joints, list(e.nodes), system.to_nodes(i, forces[i]))
+    for load in model.loads:
+        joints[load.node] -= load.wrench
+    held_by: dict[int, int] = {}
+    for support in model.supports:
+        for dof in support.dofs:
+            place = 6 * support.node + DOFS.index(dof)
+            held_by.setdefault(int(system.owner[place]), place)
+    guided, grounded = np.zeros((n, 6)), np.zeros((n, 6))
+    guide_forces = q[6 * m :] * system.guide_unit
+    for guide, force in zip(model.guides, guide_forces, strict=True):
+        for node, sign in guide.nodes:
+            guided[node] -= sign * force * guide.gradient
+            if len(guide.nodes) == 1:
+                grounded[node] -= sign * force * guide.gradient
+    left_over = np.zeros(6 * n)
+    np.add.at(left_over, system.owner, (joints - guided).ravel())
+    reactions = np.zeros((n, 6))
+    for owner, place in held_by.items():
+        reactions[divmod(place, 6)], left_over[owner] = left_over[owner], 0.0
+    return FrameSolution(
+        model=model,
+        displacements=displacements,
+        end_displacements=ends.reshape(m, 2, 6),
+        end_forces=forces.reshape(m, 2, 6),
+        joint_wrenches=joints,
+        reactions=reactions + grounded,
+        guide_forces=guide_forces,
+        residual=_residual(model, left_over.reshape(n, 6), reactions + grounded),
+        condition=condition,
+        redundancy=len(q) - len(u),
+    )
+
+
+def _residual(model: FrameModel, left_over: Floats, reactions: Floats) -> float:
+    """Largest imbalance of a node or of the whole frame over the sum of the loads (moments over the frame's size)."""
+    scale = model.load_scale
+    if scale == 0.0:
+        return 0.0
+    middle = model.nodes.mean(axis=0)
+    total = np.zeros(6)
+
+    def add(point: Floats, wrench: Floats) -> None:
+        total[:3] += wrench[:3]
+        total[3:] += wrench[3:] + np.cross(point - middle, wrench[:3])
+
+    for point, wrench in zip(model.nodes, reactions, strict=True):
+        add(point, wrench)
+    for load in model.loads:
+        add(model.nodes[load.node], load.wrench)
+    for i in range(len(model.elements)):
+        start, end = model.ends(i)
+        first, last = (q @ model.axes(i) * model.length(i) / 6.0 for q in model.line_load(i))
+        # Simpson's rule with the load at both ends and in the middle: exact for the force and its moment.
+        for point, force in ((start, first), ((start + end) / 2.0, 2.0 * (first + last)), (end, last)):
+            add(point, np.concatenate([force, np.zeros(3)]))
+    sizes = np.array([1.0, 1.0, 1.0, *[1.0 / model.size] * 3])
+    return float(max(np.abs(left_over * sizes).max(), np.abs(total * sizes).max())) / scale

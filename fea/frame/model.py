@@ -1,0 +1,242 @@
+"""What a frame is made of: nodes, beams, ties, supports and loads.
+
+Global axes x, y (the linkage's plane) and z (along the pins); mm, N, N·mm, rad. Each node has three displacements
+and three rotations (right-hand rule), named ux, uy, uz, rx, ry, rz. Links meet in ties: two nodes at one place
+that share some of these, all but rz for a pin along z, which so carries moments about x and y and none about z.
+A pin in a slot is kept there by guides.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geometry.base.errors import CannotRunError
+from geometry.parts.part import Section
+
+Floats = NDArray[np.float64]
+Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
+DOFS: tuple[Dof, ...] = ("ux", "uy", "uz", "rx", "ry", "rz")
+ALL_DOFS = frozenset(DOFS)
+PIN_DOFS = ALL_DOFS - {"rz"}
+"""What a revolute pin along z holds together."""
+
+
+def _zeros() -> Floats:
+    return np.zeros(3)
+
+
+def _array(values: ArrayLike, name: str, *shape: int) -> Floats:
+    array = np.array(values, dtype=np.float64)
+    if array.shape != shape or not np.isfinite(array).all():
+        raise CannotRunError(f"{name} must hold {' x '.join(map(str, shape))} finite numbers, not {array.tolist()}")
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FrameElement:
+    """A straight beam of constant section between two nodes.
+
+    nodes             numbers of the first and the second node
+    section           local z of the element is the section's z
+    young, poisson    E [MPa] and ν
+    density           [tonne/mm³], for the model's ``gravity``
+    z_axis            (3,) direction that local z leans to: its part normal to the element; along the pins by default
+    releases          per end, the local displacements and rotations that the end does not share with its node
+    offsets           (2, 3) rigid arms from each node to the beam's end, in global axes [mm]; a release lies at the
+                      node, between node and arm
+    load_first, load_last  (3,) force per length of the element at its two ends, linear between, global axes [N/mm]
+    """
+
+    nodes: tuple[int, int]
+    section: Section
+    young: float
+    poisson: float
+    density: float = 0.0
+    z_axis: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    releases: tuple[frozenset[Dof], frozenset[Dof]] = (frozenset(), frozenset())
+    offsets: Floats = field(default_factory=lambda: np.zeros((2, 3)))
+    load_first: Floats = field(default_factory=_zeros)
+    load_last: Floats = field(default_factory=_zeros)
+
+    def __post_init__(self) -> None:
+        """Copy and check."""
+        for name in ("z_axis", "load_first", "load_last"):
+            object.__setattr__(self, name, _array(getattr(self, name), f"{name} of a frame element", 3))
+        object.__setattr__(self, "offsets", _array(self.offsets, "offsets of a frame element", 2, 3))
+        s = self.section
+        if not min(self.young, s.area, s.i_y, s.i_z, s.torsion) > 0.0 or not -1.0 < self.poisson <= 0.5:
+            raise CannotRunError(
+                f"a frame element needs positive stiffness and -1 < nu <= 0.5: E = {self.young:g} MPa, "
+                f"nu = {self.poisson:g}, A = {s.area:g} mm², I = {s.i_y:g} and {s.i_z:g} mm⁴, J = {s.torsion:g} mm⁴"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support:
+    """Displacements and rotations of a node that the ground holds at zero, in global axes."""
+
+    node: int
+    dofs: frozenset[Dof] = ALL_DOFS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tie:
+    """Two nodes at one place that share displacements and rotations, in global axes; by default a pin along z."""
+
+    nodes: tuple[int, int]
+    dofs: frozenset[Dof] = PIN_DOFS
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Guide:
+    """A pin's node stays in the plane through its carrier's node, whose normal (3,) turns with the carrier.
+
+    With an axis (3,), which turns with the pin's node, it is that axis which stays in a plane of that normal, wherever
+    the node is. Both nodes start at one place; None stands for the ground, as carrier or as pin.
+    """
+
+    carrier: int | None
+    pin: int | None
+    normal: Floats
+    axis: Floats | None = None
+
+    def __post_init__(self) -> None:
+        """Copy and check."""
+        for name in ("normal", "axis"):
+            if getattr(self, name) is not None:
+                vector = _array(getattr(self, name), f"the {name} of a guide", 3)
+                object.__setattr__(self, name, vector)
+                if abs(float(np.linalg.norm(vector)) - 1.0) > 1e-9:
+                    raise CannotRunError(f"the {name} of a guide must have unit length, not {vector.tolist()}")
+        if self.carrier == self.pin:
+            raise CannotRunError("a guide joins two different nodes, or one node and the ground")
+
+    @property
+    def nodes(self) -> tuple[tuple[int, float], ...]:
+        """Nodes that move, each with the sign of its motion in the guide's equation."""
+        return tuple((node, sign) for node, sign in ((self.carrier, -1.0), (self.pin, 1.0)) if node is not None)
+
+    @property
+    def gradient(self) -> Floats:
+        """(6,) by displacement and rotation of the pin's node, as it stands: what a unit of the guide's force does."""
+        if self.axis is None:
+            return np.concatenate([self.normal, np.zeros(3)])
+        return np.concatenate([np.zeros(3), np.cross(self.axis, self.normal)])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class NodeLoad:
+    """A wrench (6,) on a node in global axes: Fx, Fy, Fz [N], Mx, My, Mz [N·mm]."""
+
+    node: int
+    wrench: Floats
+
+    def __post_init__(self) -> None:
+        """Copy and check."""
+        object.__setattr__(self, "wrench", _array(self.wrench, "the wrench of a node load", 6))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FrameModel:
+    """A frame and all that acts on it.
+
+    nodes    (n, 3) positions [mm]
+    gravity  (3,) acceleration [mm/s²] under which the elements weigh; zero leaves weight out
+    names    of the nodes, for messages; their numbers where empty
+
+    Raises ``CannotRunError`` for an element without length or along its own z, for nodes that do not exist, and for
+    ties or guides between nodes at different places.
+    """
+
+    nodes: Floats
+    elements: tuple[FrameElement, ...]
+    supports: tuple[Support, ...]
+    ties: tuple[Tie, ...] = ()
+    guides: tuple[Guide, ...] = ()
+    loads: tuple[NodeLoad, ...] = ()
+    gravity: Floats = field(default_factory=_zeros)
+    names: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Copy and check."""
+        nodes = np.array(self.nodes, dtype=np.float64)
+        object.__setattr__(self, "nodes", _array(nodes, "the nodes of a frame", len(nodes), 3))
+        object.__setattr__(self, "gravity", _array(self.gravity, "gravity", 3))
+        if self.names and len(self.names) != len(nodes):
+            raise CannotRunError(f"a frame of {len(nodes)} nodes needs as many names, not {len(self.names)}")
+        if not self.elements:
+            raise CannotRunError("a frame needs at least one element")
+        named = [e.nodes for e in self.elements] + [t.nodes for t in self.ties]
+        named += [(s.node, s.node) for s in self.supports] + [(p.node, p.node) for p in self.loads]
+        named += [(n, n) for g in self.guides for n, _ in g.nodes]
+        for pair in named:
+            if not all(0 <= i < len(nodes) for i in pair):
+                raise CannotRunError(f"the frame has nodes 0 to {len(nodes) - 1}, but {pair} are named")
+        for i in range(len(self.elements)):
+            self._check_element(i)
+        joined = [t.nodes for t in self.ties]
+        joined += [(g.carrier, g.pin) for g in self.guides if g.carrier is not None and g.pin is not None]
+        for i, j in joined:
+            if np.linalg.norm(nodes[i] - nodes[j]) > 1e-9 * self.size:
+                raise CannotRunError(
+                    f"tied nodes {self.name(i)} and {self.name(j)} of a frame lie at different places; move one of them"
+                )
+
+    def _check_element(self, i: int) -> None:
+        start, end = self.ends(i)
+        along = end - start
+        if not np.linalg.norm(along) > 1e-9 * self.size:
+            raise CannotRunError(f"element {i} of the frame has no length; give its nodes different places")
+        z = self.elements[i].z_axis
+        if not np.linalg.norm(np.cross(along, z)) > 1e-6 * np.linalg.norm(along) * np.linalg.norm(z):
+            raise CannotRunError(f"element {i} of the frame lies along its own z_axis; choose another z_axis for it")
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the bounding box [mm]."""
+        return float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
+
+    def name(self, node: int) -> str:
+        """Name or number of a node."""
+        return self.names[node] if self.names else str(node)
+
+    def ends(self, i: int) -> tuple[Floats, Floats]:
+        """Both ends (3,) of the beam of element i, arms included [mm]."""
+        a, b = self.elements[i].nodes
+        arms = self.elements[i].offsets
+        return self.nodes[a] + arms[0], self.nodes[b] + arms[1]
+
+    def length(self, i: int) -> float:
+        """Length of the beam of element i between its arms [mm]."""
+        start, end = self.ends(i)
+        return float(np.linalg.norm(end - start))
+
+    def axes(self, i: int) -> Floats:
+        """(3, 3) rows: local x, y, z of element i in global axes."""
+        start, end = self.ends(i)
+        x = (end - start) / np.linalg.norm(end - start)
+        y = np.cross(self.elements[i].z_axis, x)
+        y /= np.linalg.norm(y)
+        return np.vstack([x, y, np.cross(x, y)])
+
+    def line_load(self, i: int) -> tuple[Floats, Floats]:
+        """Force per length (3,) at both ends of element i in local axes, weight included [N/mm]."""
+        e, R = self.elements[i], self.axes(i)
+        weight = e.density * e.section.area * self.gravity
+        return R @ (e.load_first + weight), R @ (e.load_last + weight)
+
+    @property
+    def load_scale(self) -> float:
+        """Sum of the magnitudes of all loads [N], moments divided by ``size``."""
+        total = 0.0
+        for p in self.loads:
+            wrench = p.wrench
+            total += float(np.linalg.norm(wrench[:3]) + np.linalg.norm(wrench[3:]) / self.size)
+        for i in range(len(self.elements)):
+            first, last = self.line_load(i)
+            total += float(np.linalg.norm(first) + np.linalg.norm(last)) / 2.0 * self.length(i)
+        return total

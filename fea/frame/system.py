@@ -1,0 +1,189 @@
+"""The equations of a frame: numbering, scaling, compatibility, and the test for mechanisms."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.element import line_load_effect, natural_deformations, natural_flexibility
+from fea.frame.model import DOFS, FrameModel
+from geometry.base.errors import CannotRunError
+
+Floats = NDArray[np.float64]
+
+_MECHANISM = 1e-10
+"""A motion of unit size that strains the elements less than this is a mechanism."""
+
+
+def _motion(dof: int) -> str:
+    return f"{'along' if dof < 3 else 'about'} {'xyz'[dof % 3]}"
+
+
+class FrameSystem:
+    """Numbering and scaling of the unknowns of a frame.
+
+    Unknown rotations are multiplied by the mean element length, natural moments divided by their element's length,
+    so that all entries of the compatibility matrix are of order one.
+
+    labels   what moves with each unknown, for messages
+    unit     (k,) factor from the scaled unknowns to mm and rad
+    guide_unit  (g,) factor from the scaled forces of the guides to N or N·mm
+    """
+
+    def __init__(self, model: FrameModel) -> None:
+        self.model = model
+        n, m = len(model.nodes), len(model.elements)
+        self.lengths = np.array([model.length(i) for i in range(m)])
+        mean = float(self.lengths.mean())
+        self.guide_unit = np.array([1.0 if guide.axis is None else mean for guide in model.guides])
+        self.owner = self._owners()
+        self._matrices = [self._attachment(i) for i in range(m)]
+        supported = {int(self.owner[6 * s.node + DOFS.index(dof)]) for s in model.supports for dof in s.dofs}
+        idle = self._idle()
+        free = [i for i in range(6 * n) if self.owner[i] == i and i not in supported and not idle[i]]
+        self.labels = [f"node {model.name(i // 6)} {_motion(i % 6)}" for i in free]
+        unit = [1.0 if i % 6 < 3 else 1.0 / mean for i in free]
+        number = np.full(6 * n, -1)
+        number[free] = np.arange(len(free))
+        self.number = number[self.owner]
+        self._released: list[list[tuple[int, int]]] = []
+        for i, element in enumerate(model.elements):
+            own = []
+            for end, dofs in enumerate(element.releases):
+                for dof in sorted(DOFS.index(d) for d in dofs):
+                    own.append((6 * end + dof, len(unit)))
+                    self.labels.append(f"the {('first', 'second')[end]} end of element {i} {_motion(dof)} of its own")
+                    unit.append(1.0 if dof < 3 else 1.0 / mean)
+            self._released.append(own)
+        self.unit = np.array(unit)
+
+    def _owners(self) -> NDArray[np.int64]:
+        """(6 n,) the first of all displacements tied to each."""
+        parent = list(range(6 * len(self.model.nodes)))
+
+        def first(i: int) -> int:
+            while parent[i] != i:
+                i = parent[i]
+            return i
+
+        for tie in self.model.ties:
+            for dof in tie.dofs:
+                a, b = (first(6 * node + DOFS.index(dof)) for node in tie.nodes)
+                parent[max(a, b)] = min(a, b)
+        return np.array([first(i) for i in range(len(parent))])
+
+    def _attachment(self, i: int) -> tuple[Floats, Floats]:
+        """T (12, 12) from nodes to local attachments, released rows zero, and A (12, 12) from there across the arms."""
+        R = self.model.axes(i)
+        T, A = np.zeros((12, 12)), np.eye(12)
+        for k in range(0, 12, 3):
+            T[k : k + 3, k : k + 3] = R
+        for end, (x, y, z) in enumerate(self.model.elements[i].offsets @ R.T):
+            A[6 * end : 6 * end + 3, 6 * end + 3 : 6 * end + 6] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+            for dof in self.model.elements[i].releases[end]:
+                T[6 * end + DOFS.index(dof)] = 0.0
+        return T, A
+
+    def _node_columns(self, i: int) -> NDArray[np.int64]:
+        a, b = self.model.elements[i].nodes
+        return np.concatenate([np.arange(6 * a, 6 * a + 6), np.arange(6 * b, 6 * b + 6)])
+
+    def _idle(self) -> NDArray[np.bool_]:
+        """(6 n,) rotations in which no element takes part, all ends there being released, and no moment or guide.
+
+        They are no unknowns. Where a moment does act the rotation stays one, and is refused as a mechanism.
+        """
+        needed = np.zeros(len(self.owner), dtype=bool)
+        needed[np.arange(len(needed)) % 6 < 3] = True
+        for i, (T, _) in enumerate(self._matrices):
+            taking_part = np.abs(T).max(axis=0) > 1e-12  # direction cosines: below is rounding
+            needed[self.owner[self._node_columns(i)[taking_part]]] = True
+        acting = [(load.node, load.wrench) for load in self.model.loads]
+        acting += [(node, guide.gradient) for guide in self.model.guides for node, _ in guide.nodes]
+        for node, wrench in acting:
+            needed[self.owner[6 * node + np.flatnonzero(wrench)]] = True
+        return ~needed
+
+    def place(self, i: int) -> tuple[NDArray[np.int64], Floats]:
+        """Numbers (k,) of the unknowns that move element i, and the matrix (12, k) from them to its beam's ends."""
+        T, A = self._matrices[i]
+        own = np.zeros((12, len(self._released[i])))
+        for column, (row, _) in enumerate(self._released[i]):
+            own[row, column] = 1.0
+        numbers = np.concatenate([self.number[self._node_columns(i)], [k for _, k in self._released[i]]])
+        numbers = numbers.astype(np.int64)
+        return numbers[numbers >= 0], (A @ np.hstack([T, own]))[:, numbers >= 0]
+
+    def to_nodes(self, i: int, end_forces: Floats) -> Floats:
+        """Wrenches (2, 6) at both nodes of element i in global axes from forces (12,) at its beam's ends."""
+        T, A = self._matrices[i]
+        return np.asarray((T.T @ (A.T @ end_forces)).reshape(2, 6))
+
+    def natural_unit(self, i: int) -> Floats:
+        """Factors (6,) from the scaled natural forces of element i to N and N·mm."""
+        return np.array([1.0, *[self.lengths[i]] * 5])
+
+    def equations(self) -> tuple[Any, Any, Floats, Floats]:
+        """Scaled B (6 m + g, k) and F, sparse, natural deformations v0 (6 m + g,) and nodal loads p - p0 (k,).
+
+        The g guides come after the m elements: rows of unit stiffness in B, without flexibility in F.
+        """
+        from scipy.sparse import block_diag, coo_matrix
+
+        m, guides = len(self.lengths), self.model.guides
+        rows, columns, values, flexibility = [], [], [], []
+        v0, p = np.zeros(6 * m + len(guides)), np.zeros(len(self.unit))
+        for load in self.model.loads:
+            place = self.number[6 * load.node : 6 * load.node + 6]
+            np.add.at(p, place[place >= 0], load.wrench[place >= 0])
+        for i, (e, length) in enumerate(zip(self.model.elements, self.lengths, strict=True)):
+            unit = self.natural_unit(i)
+            numbers, matrix = self.place(i)
+            B = unit[:, None] * (natural_deformations(length) @ matrix) * self.unit[numbers]
+            rows.append(np.repeat(np.arange(6 * i, 6 * i + 6), len(numbers)))
+            columns.append(np.tile(numbers, 6))
+            values.append(B.ravel())
+            flexibility.append(unit[:, None] * natural_flexibility(e.section, e.young, e.poisson, length) * unit)
+            first, last = self.model.line_load(i)
+            v, ends = line_load_effect(e.section, e.young, length, first, last)
+            v0[6 * i : 6 * i + 6] = unit * v
+            np.add.at(p, numbers, -(matrix.T @ ends))
+        for row, guide in enumerate(guides, start=6 * m):
+            for node, sign in guide.nodes:
+                place = self.number[6 * node : 6 * node + 6]
+                free = place >= 0
+                rows.append(np.full(np.count_nonzero(free), row))
+                columns.append(place[free])
+                values.append(sign * self.guide_unit[row - 6 * m] * guide.gradient[free] * self.unit[place[free]])
+            flexibility.append(np.zeros((1, 1)))
+        shape = (len(v0), len(self.unit))
+        B = coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
+        return B, block_diag(flexibility, format="csr"), v0, p * self.unit
+
+
+def refuse_mechanism(system: FrameSystem, B: Any) -> None:
+    """Raise ``CannotRunError``, naming what moves most, if the frame can move without strain.
+
+    The test is kinematic (the null space of the compatibility matrix B), so that no difference of stiffnesses can
+    hide or mimic a mechanism. Inverse iteration on BᵀB finds the motion of least strain; its strain is then taken
+    from B itself, without squaring the rounding error.
+    """
+    from scipy.sparse import identity
+    from scipy.sparse.linalg import splu
+
+    k = B.shape[1]
+    if k == 0:
+        return
+    factors = splu((B.T @ B + 1e-14 * identity(k)).tocsc())
+    motion = np.random.default_rng(0).standard_normal(k)
+    for _ in range(4):
+        motion = factors.solve(motion)
+        motion /= np.linalg.norm(motion)
+    strain = float(np.linalg.norm(B @ motion))
+    if strain < _MECHANISM:
+        largest = np.argsort(-np.abs(motion))[:3]
+        moving = [system.labels[i] for i in largest if abs(motion[i]) > 0.3 * abs(motion[largest[0]])]
+        raise CannotRunError(
+            f"the frame is a mechanism: it can move without strain, most of all {', '.join(moving)} "
+            f"(strain {strain:.1e} for a unit motion, where {_MECHANISM:g} is the least); support it or tie it there"
+        )

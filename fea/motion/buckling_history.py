@@ -1,0 +1,128 @@
+"""Buckling factor of a link at every pose of a motion, by the rules of ``fea.outcomes.buckling``."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.column_factor import AxialForce
+from fea.beam.cut_free import beam_loads
+from fea.check.second_order import second_order_loads
+from fea.common.link_loads import BodyLoad, LinkLoads
+from fea.frame.large_displacement import LEAST_FACTOR
+from fea.motion.link_history import LineHistory, LinkHistory
+from fea.outcomes.buckling import NO_COMPRESSION, ColumnFactors, link_factors
+from geometry.parts.body_rules import hand_section
+from loads.case.case import Case
+
+Real = NDArray[np.float64]
+
+
+def factors_over_motion(case: Case, link: str, history: LinkHistory) -> ColumnFactors:
+    """Return the buckling factors of a link at every pose; infinite where nothing compresses it."""
+    largest, force = axial_compression(case, link, history)
+    found = link_factors(case, link, hand_section(case.body(link)), force)
+    idle = largest <= 0.0
+    value, least, most = (np.where(idle, np.inf, factor) for factor in (found.value, found.least, found.most))
+    return ColumnFactors(value=value, least=least, most=most)
+
+
+def with_second_order(case: Case, link: str, history: LinkHistory, evaluated: NDArray[np.bool_]) -> LinkHistory:
+    """Return a history with what bending under compression adds, at the evaluated poses near to buckling.
+
+    As ``fea.check.second_order`` does for one pose: on the outermost pins, or as a cantilever where the drive holds the
+    link.
+    """
+    found = factors_over_motion(case, link, history)
+    near = np.flatnonzero(evaluated & (np.minimum(found.value, found.least) < LEAST_FACTOR))
+    if not near.size:
+        return history
+    pins = {name: wrench.copy() for name, wrench in history.pins.items()}
+    ends = {name: wrench.copy() for name, wrench in history.ends.items()}
+    lines: dict[tuple[float, float], Real] = {}
+    for pose in near:
+        loads = history.at(int(pose))
+        grown = second_order_loads(case, link, loads, history.mass, stays=False)
+        for pin, before in zip(grown.pins, loads.pins, strict=True):
+            pins[pin.name][pose] += (pin.wrench - before.wrench)[[0, 1, 5]]
+        for end, plain in zip(grown.ends, loads.ends, strict=True):
+            ends[end.name][pose] += (end.wrench - plain.wrench)[[0, 1, 5]]
+        for line in grown.lines[len(loads.lines) :]:
+            own = lines.setdefault((line.first, line.last), np.zeros((history.poses, 2, 2)))
+            own[pose] += line.intensity[:, :2]
+    more = tuple(LineHistory(first=a, last=b, intensity=q) for (a, b), q in lines.items())
+    return replace(history, pins=pins, ends=ends, lines=(*history.lines, *more))
+
+
+def axial_compression(case: Case, link: str, history: LinkHistory) -> tuple[Real, AxialForce]:
+    """Return the largest compression (P,) [N] along a link, and the compression all along it.
+
+    With point loads F at stations and line loads q between them the compression at x is ΣF + ∫q dx over all that acts
+    before x: in each interval of degree 2, by its values at both ends and in the middle. Compression that is rounding
+    beside the forces on the link counts as none.
+    """
+    points, lines = _axial_loads(case, link, history)
+    breaks = sorted({x for x, _ in points} | {x for line in lines for x in line[:2]})
+    poses = history.poses
+    size = np.max([np.linalg.norm(load[:, :2], axis=1) for load in (*history.pins.values(), *history.ends.values())], 0)
+    before, largest, values = np.zeros(poses), np.zeros(poses), []
+    for start, end in itertools.pairwise(breaks):
+        before = before + sum((force for x, force in points if x == start), np.zeros(poses))
+        middle, at_end = (before + _spread(lines, start, x, poses) for x in ((start + end) / 2.0, end))
+        here = np.max([before, middle, at_end, _vertex(before, middle, at_end)], axis=0)
+        largest = np.maximum(largest, here)
+        values.append([before, middle, at_end])
+        before = at_end
+        size = np.maximum(size, np.abs([before, middle]).max(axis=0))
+    largest = np.where(largest <= NO_COMPRESSION * size, 0.0, largest)
+    return largest, AxialForce(breaks=np.array(breaks), values=np.array(values))
+
+
+Line = tuple[float, float, Real, Real]
+
+
+def _axial_loads(case: Case, link: str, history: LinkHistory) -> tuple[list[tuple[float, Real]], list[Line]]:
+    """Forces along the axis (x, (P,)) and line loads (first x, last x, (P,) there and there); as ``cut_free`` does."""
+    body = history.body
+    points = [
+        (pin.x if pin.foot is None else pin.foot[0], history.pins[pin.name][:, 0])
+        for pin in body.pins
+        if not pin.slot  # a pin in a slot pushes across it alone
+    ]
+    points += [(end.x, history.ends[end.name][:, 0]) for end in body.ends if end.name in history.ends]
+    lines = [(line.first, line.last, line.intensity[:, 0, 0], line.intensity[:, 1, 0]) for line in history.lines]
+    density = case.material_of(link).density
+    for i, unit in enumerate(np.eye(4)):
+        # A unit of each of what moves mass, spread over the beam as for one pose.
+        body_load = BodyLoad(
+            specific_force=np.array([unit[0], unit[1], 0.0]),
+            about=np.zeros(3),
+            angular_acceleration=float(unit[2]),
+            angular_speed=float(unit[3]),
+        )
+        alone = LinkLoads(name=history.load_case, pins=(), bodies=(body_load,))
+        acting = beam_loads(alone, body, density, history.mass)
+        times = history.acceleration[:, i]
+        points += [(float(p.point[0]), p.wrench[0] * times) for p in acting.points]
+        lines += [(line.start, line.end, line.first[0] * times, line.last[0] * times) for line in acting.lines]
+    return points, lines
+
+
+def _spread(lines: list[Line], start: float, end: float, poses: int) -> Real:
+    """Force (P,) of all line loads between two stations within one interval [N]."""
+    total = np.zeros(poses)
+    for first, last, q1, q2 in lines:
+        if first <= start and end <= last:
+            middle = ((start + end) / 2.0 - first) / (last - first)
+            total = total + (end - start) * (q1 + (q2 - q1) * middle)
+    return total
+
+
+def _vertex(a: Real, b: Real, c: Real) -> Real:
+    """Extreme value within the interval of the parabola with these values at its start, middle and end; else ``a``."""
+    slope, bend = (c - a) / 2.0, a - 2.0 * b + c
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = -slope / bend
+        value = b - slope**2 / (2.0 * bend)
+    return np.asarray(np.where((np.abs(t) < 1.0) & np.isfinite(value), value, a))

@@ -1,0 +1,71 @@
+"""Where a link fatigues first: the node at which the largest cycle of a motion harms most, found among all nodes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.motion.fatigue import equivalent_peak, signed_stress
+from fea.motion.peaks import largest_sizes, mode_sizes, size_parts
+from geometry.parts.material import Fatigue, Material
+
+Real = NDArray[np.float64]
+
+_BLOCK = 128
+
+
+def critical_nodes(stress: Real, combinations: Sequence[Real], material: Material) -> list[tuple[int, Real]]:
+    """Return the node and the history (n,) of its signed stress [MPa], for each of several motions.
+
+    stress        (nodes, 6, m) of the modes [MPa]
+    combinations  (m, n) of the modes at the poses
+
+    The largest cycle of a node goes from its smallest to its largest signed stress. No cycle of signed stresses up
+    to some size harms more than the reversed one of that size. Nodes that by this bound, first with the sum of the
+    modes' sizes, then with the largest size that their stress reaches, harm less than one already found are left out.
+    """
+    parts = size_parts(stress, whole=material.brittle)
+    own = mode_sizes(parts)
+    return [_critical(stress, parts, own, combination, material) for combination in combinations]
+
+
+def _critical(stress: Real, parts: Real, own: Real, combination: Real, material: Material) -> tuple[int, Real]:
+    fatigue, ultimate = material.fatigue, material.ultimate_strength
+    assert fatigue is not None
+    reach = own @ np.abs(combination).max(axis=1)
+    hottest = np.argsort(-reach)[:_BLOCK]
+    best, node, history = _most_harmed(stress, hottest, combination, material)
+    rest = np.flatnonzero(_may_harm(reach, best, fatigue, ultimate))
+    size = largest_sizes(parts[rest], combination)
+    order = np.argsort(-size)
+    for start in range(0, len(order), _BLOCK):
+        block = order[start : start + _BLOCK]
+        block = block[_may_harm(size[block], best, fatigue, ultimate)]
+        if not len(block):
+            break
+        harm, worst, signed = _most_harmed(stress, rest[block], combination, material)
+        if harm > best:
+            best, node, history = harm, worst, signed
+    return node, history
+
+
+def _may_harm(size: Real, best: float, fatigue: Fatigue, ultimate: float | None) -> NDArray[np.bool_]:
+    """Whether reversed cycles of so large stresses (k,) harm more than ``best``."""
+    cycles = np.column_stack([2.0 * size, np.zeros_like(size), np.ones_like(size)])
+    may = equivalent_peak(cycles, fatigue, ultimate) > best
+    return may if ultimate is None else may | (size >= ultimate)
+
+
+def _most_harmed(
+    stress: Real, nodes: NDArray[np.int64], combination: Real, material: Material
+) -> tuple[float, int, Real]:
+    """Harm, number and signed history of that of these nodes whose largest cycle harms most."""
+    assert material.fatigue is not None
+    k, m = len(nodes), stress.shape[2]
+    sigma = (stress[nodes].reshape(6 * k, m) @ combination).reshape(k, 6, -1).swapaxes(1, 2)
+    signed = signed_stress(sigma, brittle=material.brittle)
+    low, high = signed.min(axis=1), signed.max(axis=1)
+    cycles = np.column_stack([high - low, (high + low) / 2.0, np.ones(k)])
+    harm = equivalent_peak(cycles, material.fatigue, material.ultimate_strength)
+    worst = int(np.argmax(harm))
+    return float(harm[worst]), int(nodes[worst]), signed[worst]

@@ -1,0 +1,184 @@
+"""Life under a stress that varies: cycles by rainflow, mean stress by Goodman or the material's own rule, Miner's sum.
+
+Measure of stress. Ductile materials: the von Mises stress with the sign of the principal stress of largest
+size; brittle ones: that principal stress itself. One direction of stress at a time is assumed: where the
+principal directions turn within a cycle, neither measure knows.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.solid.stress import extreme_principal, von_mises
+from geometry.parts.material import Fatigue, Material
+
+Real = NDArray[np.float64]
+
+NEGLIGIBLE = 0.05
+"""Cycles of a smaller range than this part of the largest one are left out, or ripples would count as peaks."""
+STRESS_FACTOR = 2.0
+LIFE_FACTOR = 4.0
+"""Default limits: on stress at the wanted number of cycles, and on life."""
+
+
+def signed_stress(stress: Real, *, brittle: bool) -> Real:
+    """Signed measure of stress (...) [MPa] of components (..., 6), as the module says."""
+    first, last = extreme_principal(stress)
+    largest = np.where(np.abs(first) >= np.abs(last), first, last)
+    return np.asarray(largest if brittle else np.copysign(von_mises(stress), largest))
+
+
+def turning_points(history: Real) -> Real:
+    """Peaks and valleys of a history (n,), its ends included."""
+    values = history[np.concatenate([[True], np.diff(history) != 0.0])]
+    if len(values) < 3:
+        return np.asarray(values)
+    slopes = np.sign(np.diff(values))
+    return np.asarray(values[np.concatenate([[True], slopes[1:] != slopes[:-1], [True]])])
+
+
+def rainflow(history: Real) -> Real:
+    """Count cycles: rows (k, 3) of range, mean and count (1 or ½), in the order in which they close.
+
+    ASTM E1049-85, section 5.4.4: of the last three points the ranges Y (earlier) and X (later) are compared;
+    X ≥ Y makes of Y a half cycle where it holds the first point, else a full one.
+    """
+    found: list[tuple[float, float, float]] = []
+    points: list[float] = []
+
+    def note(a: float, b: float, count: float) -> None:
+        found.append((abs(a - b), (a + b) / 2.0, count))
+
+    for value in turning_points(history):
+        points.append(float(value))
+        while len(points) >= 3:
+            if abs(points[-1] - points[-2]) < abs(points[-2] - points[-3]):
+                break
+            if len(points) == 3:
+                note(points[0], points[1], 0.5)
+                del points[0]
+            else:
+                note(points[-3], points[-2], 1.0)
+                del points[-3:-1]
+    for a, b in itertools.pairwise(points):
+        note(a, b, 0.5)
+    return np.array(found).reshape(-1, 3)
+
+
+def repeated_cycles(history: Real) -> Real:
+    """Cycles (k, 3) of one repetition of a history (n,) that repeats for ever: range, mean and count.
+
+    ASTM E1049-85, section 5.4.5: the history is begun at its largest value, so that every cycle closes.
+    """
+    start = int(np.argmax(history))
+    whole = np.concatenate([history[start:], history[: start + 1]])
+    halves = rainflow(whole)
+    found: dict[tuple[float, float], float] = {}
+    for size, mean, count in halves.tolist():
+        if size > 0.0:
+            found[size, mean] = found.get((size, mean), 0.0) + count
+    return np.array([(size, mean, count) for (size, mean), count in found.items()]).reshape(-1, 3)
+
+
+def reversed_amplitude(cycles: Real, ultimate: float) -> Real:
+    """Amplitudes (k,) [MPa] of reversed cycles that harm as much, by Goodman: σa / (1 − σm/Su).
+
+    A compressive mean counts as none; infinite where the mean reaches the ultimate strength (Shigley's
+    Mechanical Engineering Design, 10th ed., chapter 6).
+    """
+    amplitude, mean = cycles[:, 0] / 2.0, np.maximum(cycles[:, 1], 0.0)
+    with np.errstate(divide="ignore"):
+        return np.where(mean < ultimate, amplitude / np.maximum(1.0 - mean / ultimate, 0.0), np.inf)
+
+
+def equivalent_peak(cycles: Real, fatigue: Fatigue, ultimate: float | None) -> Real:
+    """Peak stresses (k,) [MPa] of cycles of the test's stress ratio R that harm as much as the given ones.
+
+    By the peak-stress rule the cycle's own peak, none where that is compressive. By Goodman, with the reversed
+    amplitude σr: the σ at which σ (1 − R)/2 / (1 − σ (1 + R)/(2 Su)) = σr.
+    """
+    if fatigue.rule == "peak-stress":
+        return np.maximum(cycles[:, 1] + cycles[:, 0] / 2.0, 0.0)
+    assert ultimate is not None
+    amplitude = reversed_amplitude(cycles, ultimate)
+    share, ratio = (1.0 - fatigue.stress_ratio) / 2.0, (1.0 + fatigue.stress_ratio) / (2.0 * ultimate)
+    finite = np.isfinite(amplitude)
+    safe = np.where(finite, amplitude, 0.0)
+    limit = 1.0 / ratio if ratio > 0.0 else np.inf
+    return np.where(finite, safe / (share + safe * ratio), limit)
+
+
+def cycles_to_failure(stress: Real, fatigue: Fatigue) -> Real:
+    """N = N1 (σ/σ1)^(−exponent) for peak stresses (k,) of the test's stress ratio; infinite without stress."""
+    assert fatigue.exponent is not None
+    with np.errstate(divide="ignore"):
+        return np.asarray(fatigue.cycles * (stress / fatigue.stress) ** -fatigue.exponent)
+
+
+def missing_data(material: Material) -> str:
+    """What the card lacks for a fatigue calculation, in words; empty if nothing."""
+    if material.fatigue is None:
+        return "the material's card has no fatigue data; add [materials.<name>.fatigue] with stress, cycles and source"
+    if material.fatigue.rule == "goodman" and material.ultimate_strength is None:
+        return "Goodman's line needs ultimate_strength, which the material's card does not state; add it"
+    return ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FatigueLife:
+    """Fatigue at one place under a motion that repeats.
+
+    smallest, largest  of the signed stress [MPa]
+    cycles             rows (range, mean, count) of one repetition, the largest first, without the negligible ones
+    stress             peak stress of a cycle of the test's stress ratio that harms as much as the worst cycle [MPa]
+    repetitions        of the motion until Miner's sum is 1; None where the card has no exponent
+    """
+
+    smallest: float
+    largest: float
+    cycles: tuple[tuple[float, float, float], ...]
+    stress: float
+    repetitions: float | None
+
+    @property
+    def stress_range(self) -> float:
+        """Largest less smallest stress [MPa]."""
+        return self.largest - self.smallest
+
+
+def fatigue_life(history: Real, material: Material) -> FatigueLife:
+    """Fatigue under repetitions of a closed history (n,) of the signed stress [MPa].
+
+    The card must be complete: see ``missing_data``.
+    """
+    fatigue = material.fatigue
+    assert fatigue is not None
+    cycles = repeated_cycles(history)
+    cycles = cycles[np.argsort(-cycles[:, 0], kind="stable")]
+    if len(cycles):
+        cycles = cycles[cycles[:, 0] >= NEGLIGIBLE * cycles[0, 0]]
+    stress = equivalent_peak(cycles, fatigue, material.ultimate_strength)
+    repetitions = None
+    if fatigue.exponent is not None:
+        damage = float((cycles[:, 2] / cycles_to_failure(stress, fatigue)).sum())
+        repetitions = 1.0 / damage if damage > 0.0 else math.inf
+    return FatigueLife(
+        smallest=float(history.min()),
+        largest=float(history.max()),
+        cycles=tuple((float(size), float(mean), float(count)) for size, mean, count in cycles),
+        stress=float(stress.max(initial=0.0)),
+        repetitions=repetitions,
+    )
+
+
+def strength_at(fatigue: Fatigue, cycles: float) -> float | None:
+    """Peak stress of the test's stress ratio [MPa] borne for so many cycles; None where the card does not tell.
+
+    Without an exponent: the stated stress up to the stated cycles, unknown beyond.
+    """
+    if fatigue.exponent is not None:
+        return float(fatigue.stress * (cycles / fatigue.cycles) ** (-1.0 / fatigue.exponent))
+    return fatigue.stress if cycles <= fatigue.cycles else None

@@ -1,0 +1,362 @@
+"""One link over a motion: stress of every pose and load case from unit loads, its peaks, bands and fatigue."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.check.solid_result import DRIVEN_HOLDS, PINNED_HOLDS
+from fea.common.band import Band
+from fea.common.scatter import Scatter, strength_scatter
+from fea.motion.critical import critical_nodes
+from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
+from fea.motion.fatigue import fatigue_life, missing_data, strength_at
+from fea.motion.link_history import LinkHistory
+from fea.motion.peaks import Peaks, principal_peaks, von_mises_peaks
+from fea.motion.unit_loads import TRANSFERS, load_scale, unit_loads
+from fea.motion.unit_solutions import UnitSolutions, solve_units
+from fea.refine.convergence import ALONE
+from fea.refine.discretisation import Discretisation, holds, judged
+from fea.refine.error_estimate import estimate_error
+from fea.refine.link_series import Quantity
+from fea.refine.refinement import RefinedSolid
+from fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT, LineReference
+from fea.solid.space import DisplacementSpace
+from fea.solid.stress import stress_field
+from fea.solid.supports import rigid_motions
+from fea.solid.traction import Transfer
+from geometry.base.errors import CannotRunError
+from geometry.parts.material import Material, stress_measure
+from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw, Span
+
+Real = NDArray[np.float64]
+
+LAWS = (WIDE, NARROW)
+FATIGUE_ELSEWHERE = "where fatigue is worst, for which no mesh was refined, fourfold estimate on one mesh"
+AGREEMENT = 5e-3
+"""To which the peak of a pose by unit loads equals that of a direct solution."""
+
+
+def link_envelope(
+    space: DisplacementSpace,
+    *,
+    link: str,
+    material: Material,
+    histories: Sequence[LinkHistory],
+    evaluated: NDArray[np.bool_],
+    stated: Transfer | None,
+    returns: bool,
+    fatigue: bool = True,
+    repetitions: float | None = None,
+    refined: RefinedSolid | None = None,
+    scatter: Mapping[str, Scatter] | None = None,
+    notes: tuple[str, ...] = (),
+    threads: int | None = None,
+) -> LinkEnvelope:
+    """Solve one link over a motion.
+
+    histories  its loads, one record per load case
+    evaluated  (n,) the poses that count
+    stated     how the drive torque enters, by the case; the other way stands in the band
+    returns    True where the last pose is the first again; else the motion goes there and back
+    fatigue    False to leave it out; ``repetitions`` of the motion that are wanted
+    refined    the series of meshes that ended with this one, solved at the worst pose: for the bands
+    scatter    load case -> that of its loads; none where it is left out
+
+    Raises ``CannotRunError`` for loads that do not balance, supports that react, or a failing solver.
+    """
+    chosen = [history.chosen(evaluated) for history in histories]
+    units = unit_loads(space, chosen, density=material.density)
+    size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
+    names: list[tuple[int, PressureLaw, Transfer | None]] = []
+    columns, scales = [], []
+    for i, history in enumerate(chosen):
+        torque = any(np.any(t != 0.0) for t in (*history.couples.values(), *(p[:, 2] for p in history.pins.values())))
+        scale = load_scale(history, size)
+        for law in LAWS:
+            for transfer in TRANSFERS if torque else (None,):
+                names.append((i, law, transfer))
+                columns.append(units.coefficients(history, law, transfer))
+                scales.append(np.where(scale > 0.0, scale, scale.max()))
+    solved = solve_units(
+        units,
+        np.hstack(columns),
+        np.concatenate(scales),
+        E=material.youngs_modulus,
+        nu=material.poissons_ratio,
+        threads=threads,
+    )
+    _balanced(solved)
+    peaks = (principal_peaks if material.brittle else von_mises_peaks)(solved.stress, solved.combination)
+    lacking = missing_data(material) if fatigue else "it was not asked for"
+    if not lacking and not evaluated.all():
+        lacking = "poses near a dead point are left out, so the stress history is not closed"
+    poses = int(evaluated.sum())
+    found = {}
+    for i, history in enumerate(chosen):
+        variants = [
+            _curve(law, transfer, peaks, number * poses, evaluated)
+            for number, (case, law, transfer) in enumerate(names)
+            if case == i
+        ]
+        series = _Series.of(refined, history.load_case, material)
+        load_case = _load_case(space.nodes, history.load_case, material, variants, stated, series)
+        if load_case.known and series.was_not_refined_for(load_case.governing):
+            load_case = _estimated(load_case, solved, material, evaluated)
+        load = (scatter or {}).get(history.load_case, Scatter())
+        load_case = _scattered(load_case, material, load)
+        if not lacking and load_case.known:
+            varied = _fatigue(solved, material, load_case, stated, series, returns, repetitions, load)
+            load_case = replace(load_case, fatigue=varied)
+        found[history.load_case] = load_case
+    worst = min(found.values(), key=lambda load_case: load_case.severity)
+    number = worst.governing.first + int(np.count_nonzero(evaluated[: worst.pose]))
+    pins = histories[0].body.pins
+    raw = solved.field(number)
+    return LinkEnvelope(
+        link=link,
+        measure=stress_measure(brittle=material.brittle),
+        strength=material.allowable,
+        load_cases=found,
+        elements=len(space.cells),
+        unknowns=space.unknowns,
+        units=solved.units,
+        modes=len(solved.combination),
+        solver=solved.solver,
+        solver_reason=solved.solver_reason,
+        solver_error=solved.solver_error,
+        reaction=float(solved.reaction.max()),
+        imbalance=float(solved.imbalance.max()),
+        field=stress_field(space, raw, E=material.youngs_modulus, nu=material.poissons_ratio),
+        displacement=_relative(space, (f"bore:{pins[0].name}", f"bore:{pins[-1].name}"), raw),
+        no_fatigue=lacking,
+        notes=notes,
+    )
+
+
+def _balanced(solved: UnitSolutions) -> None:
+    """Refuse loads that do not balance and supports that react."""
+    for what, values, limit in (
+        ("the loads leave a resultant", solved.imbalance, IMBALANCE_LIMIT),
+        ("the supports of the free body react", solved.reaction, REACTION_LIMIT),
+    ):
+        if not values.max() <= limit:
+            raise CannotRunError(
+                f"{what} of {values.max():.2%} of the load (at most {limit:.1%}): load and stress do not balance"
+            )
+
+
+def _relative(space: DisplacementSpace, line: tuple[str, str], field: Real) -> Real:
+    """Displacements relative to the line through the link's first and last pin."""
+    motions = rigid_motions(space.nodes, space.nodes.mean(axis=0))
+    return LineReference(space, motions, line).relative(field)
+
+
+def _curve(
+    law: PressureLaw, transfer: Transfer | None, peaks: Peaks, first: int, evaluated: NDArray[np.bool_]
+) -> VariantCurve:
+    stress, node = np.full(len(evaluated), np.nan), np.full(len(evaluated), -1)
+    part = slice(first, first + int(evaluated.sum()))
+    stress[evaluated], node[evaluated] = peaks.value[part], peaks.node[part]
+    return VariantCurve(span=law.span, transfer=transfer, stress=stress, node=node, first=first)
+
+
+class _Series:
+    """How far the finest mesh's peak of every variant may be from its limit, as factors on its stress."""
+
+    def __init__(self) -> None:
+        self.factors: dict[tuple[Span, Transfer | None], tuple[float, float]] = {}
+        self.discretisation: Discretisation | None = None
+        self.holds: tuple[str, ...] = ("nothing of the discretisation: one mesh",)
+        self._refined: dict[tuple[Span, Transfer | None], float] = {}
+        self._size = math.inf
+
+    @classmethod
+    def of(cls, refined: RefinedSolid | None, load_case: str, material: Material) -> "_Series":
+        """Return the factors of a load case."""
+        found = cls()
+        if refined is None:
+            return found
+        numbers = [n for n, case in enumerate(refined.solution.cases) if case.load == load_case]
+        judgements = [judged(refined, number, brittle=material.brittle) for number in numbers]
+        found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
+        found.holds = (f"{holds(found.discretisation.stress, sharp_edges=refined.sharp_edges)}, at the worst pose",)
+        for number, judgement in zip(numbers, judgements, strict=True):
+            case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
+            found._refined[case.span, case.transfer] = series.value
+            found._size = min(found._size, series.sizes[0])
+            if judgement.known and series.value > 0.0:
+                measure: Quantity = "principal" if material.brittle else "von_mises"
+                ends = precise.low(measure) / series.value, precise.high(measure) / series.value
+                found.factors[case.span, case.transfer] = ends
+        return found
+
+    def was_not_refined_for(self, variant: VariantCurve) -> bool:
+        """True where the motion's peak exceeds that of the pose that the meshes were refined for: it lies elsewhere."""
+        refined = self._refined.get((variant.span, variant.transfer), np.inf)
+        return variant.peak > (1.0 + AGREEMENT) * refined
+
+    def holds_at(self, variant: VariantCurve, nodes: Real, node: int) -> bool:
+        """True for a node about the peak that the meshes were refined for, no further than the first's elements."""
+        if self.was_not_refined_for(variant):
+            return False
+        peak = int(variant.node[int(np.nanargmax(variant.stress))])
+        return bool(np.linalg.norm(nodes[node] - nodes[peak]) <= self._size)
+
+    def of_variant(self, variant: VariantCurve) -> tuple[float, float]:
+        """Factors on the stress of a variant: its own, else those of its span without torque, else the widest."""
+        for key in ((variant.span, variant.transfer), (variant.span, None)):
+            if key in self.factors:
+                return self.factors[key]
+        lows, highs = zip(*self.factors.values(), strict=True) if self.factors else ((1.0,), (1.0,))
+        return min(lows), max(highs)
+
+
+def _load_case(
+    nodes: Real,
+    name: str,
+    material: Material,
+    variants: Sequence[VariantCurve],
+    stated: Transfer | None,
+    series: _Series,
+) -> LoadCaseEnvelope:
+    own = [v for v in variants if v.transfer in (None, stated)]
+    governing = max(own, key=lambda v: v.peak)
+    pose = int(np.nanargmax(governing.stress))
+    value = np.array([v.stress for v in own]).max(axis=0)
+    # Compression makes the ends of a band change places; no tension is no stress that breaks a brittle part.
+    ends = np.array([factor * v.stress for v in variants for factor in series.of_variant(v)])
+    low, high = np.minimum(ends.min(axis=0), value), np.maximum(ends.max(axis=0), value)
+    if series.discretisation is not None and not series.discretisation.known:
+        value = low = high = np.full_like(value, np.nan)
+    if series.discretisation is None or series.discretisation.known:
+        peak = Band(
+            value=max(governing.peak, 0.0),
+            low=max(min(f * v.peak for v in variants for f in (*series.of_variant(v), 1.0)), 0.0),
+            high=max(float(np.nanmax(high)), 0.0),
+            holds=(*_sources(governing), *series.holds),
+        )
+    else:
+        peak = Band.unknown("the peak has no limit")
+    return LoadCaseEnvelope(
+        name=name,
+        variants=tuple(variants),
+        governing=governing,
+        value=value,
+        low=low,
+        high=high,
+        stress=peak,
+        safety_factor=peak.inverse(material.allowable),
+        pose=pose,
+        location=nodes[governing.node[pose]].copy(),
+        fatigue=None,
+        discretisation=series.discretisation,
+    )
+
+
+def _estimated(
+    load_case: LoadCaseEnvelope, solved: UnitSolutions, material: Material, evaluated: NDArray[np.bool_]
+) -> LoadCaseEnvelope:
+    """Return the envelope with a peak that no mesh was refined for in a band of the estimate on this mesh alone."""
+    governing, pose = load_case.governing, load_case.pose
+    number = governing.first + int(np.count_nonzero(evaluated[:pose]))
+    error = _local_error(solved, material, number, int(governing.node[pose]))
+    contact = 1.0 - CONTACT_SHORTFALL if governing.span == NARROW.span else 1.0
+    peak = load_case.stress
+    peak = Band(
+        value=peak.value,
+        low=min(peak.low, max(peak.value - error, 0.0)),
+        high=max(peak.high, (peak.value + error) / contact),
+        holds=(*peak.holds, "at this pose, for which no mesh was refined, fourfold estimate on one mesh"),
+    )
+    low, high = load_case.low.copy(), load_case.high.copy()
+    low[pose], high[pose] = min(low[pose], peak.low), max(high[pose], peak.high)
+    factor = peak.inverse(material.allowable)
+    return replace(load_case, stress=peak, safety_factor=factor, low=low, high=high)
+
+
+def _local_error(solved: UnitSolutions, material: Material, number: int, node: int) -> float:
+    """Fourfold estimate [MPa] beside a node, on this mesh alone, under load ``number``."""
+    field, young, poisson = solved.field(number), material.youngs_modulus, material.poissons_ratio
+    estimate = estimate_error(stress_field(solved.space, field, E=young, nu=poisson), field, E=young, nu=poisson)
+    beside = (solved.space.cells == node).any(axis=1)
+    return ALONE * float(estimate.stress[beside].max())
+
+
+def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -> LoadCaseEnvelope:
+    """Return the envelope with the scatter of load and strength in its bands."""
+    stress = load.on(load_case.stress)
+    return replace(
+        load_case,
+        stress=stress,
+        safety_factor=strength_scatter(material).on(stress.inverse(material.allowable)),
+        # Compression goes the other way, further from no stress.
+        low=np.minimum(load.low * load_case.low, load.high * load_case.low),
+        high=np.maximum(load.low * load_case.high, load.high * load_case.high),
+    )
+
+
+def _sources(governing: VariantCurve) -> tuple[str, ...]:
+    return PINNED_HOLDS if governing.transfer is None else DRIVEN_HOLDS
+
+
+def closed_history(history: Real, *, returns: bool) -> Real:
+    """Return one repetition (n,) of a motion's history: a full turn, or there and back."""
+    return history[:-1] if returns else np.concatenate([history, history[-2:0:-1]])
+
+
+def _fatigue(
+    solved: UnitSolutions,
+    material: Material,
+    load_case: LoadCaseEnvelope,
+    stated: Transfer | None,
+    series: _Series,
+    returns: bool,
+    repetitions: float | None,
+    load: Scatter,
+) -> LinkFatigue:
+    assert material.fatigue is not None
+    every, found, parts, meshes = [], [], [], list(series.holds)
+    for variant in load_case.variants:
+        count = int(np.isfinite(variant.stress).sum())
+        parts.append(solved.combination[:, variant.first : variant.first + count])
+    critical = critical_nodes(solved.stress, parts, material)
+    for variant, (node, history) in zip(load_case.variants, critical, strict=True):
+        closed = closed_history(history, returns=returns)
+        life = fatigue_life(closed, material)
+        factors = series.of_variant(variant)
+        if series.discretisation is not None and not series.holds_at(variant, solved.space.nodes, node):
+            factors = _fatigue_factors(solved, material, variant, node, history)
+            meshes.append(FATIGUE_ELSEWHERE)
+        ends = (factors[0] * load.low, factors[1] * load.high)
+        every += [life, *(fatigue_life(factor * closed, material) for factor in ends)]
+        if variant.transfer in (None, stated):
+            found.append((life, node, history))
+    life, node, history = max(found, key=lambda f: f[0].stress)
+    sources = (*_sources(load_case.governing), *dict.fromkeys(meshes), *load.holds)
+    wanted = material.fatigue.cycles if repetitions is None else repetitions
+    counts = tuple(one.repetitions for one in every if one.repetitions is not None)
+    return LinkFatigue(
+        location=solved.space.nodes[node].copy(),
+        history=history,
+        life=life,
+        stress=Band.around(life.stress, tuple(one.stress for one in every), *sources),
+        wanted=wanted,
+        strength=strength_at(material.fatigue, wanted),
+        repetitions=None if life.repetitions is None else Band.around(life.repetitions, counts, *sources),
+    )
+
+
+def _fatigue_factors(
+    solved: UnitSolutions, material: Material, variant: VariantCurve, node: int, history: Real
+) -> tuple[float, float]:
+    """Factors on the history of a node that no mesh was refined for: the estimate there where its stress is largest."""
+    pose = int(np.argmax(np.abs(history)))
+    stress = abs(float(history[pose]))
+    if stress == 0.0:
+        return 1.0, 1.0
+    error = _local_error(solved, material, variant.first + pose, node) / stress
+    contact = 1.0 - CONTACT_SHORTFALL if variant.span == NARROW.span else 1.0
+    return max(1.0 - error, 0.0), (1.0 + error) / contact

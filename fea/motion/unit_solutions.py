@@ -1,0 +1,183 @@
+"""Displacement and stress of everything that a link undergoes over a motion, from as few solutions as span it.
+
+All loads lie in the span of the unit loads, and those of one motion in a smaller part of it: the force on an
+eye follows one curve. A singular value decomposition of the coefficients finds it, apart for the pressure
+fields, which have no resultant and are truncated by ``TRUNCATION``, and for all others, which are kept whole.
+One factorisation and one solution per mode then serve every pose.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common import memory
+from fea.motion.unit_loads import UnitLoads
+from fea.solid.elasticity import assemble_stiffness, jacobians, lame_constants, reference_basis
+from fea.solid.solve import Method, factorise
+from fea.solid.space import DisplacementSpace
+from fea.solid.stress import PAIRS, carry_to_nodes
+from fea.solid.supports import isostatic_supports
+from fea.solid.two_level import linear_level
+
+Real = NDArray[np.float64]
+
+TRUNCATION = 1e-3
+"""Part of a load's pressure fields, by the norm of their nodal forces, that may be left out."""
+_EXACT = 1e-11
+_CHUNK = 1024
+"""Elements whose stresses are recovered at once."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class UnitSolutions:
+    """Modes of a link and what they add up to.
+
+    displacement  (3 nodes, modes) [mm], supported isostatically
+    stress        (nodes, 6, modes) recovered at the nodes [MPa]
+    combination   (modes, N) of the N loads
+    reaction      (N,) largest support reaction relative to the load
+    imbalance     (N,) resultant of the load vectors relative to the load
+    units         number of unit loads that the modes are made of
+    solver, solver_reason, solver_error  name, why it was chosen, largest relative error of a mode (energy norm)
+    """
+
+    space: DisplacementSpace
+    displacement: Real
+    stress: Real
+    combination: Real
+    reaction: Real
+    imbalance: Real
+    units: int
+    solver: str
+    solver_reason: str
+    solver_error: float
+
+    def field(self, load: int) -> Real:
+        """Displacements (nodes, 3) of one of the loads [mm]."""
+        return np.asarray((self.displacement @ self.combination[:, load]).reshape(-1, 3))
+
+
+def solve_units(
+    units: UnitLoads,
+    coefficients: Real,
+    scale: Real,
+    *,
+    E: float,
+    nu: float,
+    method: Method | None = None,
+    threads: int | None = None,
+) -> UnitSolutions:
+    """Solve for the modes of N loads.
+
+    coefficients  (units, N) of ``units``
+    scale         (N,) what resultants are compared with [N]
+    E, nu         of the material [MPa, -]
+
+    Raises ``CannotRunError`` where memory does not suffice or a solver fails.
+    """
+    space = units.space
+    modes, combination = _modes(units, coefficients, scale)
+    count = modes.shape[1]
+    memory.require(
+        8.0 * count * (2.0 * space.unknowns + 6.0 * len(space.nodes)),
+        f"the stress of {count} unit loads at {len(space.nodes):,} nodes",
+        None,
+    )
+    size = np.linalg.norm(np.ptp(space.nodes, axis=0))
+    whole = units.wrenches @ coefficients
+    whole[3:] -= np.cross(space.nodes.mean(axis=0), whole[:3].T).T
+    imbalance = np.maximum(np.linalg.norm(whole[:3], axis=0), np.linalg.norm(whole[3:], axis=0) / size) / scale
+    K = assemble_stiffness(space, E=E, nu=nu)
+    supports = isostatic_supports(space.nodes, space.corners)
+    rows = np.zeros((space.unknowns, 6))
+    rows[supports.unknowns, np.arange(6)] = 1.0
+    rows = K @ rows
+    factor = factorise(
+        K.with_fixed(supports.unknowns),
+        level=linear_level(space, E=E, nu=nu, fixed=supports.unknowns),
+        right_hand_sides=count,
+        method=method,
+        threads=threads,
+    )
+    F = np.empty((space.unknowns, count), order="F")  # as solvers take it
+    for mode, column in zip(modes.T, F.T, strict=True):
+        column[:] = units.vectors @ mode
+    held = F[supports.unknowns]
+    F[supports.unknowns] = 0.0
+    answer = factor.solved(F)
+    U = answer.x
+    reaction = np.abs((rows.T @ U - held) @ combination).max(axis=0) / scale
+    return UnitSolutions(
+        space=space,
+        displacement=U,
+        stress=nodal_stress(space, U, E=E, nu=nu),
+        combination=combination,
+        reaction=reaction,
+        imbalance=imbalance,
+        units=units.count,
+        solver=factor.name,
+        solver_reason=factor.reason,
+        solver_error=answer.error,
+    )
+
+
+def _modes(units: UnitLoads, coefficients: Real, scale: Real) -> tuple[Real, Real]:
+    """Return modes (units, m) and their combinations (m, N)."""
+    norm = np.sqrt(np.asarray(units.vectors.multiply(units.vectors).sum(axis=0)).ravel())
+    norm[norm == 0.0] = 1.0
+    found, parts = [], []
+    for members, tolerance in ((~units.local, _EXACT), (units.local, TRUNCATION)):
+        M = norm[members, None] * coefficients[members]
+        # Every load counts by itself, or the small ones of a motion would be lost beside the large ones.
+        weight = np.linalg.norm(M, axis=0) if tolerance == TRUNCATION else scale
+        shares = M / np.where(weight > 0.0, weight, 1.0)
+        left, values, right = np.linalg.svd(shares, full_matrices=False)
+        rest = np.sqrt(np.cumsum((values[:, None] * right)[::-1] ** 2, axis=0))[::-1].max(axis=1, initial=0.0)
+        keep = int(np.count_nonzero(rest > tolerance * (rest[0] if len(rest) else 0.0)))
+        mode = np.zeros((units.count, keep))
+        mode[members] = left[:, :keep] / norm[members, None]
+        found.append(mode)
+        parts.append(left[:, :keep].T @ M)
+    return np.hstack(found), np.vstack(parts)
+
+
+def nodal_stress(space: DisplacementSpace, displacement: Real, *, E: float, nu: float) -> Real:
+    """Stress (nodes, 6, m) recovered at the nodes from m displacement fields (3 nodes, m), as ``stress_field`` does."""
+    from scipy.sparse import csr_array
+
+    X, _, _, gradient = reference_basis(space, space.order)
+    carry = carry_to_nodes(X, space.cells.shape[1])
+    m = displacement.shape[1]
+    fields = np.ascontiguousarray(displacement).reshape(-1, 3 * m)
+    sums = np.zeros((len(space.nodes), 6 * m))
+    for start in range(0, len(space.cells), _CHUNK):
+        cells = space.cells[start : start + _CHUNK]
+        k, b = cells.shape
+        inverse, _ = jacobians(space.nodes[cells], gradient)
+        q = inverse.shape[1]
+        slopes = (inverse @ gradient.transpose(0, 2, 1)).reshape(k, 3 * q, b)
+        G = (slopes @ fields[cells]).reshape(k, q, 3, 3, m)
+        nodes, row = np.unique(cells, return_inverse=True)
+        mean = csr_array(
+            (
+                np.broadcast_to(carry, (k, b, q)).ravel(),
+                (np.repeat(row.ravel(), q), np.broadcast_to(np.arange(k * q).reshape(k, 1, q), (k, b, q)).ravel()),
+            ),
+            shape=(len(nodes), k * q),
+        )
+        sums[nodes] += mean @ _components(G, E, nu).reshape(k * q, 6 * m)
+    sums /= np.bincount(space.cells.ravel(), minlength=len(space.nodes))[:, None]
+    return sums.reshape(-1, 6, m)
+
+
+def _components(G: Real, E: float, nu: float) -> Real:
+    """Stresses (..., 6, m) of displacement gradients (..., 3, 3, m), ∂u_j/∂x_i at [i, j]."""
+    lam, mu = lame_constants(E, nu)
+    found = np.empty((*G.shape[:-3], 6, G.shape[-1]))
+    dilatation = lam * (G[..., 0, 0, :] + G[..., 1, 1, :] + G[..., 2, 2, :])
+    for n, (i, j) in enumerate(PAIRS):
+        found[..., n, :] = mu * (G[..., i, j, :] + G[..., j, i, :])
+        if i == j:
+            found[..., n, :] += dilatation
+    return found

@@ -1,0 +1,90 @@
+"""Bearing of pins on the eyes: the joint force over the projected area d t, apart from any peak stress.
+
+The nominal bearing stress F/(d t) (Budynas & Nisbett, Shigley's Mechanical Engineering Design, 10th ed., chapter 8)
+is set against the ultimate strength of the softer eye, 3.33 times at least as 14 CFR 23.693 asks of joints that
+turn, 6.67 times as 14 CFR 23.657 asks of hinges that flight depends on. Both mean the ultimate strength in bearing,
+for which the ultimate tensile strength of the card stands; that in bearing is rarely below it.
+"""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from fea.common.band import Band
+from fea.common.scatter import Scatter, load_scatter, strength_scatter
+from fea.common.verdict import PIN, SAFETY_FACTOR, CheckOutcome, at_least
+from fea.outcomes.judge import reason_for
+from geometry.base.errors import CaseError
+from loads.case.case import Case
+from loads.records.check_spec import BearingCheck
+from loads.statics.statics import Reactions
+
+WITHOUT = "the joint force of statics, evenly over the pin's projected area"
+
+
+def bearing_stress(force: float, diameter: float, thickness: float) -> float:
+    """Nominal bearing stress F/(d t) [MPa] of a force [N] on a pin and an eye [mm].
+
+    Raises ``CaseError`` for a pin or an eye without size.
+    """
+    if not (diameter > 0.0 and thickness > 0.0):
+        raise CaseError(
+            f"bearing needs a pin and an eye above zero, not {diameter:g} mm by {thickness:g} mm; state both"
+        )
+    return force / (diameter * thickness)
+
+
+def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) -> tuple[str, Band]:
+    """Return the link whose eye or slot a joint's pin loads worst, and its safety factor, under a force [N] across it.
+
+    The band holds the scatter of the ``load`` and, where its strength is that of the safety factor, of the strength.
+
+    Raises ``CaseError`` for a joint without pin diameter, which the check ``name`` needs.
+    """
+    record = case.joints[joint]
+    if record.pin_diameter is None:
+        raise CaseError(
+            f'joints.{joint}.pin_diameter: checks.{name} needs it for bearing; state it, for example "1.5 mm"'
+        )
+    factors = {}
+    # A pin in a slot shares its hole in the second link with others: that slot's force is not all that bears there.
+    for link in record.links[:1] if record.type == "pin-in-slot" else record.links:
+        if link in case.checked_links:
+            material = case.material_of(link)
+            strength = material.ultimate_strength or material.allowable
+            stress = bearing_stress(force, record.pin_diameter, case.part_of(link).eye_thickness)
+            own = strength_scatter(material) if strength == material.allowable else Scatter()
+            factors[link] = own.on(load.on(Band.exact(stress, WITHOUT)).inverse(strength))
+    weakest = min(factors, key=lambda link: factors[link].low)
+    return weakest, factors[weakest]
+
+
+def bearing_outcomes(
+    case: Case,
+    title: str,
+    name: str,
+    check: BearingCheck,
+    reactions: Reactions,
+    uneven: Mapping[str, Scatter] | None = None,
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of each joint under the load case ``title``: that of its softer or thinner eye.
+
+    uneven  joint -> how its force grows beside scattered loads (``fea.check.load_growth``)
+
+    Raises ``CaseError`` for a joint without pin diameter.
+    """
+    for joint in check.joints or case.bearing_joints:
+        load = load_scatter(case, title).times((uneven or {}).get(joint, Scatter()))
+        eye, factor = weakest_eye(case, name, joint, float(np.hypot(*reactions.joints[joint].wrench[:2])), load)
+        verdict = at_least(factor, check.limit)
+        yield CheckOutcome(
+            name=name,
+            link=f"{PIN}{joint}",
+            load_case=title,
+            quantity=SAFETY_FACTOR,
+            unit="",
+            value=factor,
+            limit=check.limit,
+            verdict=verdict,
+            reason=f"bearing on the eye of {eye}: {reason_for(factor, check.limit, verdict)}",
+        )

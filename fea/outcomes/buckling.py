@@ -1,0 +1,315 @@
+"""Buckling of links in compression, and of the linkage as a whole.
+
+A link is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks
+take the section's place (``fea.beam.flanks``). How its joints hold it
+is known but in part, so that its factor is a band:
+
+value  the outermost pins stay where they are and leave the link free to turn, in the linkage's plane and out of it;
+       overhangs are free. A link on one pin is built in there. A pin in a slot of the link, and one on an arm, hold
+       nothing.
+high   every pin stays where it is and keeps whatever angle it can: out of the plane the angle, which only stiff
+       neighbours would keep, in the plane the driven link's at the drive's joint, and every angle where pins are
+       bonded. No linkage whose joints stay where they are holds the link better, so that below 1 it buckles: a link
+       fails on this end alone. Times the largest modulus over the modulus.
+low    a third of the value, since nothing is relied on below 3 (see below), times the least modulus over the
+       modulus. Joints of a driven link and of bonded ones may move with the link as it bends: there it is a third of
+       the lesser of the value and the factor of the link built in at the drive's joint, or at either of the
+       outermost pins, and free elsewhere.
+
+That joints stay where they are is taken for granted: sway of the whole linkage is the other outcome, the lowest
+factor on all loads at which its linear frame becomes unstable (``fea.frame.corotational.buckling_factor``). It leaves
+out how the frame moves before that, by which a toggle snaps through at a linear factor of 5.2 (``fea.frame.toggle``):
+the lower end of its band. Where equilibrium was followed on the deformed shape (``fea.frame.large_displacement``), as
+it is below a factor of 10, that answer rules and is the only outcome (``fea.outcomes.judge``).
+
+Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
+Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
+(5.2.1(3)): below it stress and deflection are those of second-order theory (``fea.check.second_order``). For n >= 3 a
+factor may stand for it (section 5.2.2); below 3, where small faults of shape grow much, no link passes.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.column_factor import AxialForce, Stretch, column_factors
+from fea.beam.flanks import Flanks, flanks_of
+from fea.beam.theory import BeamCheck
+from fea.common.band import Band
+from fea.common.scatter import load_scatter
+from fea.common.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
+from fea.frame.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
+from fea.frame.toggle import SNAP, growth
+from geometry.parts.material import Material
+from geometry.parts.part import Section
+from loads.case.case import Case
+
+Real = NDArray[np.float64]
+
+NAME = "buckling"
+NO_COMPRESSION = 1e-9
+"""Share of the largest force in the link below which compression is rounding."""
+ON_AXIS = 1e-9
+"""Share of a link's length below which a pin stands on its axis."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Holding:
+    """Where joints hold a link as a column; x along its axis [mm].
+
+    outermost   first and last pin on it, or the one that there is
+    in_plane    where pins hold it in the linkage's plane, free to turn, at the most; None where that is not known
+    kept        where they keep its angle in that plane as well, at the most
+    across      where they hold it and keep its angle out of the plane, at the most; None where that is not known
+    alone       where it may be built in and free elsewhere, each by itself; empty where its joints stay in place
+    """
+
+    outermost: tuple[float, ...]
+    in_plane: tuple[float, ...] | None
+    kept: tuple[float, ...]
+    across: tuple[float, ...] | None
+    alone: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ColumnFactors:
+    """Buckling factors (P,) of a link as a column; infinite where nothing makes it buckle, NaN where not known.
+
+    value  outermost pins in place and free to turn
+    least  where the joints of a driven or a bonded link move as well
+    most   joints hold it as well as they can
+    """
+
+    value: Real
+    least: Real
+    most: Real
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """A link in compression as a column.
+
+    compression   the largest along the link [N]
+    outermost     x of the pins that hold it [mm]
+    factors       of this one pose
+    """
+
+    compression: float
+    outermost: tuple[float, ...]
+    factors: ColumnFactors
+
+
+def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
+    """Return the column that stands for a link under a load case; None where nothing makes it buckle."""
+    _, _, compression = beam.forces.largest(lambda f: -float(f[0]))
+    forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
+    if compression <= NO_COMPRESSION * forces:
+        return None
+    breaks, at = beam.forces.breaks, beam.forces.at
+    values = [
+        [-at(a, "after")[0], -at((a + b) / 2.0, "after")[0], -at(b, "before")[0]] for a, b in itertools.pairwise(breaks)
+    ]
+    factors = link_factors(case, link, beam.section, AxialForce(breaks=breaks, values=np.array(values)[:, :, None]))
+    if math.isinf(factors.value[0]):
+        return None
+    return Column(compression=compression, outermost=holding(case, link).outermost, factors=factors)
+
+
+def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
+    """Return the factors of a link in every pose of ``force``, for the modulus of its card."""
+    where, young = holding(case, link), case.material_of(link).youngs_modulus
+    in_plane, across = columns(section, flanks_of(case.body(link)))
+
+    def factors(
+        column: tuple[float, Sequence[Stretch]], held: Sequence[float] = (), built_in: Sequence[float] = ()
+    ) -> Real:
+        inertia, stretches = column
+        return column_factors(force, young * inertia, held=held, built_in=built_in, stretches=stretches)
+
+    def softer(held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
+        planes = (in_plane, across) if in_plane[1] else (min(in_plane, across, key=lambda plane: plane[0]),)
+        return np.asarray(np.min([factors(plane, held, built_in) for plane in planes], axis=0))
+
+    value = softer(held=where.outermost) if len(where.outermost) > 1 else softer(built_in=where.outermost)
+    least = value
+    for x in where.alone:
+        least = np.minimum(least, softer(built_in=(x,)))
+    most = np.full(len(value), np.inf)
+    if where.in_plane is not None:
+        most = factors(in_plane, where.in_plane, where.kept)
+    if where.across is not None:
+        most = np.minimum(most, factors(across, built_in=where.across))
+    return ColumnFactors(value=value, least=least, most=np.maximum(most, value))
+
+
+def columns(
+    section: Section, slots: Sequence[Flanks]
+) -> tuple[tuple[float, Sequence[Stretch]], tuple[float, Sequence[Stretch]]]:
+    """Second moment [mm⁴] and softer stretches of a link's column in the plane and out of it."""
+    in_plane = [
+        Stretch(
+            first=slot.first,
+            last=slot.last,
+            bending=slot.together.i_z / section.i_z,
+            pair=slot.pair / section.i_z,
+        )
+        for slot in slots
+    ]
+    across = [Stretch(first=slot.first, last=slot.last, bending=slot.together.i_y / section.i_y) for slot in slots]
+    return (section.i_z, in_plane), (section.i_y, across)
+
+
+def holding(case: Case, link: str) -> Holding:
+    """Return where joints hold a link as a column."""
+    linkage, bonded = case.linkage, case.joint_model == "bonded"
+    pins = {pin.name: pin for pin in case.body(link).pins}
+    joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
+    carried = {n for n in joints if linkage.joints[n].type != "revolute" and linkage.joints[n].links[0] == link}
+    places, feet = case.links[link].points, {point: pin.foot[0] for point, pin in pins.items() if pin.foot is not None}
+    foot = {name: feet.get(point, places[point][0]) for name, point in joints.items()}
+    on_arms = {name for name, point in joints.items() if point in feet}
+    slack = ON_AXIS * linkage.longest
+    off = on_arms | {name for name, point in joints.items() if abs(places[point][1]) > slack}
+    plain = [foot[name] for name in joints if name not in carried | on_arms] or list(foot.values())
+    first, last = min(plain), max(plain)
+    driven = case.drive is not None and case.drive.link == link
+    drive = {case.drive.joint} if case.drive is not None and driven else set()
+    # A pin that holds the link off its axis may keep its angle, held by other pins as well.
+    fixed = {name for name in joints if bonded and linkage.joints[name].type == "revolute"}
+    kept = fixed | drive | off
+    slides = {name for name in carried if linkage.joints[name].type == "slider"}
+    alone = {first, last} if bonded else {foot[name] for name in drive & set(joints)}
+    return Holding(
+        outermost=(first, last) if last - first > slack else (first,),
+        in_plane=None if carried else tuple(sorted(set(foot.values()))),
+        kept=tuple(sorted({foot[name] for name in kept & set(joints)})),
+        across=None if slides else tuple(sorted({foot[name] for name in set(joints) - carried})) or None,
+        alone=tuple(sorted(alone)),
+    )
+
+
+def factor_band(material: Material, value: float, least: float, most: float) -> Band:
+    """Return the band of a link's buckling factor from the factors of ``ColumnFactors``."""
+    moduli = (material.youngs_modulus, *(material.youngs_modulus_range or ()))
+    return Band(
+        value=value,
+        low=min(moduli) / material.youngs_modulus * least / LEAST_LINEAR,
+        high=max(moduli) / material.youngs_modulus * most,
+        holds=(
+            "the modulus",
+            "bending that grows with compression, which linear stress leaves out",
+            "how stiffly its neighbours hold it",
+        ),
+    )
+
+
+def buckling_outcomes(
+    case: Case, title: str, beams: Mapping[str, BeamCheck], moved: LargeDisplacement
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every link that is compressed under the load case ``title``.
+
+    A link fails where its compression buckles it however its joints hold it, whatever its stress says.
+    """
+    for link, beam in beams.items():
+        found = column(case, link, beam)
+        if found is None:
+            continue
+        factors, material = found.factors, case.material_of(link)
+        band = factor_band(material, *(float(f[0]) for f in (factors.value, factors.least, factors.most)))
+        band = load_scatter(case, title).inverse.on(band)
+        verdict = at_least(band, 1.0)
+        yield CheckOutcome(
+            name=NAME,
+            link=link,
+            load_case=title,
+            quantity=BUCKLING_FACTOR,
+            unit="",
+            value=band,
+            limit=1.0,
+            verdict=verdict,
+            reason=_reason(found, band, verdict, moved) + beyond_strength({link: beam}),
+        )
+
+
+def grown(factor: float) -> str:
+    """Say how much bending grows at a factor, for the end of a reason."""
+    times = 1.0 / (1.0 - 1.0 / factor)
+    return f"bending grows to up to {times:.3g} times that of linear theory, which its stress and deflection hold"
+
+
+def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
+    """Say, for the end of a reason, which link bears more than its strength by beam theory; nothing where none does."""
+    link, worst = max(beams.items(), key=lambda item: item[1].worst.equivalent / item[1].strength)
+    stress = worst.worst.equivalent
+    if stress <= worst.strength:
+        return ""
+    return (
+        f"; all this is elastic and void once material gives way, and {link} bears {stress:.3g} MPa by beam theory "
+        f"where its strength is {worst.strength:.3g} MPa"
+    )
+
+
+def linkage_outcome(
+    case: Case, title: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of the linkage as a whole where its frame can buckle under the load case ``title``.
+
+    None where equilibrium was followed on the deformed shape, whose outcome rules. The band goes from what a shallow
+    toggle holds, with the least ratio of a stated least modulus to the modulus, to linear theory's factor.
+    """
+    value, least = moved.buckling, moved.factor
+    if value is None or least is None or moved.followed or (math.isinf(value) and least >= LEAST_FACTOR):
+        return
+    materials = [case.material_of(link) for link in case.checked_links]
+    softest = min(min((m.youngs_modulus, *(m.youngs_modulus_range or ()))) / m.youngs_modulus for m in materials)
+    factor = f"all links together become unstable at {value:.3g} times the load by linear theory"
+    if least < value:
+        factor = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
+    band = Band(
+        value=least,
+        low=softest * least / SNAP,
+        high=value,
+        holds=("the modulus", "snap-through of a shallow toggle, which linear theory puts too high"),
+    )
+    band = load_scatter(case, title).inverse.on(band)
+    verdict = at_least(band, 1.0)
+    if verdict is Verdict.FAIL:
+        reason = f"{factor}, so the linkage gives way"
+    elif verdict is Verdict.UNDECIDED:
+        reason = f"{factor}; a linkage may snap through at {least / SNAP:.3g} times the load: follow its deformed shape"
+    elif least < LEAST_FACTOR:
+        reason = f"{factor}; displacements are up to {growth(least):.3g} times those of linear theory"
+    else:
+        reason = factor
+    yield CheckOutcome(
+        name=NAME,
+        link=LINKAGE,
+        load_case=title,
+        quantity=BUCKLING_FACTOR,
+        unit="",
+        value=band,
+        limit=1.0,
+        verdict=verdict,
+        reason=reason + beyond_strength(beams),
+    )
+
+
+def _reason(found: Column, band: Band, verdict: Verdict, moved: LargeDisplacement) -> str:
+    pins = " and ".join(f"{x:.4g}" for x in found.outermost)
+    held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
+    load = f"up to {found.compression:.3g} N compress it, and {band.value:.3g} times that buckle it, {held}"
+    if verdict is Verdict.FAIL:
+        return f"{load}, {band.high:.3g} times where its joints hold it as well as they can, so it buckles"
+    if verdict is Verdict.UNDECIDED and band.value < 1.0:
+        return f"{load}; stiffer neighbours and a drive may hold it, up to {band.high:.3g} times"
+    if verdict is Verdict.UNDECIDED:
+        return f"{load}; within {LEAST_LINEAR:g} times the load, small faults of shape grow too much"
+    if band.value < LEAST_FACTOR and moved.state == "small":
+        return f"{load}; in the linkage, which buckles at {moved.buckling:.3g} times the load, bending grows little"
+    if band.value < LEAST_FACTOR and moved.state in ("deformed", "off", "unknown"):
+        return f"{load}; {grown(band.value)}"
+    return load

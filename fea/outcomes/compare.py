@@ -1,0 +1,72 @@
+"""Hand calculation against solid model, section by section, clear of holes and eyes."""
+
+import math
+
+from fea.beam.theory import BeamCheck
+from fea.outcomes.result import SectionComparison
+from fea.solid.stress import StressField
+from geometry.parts.body_rules import section_width
+from geometry.parts.part import Body, Disc, Tube
+
+BENDS = 0.1
+"""A link counts as bending where its largest bending stress is above this share of its axial stress."""
+LARGEST_COUNT = 6
+
+
+def clear_sections(body: Body) -> tuple[float, ...]:
+    """Stations at least one diameter (or width) away from every eye, hole and loaded end [mm].
+
+    One in the middle of every stretch that is left, the longest stretches first; none on a disc.
+    """
+    part, size = body.part, _size(body)
+    if isinstance(part, Disc):
+        return ()
+    eyes = [pin for pin in body.pins if pin.foot is None]
+    blocked = [(pin.span[0] - part.eye_diameter / 2, pin.span[1] + part.eye_diameter / 2) for pin in eyes]
+    # An arm disturbs the section as far as its own width reaches along the axis.
+    blocked += [(x - part.eye_diameter, x + part.eye_diameter) for x, _ in (pin.foot for pin in body.pins if pin.foot)]
+    blocked += [(x - row.diameter / 2, x + row.diameter / 2) for row in body.holes for x in row.positions]
+    blocked += [(end.x - end.patch, end.x + end.patch) for end in body.ends]
+    margins = sorted((low - size, high + size) for low, high in blocked)
+    gaps = []
+    reach = margins[0][1]
+    for low, high in margins[1:]:
+        if low > reach:
+            gaps.append((low - reach, (low + reach) / 2))
+        reach = max(reach, high)
+    gaps.sort(reverse=True)
+    return tuple(sorted(x for _, x in gaps[:LARGEST_COUNT]))
+
+
+def _size(body: Body) -> float:
+    part = body.part
+    return part.outer_diameter if isinstance(part, Tube) else max(section_width(part), part.thickness)
+
+
+def compare_sections(body: Body, beam: BeamCheck, stress: StressField) -> tuple[SectionComparison, ...]:
+    """Set beam theory's section stress against the solid model's.
+
+    Bending stress on a link that bends, N/A on one that does not, each difference relative to the
+    largest section stress of that kind by hand on the link.
+    """
+    bends = float(beam.bending.max()) > BENDS * float(abs(beam.axial).max())
+    scale = float(beam.bending.max()) if bends else float(abs(beam.axial).max())
+    if scale == 0.0:
+        return ()
+    section, size = body.part.section, _size(body)
+    rows = []
+    for x in clear_sections(body):
+        hand = beam.stress_at(x)
+        solid = stress.section(x=x, half_length=size / 4, half_y=section.half_y, half_z=section.half_z)
+        if not bends:
+            ours, theirs = hand.axial, solid.axial
+        elif section.round:
+            ours, theirs = hand.bending, math.hypot(solid.bending_y, solid.bending_z)
+        else:
+            ours, theirs = hand.bending, abs(solid.bending_y) + abs(solid.bending_z)
+        rows.append(
+            SectionComparison(
+                x=x, kind="bending" if bends else "axial", hand=ours, solid=theirs, difference=(theirs - ours) / scale
+            )
+        )
+    return tuple(rows)

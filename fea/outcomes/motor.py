@@ -1,0 +1,179 @@
+"""Whether a motor covers what the mechanism asks for over its motion: power, and speed and torque where it states them.
+
+A motor that turns evenly with a flywheel gives the mean of all power, for the flywheel lends what is above it and takes
+what is below, negative power too; a motor alone gives the peak. So the mean and the peak are the ends of a band.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.band import Band
+from fea.common.verdict import DRIVE_POWER, CheckOutcome, Verdict, at_most
+from loads.case.case import Case
+from loads.records.check_spec import MotorCheck
+from loads.states.case_motion import CaseMotion, solve_case_motion
+
+Real = NDArray[np.float64]
+HOLDS = ("from the mean over the motion (a flywheel lends and stores the rest) to the peak",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotorDemand:
+    """What a load case asks of the drive over its motion.
+
+    peak_power   greatest drive power [W]
+    mean_power   on average over time, what flows back taken off [W]; 0 where more flows back
+    peak_torque  greatest size of the drive torque [N mm]
+    """
+
+    peak_power: float
+    mean_power: float
+    peak_torque: float
+
+
+def demand(power: Real, torque: Real, times: Real) -> MotorDemand:
+    """Return the demand from power [N mm/s] and torque [N mm] at the times [s] of a motion."""
+    mean = _mean(power, times)
+    rounding = 1e-9 * float(np.abs(power).max())
+    return MotorDemand(
+        peak_power=max(float(power.max()), 0.0) / 1000.0,
+        mean_power=mean / 1000.0 if mean > rounding else 0.0,
+        peak_torque=float(np.abs(torque).max()),
+    )
+
+
+def line_share(torque: Real, speed: Real, times: Real, stall: float, free: float) -> tuple[float, float]:
+    """Shares of what a motor with a straight torque-speed line gives: on average, and at the worst place.
+
+    torque [N mm] and speed [rad/s] of the drive at the times [s]. The motor drives with up to
+    ``stall`` (1 - |speed|/``free``) and holds back with up to ``stall`` (1 + |speed|/``free``), its full voltage
+    reversed. The mean compares power, since a flywheel keeps energy. Infinite beyond the speed without load.
+    """
+    drives = torque * speed > 0.0
+    given = stall * (1.0 - np.where(drives, 1.0, -1.0) * np.abs(speed) / free)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(torque == 0.0, 0.0, np.where(given > 0.0, np.abs(torque) / given, math.inf))
+    able = _mean(np.maximum(stall * (1.0 - np.abs(speed) / free), 0.0) * np.abs(speed), times)
+    asked = max(_mean(torque * speed, times), 0.0)
+    mean = asked / able if able > 0.0 else (math.inf if asked > 0.0 else 0.0)
+    return min(mean, float(shares.max())), float(shares.max())
+
+
+def _mean(values: Real, times: Real) -> float:
+    return float(np.trapezoid(values, times)) / float(times[-1] - times[0])
+
+
+def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, CheckOutcome]:
+    """Judge every load case with a speed of its own; by load case.
+
+    The drive power of the laden linkage is that of the empty one and a part proportional to what it carries,
+    so that the largest load of that distribution which the motor drives follows as well.
+    """
+    moving = {title: load_case for title, load_case in case.load_cases.items() if load_case.speed != 0.0}
+    empty_cases = {title: load_case.model_copy(update={"carried": False}) for title, load_case in moving.items()}
+    laden = solve_case_motion(case.model_copy(update={"load_cases": moving}))
+    empty = solve_case_motion(case.model_copy(update={"load_cases": empty_cases})) if case.carried else laden
+    return {title: _outcome(case, name, check, title, laden, empty) for title in moving}
+
+
+def limit_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[CheckOutcome, ...]]:
+    """Judge speed and torque of every load case with a speed of its own, as far as the motor states them."""
+    if check.no_load_speed is None and check.rated_torque is None:
+        return {}
+    moving = {title: load_case for title, load_case in case.load_cases.items() if load_case.speed != 0.0}
+    moved = solve_case_motion(case.model_copy(update={"load_cases": moving}))
+    return {title: tuple(_limits(name, check, title, moved)) for title in moving}
+
+
+def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iterator[CheckOutcome]:
+    solved, times, link = moved.forces[title], _times(moved, title), moved.drive.link
+    torque, speed = solved.torque, solved.motion.angular_speed(link)
+
+    def outcome(quantity: str, unit: str, value: Band, limit: float, reason: str) -> CheckOutcome:
+        verdict = at_most(value, limit)
+        return CheckOutcome(
+            name=name, link=link, load_case=title, quantity=quantity, unit=unit, value=value, limit=limit,
+            verdict=verdict, reason=reason,
+        )  # fmt: skip
+
+    if check.no_load_speed is not None:
+        rpm = 30.0 / math.pi
+        fastest, free = rpm * float(np.abs(speed).max()), rpm * check.no_load_speed
+        reason = f"the drive turns at up to {fastest:.4g} rpm, the motor without load at {free:.4g} rpm"
+        yield outcome("drive speed", "rpm", Band.exact(fastest), free, reason)
+        if check.stall_torque is not None:
+            mean, most = line_share(torque, speed, times, check.stall_torque, check.no_load_speed)
+            reason = (
+                f"at the worst place the drive asks for {most:.3g} of the motor's torque at that speed, on average for "
+                f"{mean:.3g} of its power; stall torque {check.stall_torque:.3g} N·mm, straight down to {free:.4g} rpm"
+            )
+            value = Band(value=most, low=mean, high=most, holds=HOLDS)
+            yield outcome("share of the motor's torque at its speed", "", value, 1.0, reason)
+    if check.rated_torque is not None:
+        effective, mean = (
+            math.sqrt(_mean(torque**2, times)),
+            min(abs(_mean(torque, times)), float(np.abs(torque).max())),
+        )
+        reason = (
+            f"the drive torque is {effective:.3g} N·mm as a root mean square and {mean:.3g} N·mm on average, which a "
+            f"flywheel would leave, against {check.rated_torque:.3g} N·mm rated"
+        )
+        value = Band(value=effective, low=min(mean, effective), high=effective, holds=HOLDS)
+        yield outcome("drive torque over time", "N·mm", value, check.rated_torque, reason)
+
+
+def _times(moved: CaseMotion, title: str) -> Real:
+    """Times [s] of a load case at its own speed."""
+    solved = moved.forces[title]
+    times = replace(moved.motion, speed=solved.motion.speed, acceleration=solved.motion.acceleration).times
+    assert times is not None
+    return times
+
+
+def _outcome(
+    case: Case, name: str, check: MotorCheck, title: str, laden: CaseMotion, empty: CaseMotion
+) -> CheckOutcome:
+    solved, times = laden.forces[title], _times(laden, title)
+    found = demand(solved.drive_power, solved.torque, times)
+    limit = check.output_power
+    value = Band(value=found.peak_power, low=found.mean_power, high=found.peak_power, holds=HOLDS)
+    verdict = at_most(value, limit)
+    side = {
+        Verdict.PASS: "the motor's output covers its peak",
+        Verdict.FAIL: "the motor's output stays below its mean",
+        Verdict.UNDECIDED: "the motor covers its mean but not its peak, so a flywheel decides",
+    }[verdict]
+    reason = (
+        f"the drive asks for {found.peak_torque:.3g} N·mm and {found.peak_power:.3g} W at most, "
+        f"{found.mean_power:.3g} W on average; {side}, "
+        f"{check.voltage:g} V × {check.current * 1e3:g} mA × {check.efficiency:g} = {limit:.3g} W"
+    )
+    if case.load_cases[title].carried and case.carried:
+        bare = empty.forces[title].drive_power
+        factor = largest_factor(bare, solved.drive_power - bare, 1000.0 * limit)
+        carried = 1e6 * sum(mass.mass for mass in case.carried)
+        if 0.0 < factor < math.inf:
+            reason += f"; it drives up to {factor * carried:.3g} g of carried mass, where {carried:.3g} g are carried"
+    return CheckOutcome(
+        name=name,
+        link=laden.drive.link,
+        load_case=title,
+        quantity=DRIVE_POWER,
+        unit="W",
+        value=value,
+        limit=limit,
+        verdict=verdict,
+        reason=reason,
+    )
+
+
+def largest_factor(bare: Real, load: Real, limit: float) -> float:
+    """Return the largest k with max(bare + k load) <= limit; 0 where even the bare linkage exceeds it."""
+    if bare.max() > limit:
+        return 0.0
+    rising = load > 0.0
+    return float(np.min((limit - bare[rising]) / load[rising])) if rising.any() else math.inf

@@ -1,0 +1,114 @@
+"""Pins in shear and bending under their joint force.
+
+Two eyes t1 and t2 thick lie side by side on the pin, g apart, so that it is in single shear: bearing along one eye
+brings the force F, bearing along the other takes it. The forces' middles are a = t1/2 + g + t2/2 apart, and the couple
+F a is taken by bearing that is not even: m1 in one eye and m2 in the other, m1 + m2 = F a. How they share it depends on
+how the pin sits and how the links are held, so that the moment is a band, from statics alone:
+
+* largest: one eye takes the whole couple and bears linearly along its thickness t (a stiff pin; a soft one has less
+  moment), the other, of t', evenly. From the face inwards V = F (1 - η)(1 - c η) with η = x/t and c = 6 a/t, hence
+  M = F (t'/2 + g + t²/(12 a) - t³/(216 a²)) at η = 1/c, and V = -F (c - 1)²/(4 c) at most. (A soft pin bears more shear
+  in that eye, but is so thin that its bending decides.)
+* least: the force crosses the gap, where M changes by F g, so that |M| is F g/2 or more, whatever the bearing. Without
+  a gap statics leaves nothing but shear. Both eyes bearing linearly alike, t thick without a gap, make 4/27 F t.
+
+Moments about x and y that the joint carries besides (loads out of the plane) add to the largest; from the least they
+may take off what the eyes' couple can make in the gap's middle, F (t + g)/2. Bending stress 32 M/(π d³); largest shear
+stress of a solid circle (3 + 2ν)/(2 + 2ν) V/A, in the middle, where nothing bends (Love, Mathematical Theory of
+Elasticity, 4th ed., section 230).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.common.band import Band
+from geometry.base.errors import CaseError
+from loads.case.case import Case
+from loads.statics.statics import JointReaction
+
+HOLDS = ("how the two eyes share the couple of the joint force, and bear it",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinStress:
+    """Stresses of a pin [MPa].
+
+    lever       distance between the middles of the two eyes [mm]
+    moment      largest bending moment, by how the eyes take the couple [N mm]
+    bending     extreme-fibre stress of that moment
+    shear       largest shear stress, at the neutral axis, where nothing bends
+    equivalent  von Mises stress: the bending at the extreme fibre, or √3 times the shear at the neutral axis
+    """
+
+    lever: float
+    moment: Band
+    bending: Band
+    shear: float
+    equivalent: Band
+
+
+def pin_stress(
+    force: float,
+    diameter: float,
+    eyes: tuple[float, float],
+    gap: float = 0.0,
+    *,
+    moment: float = 0.0,
+    poisson: float = 0.3,
+) -> PinStress:
+    """Return the stresses of a pin under a joint force [N] across it and a moment about x or y [N mm].
+
+    Lengths in mm; ``eyes`` are the thicknesses of the two eyes, ``gap`` lies between them.
+    """
+    if not diameter > 0.0:
+        raise CaseError(f"a pin needs a diameter above zero, not {diameter:g} mm; state its pin_diameter")
+    lever = sum(eyes) / 2.0 + gap
+    most, shear_force = 0.0, force
+    for taking, other in (eyes, eyes[::-1]):
+        arm = other / 2.0 + gap + taking**2 / (12.0 * lever) - taking**3 / (216.0 * lever**2)
+        c = 6.0 * lever / taking
+        most, shear_force = max(most, force * arm + moment), max(shear_force, force * (c - 1.0) ** 2 / (4.0 * c))
+    least = max(force * gap / 2.0, moment - force * (max(eyes) + gap) / 2.0)
+    bent = 32.0 / (math.pi * diameter**3)
+    sheared = (3.0 + 2.0 * poisson) / (2.0 + 2.0 * poisson) * 4.0 / (math.pi * diameter**2)
+    low = max(least * bent, math.sqrt(3.0) * force * sheared)
+    high = max(most * bent, math.sqrt(3.0) * shear_force * sheared)
+    return PinStress(
+        lever=lever,
+        moment=Band(value=most, low=least, high=most, holds=HOLDS),
+        bending=Band(value=most * bent, low=least * bent, high=most * bent, holds=HOLDS),
+        shear=shear_force * sheared,
+        equivalent=Band(value=high, low=low, high=high, holds=HOLDS),
+    )
+
+
+def eyes(case: Case, joint: str) -> tuple[float, float]:
+    """Thicknesses of a joint's two eyes [mm].
+
+    An eye of a link without part is taken as thick as the other link's. Raises ``CaseError`` where neither has a part.
+    """
+    links = [link for link in case.joints[joint].links if case.links[link].part is not None]
+    thicknesses = [case.part_of(link).eye_thickness for link in links]
+    if not thicknesses:
+        raise CaseError(f"joints.{joint}: neither link has a part, so the pin's length is unknown; give one a part")
+    return thicknesses[0], thicknesses[-1]
+
+
+def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
+    """Return the stresses of a joint's pin under its reaction; raises ``CaseError`` for a pin without diameter."""
+    wrench = reaction.wrench
+    return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
+
+
+def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:
+    """Return the stresses of a joint's pin under a force [N] across it and a moment about x or y [N mm].
+
+    Raises ``CaseError`` for a pin without diameter.
+    """
+    record = case.joints[joint]
+    if record.pin_diameter is None:
+        raise CaseError(f'joints.{joint}.pin_diameter: the check of its pin needs it; state it, for example "1.5 mm"')
+    poisson = case.all_materials[record.pin_material].poissons_ratio
+    return pin_stress(force, record.pin_diameter, eyes(case, joint), record.pin_gap, moment=moment, poisson=poisson)

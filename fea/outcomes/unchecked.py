@@ -1,0 +1,42 @@
+"""What no check of a case looks at, and what of its materials is unusual."""
+
+from collections.abc import Sequence
+
+from geometry.parts.plausible import unusual
+from loads.case.case import Case
+from loads.records.check_spec import PinCheck, SafetyFactorCheck, SustainedCheck
+
+Strength = type[SafetyFactorCheck] | type[SustainedCheck]
+
+
+def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, SustainedCheck)) -> tuple[str, ...]:
+    """Return what is not checked, each in a few words with the reason: ``thigh, no part``.
+
+    strength  the kinds of check that set a link's stress against a strength; an envelope knows the first alone
+    """
+    found = [f"{link}, no part" for link in case.linkage.moving if link not in case.checked_links]
+    stressed: set[str] = set()
+    pinned: set[str] = set()
+    for check in case.all_checks.values():
+        if isinstance(check, PinCheck):
+            pinned.update(check.joints or case.pinned_joints)
+        elif isinstance(check, SafetyFactorCheck | SustainedCheck) and isinstance(check, tuple(strength)):
+            stressed.update(check.links or case.checked_links)
+    left = [link for link in case.checked_links if link not in stressed]
+    if left:
+        found.append(f"stress of {', '.join(left)}, no check of it")
+    pins = [name for name, joint in case.joints.items() if joint.type != "slider"]
+    loose = [name for name in pins if name not in pinned]
+    if loose:
+        which = "pins" if loose == pins else f"pin{'s' if len(loose) > 1 else ''} {', '.join(loose)}"
+        found.append(f"{which}, no check of {'them' if len(loose) > 1 else 'it'}")
+    return tuple(found)
+
+
+def unusual_materials(case: Case) -> list[str]:
+    """Return a sentence for every unusual value of the materials of links and of checked pins."""
+    used = [case.part_of(link).material for link in case.checked_links]
+    for check in case.all_checks.values():
+        if isinstance(check, PinCheck):
+            used += [case.joints[name].pin_material for name in check.joints or case.pinned_joints]
+    return [said for name in dict.fromkeys(used) for said in unusual(name, case.all_materials[name])]

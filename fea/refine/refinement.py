@@ -1,0 +1,330 @@
+"""Meshes made finer until a link's numbers are good enough for the decision or the stated accuracy.
+
+A link whose stress is far from every limit, with its estimated error taken fourfold and a factor of two
+on top, needs one coarse mesh. Any other gets at least three, refined where the peaks are and where the
+estimate asks (``fea.refine.target_sizes``), until every limit lies outside the band or the band is as narrow as
+asked for; or until a limit of time, unknowns or number of meshes stops it, which the link's numbers then say.
+"""
+
+import math
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from fea.common.link_loads import LinkLoads
+from fea.refine.convergence import ALONE, FORMAL_ORDER, GridConvergence
+from fea.refine.link_series import CasePrecision, Eye, Level, Quantity, energy_errors, goals, level_of, precision
+from fea.refine.singular import NEARLY, element_exponents, loaded_edge
+from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, element_sizes, next_sizes, reduction
+from fea.solid.solution import SolidSolution, solve_solid
+from geometry.base.errors import AlulaError, CaseError
+from geometry.meshing.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
+from geometry.meshing.tagged_mesh import TaggedMesh
+from geometry.parts.body_rules import section_height, section_width
+from geometry.parts.part import Body, Disc
+
+FAR = 2.0
+"""Factor that a link with one mesh keeps from every limit, beyond its band."""
+ROUGH = 0.25
+"""Estimate over peak above which one mesh decides nothing."""
+START = MeshSettings(size=0.6, bore_elements=10, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)
+"""The first mesh: coarse, since the next ones become finer where it matters."""
+SERIES = 3
+"""Meshes in the least series with an observed order."""
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effort:
+    """What accuracy is asked for and what it may cost.
+
+    accuracy      largest distance of the discretisation band from the number, relative to it
+    stated        True where it was asked for: then every link is refined to it, even if its verdict is clear
+    max_unknowns  largest system that is solved for accuracy's sake
+    time_limit    seconds after which no further mesh is begun
+    max_meshes    per link
+    """
+
+    accuracy: float = 0.05
+    stated: bool = False
+    max_unknowns: int = 600_000
+    time_limit: float = 600.0
+    max_meshes: int = 10
+
+    def __post_init__(self) -> None:
+        """Refuse an accuracy that no series of meshes reaches."""
+        if not 0.001 <= self.accuracy <= 1.0:
+            raise CaseError(f"accuracy: {100.0 * self.accuracy:g} % is outside 0.1 % to 100 %; choose one between")
+        if self.max_meshes < 1 or self.max_unknowns < 1 or self.time_limit < 0.0:
+            raise CaseError("the limits of unknowns, meshes and time must be above zero; raise them")
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkTask:
+    """A link to be solved.
+
+    E, nu, density        of the material [MPa, -, tonne/mm³]
+    line                  surfaces that displacements refer to (``solve_solid``)
+    brittle               True where the principal stress decides, False where von Mises does
+    stress_limits         [MPa] on the deciding stress; ``displacement_limits`` [mm]: from the least to the largest that
+                          stated scatter makes of each, within which nothing is decided
+    """
+
+    body: Body
+    loads: tuple[LinkLoads, ...]
+    E: float
+    nu: float
+    density: float
+    line: tuple[str, str]
+    brittle: bool
+    stress_limits: tuple[tuple[float, float], ...]
+    displacement_limits: tuple[tuple[float, float], ...]
+
+    @property
+    def section(self) -> float:
+        """Smaller dimension of the section [mm]."""
+        return min(section_width(self.body.part), section_height(self.body.part))
+
+    @property
+    def may_be_sharp(self) -> bool:
+        """True where the shape has re-entrant edges: at eyes without fillets."""
+        part = self.body.part
+        return not isinstance(part, Disc) and part.fillet_radius == 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshRecord:
+    """Size of one mesh; the worst case's relative error in the energy norm (``energy_errors``); seconds it took."""
+
+    elements: int
+    unknowns: int
+    error: float
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RefinedSolid:
+    """A link's finest solution and how precise it is.
+
+    precision   of every case, in the order of ``solution.cases``
+    meshes      coarse to fine
+    stopped     why refinement ended before its aim was reached; "" where it was reached
+    far         True where one mesh sufficed since every limit is far away
+    accuracy    that was aimed at
+    sharp_edges number of re-entrant edges of the link; 0 where its shape left none to look for
+    """
+
+    solution: SolidSolution
+    precision: tuple[CasePrecision, ...]
+    meshes: tuple[MeshRecord, ...]
+    stopped: str
+    far: bool
+    accuracy: float
+    sharp_edges: int
+
+
+def refine_links(
+    tasks: Mapping[str, LinkTask],
+    start: MeshSettings,
+    effort: Effort,
+    *,
+    threads: int | None = None,
+    progress: Progress = lambda message: None,
+) -> dict[str, RefinedSolid]:
+    """Mesh and solve every link as often as its numbers need it; the next meshes are made while one is solved.
+
+    Raises what ``mesh_body`` and ``solve_solid`` raise on a link's first mesh, with the link's name before it.
+    """
+    links = [_Link(name, task, start, effort) for name, task in tasks.items()]
+    begun = time.perf_counter()
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        try:
+            for link in links:
+                link.order_mesh(pool)
+            while open_links := [link for link in links if not link.done]:
+                for link in open_links:
+                    link.advance(pool, threads, time.perf_counter() - begun, progress)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return {link.name: link.result() for link in links}
+
+
+class _Link:
+    """One link on its way through the meshes."""
+
+    def __init__(self, name: str, task: LinkTask, settings: MeshSettings, effort: Effort) -> None:
+        self.name, self.task, self.settings, self.effort = name, task, settings, effort
+        self.levels: list[Level] = []
+        self.meshes: list[MeshRecord] = []
+        self.precision: tuple[CasePrecision, ...] = ()
+        self.solution: SolidSolution | None = None
+        self.stopped, self.done, self.far = "", False, False
+        self._mesh: Future[TaggedMesh] | None = None
+        self._sharp: Future[list[ReentrantEdge]] | None = None
+
+    def order_mesh(self, pool: ThreadPoolExecutor) -> None:
+        """Have the next mesh made, and the re-entrant edges found where they may matter."""
+        self._mesh = pool.submit(mesh_body, self.task.body, self.settings)
+        if self._sharp is None and (self.task.may_be_sharp or self._growing):
+            self._sharp = pool.submit(reentrant_edges, self.task.body)
+
+    def advance(self, pool: ThreadPoolExecutor, threads: int | None, elapsed: float, progress: Progress) -> None:
+        """Solve on the mesh that was ordered, judge the series and order the next one if need be."""
+        assert self._mesh is not None
+        called = time.perf_counter()
+        try:
+            mesh = self._mesh.result()
+            begun = time.perf_counter()
+            solution = self._solved(mesh, threads, progress)
+        except (AlulaError, MemoryError) as error:
+            if not self.levels:
+                raise type(error)(f"{self.name}: {error}") from None
+            self._stop(f"a finer mesh could not be used: {error or 'memory ran out'}")
+            return
+        if solution is None:
+            return
+        self.solution = solution
+        self.levels.append(level_of(solution, mesh.volume))
+        self._judge()
+        seconds = [*(mesh.seconds for mesh in self.meshes), time.perf_counter() - begun]
+        self.meshes = [
+            MeshRecord(elements=len(level.cells), unknowns=3 * len(level.nodes), error=error, seconds=taken)
+            for level, error, taken in zip(self.levels, energy_errors(self.levels), seconds, strict=True)
+        ]
+        if self._settled():
+            self.done = True
+        elif len(self.levels) >= self.effort.max_meshes:
+            self._stop(f"{len(self.levels)} meshes are as many as may be made")
+        elif elapsed + time.perf_counter() - called > self.effort.time_limit:
+            self._stop(f"the time limit of {self.effort.time_limit:g} s is used up")
+        else:
+            self._refine(pool)
+
+    def result(self) -> RefinedSolid:
+        """What was found."""
+        assert self.solution is not None
+        return RefinedSolid(
+            solution=self.solution,
+            precision=self.precision,
+            meshes=tuple(self.meshes),
+            stopped=self.stopped,
+            far=self.far,
+            accuracy=self.effort.accuracy,
+            sharp_edges=len(self.edges),
+        )
+
+    def _solved(self, mesh: TaggedMesh, threads: int | None, progress: Progress) -> SolidSolution | None:
+        unknowns = 3 * len(mesh.points)
+        if self.levels and unknowns > self.effort.max_unknowns:
+            self._stop(f"the next mesh has {unknowns:,} unknowns, more than the {self.effort.max_unknowns:,} allowed")
+            return None
+        progress(f"Solving {self.name}, mesh {len(self.levels) + 1}: {len(mesh.cells)} elements ...")
+        task = self.task
+        return solve_solid(
+            mesh, E=task.E, nu=task.nu, density=task.density, loads=task.loads, line=task.line, threads=threads
+        )
+
+    def _stop(self, reason: str) -> None:
+        self.stopped, self.done = reason, True
+
+    @property
+    def edges(self) -> Sequence[ReentrantEdge]:
+        """Re-entrant edges, as far as they were asked for."""
+        return self._sharp.result() if self._sharp is not None else ()
+
+    @property
+    def _growing(self) -> bool:
+        return any(self._deciding(p).kind == "growing" for p in self.precision)
+
+    def _judge(self) -> None:
+        body = self.task.body
+        eyes = [Eye(x=pin.x, y=pin.y, radius=body.part.eye_diameter / 2.0, slot=pin.slot) for pin in body.pins]
+        self.precision = precision(self.levels, self.edges, section=self.task.section, eyes=eyes)
+
+    def _settled(self) -> bool:
+        """Whether nothing finer is needed."""
+        if any(p.doubt == "coarse" for p in self.precision):
+            return False
+        if len(self.levels) == 1:
+            self.far = not self.effort.stated and self._far()
+            return self.far
+        if len(self.levels) <= SERIES and any(p.sharp and not p.sharp.resolved for p in self.precision):
+            return False
+        # Nothing finer makes a singular peak finite.
+        real = [p for p in self.precision if p.sharp is None]
+        series = [s for p in real for s in (self._deciding(p), p.edge) if s is not None]
+        if any(s.kind == "growing" or s.suspect or len(s.values) < SERIES for s in series):
+            return False
+        narrow = all(max(self._deciding(p).index, p.displacement.index) <= self.effort.accuracy for p in real)
+        return narrow or (not self.effort.stated and self._decided())
+
+    @property
+    def _measure(self) -> Literal["von_mises", "principal"]:
+        """The stress that decides."""
+        return "principal" if self.task.brittle else "von_mises"
+
+    def _deciding(self, case: CasePrecision) -> GridConvergence:
+        return case.series(self._measure)
+
+    def _limits(self) -> Iterable[tuple[float, float, float]]:
+        """Ends of every band, and a limit that it must clear."""
+        stated: tuple[tuple[Quantity, tuple[tuple[float, float], ...]], ...] = (
+            (self._measure, self.task.stress_limits),
+            ("displacement", self.task.displacement_limits),
+        )
+        for case in self.precision:
+            if case.sharp is None:
+                yield from (
+                    (case.low(q), case.high(q), limit) for q, limits in stated for ends in limits for limit in ends
+                )
+
+    def _decided(self) -> bool:
+        """Whether every limit lies outside every band."""
+        return all(not low <= limit <= high for low, high, limit in self._limits())
+
+    def _far(self) -> bool:
+        """Whether one mesh decides: well resolved, away from sharp edges, every limit far outside the band."""
+        if any(self._deciding(p).index > ALONE * ROUGH or p.edge is not None for p in self.precision):
+            return False
+        level, section = self.levels[-1], self.task.section
+        if any(loaded_edge(self.edges, level.nodes, f.von_mises, section, NEARLY) for f in level.figures):
+            return False
+        return all(high * FAR < limit or low > FAR * limit for low, high, limit in self._limits())
+
+    def _refine(self, pool: ThreadPoolExecutor) -> None:
+        """Order a mesh that is finer where the peaks are and where the energy of the error is."""
+        assert self.solution is not None
+        accuracy, level = self.effort.accuracy, self.levels[-1]
+        allowed = float(np.sqrt(accuracy)) / 2.0  # of the energy norm: displacements miss its square
+        exponent = element_exponents(self.edges, level.centres, element_sizes(self.solution.space))
+        factors = [
+            reduction(figures.estimate.energy, figures.estimate.energy_norm, allowed, exponent)
+            for figures in level.figures
+        ]
+        wanted = goals(
+            self.levels,
+            accuracy / 1.5,
+            brittle=self.task.brittle,
+            edges=self.edges,
+            section=self.task.section,
+            ratios=[_ratio(self._deciding(case), accuracy) for case in self.precision],
+        )
+        points, sizes = next_sizes(self.solution.space, factors, wanted)
+        self.settings = replace(self.settings, size_points=points, size_values=sizes)
+        if not self.settings.curved:  # straight sides miss the round of a surface, which sizes alone would leave
+            turn = round(SERIES_RATIO * self.settings.turn_elements)
+            self.settings = replace(self.settings, turn_elements=turn)
+        self.order_mesh(pool)
+
+
+def _ratio(series: GridConvergence, accuracy: float) -> float:
+    """Of the sizes at a peak, last mesh over next one, so that two further meshes narrow its band to an accuracy."""
+    if not len(series.values) >= SERIES or not math.isfinite(series.index):
+        return SERIES_RATIO
+    order = min(max(series.order or 1.0, 1.0), FORMAL_ORDER)
+    return min(max(math.pow(series.index / accuracy, 0.5 / order), SERIES_RATIO), MOST_RATIO)

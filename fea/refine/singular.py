@@ -1,0 +1,148 @@
+"""Peaks at sharp re-entrant edges, where elasticity has no finite stress whatever the mesh."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.refine.convergence import williams_exponent
+from geometry.meshing.mesh import ReentrantEdge
+
+ELEMENT_ORDER = 2.0
+AT_EDGE = 1.0
+"""Distance from an edge, in element sizes, up to which its singularity rules an element."""
+ON_EDGE = 0.01
+"""Distance from an edge, over the section's smaller dimension, up to which a node lies on it: edges are polylines."""
+LOADED = 0.5
+"""Stress on a sharp edge over the peak from which on the edge is refined to see whether it grows without limit."""
+NEARLY = 0.25
+"""Stress on a sharp edge over one coarse mesh's peak from which on finer meshes judge anew whether it is ``LOADED``."""
+SCREENING = 0.2
+"""Distance from the edge, over the section's smaller dimension, at which the screening stress is taken."""
+SHARE_OF_WILLIAMS = 0.3
+"""Observed growth over Williams's exponent 1 − λ from which a peak on an edge is singular."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SharpPeak:
+    """A peak that grows without limit at a re-entrant edge.
+
+    place      of the peak (3,) [mm]; ``angle`` of the material there [rad]
+    growth     observed exponent s of the peak ~ h^(−s); ``theory`` 1 − λ after Williams
+    distance   from every re-entrant edge beyond which ``screening`` is the largest von Mises stress [mm, MPa]
+    resolved   True where elements at the edge are small enough for that distance to be the one aimed at
+    """
+
+    place: NDArray[np.float64]
+    angle: float
+    growth: float
+    theory: float
+    distance: float
+    screening: float
+    resolved: bool
+
+    @property
+    def sentence(self) -> str:
+        """What the reader must know."""
+        x, y, z = (0.0 if abs(v) < 5e-4 else v for v in self.place)
+        return (
+            f"the stress at the sharp inner edge at x = {x:.3g}, y = {y:.3g}, z = {z:.3g} mm "
+            f"({np.degrees(self.angle):.0f}° of material) is singular: it grows with every refinement, as size to the "
+            f"power {-self.growth:.2f} (theory {-self.theory:.2f}), and has no limit; state the real fillet_radius. "
+            f"For screening alone: at {self.distance:.2g} mm or more from such edges von Mises stress is at most "
+            f"{self.screening:.3g} MPa"
+        )
+
+
+def edge_distance(edges: Sequence[ReentrantEdge], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance (n, k) of points (n, 3) from each of k edges, polylines [mm]."""
+    found = np.empty((len(points), len(edges)))
+    for number, edge in enumerate(edges):
+        start, along = edge.points[:-1], np.diff(edge.points, axis=0)
+        square = np.maximum((along**2).sum(axis=1), 1e-300)
+        nearest = np.full(len(points), np.inf)
+        for a, d, s in zip(start, along, square, strict=True):
+            share = np.clip((points - a) @ d / s, 0.0, 1.0)
+            nearest = np.minimum(nearest, np.linalg.norm(points - a - share[:, None] * d, axis=1))
+        found[:, number] = nearest
+    return found
+
+
+def loaded_edge(
+    edges: Sequence[ReentrantEdge],
+    nodes: NDArray[np.float64],
+    von_mises: NDArray[np.float64],
+    section: float,
+    share: float = LOADED,
+) -> tuple[ReentrantEdge, int] | None:
+    """The edge whose nodes bear the largest stress of all edges, and that node; None where it is well below the peak.
+
+    nodes (n, 3) [mm] with their von Mises stress (n,) [MPa]; section [mm] as in ``sharp_peak``; share of the peak
+    below which it is well below
+    """
+    if not edges:
+        return None
+    distance = edge_distance(edges, nodes)
+    stress = np.where(distance.min(axis=1) <= ON_EDGE * section, von_mises, -1.0)
+    node = int(np.argmax(stress))
+    if stress[node] < share * von_mises.max():
+        return None
+    return edges[int(np.argmin(distance[node]))], node
+
+
+def element_exponents(
+    edges: Sequence[ReentrantEdge], centres: NDArray[np.float64], sizes: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Exponents (m,) by which errors fall with size: the order of quadratic elements, or λ next to an edge.
+
+    centres (m, 3) and sizes (m,) of the elements [mm]
+    """
+    exponents = np.full(len(sizes), ELEMENT_ORDER)
+    if edges:
+        distance = edge_distance(edges, centres)
+        for number, edge in enumerate(edges):
+            exponents[distance[:, number] <= AT_EDGE * sizes] = williams_exponent(edge.angle)
+    return exponents
+
+
+def sharp_peak(
+    edge: ReentrantEdge,
+    edges: Sequence[ReentrantEdge],
+    *,
+    place: NDArray[np.float64],
+    sizes: Sequence[float],
+    values: Sequence[float],
+    nodes: NDArray[np.float64],
+    von_mises: NDArray[np.float64],
+    section: float,
+) -> SharpPeak | None:
+    """Return the singular peak at ``place`` on ``edge`` if its growth over the meshes is that of one, else None.
+
+    sizes, values   of the elements at the peak and of the peak, mesh by mesh, coarse to fine
+    nodes           (n, 3) [mm] of the finest, with their ``von_mises`` (n,) [MPa]
+    section         smaller dimension of the link's section [mm]
+    """
+    if (
+        len(values) < 3
+        or not values[-1] > values[-2] > values[-3] >= values[0] > 0.0
+        or not sizes[-1] < sizes[-2] < sizes[-3]
+    ):
+        return None
+    growth = float(np.log(values[-1] / values[0]) / np.log(sizes[0] / sizes[-1]))
+    last = float(np.log(values[-1] / values[-2]) / np.log(sizes[-2] / sizes[-1]))
+    theory = 1.0 - williams_exponent(edge.angle)
+    if min(growth, last) < SHARE_OF_WILLIAMS * theory:
+        return None
+    away = edge_distance(edges, nodes).min(axis=1)
+    distance = max(SCREENING * section, 2.0 * sizes[-1])
+    beyond = away >= distance
+    return SharpPeak(
+        place=place,
+        angle=edge.angle,
+        growth=growth,
+        theory=theory,
+        distance=distance,
+        screening=float(von_mises[beyond].max()) if beyond.any() else 0.0,
+        resolved=distance == SCREENING * section,
+    )

@@ -1,0 +1,106 @@
+"""Element sizes of the next mesh from the estimated error of the last one.
+
+Strategy of Zienkiewicz and Zhu 1987 (see ``fea.refine.error_estimate``): every element may hold the same share of
+the error allowed, ē = η √((‖u_h‖² + ‖e‖²)/m) over m elements, and the one with ‖e‖ = ξ ē gets the size
+h/ξ^(1/p), p the order of the elements, or h/ξ^(1/λ) at a re-entrant edge of exponent λ.
+
+To that comes a goal of its own, the peak of the von Mises stress: near every element that may hold the peak,
+sizes fall so far that the estimate there becomes a stated share of it, and in any case enough for the
+next mesh to count in a series for the observed order.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.solid.space import EDGES, DisplacementSpace
+
+SERIES_RATIO = 1.5
+"""Size of the last mesh over that of the next one at a peak; at least 1.3 (Celik et al. 2008)."""
+MOST_RATIO, MOST_RATIO_ELSEWHERE = 2.0, 1.5
+NEAR = 2.5
+"""Radius, in element sizes, about a peak in which the mesh becomes finer for the series' sake."""
+HOT = 0.9
+"""Share of the peak above which an element may hold it."""
+GROWTH = 0.6
+"""Largest growth of sizes per distance."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LocalGoal:
+    """A peak that is to converge.
+
+    location   of the peak (3,) [mm]
+    value      of the peak [MPa]
+    stress     (m,) largest nodal stress in each element [MPa]
+    estimate   (m,) of the stress error in each element [MPa]
+    allowed    estimate over peak that is aimed at
+    ratio      of the sizes, last mesh over next one, within ``radius`` [mm] of the peak, at least ``NEAR`` elements:
+               where a series measures its sizes, since a smaller region lets them fall by less than the ratio
+    """
+
+    location: NDArray[np.float64]
+    value: float
+    stress: NDArray[np.float64]
+    estimate: NDArray[np.float64]
+    allowed: float
+    ratio: float = SERIES_RATIO
+    radius: float = 0.0
+
+
+def element_sizes(space: DisplacementSpace) -> NDArray[np.float64]:
+    """Mean length (m,) of the edges of each element, taken straight [mm]."""
+    corners = space.nodes[space.cells[:, :4]]
+    return np.asarray(np.mean([np.linalg.norm(corners[:, a] - corners[:, b], axis=1) for a, b in EDGES], axis=0))
+
+
+def reduction(
+    energy: NDArray[np.float64], energy_norm: float, allowed: float, exponent: NDArray[np.float64] | float
+) -> NDArray[np.float64]:
+    """Factors (m,) ≥ 1 by which sizes fall for the relative error ``allowed`` in the energy norm.
+
+    energy     (m,) energy norm of the error in each element; ``energy_norm`` of the solution
+    exponent   p of the elements, or λ where a singularity rules
+    """
+    whole = np.sqrt((energy_norm**2 + (energy**2).sum()) / len(energy))
+    if whole == 0.0:
+        return np.ones_like(energy)
+    return np.asarray(np.clip((energy / (allowed * whole)) ** (1.0 / exponent), 1.0, MOST_RATIO_ELSEWHERE))
+
+
+def next_sizes(
+    space: DisplacementSpace, factors: Sequence[NDArray[np.float64]], goals: Sequence[LocalGoal]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points (n, 3) and element sizes (n,) [mm] of the next mesh, at the corner nodes.
+
+    factors   by which sizes fall, each (m,): the largest counts (``reduction``)
+    goals     peaks that are to converge
+    """
+    sizes = element_sizes(space)
+    centres = space.nodes[space.cells[:, :4]].mean(axis=1)
+    factor = np.max([np.ones(len(sizes)), *factors], axis=0)
+    for goal in goals:
+        wanted = np.clip(np.sqrt(goal.estimate / (goal.allowed * goal.value)), 1.0, MOST_RATIO)
+        hot = goal.stress + goal.estimate >= HOT * goal.value
+        factor = np.where(hot, np.maximum(factor, wanted), factor)
+        distance = np.linalg.norm(centres - goal.location, axis=1)
+        here = float(sizes[np.argsort(distance)[:8]].mean())
+        factor = np.where(distance <= max(NEAR * here, goal.radius), np.maximum(factor, goal.ratio), factor)
+    corners = space.cells[:, :4]
+    finest = np.full(space.corners, np.inf)
+    np.minimum.at(finest, corners.ravel(), np.repeat(sizes / factor, 4))
+    return space.nodes[: space.corners], _graded(space, finest)
+
+
+def _graded(space: DisplacementSpace, sizes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Limit the growth of nodal sizes along the edges of the mesh."""
+    pairs = np.unique(np.sort(np.concatenate([space.cells[:, list(edge)] for edge in EDGES]), axis=1), axis=0)
+    length = GROWTH * np.linalg.norm(space.nodes[pairs[:, 0]] - space.nodes[pairs[:, 1]], axis=1)
+    while True:
+        before = sizes.copy()
+        np.minimum.at(sizes, pairs[:, 0], before[pairs[:, 1]] + length)
+        np.minimum.at(sizes, pairs[:, 1], before[pairs[:, 0]] + length)
+        if (before - sizes <= 1e-9 * before).all():
+            return sizes

@@ -1,0 +1,4 @@
+"""One link as a solid: elements, stiffness, pin pressure, supports, solvers, stress.
+
+Hands on ``SolidSolution`` and ``StressField``.
+"""

@@ -1,0 +1,95 @@
+"""Symmetric sparse matrices of 3×3 blocks, one block row per node, of which the upper triangle is stored."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.solid import mkl
+
+Product = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SymmetricBlockMatrix:
+    """Upper block triangle in block-compressed rows; diagonal blocks are stored whole.
+
+    indptr    (n + 1,) start of every block row
+    indices   (b,) block column of every block, ascending, beginning with the diagonal
+    blocks    (b, 3, 3)
+    """
+
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+    blocks: NDArray[np.float64]
+
+    @property
+    def size(self) -> int:
+        """Number of scalar rows."""
+        return 3 * (len(self.indptr) - 1)
+
+    @property
+    def diagonal(self) -> NDArray[np.float64]:
+        """Diagonal blocks (n, 3, 3)."""
+        return np.asarray(self.blocks[self.indptr[:-1]])
+
+    def upper(self) -> Any:
+        """Return the stored blocks as a scipy ``bsr_array`` (views, no copy)."""
+        from scipy.sparse import bsr_array
+
+        return bsr_array((self.blocks, self.indices, self.indptr), shape=(self.size, self.size))
+
+    def full(self) -> Any:
+        """Return the whole matrix as a scipy ``csc_array``."""
+        from scipy.sparse import csc_array, triu
+
+        upper = triu(self.upper(), format="csr")
+        return csc_array(upper + triu(upper, 1, format="csr").T)
+
+    @cached_property
+    def product(self) -> Product:
+        """Multiply with contiguous vectors (size,): by MKL, else by scipy with the transpose stored as well."""
+        try:
+            return mkl.SymmetricProduct(self.indptr, self.indices, self.blocks)
+        except ImportError:
+            return _ScipyProduct(self)
+
+    def __matmul__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Multiply with (size,) or (size, k)."""
+        if x.ndim == 1:
+            return self.product(np.ascontiguousarray(x, dtype=np.float64))
+        found = np.empty(x.shape, order="F")
+        for column, out in zip(x.T, found.T, strict=True):
+            out[:] = self.product(np.ascontiguousarray(column, dtype=np.float64))
+        return found
+
+    def with_fixed(self, unknowns: NDArray[np.int64]) -> "SymmetricBlockMatrix":
+        """Return a copy in which rows and columns of these unknowns are zero but for their diagonal entry."""
+        fixed = np.zeros((len(self.indptr) - 1, 3), dtype=np.bool_)
+        fixed.reshape(-1)[unknowns] = True
+        touched = np.any(fixed, axis=1, keepdims=True)[:, 0]
+        rows = np.repeat(np.arange(len(fixed), dtype=np.int32), np.diff(self.indptr))
+        place = np.flatnonzero(touched[rows] | touched[self.indices])
+        cleared = fixed[rows[place]][:, :, None] | fixed[self.indices[place]][:, None, :]
+        blocks = self.blocks.copy()
+        blocks[place] = np.where(cleared, 0.0, blocks[place])
+        nodes, components = np.nonzero(fixed)
+        diagonal = self.indptr[nodes]
+        blocks[diagonal, components, components] = self.blocks[diagonal, components, components]
+        return SymmetricBlockMatrix(indptr=self.indptr, indices=self.indices, blocks=blocks)
+
+
+class _ScipyProduct:
+    """Products where MKL is missing; scipy's transpose of block rows is a copy, so it is made once."""
+
+    def __init__(self, matrix: SymmetricBlockMatrix) -> None:
+        self._upper = matrix.upper()
+        self._lower = self._upper.T.tobsr(blocksize=(3, 3))
+        self._diagonal = matrix.diagonal
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        twice = (self._diagonal @ x.reshape(-1, 3, 1)).ravel()
+        return np.asarray(self._upper @ x + self._lower @ x - twice)

@@ -1,0 +1,192 @@
+"""Isotropic linear elasticity: the constitutive law and the stiffness matrix of a link."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common import memory
+from fea.solid.block_matrix import SymmetricBlockMatrix
+from fea.solid.space import DisplacementSpace
+from geometry.base.errors import CannotRunError
+
+CURVED_DEGREE = 5  # 14 points with positive weights
+_LINEAR = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # gradients
+_CHUNK = 1024  # elements at a time: some 10 MB of working memory, which caches hold in part
+
+
+def lame_constants(E: float, nu: float) -> tuple[float, float]:
+    """Lamé's λ and μ [MPa]: λ = Eν/((1+ν)(1−2ν)), μ = E/(2(1+ν)) (Timoshenko-Goodier, 3rd ed., art. 6)."""
+    return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
+
+
+def stress(gradient: NDArray[np.float64], E: float, nu: float) -> NDArray[np.float64]:
+    """Stress σ = λ tr(ε) I + 2μ ε [MPa] of displacement gradients (..., 3, 3), ∂u_i/∂x_j; same shape."""
+    lam, mu = lame_constants(E, nu)
+    sigma = mu * (gradient + np.swapaxes(gradient, -1, -2))
+    dilatation = lam * np.trace(gradient, axis1=-2, axis2=-1)
+    for i in range(3):
+        sigma[..., i, i] += dilatation
+    return sigma
+
+
+def reference_basis(
+    space: DisplacementSpace, degree: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Integration points (3, q), weights (q,), basis functions (q, b) and gradients (q, b, 3) on the unit tetrahedron.
+
+    Points and weights are scikit-fem's rule of that polynomial degree.
+    """
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefTet
+
+    X, W = get_quadrature(RefTet, degree)
+    return X, W, *basis_at(space, X)
+
+
+def basis_at(space: DisplacementSpace, X: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Basis functions (q, b) and their gradients (q, b, 3) at points (3, q) of the unit tetrahedron."""
+    basis = [space.element.lbasis(X, i) for i in range(space.cells.shape[1])]
+    phi = np.array([b[0] for b in basis]).T
+    gradient = np.array([np.broadcast_to(b[1].reshape(3, -1), X.shape) for b in basis]).transpose(2, 0, 1)
+    return np.ascontiguousarray(phi), np.ascontiguousarray(gradient)
+
+
+def jacobians(
+    nodes: NDArray[np.float64], gradient: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Inverse Jacobians (k, q, 3, 3), ∂X_j/∂x_i at [i, j], and determinants (k, q) of elements (k, b, 3).
+
+    Raises ``CannotRunError`` where a determinant is not positive: such an element is folded over.
+    """
+    k, b, _ = nodes.shape
+    q = len(gradient)
+    # J[k, q, j, i] = ∂x_i/∂X_j
+    J = (gradient.transpose(0, 2, 1).reshape(3 * q, b) @ nodes).reshape(k, q, 3, 3)
+    cofactor = np.empty_like(J)  # cofactor[i, j] J[j, i'] = det δ
+    for j in range(3):
+        cofactor[..., :, j] = np.cross(J[..., (j + 1) % 3, :], J[..., (j + 2) % 3, :])
+    determinant = np.einsum("kqi,kqi->kq", J[..., 0, :], cofactor[..., :, 0])
+    if not (determinant > 0.0).all():
+        bad = np.count_nonzero((determinant <= 0.0).any(axis=1))
+        raise CannotRunError(f"{bad} elements of the mesh are folded over (Jacobian not positive); refine the mesh")
+    cofactor /= determinant[..., None, None]
+    return cofactor, determinant
+
+
+def assemble_stiffness(
+    space: DisplacementSpace,
+    *,
+    E: float,
+    nu: float,
+    order: int | None = None,
+    memory_limit: float | None = None,
+) -> SymmetricBlockMatrix:
+    """Assemble the stiffness matrix [N/mm] of an isotropic body with E [MPa] and Poisson's ratio nu.
+
+    Equal to scikit-fem's ``linear_elasticity`` form on the same basis. Straight-sided elements: the
+    reference tensor ∫ ∂φa/∂Xk ∂φb/∂Xl dX contracted with the inverse Jacobian, exact. Curved ones:
+    products of the gradients' matrices at the points of the rule of degree ``CURVED_DEGREE``.
+    Elements are taken in chunks, so the working memory does not grow with the mesh.
+
+    order         1 for the linear displacements within a quadratic space, at its corner nodes (curved
+                  elements stay curved); by default the order of the space
+    memory_limit  bytes that the whole process may hold, by default what the system leaves
+
+    Raises ``CannotRunError`` for a material that is not stable, a folded element, or a matrix that
+    does not fit into memory twice, as it is and with its supports.
+    """
+    if not (E > 0.0 and 0.0 <= nu < 0.5):
+        raise CannotRunError(f"E = {E} MPa with ν = {nu} is no stable compressible material (E > 0, 0 ≤ ν < 0.5)")
+    order = space.order if order is None else order
+    cells, count = (space.cells[:, :4], space.corners) if order == 1 else (space.cells, len(space.nodes))
+    place = _pattern(cells, count)
+    memory.require(2.0 * 72.0 * place.nnz, f"the stiffness matrix of {3 * count:,} unknowns", memory_limit)
+    blocks = np.zeros((place.nnz, 3, 3))
+    first, second = np.triu_indices(cells.shape[1])
+    straight, curved = (Kernel(space, order, E, nu) for Kernel in (_StraightElements, _CurvedElements))
+    for kernel, members in ((straight, np.flatnonzero(~space.curved)), (curved, np.flatnonzero(space.curved))):
+        for start in range(0, len(members), _CHUNK):
+            chunk = members[start : start + _CHUNK]
+            values = kernel(space.nodes[space.cells[chunk]])
+            row, column = cells[chunk][:, first], cells[chunk][:, second]
+            mirror = row > column
+            target = place[np.minimum(row, column).ravel(), np.maximum(row, column).ravel()]
+            for i in range(3):
+                for j in range(3):
+                    # The block of a pair whose nodes stand in descending order belongs below the diagonal.
+                    value = values[i, j] if i == j else np.where(mirror, values[j, i], values[i, j])
+                    np.add.at(blocks[:, i, j], target, value.ravel())
+    return SymmetricBlockMatrix(indptr=place.indptr, indices=place.indices, blocks=blocks)
+
+
+def _pattern(cells: NDArray[np.int64], count: int) -> Any:
+    """Upper triangle of the pairs of nodes that share an element, as a ``csr_array`` of the blocks' numbers.
+
+    A boolean product of incidence matrices: no list of all pairs of all elements has to be stored and sorted.
+    """
+    from scipy.sparse import csr_array, triu
+
+    elements, local = cells.shape
+    start = np.arange(0, elements * local + 1, local, dtype=np.int32)
+    node = cells.astype(np.int32).ravel()
+    incidence = csr_array((np.ones(len(node), dtype=np.bool_), node, start), shape=(elements, count))
+    pairs = triu(incidence.T.tocsr() @ incidence, format="csr")
+    pairs.sort_indices()
+    return csr_array((np.arange(pairs.nnz, dtype=np.int32), pairs.indices, pairs.indptr), shape=pairs.shape)
+
+
+class _StraightElements:
+    """Stiffness blocks (3, 3, k, pairs) of straight-sided elements."""
+
+    def __init__(self, space: DisplacementSpace, order: int, E: float, nu: float) -> None:
+        W, _, gradient = _gradients(space, order, 2)
+        first, second = np.triu_indices(gradient.shape[1])
+        reference = np.einsum("q,qpk,qpl->klp", W, gradient[:, first], gradient[:, second])
+        self.reference = np.ascontiguousarray(reference.reshape(9, -1))
+        self.lam, self.mu = lame_constants(E, nu)
+
+    def __call__(self, nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+        inverse, determinant = jacobians(nodes[:, :4], _LINEAR[None])
+        G = inverse[:, 0]
+        outer = np.einsum("k,kip,kjq->ijkpq", determinant[:, 0], G, G)
+        laplace = self.mu * (outer[0, 0] + outer[1, 1] + outer[2, 2])
+        S = self.lam * outer + self.mu * outer.transpose(1, 0, 2, 3, 4)
+        for i in range(3):
+            S[i, i] += laplace
+        return np.asarray((S.reshape(-1, 9) @ self.reference).reshape(3, 3, len(nodes), -1))
+
+
+class _CurvedElements:
+    """Stiffness blocks (3, 3, k, pairs) of curved elements."""
+
+    def __init__(self, space: DisplacementSpace, order: int, E: float, nu: float) -> None:
+        self.W, self.geometry, gradient = _gradients(space, order, CURVED_DEGREE)
+        self.gradient = np.ascontiguousarray(gradient.transpose(0, 2, 1))
+        self.first, self.second = np.triu_indices(gradient.shape[1])
+        self.lam, self.mu = lame_constants(E, nu)
+
+    def __call__(self, nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+        k, b = len(nodes), self.gradient.shape[2]
+        inverse, determinant = jacobians(nodes, self.geometry)
+        # G[k, q, i, a] = ∂φa/∂x_i, weighted by the root of the integration weight
+        G = inverse @ self.gradient
+        G *= np.sqrt(determinant * self.W)[:, :, None, None]
+        G = G.reshape(k, len(self.W), 3 * b)
+        M = (G.transpose(0, 2, 1) @ G).reshape(k, 3, b, 3, b)[:, :, self.first, :, self.second]
+        M = M.transpose(2, 3, 1, 0)  # [i, j, k, pair]
+        laplace = self.mu * (M[0, 0] + M[1, 1] + M[2, 2])
+        K = self.lam * M + self.mu * M.transpose(1, 0, 2, 3)
+        for i in range(3):
+            K[i, i] += laplace
+        return np.asarray(K)
+
+
+def _gradients(
+    space: DisplacementSpace, order: int, degree: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Weights (q,), gradients of the geometry's basis (q, B, 3) and of the displacements' (q, b, 3)."""
+    _, W, _, gradient = reference_basis(space, degree)
+    if order == space.order:
+        return W, gradient, gradient
+    return W, gradient, np.broadcast_to(_LINEAR, (len(W), *_LINEAR.shape))

@@ -1,0 +1,158 @@
+"""The finite-element space of displacements on a link: nodes, elements and boundary in scikit-fem's numbering."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base.errors import CannotRunError
+from geometry.meshing.tagged_mesh import TaggedMesh
+
+EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+"""Corner pairs of the mid-nodes 4 to 9 of a quadratic element."""
+# Faces seen from outside a positive tetrahedron: three corners, then the mid-nodes of edges ab, bc, ac.
+_FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
+_MIRROR = [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]
+_STRAIGHT = 1e-13  # of an element's size: what rounding leaves of a straight edge
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DisplacementSpace:
+    """Vector-valued linear (P1) or quadratic (P2, isoparametric) displacements on tetrahedra.
+
+    Node i carries the unknowns 3i, 3i+1, 3i+2 (x, y, z); corner nodes come first, then edge nodes, as
+    in scikit-fem's ``ElementVector(ElementTetP1())`` and ``ElementVector(ElementTetP2())``.
+
+    nodes      (n, 3) mm
+    cells      (m, 4) or (m, 10) node numbers, all of positive volume
+    corners    number of corner nodes
+    curved     (m,) True where an element is not straight-sided
+    boundary   (b, 3) or (b, 6) nodes of all boundary faces, counter-clockwise seen from outside
+    surfaces   name -> indices of the faces in ``boundary``
+    from_point (points,) node of every point of the ``TaggedMesh``; -1 where it has none
+    """
+
+    nodes: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    corners: int
+    curved: NDArray[np.bool_]
+    boundary: NDArray[np.int64]
+    surfaces: Mapping[str, NDArray[np.int64]]
+    from_point: NDArray[np.int64]
+
+    @property
+    def order(self) -> int:
+        """Polynomial order of the displacements: 1 or 2."""
+        return 1 if self.cells.shape[1] == 4 else 2
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement components, three per node."""
+        return 3 * len(self.nodes)
+
+    @property
+    def element(self) -> Any:
+        """The scalar scikit-fem element of one displacement component."""
+        from skfem.element import ElementTetP1, ElementTetP2
+
+        return ElementTetP1() if self.order == 1 else ElementTetP2()
+
+    def scikit_fem_mesh(self) -> Any:
+        """Return the same mesh as scikit-fem's ``MeshTet1`` or ``MeshTet2``."""
+        from skfem import MeshTet1, MeshTet2
+
+        corners = np.ascontiguousarray(self.cells[:, :4].T)
+        return (MeshTet1 if self.order == 1 else MeshTet2)(np.ascontiguousarray(self.nodes.T), corners)
+
+    def faces(self, *names: str) -> NDArray[np.int64]:
+        """Nodes (k, 3) or (k, 6) of the boundary faces of the named surfaces together.
+
+        Raises ``CannotRunError`` for a surface that the mesh does not have.
+        """
+        for name in names:
+            if name not in self.surfaces:
+                raise CannotRunError(f"the mesh has no surface '{name}'; it has {', '.join(sorted(self.surfaces))}")
+        return np.asarray(self.boundary[np.concatenate([self.surfaces[name] for name in names])])
+
+
+def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace:
+    """Build the space of order 1 or 2 on a mesh; linear displacements take the corner nodes alone.
+
+    Raises ``CannotRunError`` for an element without positive volume, or a tagged triangle that is no
+    boundary face.
+    """
+    from skfem import MeshTet1
+    from skfem.assembly.dofs import Dofs
+    from skfem.element import ElementTetP2
+
+    used, corner = np.unique(mesh.cells[:, :4], return_inverse=True)
+    corner = corner.reshape(-1, 4)
+    points = mesh.points[used]
+    from_point = np.full(len(mesh.points), -1)
+    from_point[used] = np.arange(len(used))
+    if order == 1:
+        nodes, cells = points, corner
+    else:
+        topology = MeshTet1(np.ascontiguousarray(points.T), np.ascontiguousarray(corner.T))
+        cells = Dofs(topology, ElementTetP2()).element_dofs.T.astype(np.int64)
+        nodes = np.empty((int(cells.max()) + 1, 3))
+        nodes[: len(points)] = points
+        if mesh.curved:
+            nodes[cells[:, 4:]] = mesh.points[mesh.cells[:, 4:]]
+            from_point[mesh.cells[:, 4:]] = cells[:, 4:]
+        else:
+            for local, (a, b) in enumerate(EDGES):
+                nodes[cells[:, 4 + local]] = (points[corner[:, a]] + points[corner[:, b]]) / 2.0
+
+    spans = nodes[cells[:, 1:4]] - nodes[cells[:, :1]]
+    volume = np.linalg.det(spans)
+    size = np.abs(spans).max(axis=(1, 2))
+    if (np.abs(volume) <= 1e-12 * size**3).any():
+        raise CannotRunError(f"{np.count_nonzero(np.abs(volume) <= 1e-12 * size**3)} elements of the mesh are flat")
+    cells[volume < 0.0] = cells[volume < 0.0][:, _MIRROR[: cells.shape[1]]]
+    curved = np.zeros(len(cells), dtype=np.bool_)
+    if order == 2:
+        for local, (a, b) in enumerate(EDGES):
+            middle = (nodes[cells[:, a]] + nodes[cells[:, b]]) / 2.0
+            curved |= np.abs(nodes[cells[:, 4 + local]] - middle).max(axis=1) > _STRAIGHT * size
+    boundary = _boundary(cells)
+    return DisplacementSpace(
+        nodes=nodes,
+        cells=cells,
+        corners=len(used),
+        curved=curved,
+        boundary=boundary,
+        surfaces=_named(boundary, {name: from_point[t] for name, t in mesh.surfaces.items()}, len(used)),
+        from_point=from_point,
+    )
+
+
+def _keys(triangles: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    low, middle, high = np.sort(triangles[:, :3], axis=1).T
+    return np.asarray((low * count + middle) * count + high)
+
+
+def _boundary(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the faces that belong to one element alone, seen from outside."""
+    local = _FACES[:, : 3 if cells.shape[1] == 4 else 6]
+    faces = cells[:, local].reshape(-1, local.shape[1])
+    _, first, count = np.unique(_keys(faces, int(cells[:, :4].max()) + 1), return_index=True, return_counts=True)
+    return np.asarray(faces[np.sort(first[count == 1])])
+
+
+def _named(
+    boundary: NDArray[np.int64], surfaces: Mapping[str, NDArray[np.int64]], corners: int
+) -> dict[str, NDArray[np.int64]]:
+    """Find every tagged triangle among the boundary faces."""
+    keys = _keys(boundary, corners)
+    order = np.argsort(keys)
+    found = {}
+    for name, triangles in surfaces.items():
+        wanted = _keys(triangles, corners)
+        place = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)]
+        if (triangles < 0).any() or not np.array_equal(keys[place], wanted):
+            raise CannotRunError(f"surface '{name}' holds triangles that are no boundary faces of the mesh")
+        found[name] = place
+    return found

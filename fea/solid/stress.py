@@ -1,0 +1,226 @@
+"""Stress of a link: recovered at the nodes, at the integration points, and over cross-sections.
+
+Recovery. Stresses at the four integration points of a quadratic element (the points of CalculiX's
+C3D10) are carried by the linear function through them to its nodes and averaged over the elements
+that share a node (Zienkiewicz-Taylor-Zhu, The Finite Element Method, 6th ed., vol. 1, ch. 13: stresses
+of quadratic elements are most accurate near these points). Linear elements have one stress each.
+Measured as the error of the peak von Mises stress, on a thick cylinder under pressure at 4,320 and
+29,376 unknowns and on a hole in tension at 3,744 and 24,000:
+
+    this recovery                               3.9 and 1.3 %,  4.2 and 2.5 %
+    derivatives at the nodes, averaged          3.8 and 1.0 %, 11.5 and 4.8 %
+    least squares over the whole body           1.7 and 0.8 %,  4.2 and 2.3 %
+
+The last costs a linear system for every field. Linear fits over patches of elements, which are
+one-sided at a bore, fell short of the hole's peak by 9 to 28 % on its coarse meshes.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.solid.elasticity import jacobians, reference_basis, stress
+from fea.solid.quadrature import SurfaceQuadrature, face_quadrature
+from fea.solid.space import DisplacementSpace
+from geometry.base.errors import CannotRunError
+
+COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
+_CHUNK = 8192
+_NODES = np.array(
+    [
+        [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.0, 0.0],
+        [0.5, 0.5, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5],
+    ]
+).T  # fmt: skip
+
+
+def von_mises(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Von Mises stress of components (..., 6) in the order of ``COMPONENTS`` (Shigley, 10th ed., chapter 5)."""
+    xx, yy, zz, xy, yz, xz = np.moveaxis(sigma, -1, 0)
+    direct = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * direct + 3.0 * (xy**2 + yz**2 + xz**2)))
+
+
+def principal(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Principal stresses (..., 3), signed, the largest first, of components (..., 6)."""
+    xx, yy, zz, xy, yz, xz = np.moveaxis(sigma, -1, 0)
+    tensor = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=-1).reshape(*sigma.shape[:-1], 3, 3)
+    return np.asarray(np.linalg.eigvalsh(tensor)[..., ::-1])
+
+
+def extreme_principal(sigma: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Largest and smallest principal stress (...), signed, of components (..., 6), by the closed form.
+
+    σ1 = m + 2 √(J2/3) cos θ and σ3 = m + 2 √(J2/3) cos(θ + 2π/3) with cos 3θ = (3√3/2) J3 / J2^(3/2), m the mean stress
+    and J2, J3 of the deviator (Malvern, Introduction to the Mechanics of a Continuous Medium, section 3.3). To about
+    1e-8 of the von Mises stress, ten times as fast as the eigenvalues of ``principal``.
+    """
+    xx, yy, zz, xy, yz, xz = np.moveaxis(sigma, -1, 0)
+    mean = (xx + yy + zz) / 3.0
+    x, y, z = xx - mean, yy - mean, zz - mean
+    third = ((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) / 18.0 + (xy**2 + yz**2 + xz**2) / 3.0  # J2/3
+    J3 = x * (y * z - yz**2) - xy * (xy * z - yz * xz) + xz * (xy * yz - y * xz)
+    radius = np.sqrt(third)
+    cube = np.where(third > 0.0, 2.0 * radius * third, 1.0)
+    angle = np.arccos(np.clip(J3 / cube, -1.0, 1.0)) / 3.0
+    return mean + 2.0 * radius * np.cos(angle), mean + 2.0 * radius * np.cos(angle + 2.0 * np.pi / 3.0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Peak:
+    """The largest von Mises stress [MPa] and where it occurs in the link's frame (3,) [mm]."""
+
+    value: float
+    location: NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SectionStress:
+    """Stress along x over one cross-section, as a beam has it [MPa].
+
+    x          of the section [mm]
+    axial      mean, N/A
+    bending_y  at the extreme fibre z = +half_z, of bending about y (out of the linkage's plane)
+    bending_z  at the extreme fibre y = +half_y, of bending about z (in the linkage's plane)
+    scatter    root mean square of what is not linear over the section, relative to the largest fibre stress
+    """
+
+    x: float
+    axial: float
+    bending_y: float
+    bending_z: float
+    scatter: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StressField:
+    """Stress of one displacement field; components in the order of ``COMPONENTS`` [MPa].
+
+    nodal      (n, 6) recovered at the nodes
+    at_points  (m, q, 6) at the integration points of the elements (4, or 1 in linear ones)
+    points     (m, q, 3) integration points [mm]
+    weights    (m, q) their volumes [mm³]
+    """
+
+    space: DisplacementSpace
+    nodal: NDArray[np.float64]
+    at_points: NDArray[np.float64]
+    points: NDArray[np.float64]
+    weights: NDArray[np.float64]
+
+    @cached_property
+    def von_mises(self) -> NDArray[np.float64]:
+        """Von Mises stress (n,) at the nodes, of the recovered components."""
+        return von_mises(self.nodal)
+
+    @cached_property
+    def principal(self) -> NDArray[np.float64]:
+        """Principal stresses (n, 3) at the nodes, signed, the largest first."""
+        return principal(self.nodal)
+
+    def decisive(self, *, brittle: bool) -> NDArray[np.float64]:
+        """The stress (n,) at the nodes that a strength is set against: the largest principal one where ``brittle``."""
+        return self.principal[:, 0] if brittle else self.von_mises
+
+    @property
+    def peak(self) -> Peak:
+        """Largest von Mises stress of all nodes; no node is left out."""
+        node = int(np.argmax(self.von_mises))
+        return Peak(value=float(self.von_mises[node]), location=self.space.nodes[node].copy())
+
+    @property
+    def peak_at_points(self) -> Peak:
+        """Largest von Mises stress of all integration points."""
+        values = von_mises(self.at_points)
+        element, point = np.unravel_index(int(np.argmax(values)), values.shape)
+        return Peak(value=float(values[element, point]), location=self.points[element, point].copy())
+
+    def strain_energy(self, *, E: float, nu: float) -> float:
+        """∫ ½ σ:ε dV [N mm] of the integration points' stresses, ε by Hooke's law."""
+        s = self.at_points
+        trace = s[..., 0] + s[..., 1] + s[..., 2]
+        square = (s[..., :3] ** 2).sum(axis=-1) + 2.0 * (s[..., 3:] ** 2).sum(axis=-1)
+        return float((self.weights * ((1.0 + nu) * square - nu * trace**2)).sum() / (2.0 * E))
+
+    def section(self, *, x: float, half_length: float, half_y: float, half_z: float) -> SectionStress:
+        """Fit a beam's stress to the recovered σxx on the outer surface between x ± ``half_length``.
+
+        The fit σxx = (a + b y + c z) + (x' − x)(a' + b' y + c' z) by least squares over that surface is
+        independent of the equilibrium of the section, which any solution satisfies on average.
+        ``half_y``, ``half_z`` are the distances of the extreme fibres from the axis y = z = 0 [mm].
+
+        Raises ``CannotRunError`` where the slab holds too few faces.
+        """
+        face = self._outer
+        where = np.abs(face.x[..., 0] - x) <= half_length
+        along, y, z = (face.x[where] - (x, 0.0, 0.0)).T
+        columns = np.column_stack([np.ones_like(y), y, z, along, along * y, along * z])
+        scale = np.array([1.0, half_y, half_z, half_length, half_length * half_y, half_length * half_z])
+        root = np.sqrt(face.w[where])[:, None]
+        values = np.einsum("qb,kb->kq", face.phi, self.nodal[face.nodes, 0])[where]
+        if len(y) < 6 or np.linalg.matrix_rank(root * columns / scale, tol=1e-6 * np.linalg.norm(root)) < 6:
+            raise CannotRunError(f"the mesh is too coarse for a section of {2.0 * half_length:g} mm at x = {x:g} mm")
+        fitted, *_ = np.linalg.lstsq(root * columns / scale, root[:, 0] * values, rcond=None)
+        rest = values - columns @ (fitted / scale)
+        rms = np.sqrt((face.w[where] * rest**2).sum() / face.w[where].sum())
+        largest = abs(fitted[0]) + max(abs(fitted[1]), abs(fitted[2]))
+        return SectionStress(
+            x=x,
+            axial=float(fitted[0]),
+            bending_y=float(fitted[2]),
+            bending_z=float(fitted[1]),
+            scatter=float(rms / largest) if largest > 0.0 else 0.0,
+        )
+
+    @cached_property
+    def _outer(self) -> SurfaceQuadrature:
+        """Boundary faces that look away from the axis y = z = 0 and not along it: no bore, no end."""
+        space = self.space
+        corners = space.nodes[space.boundary[:, :3]]
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        radial = corners.mean(axis=1) * (0.0, 1.0, 1.0)
+        away = np.einsum("ki,ki->k", normal, radial) > 0.0
+        lateral = np.abs(normal[:, 0]) < 0.5 * np.linalg.norm(normal, axis=1)
+        return face_quadrature(space, space.boundary[away & lateral], degree=2)
+
+
+def stress_field(space: DisplacementSpace, displacement: NDArray[np.float64], *, E: float, nu: float) -> StressField:
+    """Recover the stress of nodal displacements (n, 3) [mm] in a material with E [MPa] and nu."""
+    X, W, phi, gradient = reference_basis(space, space.order)
+    count, elements = len(W), len(space.cells)
+    at_points = np.empty((elements, count, 6))
+    points = np.empty((elements, count, 3))
+    weights = np.empty((elements, count))
+    for start in range(0, elements, _CHUNK):
+        part = slice(start, start + _CHUNK)
+        cells = space.cells[part]
+        inverse, determinant = jacobians(space.nodes[cells], gradient)
+        slopes = inverse @ gradient.transpose(0, 2, 1)  # [k, q, i, b] = ∂φb/∂x_i
+        tensor = stress((slopes @ displacement[cells][:, None]).swapaxes(-1, -2), E, nu)
+        for n, (i, j) in enumerate(PAIRS):
+            at_points[part, :, n] = tensor[..., i, j]
+        points[part] = phi @ space.nodes[cells]
+        weights[part] = determinant * W
+    return StressField(
+        space=space, nodal=_averaged(space, X, at_points), at_points=at_points, points=points, weights=weights
+    )
+
+
+def carry_to_nodes(X: NDArray[np.float64], local: int) -> NDArray[np.float64]:
+    """Weights (local, q) that carry values at the points X (3, q) of an element to its nodes, linearly."""
+    if X.shape[1] == 1:
+        return np.ones((local, 1))
+    linear = np.vstack([np.ones(X.shape[1]), X]).T
+    return np.asarray(np.vstack([np.ones(local), _NODES[:, :local]]).T @ np.linalg.inv(linear))
+
+
+def _averaged(space: DisplacementSpace, X: NDArray[np.float64], at_points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Extrapolate from the integration points X (3, q) to each element's nodes and average over elements."""
+    carry = carry_to_nodes(X, space.cells.shape[1])
+    values = np.einsum("bq,kqs->kbs", carry, at_points, optimize=True)
+    node = space.cells.ravel()
+    sums = [np.bincount(node, values[..., i].ravel(), minlength=len(space.nodes)) for i in range(6)]
+    return np.column_stack(sums) / np.bincount(node, minlength=len(space.nodes))[:, None]

@@ -1,0 +1,141 @@
+"""Child processes for foreign code that can crash or never end, which no exception reports.
+
+A child is stopped at its time limit and on an interruption. It ends by itself when its parent is killed: its
+standard input is a pipe that only the parent holds open, and the end of that pipe is the end of the parent. Programs
+that are not alula's do not look there; the system ends them with their parent (``geometry.base.leash``).
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+
+from geometry.base.errors import CannotRunError
+
+_ROOT = str(Path(__file__).resolve().parents[1])
+_lock = threading.RLock()
+_running: set[subprocess.Popen[bytes]] = set()
+_stopped = threading.Event()
+_SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "VTK_SMP_MAX_THREADS", "LP_NUM_THREADS"), "1")
+"""One thread for a child's libraries, VTK and Mesa's software renderer: children run beside each other instead."""
+
+
+class _Places:
+    """How many children may run at once, and who may; None for any number."""
+
+    def __init__(self, count: int | None) -> None:
+        self.count = count
+        self.free = nullcontext() if count is None else threading.BoundedSemaphore(count)
+
+
+_places = _Places(None)
+
+
+def module_command(module: str, *arguments: str) -> list[str]:
+    """Return the command that runs a module of alula's."""
+    # -P: a folder named "geometry" where the user stands must not be taken for this package.
+    return [sys.executable, "-P", "-m", module, *arguments]
+
+
+def foreign_command(program: str, *arguments: str) -> list[str]:
+    """Return the command that runs a program which is not alula's."""
+    return module_command("geometry.base.leash", str(os.getpid()), os.path.abspath(program), *arguments)
+
+
+def environment(**more: str) -> dict[str, str]:
+    """Return the environment in which a child finds alula's modules."""
+    paths = os.pathsep.join(filter(None, [_ROOT, os.environ.get("PYTHONPATH", "")]))
+    return os.environ | {"PYTHONPATH": paths} | _SINGLE | more
+
+
+@contextmanager
+def at_most(children: int) -> Iterator[None]:
+    """Let so many children run at once, never more than already stated; others wait, their time limit not begun."""
+    global _places
+    before = _places
+    if before.count is None or children < before.count:
+        _places = _Places(children)
+    try:
+        yield
+    finally:
+        _places = before
+
+
+def run(
+    command: list[str],
+    *,
+    environment: dict[str, str],
+    time_limit: float,
+    folder: Path | None = None,
+    output: Path | None = None,
+) -> tuple[int, str]:
+    """Run a child and return its status (negative: the signal that ended it) and the last line of its standard error.
+
+    time_limit   seconds
+    folder       in which it works, by default this process's
+    output       file that takes its standard output, which is lost otherwise
+
+    Raises ``subprocess.TimeoutExpired`` at the limit, ``OSError`` if it cannot be started, ``CannotRunError``
+    after an interruption.
+    """
+    with _places.free:
+        status, told = _communicate(command, environment, time_limit, folder, output)
+    lines = told.decode(errors="replace").strip().splitlines()
+    return status, (lines or ["it left no message"])[-1]
+
+
+def _communicate(
+    command: list[str], environment: dict[str, str], time_limit: float, folder: Path | None, output: Path | None
+) -> tuple[int, bytes]:
+    """Status of a child and its standard error."""
+    read, write = os.pipe()
+    try:
+        with _lock:
+            if _stopped.is_set():
+                raise CannotRunError("interrupted")
+            with open(output or os.devnull, "wb") as told_out:
+                process = subprocess.Popen(
+                    command, cwd=folder, env=environment, stdin=read, stdout=told_out, stderr=subprocess.PIPE
+                )
+            _running.add(process)
+        with process:
+            try:
+                _, told = process.communicate(timeout=time_limit)
+            except BaseException:
+                process.kill()
+                raise
+            finally:
+                _running.discard(process)
+    finally:
+        os.close(read)
+        os.close(write)
+    return process.returncode, told
+
+
+def stop_all() -> None:
+    """Kill every child and start no other: threads that wait for one go on at once. For a process that is to end."""
+    _stopped.set()
+    with _lock:
+        for process in tuple(_running):
+            process.kill()
+
+
+def stopped() -> bool:
+    """Return True after ``stop_all``: a library may have swallowed the exception that was to end the process."""
+    return _stopped.is_set()
+
+
+def end_with_parent(scratch: Path) -> None:
+    """In a child: when the parent has gone, remove the folder that both used, and end."""
+
+    def wait() -> None:
+        while os.read(sys.stdin.fileno(), 1):
+            pass
+        shutil.rmtree(scratch, ignore_errors=True)
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True).start()

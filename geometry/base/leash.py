@@ -1,0 +1,25 @@
+"""Become another program that ends with its parent: ``python -m geometry.base.leash PARENT PROGRAM ARGUMENT ...``.
+
+alula's own children notice by themselves that the parent has gone. For others the system is asked to kill them (Linux;
+elsewhere a program that outlives its parent runs to its end).
+"""
+
+import ctypes
+import os
+import signal
+import sys
+
+_SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of <linux/prctl.h>; it outlives exec
+
+
+def main(parent: int, command: list[str]) -> None:
+    """Run a command in the place of this process; ``parent`` is the process that it must not outlive."""
+    if sys.platform.startswith("linux"):
+        ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, int(signal.SIGKILL))
+        if os.getppid() != parent:  # it went before that
+            sys.exit(1)
+    os.execv(command[0], command)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), sys.argv[2:])

@@ -1,0 +1,54 @@
+"""What all records of the case file have in common."""
+
+import unicodedata
+from collections.abc import Iterable
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, ConfigDict
+from pydantic_core import PydanticCustomError
+
+from geometry.base.errors import CaseError
+
+
+class CaseModel(BaseModel):
+    """A frozen record of the case file: unknown keys, NaN and infinity are refused."""
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False, use_attribute_docstrings=True
+    )
+
+
+def _name(text: str) -> str:
+    letters = all(c.isalnum() or c in "-_+ " for c in text)
+    short = len(text) <= 64 and len(text.encode(errors="replace")) <= 200  # files are named after it
+    if not (text and short and text[0].isalnum() and letters and text[-1] != " "):
+        raise PydanticCustomError(
+            "bad_name",
+            "a name is made of letters, digits, '-', '_', '+' and spaces, begins with a letter or a digit, "
+            "ends without a space and has at most 64 characters (200 bytes in UTF-8); rename it",
+        )
+    return text
+
+
+def _text(text: str) -> str:
+    # Control characters would reach the terminal, where they can move the cursor or clear the screen; halves of
+    # a pair of surrogates cannot be written to any file.
+    if any(unicodedata.category(c) in ("Cc", "Cs") and c not in "\n\t" for c in text):
+        raise PydanticCustomError("control_character", "text must not hold control characters; remove them")
+    return text
+
+
+Name = Annotated[str, AfterValidator(_name)]
+Text = Annotated[str, AfterValidator(_text)]
+
+
+def check_file_names(entry: str, names: Iterable[str]) -> None:
+    """Raise ``CaseError`` for two names whose files some disks take for one: alike but for case or composition."""
+    seen: dict[str, str] = {}
+    for name in names:
+        other = seen.setdefault(unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold()), name)
+        if other != name:
+            raise CaseError(
+                f"{entry}: '{other}' and '{name}' differ in case alone, and some disks take the files named after them "
+                "for one; rename one of them"
+            )

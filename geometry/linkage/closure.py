@@ -1,0 +1,241 @@
+"""Loop closure of a planar linkage as one complex vector equation per loop.
+
+With every direction as a complex number, a point P of the linkage stands at
+
+    P = sum_l C[P, l] e^{i phi_l} + sum_j D[P, j] s_j e^{i phi_a(j)}
+
+where phi_l is the angle of link l, s_j the travel in slot j and a(j) the link that carries the slot.
+C and D follow once from a spanning tree over the joints; each joint outside the tree closes one
+loop, and its closure vector is a row of the same form (Norton, Design of Machinery, 5th ed.,
+chapter 4, with the loops of any number of links). Jacobian and accelerations are exact.
+
+All functions take angles of shape (..., links) and slides (..., slots), so that many poses are
+handled at once.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.linkage import Linkage
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LoopClosure:
+    """The closure equations of a linkage.
+
+    Unknowns are ``[angles of the moving links, travels in the slots]`` in the order of
+    ``linkage.moving`` and ``slots``; equations are real and imaginary parts of each loop, then one
+    fixed angle per slider.
+    """
+
+    linkage: Linkage
+
+    @cached_property
+    def slots(self) -> tuple[str, ...]:
+        """Names of the joints with a slot."""
+        return tuple(n for n, j in self.linkage.joints.items() if j.type != "revolute")
+
+    @cached_property
+    def sliders(self) -> tuple[str, ...]:
+        """Names of the joints that fix a relative angle."""
+        return tuple(n for n, j in self.linkage.joints.items() if j.type == "slider")
+
+    @cached_property
+    def unknowns(self) -> int:
+        """Number of unknowns: moving links and slots."""
+        return len(self.linkage.moving) + len(self.slots)
+
+    @cached_property
+    def _index(self) -> dict[str, int]:
+        """Column of every link; the ground comes last."""
+        return {name: i for i, name in enumerate((*self.linkage.moving, self.linkage.ground))}
+
+    @cached_property
+    def slot_links(self) -> tuple[int, ...]:
+        """Column of the link that carries each slot."""
+        return tuple(self._index[self.linkage.joints[n].links[0]] for n in self.slots)
+
+    @cached_property
+    def _tree(self) -> dict[str, str]:
+        """Spanning tree by breadth-first search from the ground: link -> joint that leads to it."""
+        tree: dict[str, str] = {}
+        reached, queue = {self.linkage.ground}, deque([self.linkage.ground])
+        while queue:
+            here = queue.popleft()
+            for name in self.linkage.joints_of(here):
+                other = next(link for link in self.linkage.joints[name].links if link != here)
+                if other not in reached:
+                    reached.add(other)
+                    tree[other] = name
+                    queue.append(other)
+        return tree
+
+    def _local(self, link: str, point: str) -> complex:
+        return complex(*self.linkage.links[link].points[point])
+
+    @cached_property
+    def _origins(self) -> dict[str, Complex]:
+        """Row [C | D] of every link's origin."""
+        links, slots = len(self._index), len(self.slots)
+        rows: dict[str, Complex] = {self.linkage.ground: np.zeros(links + slots, dtype=complex)}
+        for link, name in self._tree.items():
+            joint = self.linkage.joints[name]
+            here = joint.links.index(link)
+            parent = joint.links[1 - here]
+            points = self.linkage.joint_points(name)
+            row = rows[parent].copy()
+            row[self._index[parent]] += self._local(parent, points[1 - here])
+            row[self._index[link]] -= self._local(link, points[here])
+            if name in self.slots:
+                # The second link's point is the first link's point plus the travel along the slot.
+                along = np.exp(1j * joint.direction)
+                row[links + self.slots.index(name)] += along if here == 1 else -along
+            rows[link] = row
+        return rows
+
+    def _row(self, link: str, point: str) -> Complex:
+        row = self._origins[link].copy()
+        row[self._index[link]] += self._local(link, point)
+        return row
+
+    @cached_property
+    def loops(self) -> tuple[str, ...]:
+        """Joint that closes each loop."""
+        return tuple(n for n in self.linkage.joints if n not in self._tree.values())
+
+    def loop_path(self, closing: str) -> tuple[str, ...]:
+        """Names of the joints round the loop that a joint closes."""
+
+        def to_ground(link: str) -> list[str]:
+            path = []
+            while link != self.linkage.ground:
+                joint = self._tree[link]
+                path.append(joint)
+                link = next(x for x in self.linkage.joints[joint].links if x != link)
+            return path
+
+        first, second = (to_ground(link) for link in self.linkage.joints[closing].links)
+        while first and second and first[-1] == second[-1]:
+            first.pop()
+            second.pop()
+        return (*reversed(first), closing, *second)
+
+    @cached_property
+    def _loop_rows(self) -> Complex:
+        links = len(self._index)
+        rows = np.zeros((len(self.loops), links + len(self.slots)), dtype=complex)
+        for i, name in enumerate(self.loops):
+            joint = self.linkage.joints[name]
+            first, second = self.linkage.joint_points(name)
+            rows[i] = self._row(joint.links[0], first) - self._row(joint.links[1], second)
+            if name in self.slots:
+                rows[i, links + self.slots.index(name)] += np.exp(1j * joint.direction)
+        return rows
+
+    @cached_property
+    def point_names(self) -> tuple[tuple[str, str], ...]:
+        """(link, point) of every row that ``positions`` returns."""
+        return tuple((link, p) for link, record in self.linkage.links.items() for p in record.points)
+
+    @cached_property
+    def _point_rows(self) -> Complex:
+        return np.array([self._row(link, point) for link, point in self.point_names])
+
+    def _directions(self, q: Real) -> tuple[Complex, Complex]:
+        """e^{i phi} of all links (the ground's is 1) and of the links that carry slots."""
+        moving = len(self.linkage.moving)
+        e = np.ones((*q.shape[:-1], moving + 1), dtype=complex)
+        np.exp(1j * q[..., :moving], out=e[..., :moving])
+        return e, e[..., self.slot_links]
+
+    def _evaluate(self, rows: Complex, q: Real) -> Complex:
+        links = len(self._index)
+        e, along = self._directions(q)
+        slides = q[..., len(self.linkage.moving) :]
+        return np.asarray(e @ rows[:, :links].T + (slides * along) @ rows[:, links:].T)
+
+    def _derivative(self, rows: Complex, q: Real) -> Complex:
+        """Derivative of ``_evaluate`` by the unknowns: (..., rows, unknowns)."""
+        moving, links = len(self.linkage.moving), len(self._index)
+        e, along = self._directions(q)
+        out = np.empty((*q.shape[:-1], len(rows), self.unknowns), dtype=complex)
+        out[..., :moving] = 1j * rows[:, :moving] * e[..., None, :moving]
+        for k, link in enumerate(self.slot_links):
+            column = rows[:, links + k] * along[..., None, k]
+            out[..., moving + k] = column
+            if link < moving:
+                out[..., link] += 1j * q[..., None, moving + k] * column
+        return out
+
+    def _quadratic(self, rows: Complex, q: Real, qdot: Real) -> Complex:
+        """The part of the second time derivative that is quadratic in the speeds."""
+        moving, links = len(self.linkage.moving), len(self._index)
+        e, along = self._directions(q)
+        spin = np.zeros_like(e, dtype=float)
+        spin[..., :moving] = qdot[..., :moving]
+        out = -(spin**2 * e) @ rows[:, :links].T
+        if self.slots:
+            turn = spin[..., self.slot_links]
+            travel, rate = q[..., moving:], qdot[..., moving:]
+            out = out + ((2j * rate * turn - travel * turn**2) * along) @ rows[:, links:].T
+        return np.asarray(out)
+
+    def positions(self, q: Real) -> Complex:
+        """Every point of ``point_names`` in global axes [mm], as x + iy."""
+        return self._evaluate(self._point_rows, q)
+
+    def velocities(self, q: Real, qdot: Real) -> Complex:
+        """Velocity of every point [mm/s]."""
+        return np.asarray((self._derivative(self._point_rows, q) @ qdot[..., None])[..., 0])
+
+    def accelerations(self, q: Real, qdot: Real, qddot: Real) -> Complex:
+        """Acceleration of every point [mm/s²]."""
+        linear = (self._derivative(self._point_rows, q) @ qddot[..., None])[..., 0]
+        return np.asarray(linear + self._quadratic(self._point_rows, q, qdot))
+
+    def origins(self, q: Real) -> Complex:
+        """Origin of every moving link's frame in global axes [mm]."""
+        return self._evaluate(np.array([self._origins[n] for n in self.linkage.moving]), q)
+
+    def residual(self, q: Real) -> Real:
+        """Closure equations (..., equations): mm for loops, longest link times rad for sliders."""
+        return np.concatenate([_split(self._evaluate(self._loop_rows, q)), self._slider_errors(q)], axis=-1)
+
+    def jacobian(self, q: Real) -> Real:
+        """Exact derivative of ``residual`` by the unknowns: (..., equations, unknowns)."""
+        loops = self._derivative(self._loop_rows, q)
+        rows = np.concatenate([loops.real, loops.imag], axis=-2)
+        slider = np.zeros((*q.shape[:-1], len(self.sliders), self.unknowns))
+        slider[...] = self._slider_rows
+        return np.concatenate([rows, slider], axis=-2)
+
+    def quadratic(self, q: Real, qdot: Real) -> Real:
+        """The part of the residual's second time derivative that is quadratic in the speeds."""
+        loops = _split(self._quadratic(self._loop_rows, q, qdot))
+        return np.concatenate([loops, np.zeros((*q.shape[:-1], len(self.sliders)))], axis=-1)
+
+    @cached_property
+    def _slider_rows(self) -> Real:
+        rows = np.zeros((len(self.sliders), self.unknowns))
+        moving = len(self.linkage.moving)
+        for i, name in enumerate(self.sliders):
+            for link, sign in zip(self.linkage.joints[name].links, (-1.0, 1.0), strict=True):
+                if self._index[link] < moving:
+                    rows[i, self._index[link]] = sign * self.linkage.longest
+        return rows
+
+    def _slider_errors(self, q: Real) -> Real:
+        fixed = np.array([self.linkage.joints[n].angle for n in self.sliders]) * self.linkage.longest
+        error = (q @ self._slider_rows.T - fixed) / self.linkage.longest
+        return np.asarray(np.arctan2(np.sin(error), np.cos(error)) * self.linkage.longest)
+
+
+def _split(values: Complex) -> Real:
+    return np.concatenate([values.real, values.imag], axis=-1)

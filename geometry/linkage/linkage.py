@@ -1,0 +1,155 @@
+"""The linkage: links with their points, joints between them, and its mobility."""
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from geometry.base.errors import CaseError
+from geometry.base.model import CaseModel, Name
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
+from geometry.parts.part import HoleRow, Slot
+
+
+class Link(CaseModel):
+    """A rigid body of the linkage, described in a frame of its own whose x axis is the link's axis."""
+
+    ground: bool = False
+    """True for the one link that does not move; its frame is the global one."""
+    points: Annotated[dict[Name, tuple[Length, Length]], Field(min_length=2, max_length=100)]
+    """Pins and load points: name -> (x, y) in the link's frame, in order along the link."""
+    part: Name | None = None
+    """The part (shape and material) that the link is made of; none for a link that is not checked."""
+    holes: Annotated[tuple[HoleRow, ...], Field(max_length=10)] = ()
+    """Rows of cross holes, such as those that hold feathers."""
+    slots: Annotated[dict[Name, Slot], Field(max_length=10)] = {}
+    """Slots of the part, by the point of the joint (pin in slot) whose pin slides in it."""
+    arms: Annotated[dict[Name, Name], Field(max_length=10)] = {}
+    """Pins far off the axis: point -> the pin on the axis from which an arm of the bar's section reaches to it."""
+    end_patch: Annotated[Length, POSITIVE] = 5.0
+    """Length over which a load at a plain end (a point without pin) enters the part."""
+
+    @property
+    def pieces(self) -> tuple[tuple[Name, Name], ...]:
+        """The straight pieces of the link, by the points at their ends: between neighbours in order, and the arms."""
+        chain = [point for point in self.points if point not in self.arms]
+        return (*itertools.pairwise(chain), *((foot, point) for point, foot in self.arms.items()))
+
+
+class Joint(CaseModel):
+    """A joint between two links.
+
+    revolute      the two points coincide
+    pin-in-slot   the second link's point lies on the line through the first link's point along
+                  ``direction`` (a half joint: it may turn and slide)
+    slider        as pin-in-slot, and the second link keeps the angle ``angle`` to the first
+    """
+
+    type: Literal["revolute", "pin-in-slot", "slider"] = "revolute"
+    links: tuple[Name, Name]
+    """The two links; reactions are given as what the first does to the second."""
+    points: tuple[Name, Name] | None = None
+    """The point on each link; the joint's own name on both when left out."""
+    pin_diameter: Annotated[Length, POSITIVE] | None = None
+    """Diameter of the pin (and of the holes that hold it)."""
+    pin_material: Name = "steel-wire"
+    """Material of the pin, for the check of pins."""
+    pin_gap: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Free length of the pin between the two eyes that it joins, for the check of pins."""
+    direction: Angle = 0.0
+    """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
+    angle: Angle = 0.0
+    """Angle of the second link to the first (slider)."""
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """Links and joints that fit together.
+
+    Raises ``CaseError`` for unknown names, no or several ground links, a moving link without joint, or links that hang
+    together with nothing.
+    """
+
+    links: Mapping[str, Link]
+    joints: Mapping[str, Joint]
+
+    def __post_init__(self) -> None:
+        """Check that every name means something and that all links hang together."""
+        grounds = [name for name, link in self.links.items() if link.ground]
+        if len(grounds) != 1:
+            raise CaseError(
+                f"links: {len(grounds)} links have ground = true ({', '.join(grounds) or 'none'}); "
+                "mark exactly one link as the ground"
+            )
+        for name, joint in self.joints.items():
+            self._check_joint(name, joint)
+        for name in self.moving:
+            if not self.joints_of(name):
+                raise CaseError(f"links.{name}: it has no joint, so nothing holds it; add a joint or remove the link")
+        reached = {self.ground}
+        for _ in self.links:
+            reached |= {other for j in self.joints.values() for other in j.links if reached & set(j.links)}
+        if lost := [name for name in self.links if name not in reached]:
+            raise CaseError(
+                f"links.{lost[0]}: no chain of joints connects it to the ground link '{self.ground}'; "
+                "add the missing joint or remove the link"
+            )
+
+    def _check_joint(self, name: str, joint: Joint) -> None:
+        for link, point in zip(joint.links, self.joint_points(name), strict=True):
+            if link not in self.links:
+                raise CaseError(f"joints.{name}: link '{link}' does not exist; the links are {', '.join(self.links)}")
+            if point not in self.links[link].points:
+                raise CaseError(
+                    f"joints.{name}: link '{link}' has no point '{point}'; "
+                    f"its points are {', '.join(self.links[link].points)}"
+                )
+        if joint.links[0] == joint.links[1]:
+            raise CaseError(f"joints.{name}: it joins link '{joint.links[0]}' to itself; name two different links")
+
+    @cached_property
+    def ground(self) -> str:
+        """Name of the ground link."""
+        return next(name for name, link in self.links.items() if link.ground)
+
+    @cached_property
+    def moving(self) -> tuple[str, ...]:
+        """Names of the moving links, in the order of the case file."""
+        return tuple(name for name, link in self.links.items() if not link.ground)
+
+    @cached_property
+    def longest(self) -> float:
+        """The greatest distance between two points of one link [mm]: the linkage's length scale."""
+        spans = []
+        for link in self.links.values():
+            xy = np.array(list(link.points.values()))
+            spans.append(float(np.max(np.linalg.norm(xy[:, None] - xy[None], axis=-1))))
+        if max(spans) == 0.0:
+            raise CaseError("links: all points of every link coincide; give the links a length")
+        return max(spans)
+
+    @cached_property
+    def mobility(self) -> int:
+        """Degrees of freedom after Gruebler/Kutzbach: M = 3(L - 1) - 2 J1 - J2.
+
+        Norton, Design of Machinery, 5th ed., chapter 2. It counts, and can be wrong for special
+        dimensions (parallelograms): there the rank of the Jacobian decides.
+        """
+        half = sum(j.type == "pin-in-slot" for j in self.joints.values())
+        return 3 * (len(self.links) - 1) - 2 * (len(self.joints) - half) - half
+
+    def joint_points(self, name: str) -> tuple[str, str]:
+        """Names of the two points that a joint brings together, on its first and its second link."""
+        return self.joints[name].points or (name, name)
+
+    def joints_of(self, link: str) -> tuple[str, ...]:
+        """Names of the joints on a link."""
+        return tuple(name for name, joint in self.joints.items() if link in joint.links)
+
+    def point_of(self, joint: str, link: str) -> str:
+        """Name of the point at which a joint sits on a link."""
+        return self.joint_points(joint)[self.joints[joint].links.index(link)]

@@ -1,0 +1,357 @@
+"""The four-bar in closed form: poses, speeds, accelerations, limits.
+
+Names follow R. L. Norton, Design of Machinery, 5th ed., chapters 4, 6 and 7: input link a at angle θ2,
+coupler b at θ3, output link c at θ4, ground d along +x from the input's pivot O2 to the output's O4.
+Lengths share one unit; angles are rad, counter-clockwise from the ground.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.base.errors import CaseError
+from geometry.linkage.dyad import CLOSURE_TOLERANCE, BoolArray, Dyad, FloatArray, close_dyad, triangle_angle, wrap
+from geometry.mechanisms.grashof import EQUALITY_TOLERANCE, Grashof, classify
+
+Branch = Literal["open", "crossed"]
+
+DEAD_POINT_SINE = 1e-7
+"""Below this sine of the transmission angle a pose stands at a dead point: speeds have no definite value.
+An exact dead point computes to some 1e-8, the square root of the rounding error."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FourBarPosition:
+    """Link angles in rad, in the shape of the input angles; masked where the loop does not close."""
+
+    theta2: FloatArray
+    theta3: FloatArray
+    theta4: FloatArray
+    transmission: FloatArray
+    """Angle between coupler and output link, in [0, π] (not folded to the acute angle)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FourBarVelocity:
+    """Angular speeds in rad/s of coupler and output; masked as the position, and at dead points."""
+
+    position: FourBarPosition
+    omega2: FloatArray
+    omega3: FloatArray
+    omega4: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FourBarAcceleration:
+    """Angular accelerations in rad/s² of coupler and output; masked as the velocity."""
+
+    velocity: FourBarVelocity
+    alpha2: FloatArray
+    alpha3: FloatArray
+    alpha4: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeadPoint:
+    """A pose in which coupler and output are collinear: the input can go no further (rad)."""
+
+    theta2: float
+    theta3: float
+    theta4: float
+    kind: Literal["extended", "folded"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurningRange:
+    """How far a link can turn; intervals run counter-clockwise, in rad."""
+
+    full_turn: bool
+    intervals: tuple[tuple[float, float], ...]
+    """The whole turn is (-π, π); a lower end lies in [-π, π], an upper end above it."""
+    dead_points: tuple[float, ...]
+    change_points: tuple[float, ...]
+    """Angles at which the links become collinear without stopping: there the branches meet."""
+
+    def contains(self, angle: float) -> bool:
+        """Whether the link can take this angle (rad, any turn)."""
+        return self.interval_of(angle) is not None
+
+    def interval_of(self, angle: float) -> int | None:
+        """Return the index of the interval that holds this angle (rad, any turn), or None."""
+        slack = 1e-12  # rounding must not put an end outside its own interval
+        for index, (low, high) in enumerate(self.intervals):
+            if (angle - low + slack) % (2 * math.pi) <= high - low + 2 * slack:
+                return index
+        return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransmissionRange:
+    """Extremes of the angle between coupler and output over the input's whole range (rad, in [0, π])."""
+
+    minimum: float
+    maximum: float
+
+    @property
+    def least_acute(self) -> float:
+        """The smallest acute transmission angle μ (Norton, 5th ed., chapters 3 and 4)."""
+        return min(self.minimum, math.pi - self.maximum)
+
+    @property
+    def worst_deviation(self) -> float:
+        """The largest deviation from 90°."""
+        return max(abs(self.minimum - math.pi / 2), abs(self.maximum - math.pi / 2))
+
+
+@dataclass(frozen=True, kw_only=True)
+class FourBar:
+    """A four-bar of positive lengths in one unit.
+
+    Raises CaseError for a length that is not positive and finite, and where the longest link exceeds
+    the other three together.
+    """
+
+    a: float
+    b: float
+    c: float
+    d: float
+
+    def __post_init__(self) -> None:
+        for name, length in zip("abcd", self._lengths, strict=True):
+            if not (math.isfinite(length) and length > 0):
+                raise CaseError(f"four-bar length {name} = {length:g} must be positive; give the link's length.")
+        longest, total = max(self._lengths), sum(self._lengths)
+        if 2 * longest - total > EQUALITY_TOLERANCE * total:
+            name = "abcd"[self._lengths.index(longest)]
+            raise CaseError(
+                f"four-bar length {name} = {longest:g} exceeds the other three together by {2 * longest - total:.4g}, "
+                "so the loop can never close; shorten it or lengthen another link."
+            )
+
+    @property
+    def _lengths(self) -> tuple[float, float, float, float]:
+        return self.a, self.b, self.c, self.d
+
+    @property
+    def grashof(self) -> Grashof:
+        """Grashof's sums, class and inversion, at the default tolerance."""
+        return classify(a=self.a, b=self.b, c=self.c, d=self.d)
+
+    def scaled(self, factor: float) -> "FourBar":
+        """Return the same four-bar with all lengths times ``factor``."""
+        return FourBar(a=self.a * factor, b=self.b * factor, c=self.c * factor, d=self.d * factor)
+
+    def driven_by_output(self) -> "FourBar":
+        """Return the mirrored four-bar whose input is this one's output: its θ2 is π - θ4, its θ4 is π - θ2."""
+        return FourBar(a=self.c, b=self.b, c=self.a, d=self.d)
+
+    def driven_by_coupler(self) -> "FourBar":
+        """Return the four-bar with the first two vectors of the loop in the other order: its θ2 is θ3."""
+        return FourBar(a=self.b, b=self.a, c=self.c, d=self.d)
+
+    def _close(self, theta2: FloatArray, branch: Branch) -> Dyad:
+        # d - a cos θ2 without cancellation where the input pin comes near O4.
+        dx = (self.d - self.a) + 2 * self.a * np.sin(theta2 / 2) ** 2
+        return close_dyad(dx, -self.a * np.sin(theta2), self.b, self.c, 1 if branch == "open" else -1)
+
+    def gap(self, theta2: ArrayLike) -> FloatArray:
+        """Return by how much the loop stays open at each input angle (unit of the lengths; 0 where it closes)."""
+        return self._close(np.asarray(theta2, dtype=float), "open").gap
+
+    def position(self, theta2: ArrayLike, *, branch: Branch = "open") -> FourBarPosition:
+        """Return coupler and output angle for input angles of any shape (rad).
+
+        ``open`` is the minus sign of Norton's equation for θ4 (chapter 4): the pin B lies to the left of the line from
+        the input pin A to O4, and stays there for as long as the linkage does not pass a dead point. Norton,
+        5th ed., chapter 4, in a form without quotients. A single angle at which the
+        loop does not close raises CaseError; in arrays such angles are masked.
+        """
+        theta2 = np.asarray(theta2, dtype=float)
+        dyad = self._close(theta2, branch)
+        if theta2.ndim == 0 and not dyad.closes:
+            raise CaseError(self._open_loop(float(theta2), float(dyad.gap)))
+        mask = _masker(dyad.closes)
+        return FourBarPosition(
+            theta2=theta2, theta3=mask(dyad.first), theta4=mask(dyad.second), transmission=mask(dyad.between)
+        )
+
+    def _open_loop(self, theta2: float, gap: float) -> str:
+        angle = math.degrees(theta2)
+        if gap <= CLOSURE_TOLERANCE * (self.b + self.c):
+            return (
+                f"the four-bar has no definite pose at input angle {angle:.4f}°: the input pin lies on the output's "
+                "pivot and the equal coupler and output spin about it; drive it to another angle."
+            )
+        spans = " and ".join(
+            f"{math.degrees(low):.4f}° to {math.degrees(high):.4f}°" for low, high in self.input_range().intervals
+        )
+        return (
+            f"the four-bar cannot be assembled at input angle {angle:.4f}°: the loop stays open by {gap:.4g}; "
+            f"keep the input within {spans}."
+        )
+
+    def pins(self, theta2: ArrayLike, *, branch: Branch = "open") -> tuple[FloatArray, FloatArray]:
+        """Return the pins A (input and coupler) and B (coupler and output), shape ``theta2.shape + (2,)``."""
+        position = self.position(theta2, branch=branch)
+        stack = np.stack if position.theta2.ndim == 0 else np.ma.stack
+        first = np.stack([self.a * np.cos(position.theta2), self.a * np.sin(position.theta2)], axis=-1)
+        second = stack([self.d + self.c * np.cos(position.theta4), self.c * np.sin(position.theta4)], axis=-1)
+        return first, np.asanyarray(second)
+
+    def velocity(self, theta2: ArrayLike, omega2: ArrayLike, *, branch: Branch = "open") -> FourBarVelocity:
+        """Return angular speeds for input speeds ω2 in rad/s that broadcast with θ2.
+
+        Norton, 5th ed., chapter 6. A single pose at a dead point raises CaseError; in arrays
+        such poses are masked.
+        """
+        theta2, omega2 = np.broadcast_arrays(np.asarray(theta2, dtype=float), np.asarray(omega2, dtype=float))
+        position = self.position(theta2, branch=branch)
+        alive, sine = _transmission_sine(position)
+        mask = _masker(alive)
+        t3, t4 = np.asarray(position.theta3), np.asarray(position.theta4)
+        omega3 = self.a * omega2 / self.b * np.sin(t4 - theta2) / -sine
+        omega4 = self.a * omega2 / self.c * np.sin(theta2 - t3) / sine
+        return FourBarVelocity(position=position, omega2=omega2, omega3=mask(omega3), omega4=mask(omega4))
+
+    def acceleration(
+        self, theta2: ArrayLike, omega2: ArrayLike, alpha2: ArrayLike = 0.0, *, branch: Branch = "open"
+    ) -> FourBarAcceleration:
+        """Return angular accelerations for input speeds ω2 (rad/s) and accelerations α2 (rad/s²).
+
+        Norton, 5th ed., chapter 7. All three arguments broadcast; dead points as in ``velocity``.
+        """
+        theta2, omega2, alpha2 = np.broadcast_arrays(
+            *(np.asarray(value, dtype=float) for value in (theta2, omega2, alpha2))
+        )
+        velocity = self.velocity(theta2, omega2, branch=branch)
+        alive, sine = _transmission_sine(velocity.position)
+        mask = _masker(alive)
+        t3, t4 = np.asarray(velocity.position.theta3), np.asarray(velocity.position.theta4)
+        w3, w4 = np.asarray(velocity.omega3), np.asarray(velocity.omega4)
+        A, B = self.c * np.sin(t4), self.b * np.sin(t3)
+        D, E = self.c * np.cos(t4), self.b * np.cos(t3)
+        C = self.a * (alpha2 * np.sin(theta2) + omega2**2 * np.cos(theta2)) + E * w3**2 - D * w4**2
+        F = self.a * (alpha2 * np.cos(theta2) - omega2**2 * np.sin(theta2)) - B * w3**2 + A * w4**2
+        determinant = self.b * self.c * sine
+        return FourBarAcceleration(
+            velocity=velocity,
+            alpha2=alpha2,
+            alpha3=mask((C * D - A * F) / determinant),
+            alpha4=mask((C * E - B * F) / determinant),
+        )
+
+    def dead_points(self) -> tuple[DeadPoint, ...]:
+        """Return the lock-up poses of the input: coupler and output collinear (Norton, 5th ed., chapter 4)."""
+        found: list[DeadPoint] = []
+        for kind, reach in self._limits():
+            size = _pivot_angle(self.a, self.d, reach)
+            for theta2 in (size, -size):
+                line = math.atan2(-self.a * math.sin(theta2), self.d - self.a * math.cos(theta2))
+                # Folded with the output the longer of the two, the coupler points away from O4.
+                theta3 = line + (math.pi if kind == "folded" and self.c > self.b else 0.0)
+                theta4 = theta3 + (math.pi if kind == "extended" else 0.0)
+                found.append(
+                    DeadPoint(theta2=theta2, theta3=float(wrap(theta3)), theta4=float(wrap(theta4)), kind=kind)
+                )
+        return tuple(found)
+
+    def _limits(self) -> list[tuple[Literal["extended", "folded"], float]]:
+        """Return the distances A-O4 at which the coupler and the output stop the input, inside its reach."""
+        margin = EQUALITY_TOLERANCE * sum(self._lengths)
+        limits: list[tuple[Literal["extended", "folded"], float]] = []
+        if abs(self.b - self.c) > abs(self.a - self.d) + margin:
+            limits.append(("folded", abs(self.b - self.c)))
+        if self.b + self.c < self.a + self.d - margin:
+            limits.append(("extended", self.b + self.c))
+        return limits
+
+    def input_range(self) -> TurningRange:
+        """Return the range of θ2, its dead points and its change points."""
+        margin = EQUALITY_TOLERANCE * sum(self._lengths)
+        limits = {kind: _pivot_angle(self.a, self.d, reach) for kind, reach in self._limits()}
+        near, far = limits.get("folded"), limits.get("extended")
+        if near is None and far is None:
+            intervals: tuple[tuple[float, float], ...] = ((-math.pi, math.pi),)
+        elif near is None:
+            assert far is not None
+            intervals = ((-far, far),)
+        elif far is None:
+            intervals = ((near, 2 * math.pi - near),)
+        else:
+            intervals = ((near, far), (-far, -near))
+        changes = []
+        if abs(abs(self.b - self.c) - abs(self.a - self.d)) <= margin:
+            changes.append(0.0)
+        if abs(self.b + self.c - self.a - self.d) <= margin:
+            changes.append(math.pi)
+        return TurningRange(
+            full_turn=not limits,
+            intervals=intervals,
+            dead_points=tuple(sign * angle for angle in limits.values() for sign in (1, -1)),
+            change_points=tuple(changes),
+        )
+
+    def output_range(self) -> TurningRange:
+        """Return the range of θ4; its ends are the poses in which input and coupler are collinear."""
+        mirrored = self.driven_by_output().input_range()
+        return TurningRange(
+            full_turn=mirrored.full_turn,
+            intervals=mirrored.intervals
+            if mirrored.full_turn
+            else tuple((math.pi - high, math.pi - low) for low, high in mirrored.intervals),
+            dead_points=tuple(math.pi - angle for angle in mirrored.dead_points),
+            change_points=tuple(math.pi - angle for angle in mirrored.change_points),
+        )
+
+    def transmission_range(self) -> TransmissionRange:
+        """Return the extremes of the transmission angle over the input's range.
+
+        The angle grows with the distance from the input pin to O4, so its extremes lie at the ends of that
+        distance: θ2 = 0 and 180° where the input turns fully (Norton, 5th ed., chapter 4), dead points elsewhere.
+        """
+        nearest = max(abs(self.a - self.d), abs(self.b - self.c))
+        farthest = min(self.a + self.d, self.b + self.c)
+        low, high = triangle_angle(self.b, self.c, np.array([nearest, farthest]))
+        return TransmissionRange(minimum=float(low), maximum=float(high))
+
+    def branch_of(self, theta2: float, theta3: float) -> Branch | None:
+        """Tell the branch of a pose from its input and coupler angle (rad); None at a dead point."""
+        dx, dy = self.d - self.a * math.cos(theta2), -self.a * math.sin(theta2)
+        reach = math.hypot(dx, dy)
+        cross = dx * math.sin(theta3) - dy * math.cos(theta3)
+        if abs(cross) <= DEAD_POINT_SINE * reach:
+            return None
+        return "open" if cross > 0 else "crossed"
+
+
+def _pivot_angle(a: float, d: float, reach: float) -> float:
+    """Return |θ2| in [0, π] at which the input pin lies ``reach`` away from O4."""
+    return float(triangle_angle(a, d, reach))
+
+
+def _masker(valid: BoolArray) -> Callable[[FloatArray], FloatArray]:
+    """Return a function that masks arrays where ``valid`` is false and leaves single values alone."""
+
+    def mask(values: FloatArray) -> FloatArray:
+        if valid.ndim == 0:
+            return np.asarray(values)
+        return np.ma.masked_array(np.asarray(values), mask=~valid)
+
+    return mask
+
+
+def _transmission_sine(position: FourBarPosition) -> tuple[BoolArray, FloatArray]:
+    """Return where speeds are definite, and sin(θ4 - θ3) there (1 elsewhere, so that nothing divides by zero)."""
+    sine = np.sin(np.asarray(position.theta4) - np.asarray(position.theta3))
+    closes = ~np.ma.getmaskarray(position.theta3)
+    dead = np.abs(sine) < DEAD_POINT_SINE
+    if sine.ndim == 0 and dead:
+        raise CaseError(
+            f"the four-bar stands at a dead point at input angle {math.degrees(float(position.theta2)):.4f}°: coupler "
+            "and output are collinear and speeds have no definite value; drive it at another angle."
+        )
+    return np.asarray(closes & ~dead), np.where(dead, 1.0, sine)

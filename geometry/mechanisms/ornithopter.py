@@ -1,0 +1,325 @@
+"""The resin-printed ornithopter: its parametric rules, and the motion of its wings in closed form.
+
+A crank drives a connecting rod whose far pin slides along the centre line; that pin runs in the slots of
+two wing levers, which turn about fixed pivots at ±X beside the line. Source of the rules: Hernández (2022).
+"""
+
+import math
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
+
+from geometry.base.errors import CaseError
+from geometry.base.model import CaseModel
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
+from geometry.linkage.dyad import FloatArray
+from geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
+from geometry.mechanisms.slider_crank import SliderCrank
+from geometry.parts.part import Bar, Body, Disc, Part, Pin, PlainEnd
+
+MARGIN = 0.2
+"""By which the slot goes on at either end of the pin's travel [mm]: the printer's tolerance."""
+NECK = 0.4
+"""By which rod and lever are narrower than their eyes [mm]."""
+STUB, SOCKET = 6.0, 2.0
+"""How far the lever reaches beyond its pivot to hold the wing, and over which length it does [mm]."""
+FILLET = 0.3
+"""Where bars meet their eyes [mm]."""
+RING = 0.6
+"""Width of the rings about the crank's holes on which a torque enters, as a share of the wall about the pin's hole."""
+_SAMPLES = 3600
+"""Crank positions from which extremes are refined; the refinement leaves some 1e-9 of them."""
+
+
+class Motor(CaseModel):
+    """A motor of the source's table."""
+
+    kind: Literal["round", "flat-sided"]
+    shaft_diameter: Annotated[Length, POSITIVE]
+    shaft_height: Annotated[Length, POSITIVE]
+    diameter: Annotated[Length, POSITIVE]
+    round_height: Annotated[Length, POSITIVE]
+    square_width: Annotated[Length, POSITIVE]
+    square_height: Annotated[Length, POSITIVE]
+
+
+@cache
+def motors() -> dict[str, Motor]:
+    """Return the motor table by name."""
+    text = resources.files("geometry").joinpath("motors.toml").read_text(encoding="utf-8")
+    return {name: Motor.model_validate(entry) for name, entry in tomllib.loads(text).items()}
+
+
+def _wing_angle(value: float) -> float:
+    if not 0 < value < math.pi / 2:
+        raise PydanticCustomError("wing_angle", "a wing angle lies between 0 and 90 degrees")
+    return value
+
+
+def _motor_name(value: str) -> str:
+    if value not in motors():
+        raise PydanticCustomError(
+            "unknown_motor",
+            'there is no motor "{name}"; choose one of {known}',
+            {"name": value, "known": ", ".join(motors())},
+        )
+    return value
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrnithopterDimensions:
+    """What the rules yield, in mm; the source's own names in brackets."""
+
+    pivot_offset: float
+    """X = throw / tan(wing angle)."""
+    slot_reach: float
+    """[ranura] = throw / sin(wing angle): from the pivot to the pin in the wing's end positions."""
+    pin_diameter: float
+    hole_diameter: float
+    thick_wall: float
+    """Around holes of base and crank: 0.5 + clearance/2."""
+    thin_wall: float
+    """Around holes of cover and wing lever: 0.5 - clearance/2."""
+    crank_disc_radius: float
+    """[mxmv]"""
+    motor_half_width: float
+    """[mxmt]"""
+    body_half_width: float
+    """[cbct]"""
+    link_length: float
+    """Of the movement link (connecting rod); also the height of the pivots over the crank."""
+    pivot_height: float
+    base_width: float
+    base_height: float
+    gear_thickness: float
+    crank_pin_height: float
+    link_thickness: float
+    lever_thickness: float
+    """The height of the motor's shaft."""
+
+
+class OrnithopterRules(CaseModel):
+    """The designer's five choices; the defaults are the ornithopter as built."""
+
+    throw: Annotated[Length, POSITIVE] = 3.0
+    """Radius of the crank pin [biela]."""
+    wing_angle: Annotated[Angle, AfterValidator(_wing_angle)] = math.radians(23)
+    """Greatest angle of a wing to the horizontal."""
+    pin_diameter: Annotated[Length, POSITIVE] = 2.0
+    """Nominal diameter of pins and holes [DI]."""
+    clearance: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Taken off the pins and added to the holes [ajuste]."""
+    motor: Annotated[str, AfterValidator(_motor_name)] = Field(default="M-C 10 mm")
+    """Name in the motor table."""
+
+    def dimensions(self) -> OrnithopterDimensions:
+        """Return all dimensions; CaseError where the clearance leaves no pin or no wall."""
+        thin = 0.5 - self.clearance / 2
+        if self.clearance >= self.pin_diameter or thin <= 0:
+            raise CaseError(
+                f"ornithopter clearance = {self.clearance:g} mm must stay below 1 mm and below the pin diameter of "
+                f"{self.pin_diameter:g} mm, or a pin or a wall vanishes; choose a smaller clearance."
+            )
+        thick = 0.5 + self.clearance / 2
+        motor = motors()[self.motor]
+        offset = self.throw / math.tan(self.wing_angle)
+        disc = thick + self.throw + self.pin_diameter / 2
+        body = max(motor.diameter / 2, disc)
+        link = 2 * self.throw + 1.0 + self.pin_diameter + thick + thin
+        return OrnithopterDimensions(
+            pivot_offset=offset,
+            slot_reach=self.throw / math.sin(self.wing_angle),
+            pin_diameter=self.pin_diameter - self.clearance,
+            hole_diameter=self.pin_diameter + self.clearance,
+            thick_wall=thick,
+            thin_wall=thin,
+            crank_disc_radius=disc,
+            motor_half_width=motor.diameter / 2,
+            body_half_width=body,
+            link_length=link,
+            pivot_height=link,
+            base_width=max(body, offset) + 1.5,
+            base_height=self.throw + link + 1.5,
+            gear_thickness=2.0,
+            crank_pin_height=2.0,
+            link_thickness=2.0,
+            lever_thickness=motor.shaft_height,
+        )
+
+    def bodies(self, material: str) -> dict[str, Body]:
+        """Return the moving parts as solids: "crank", "rod" and "lever" (both levers are alike).
+
+        The crank is a disc with the shaft's hole and the pin's; rod and lever are flat bars with eyes, the lever with
+        the slot of the rod's pin. Of the source are the thicknesses, holes, walls about them, the disc's radius and
+        the pin's travel in the slot; ``MARGIN``, ``NECK``, ``STUB``, ``SOCKET``, ``FILLET`` and ``RING`` are assumed.
+        """
+        sizes, hole = self.dimensions(), self.dimensions().hole_diameter
+
+        def bar(wall: float, thickness: float) -> Bar:
+            eye = hole + 2 * wall
+            return Bar.model_construct(
+                shape="bar",
+                material=material,
+                width=eye - NECK,
+                thickness=thickness,
+                eye_diameter=eye,
+                eye_thickness=thickness,
+                fillet_radius=FILLET,
+            )
+
+        def pin(name: str, x: float, diameter: float = hole, slot: float = 0.0) -> Pin:
+            return Pin(name=name, x=x, y=0.0, diameter=diameter, slot=slot)
+
+        disc = Disc.model_construct(
+            shape="disc",
+            material=material,
+            diameter=2 * sizes.crank_disc_radius,
+            thickness=sizes.gear_thickness,
+            eye_diameter=hole + 2 * RING * sizes.thick_wall,
+        )
+        first, last = -sizes.slot_reach - MARGIN, -sizes.pivot_offset + MARGIN
+        found: dict[str, tuple[Part, tuple[Pin, ...], tuple[PlainEnd, ...]]] = {
+            "crank": (disc, (pin("O", 0.0, motors()[self.motor].shaft_diameter), pin("A", self.throw)), ()),
+            "rod": (bar(sizes.thick_wall, sizes.link_thickness), (pin("A", 0.0), pin("C", sizes.link_length)), ()),
+            "lever": (
+                bar(sizes.thin_wall, sizes.lever_thickness),
+                (pin("slot", (first + last) / 2, slot=last - first), pin("pivot", 0.0)),
+                (PlainEnd(name="W", x=STUB, patch=SOCKET),),
+            ),
+        }
+        return {name: Body(part=part, pins=pins, ends=ends, holes=()) for name, (part, pins, ends) in found.items()}
+
+    def drive(self) -> "WingDrive":
+        """Return the wing drive of these dimensions, with the rule's link length from pin to pin."""
+        sizes = self.dimensions()
+        return WingDrive(
+            throw=self.throw,
+            rod=sizes.link_length,
+            pivot_offset=sizes.pivot_offset,
+            pivot_height=sizes.pivot_height,
+        )
+
+
+@cache
+def variants() -> dict[str, OrnithopterRules]:
+    """Return the variants that the source shows, named by wing angle, throw and motor; the last is the built one."""
+    return {
+        "30° 8 mm 25 mm": OrnithopterRules(throw="8 mm", wing_angle="30 deg", motor="M-SC 25 mm"),
+        "20° 3 mm 25 mm": OrnithopterRules(throw="3 mm", wing_angle="20 deg", motor="M-SC 25 mm"),
+        "23° 3 mm 10 mm": OrnithopterRules(),
+    }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WingMotion:
+    """Pin and wing over the crank angle, all of one shape; both wings move alike, in the mirror."""
+
+    crank_angle: FloatArray
+    """From the centre line, 0 with the crank pin nearest to the wings (rad)."""
+    pin_height: FloatArray
+    """Of the sliding pin over the crank's axis, mm."""
+    pin_speed: FloatArray
+    pin_acceleration: FloatArray
+    slot_position: FloatArray
+    """Of the pin in the slot, from the wing's pivot, mm."""
+    slot_speed: FloatArray
+    wing_angle: FloatArray
+    """Of the slot to the horizontal, positive where the pin stands above the pivots, rad."""
+    wing_speed: FloatArray
+    wing_acceleration: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class WingExtremes:
+    """Extremes over one turn of the crank at constant speed (rad, rad/s, rad/s²; pin mm/s, mm/s²)."""
+
+    highest: float
+    lowest: float
+    stroke: float
+    fastest_up: float
+    fastest_down: float
+    greatest_acceleration: float
+    least_acceleration: float
+    pin_speed_up: float
+    pin_speed_down: float
+    pin_acceleration_max: float
+    pin_acceleration_min: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class WingDrive:
+    """Crank, rod and wing pivots, in mm. Raises CaseError where the crank cannot turn fully."""
+
+    throw: float
+    rod: float
+    """Between the pins."""
+    pivot_offset: float
+    pivot_height: float
+
+    def __post_init__(self) -> None:
+        if not self.slider_crank.full_turn:
+            raise CaseError(
+                f"ornithopter rod = {self.rod:g} mm must be at least as long as the throw of {self.throw:g} mm, or the "
+                "crank cannot turn; lengthen the rod."
+            )
+        if not (math.isfinite(self.pivot_offset) and self.pivot_offset > 0 and math.isfinite(self.pivot_height)):
+            raise CaseError(
+                f"ornithopter pivots at {self.pivot_offset:g} mm beside and {self.pivot_height:g} mm above the crank "
+                "must be finite and lie beside the centre line; give a positive offset."
+            )
+
+    @property
+    def slider_crank(self) -> SliderCrank:
+        """Crank, rod and sliding pin."""
+        return SliderCrank(a=self.throw, b=self.rod)
+
+    def motion(self, crank_angle: ArrayLike, speed: ArrayLike, acceleration: ArrayLike = 0.0) -> WingMotion:
+        """Return the motion at crank angles (rad), speeds (rad/s) and accelerations (rad/s²) that broadcast.
+
+        With the pin at the height s over the pivots, tan φ = s/X, so φ' = X s'/(X² + s²) and
+        φ'' = X (s'' (X² + s²) - 2 s s'²)/(X² + s²)²; s from the in-line slider-crank.
+        """
+        pin = self.slider_crank.motion(crank_angle, speed, acceleration)
+        d, v, a = (np.asarray(values) for values in (pin.position.d, pin.d_dot, pin.d_ddot))
+        X, s = self.pivot_offset, d - self.pivot_height
+        square = X * X + s * s
+        reach = np.sqrt(square)
+        return WingMotion(
+            crank_angle=pin.position.theta2,
+            pin_height=d,
+            pin_speed=v,
+            pin_acceleration=a,
+            slot_position=reach,
+            slot_speed=s * v / reach,
+            wing_angle=np.arctan2(s, X),
+            wing_speed=X * v / square,
+            wing_acceleration=X * (a * square - 2 * s * v * v) / square**2,
+        )
+
+    def extremes(self, speed: float) -> WingExtremes:
+        """Return the extremes over one turn at a constant crank speed (rad/s)."""
+        motion = self.motion(np.arange(_SAMPLES) * (2 * np.pi / _SAMPLES), speed)
+        # The wing follows the pin, so its end positions are those of the slider-crank.
+        low, high = self.slider_crank.stroke_ends()
+        highest = math.atan2(high - self.pivot_height, self.pivot_offset)
+        lowest = math.atan2(low - self.pivot_height, self.pivot_offset)
+        return WingExtremes(
+            highest=highest,
+            lowest=lowest,
+            stroke=highest - lowest,
+            fastest_up=periodic_maximum(motion.wing_speed),
+            fastest_down=periodic_minimum(motion.wing_speed),
+            greatest_acceleration=periodic_maximum(motion.wing_acceleration),
+            least_acceleration=periodic_minimum(motion.wing_acceleration),
+            pin_speed_up=periodic_maximum(motion.pin_speed),
+            pin_speed_down=periodic_minimum(motion.pin_speed),
+            pin_acceleration_max=periodic_maximum(motion.pin_acceleration),
+            pin_acceleration_min=periodic_minimum(motion.pin_acceleration),
+        )

@@ -1,0 +1,22 @@
+"""Extremes of smooth periodic functions from even samples."""
+
+import numpy as np
+
+from geometry.linkage.dyad import FloatArray
+
+
+def periodic_maximum(values: FloatArray) -> float:
+    """Return the maximum of a smooth periodic function from even samples of one period, shape (n,).
+
+    The greatest sample is refined by the parabola through it and its neighbours: the error falls with the
+    fourth power of the spacing, that of the sample itself with the second.
+    """
+    at = int(np.argmax(values))
+    before, top, after = values[at - 1], values[at], values[(at + 1) % values.size]
+    curvature = before - 2 * top + after
+    return float(top if curvature >= 0 else top - (after - before) ** 2 / (8 * curvature))
+
+
+def periodic_minimum(values: FloatArray) -> float:
+    """Return the minimum, as ``periodic_maximum`` returns the maximum."""
+    return -periodic_maximum(-values)

@@ -1,0 +1,189 @@
+"""From bodies to meshes, mass properties and STEP files, each in a child process with a time limit.
+
+The geometry kernel and the mesher can crash or loop for ever, which no exception reports; a child
+process that does so becomes a ``CannotRunError``.
+"""
+
+import os
+import pickle
+import signal
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base import child, child_memory
+from geometry.base.errors import AlulaError, CannotRunError, CaseError
+from geometry.meshing.mesh_settings import COARSE, MeshSettings
+from geometry.meshing.reentrant import ReentrantEdge
+from geometry.meshing.tagged_mesh import TaggedMesh
+from geometry.parts.body_rules import check_body
+from geometry.parts.part import Body
+
+__all__ = [
+    "COARSE",
+    "MassProperties",
+    "MeshSettings",
+    "ReentrantEdge",
+    "export_step",
+    "mass_properties",
+    "mesh_bodies",
+    "mesh_body",
+    "reentrant_edges",
+    "step_names",
+]
+
+_T = TypeVar("_T")
+
+KERNEL_TIME_LIMIT = 300.0
+"""Seconds for tasks of the geometry kernel that mesh nothing."""
+KERNEL_MEMORY_LIMIT = MeshSettings.memory_limit
+"""Bytes for the same."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MassProperties:
+    """Volume integrals of a body in its link's frame.
+
+    volume     mm³
+    centroid   (3,) mm
+    inertia    (3, 3) mm⁵: the inertia tensor about the centroid for unit density, products of inertia
+               with their minus sign (off-diagonal entries -∫xy dV)
+    """
+
+    volume: float
+    centroid: NDArray[np.float64]
+    inertia: NDArray[np.float64]
+
+
+def mesh_body(body: Body, settings: MeshSettings | None = None) -> TaggedMesh:
+    """Mesh a body into tetrahedra with named surfaces (node order as ``TaggedMesh`` says; cells not sorted).
+
+    Raises ``CaseError`` if the body cannot be built as described, ``CannotRunError`` if the kernel or
+    the mesher fails, crashes or exceeds a limit.
+    """
+    settings = settings or MeshSettings()
+    check_body(body)
+    mesh: TaggedMesh = _run("mesh", body, settings, time_limit=settings.time_limit, memory=settings.memory_limit)
+    return mesh
+
+
+def mesh_bodies(
+    bodies: Mapping[str, Body], settings: MeshSettings | None = None, *, processes: int | None = None
+) -> dict[str, TaggedMesh]:
+    """Mesh several bodies by name, at most ``processes`` at once (one per core unless told).
+
+    Raises as ``mesh_body`` does, with the body's name before the sentence.
+    """
+
+    def one(item: tuple[str, Body]) -> TaggedMesh:
+        return _naming(item[0], mesh_body, item[1], settings)
+
+    with ThreadPoolExecutor(max_workers=processes or os.cpu_count() or 1) as pool:
+        return dict(zip(bodies, pool.map(one, bodies.items()), strict=True))
+
+
+def mass_properties(body: Body) -> MassProperties:
+    """Return the body's volume, centroid and inertia by the geometry kernel.
+
+    Raises ``CaseError`` and ``CannotRunError`` as ``mesh_body`` does.
+    """
+    check_body(body)
+    volume, centroid, inertia = _run("mass", body)
+    return MassProperties(volume=volume, centroid=centroid, inertia=inertia)
+
+
+def reentrant_edges(body: Body) -> list[ReentrantEdge]:
+    """Return the sharp edges at which the material's angle exceeds 180°, where linear elastic stress is infinite.
+
+    Found on the kernel's own edges. Raises ``CaseError`` and ``CannotRunError`` as ``mesh_body`` does.
+    """
+    check_body(body)
+    edges: list[ReentrantEdge] = _run("reentrant", body)
+    return edges
+
+
+def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:
+    """Write each body as ``<name>.step`` (in mm) into an existing folder and return the paths.
+
+    Raises as ``mesh_body`` does, with the body's name before the sentence.
+    """
+    paths = []
+    for file, (name, body) in zip(step_names(bodies), bodies.items(), strict=True):
+        _naming(name, _step, body, folder / file)
+        paths.append(folder / file)
+    return paths
+
+
+def step_names(bodies: Iterable[str]) -> list[str]:
+    """Return the names of the STEP files of bodies."""
+    return [f"{name}.step" for name in bodies]
+
+
+def _step(body: Body, path: Path) -> None:
+    check_body(body)
+    _run("step", body, str(path.resolve()))
+
+
+def _naming(name: str, task: Callable[..., _T], *arguments: Any) -> _T:
+    try:
+        return task(*arguments)
+    except AlulaError as error:
+        raise type(error)(f"{name}: {error}") from None
+
+
+def _command(folder: Path) -> list[str]:
+    return child.module_command("geometry.meshing.mesh_worker", str(folder))
+
+
+def _run(task: str, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memory: float = KERNEL_MEMORY_LIMIT) -> Any:
+    """Do a task of ``geometry.meshing.mesh_worker`` in a child process and return its result.
+
+    time_limit   seconds
+    memory       bytes that the child may hold
+    """
+    try:
+        with tempfile.TemporaryDirectory(prefix="alula-", ignore_cleanup_errors=True) as name:
+            folder = Path(name)
+            memory = child_memory.allowed(memory)
+            (folder / "request").write_bytes(pickle.dumps((memory, task, *arguments)))
+            status, told = child.run(_command(folder), environment=child.environment(), time_limit=time_limit)
+            try:
+                kind, result = pickle.loads((folder / "answer").read_bytes())
+            except Exception:  # none, half of one, or something else
+                raise CannotRunError(_obituary(status, told)) from None
+    except subprocess.TimeoutExpired:
+        raise CannotRunError(
+            f"the mesher was stopped after its time limit of {time_limit:g} s; use a coarser size (solid.mesh_size) "
+            "or check with fidelity beam"
+        ) from None
+    except OSError as error:
+        raise CannotRunError(
+            f"the mesher could not be run ({error.strerror or error}); free space in the folder for temporary files "
+            "or name another in TMPDIR"
+        ) from None
+    if kind == "case":
+        raise CaseError(result)
+    if kind == "cannot":
+        raise CannotRunError(result)
+    if kind == "memory":
+        raise CannotRunError(
+            f"the mesher needed more than the {memory / 1e9:.3g} GB of memory that it may take; "
+            "use a coarser size (solid.mesh_size)"
+        )
+    return result
+
+
+def _obituary(status: int, told: str) -> str:
+    if status == -signal.SIGKILL:
+        return "the mesher was killed (SIGKILL), as the system does when memory runs out; raise solid.mesh_size"
+    if status < 0:
+        name = signal.Signals(-status).name
+        return f"the mesher crashed ({name}); change the part's dimensions or the mesh size a little"
+    return f"the mesher ended with status {status} and no answer: {told}"

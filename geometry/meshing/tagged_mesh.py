@@ -1,0 +1,61 @@
+"""The one mesh record: tetrahedra with named surfaces, checked against the geometry they stand for."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base.errors import CannotRunError
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaggedMesh:
+    """Tetrahedra in mm, straight (4 nodes) or curved (10 nodes), with named boundary surfaces.
+
+    The ten nodes stand in VTK's order, which is scikit-fem's too: corners 0-3, then the edges
+    01, 12, 02, 03, 13, 23. A surface is an array of triangles, each by its three corner nodes.
+
+    points      (n, 3) float, mm
+    cells       (m, 4) or (m, 10) int, node numbers
+    surfaces    name -> (k, 3) int, corner nodes of the boundary triangles of that surface:
+                ``bore:A`` the pin hole at A, ``top:A`` and ``bottom:A`` the flat faces of the eye
+                at A (towards +z and -z), ``end:H`` the loaded patch of a plain end at H
+    areas       name -> area in mm² by the geometry kernel, for every surface
+    volume      mm³ by the geometry kernel
+    centroid    (3,) mm by the geometry kernel
+    notes       what the mesher had to do to make every element valid (for the report)
+
+    Raises ``CannotRunError`` if a surface is empty or if arrays do not fit each other.
+    """
+
+    points: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    surfaces: Mapping[str, NDArray[np.int64]]
+    areas: Mapping[str, float]
+    volume: float
+    centroid: NDArray[np.float64]
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse what would turn into a silent error later on."""
+        if self.cells.ndim != 2 or self.cells.shape[1] not in (4, 10) or len(self.cells) == 0:
+            raise CannotRunError(f"the mesh has cells of shape {self.cells.shape}; expected (m, 4) or (m, 10)")
+        if self.cells.min() < 0 or self.cells.max() >= len(self.points):
+            raise CannotRunError("the mesh names nodes that it does not have")
+        if set(self.surfaces) != set(self.areas):
+            raise CannotRunError("the mesh has surfaces without an area, or areas without a surface")
+        for name, triangles in self.surfaces.items():
+            if len(triangles) == 0:
+                raise CannotRunError(f"the mesh has no triangle on surface '{name}'")
+
+    @property
+    def curved(self) -> bool:
+        """True where edges carry a mid-node."""
+        return bool(self.cells.shape[1] == 10)
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the bounding box [mm]."""
+        return float(np.linalg.norm(np.ptp(self.points, axis=0)))

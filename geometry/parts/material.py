@@ -1,0 +1,184 @@
+"""Material cards with the source of every value, and the library that alula ships."""
+
+import itertools
+import tomllib
+from functools import cache
+from importlib.resources import files
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from geometry.base.errors import CaseError
+from geometry.base.model import CaseModel, Text
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress, Temperature
+
+Status = Literal["measured", "datasheet", "handbook", "assumed"]
+TOLD = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength")
+"""Entries whose source and status every card states, where it states the entry."""
+
+
+def _ordered(value: tuple[float, float]) -> tuple[float, float]:
+    if value[0] > value[1]:
+        raise PydanticCustomError("range_reversed", "the first value of a range must not exceed the second; swap them")
+    return value
+
+
+Range = Annotated[tuple[Annotated[Stress, POSITIVE], Annotated[Stress, POSITIVE]], AfterValidator(_ordered)]
+
+
+class Fatigue(CaseModel):
+    """Fatigue data: one or more points of the S-N curve, or a power law through them.
+
+    ``amplitude`` is the largest stress of a cycle from zero (R = 0) unless ``stress_ratio`` says
+    otherwise; the law is N = N1 (sigma / sigma1)^(-exponent).
+    """
+
+    stress: Annotated[Stress, POSITIVE]
+    """Peak stress that the material bears for ``cycles``."""
+    cycles: Annotated[float, Field(gt=0)]
+    exponent: Annotated[float, Field(gt=0)] | None = None
+    """Exponent of the power law; none where a single point is known."""
+    stress_ratio: Annotated[float, Field(ge=-1, lt=1)] = 0.0
+    """Least over largest stress of the cycle in the test."""
+    rule: Literal["goodman", "peak-stress"] = "goodman"
+    """How cycles with another mean count: by Goodman's line, or by their peak stress alone, whatever their range."""
+    source: Text
+
+
+class Material(CaseModel):
+    """An isotropic linear elastic material: density, stiffness, strength and where they come from."""
+
+    title: Text
+    density: Annotated[Density, POSITIVE]
+    youngs_modulus: Annotated[Stress, POSITIVE]
+    poissons_ratio: Annotated[float, Field(gt=-1.0, lt=0.5)]
+    yield_strength: Annotated[Stress, POSITIVE] | None = None
+    ultimate_strength: Annotated[Stress, POSITIVE] | None = None
+    strength: Literal["yield", "ultimate"]
+    """Which of the two the safety factor uses: yield against von Mises stress (ductile), ultimate
+    against the largest principal stress (brittle)."""
+    youngs_modulus_range: Range | None = None
+    strength_range: Range | None = None
+    """Scatter of the strength that the safety factor uses."""
+    ultimate_strength_by_diameter: tuple[tuple[Annotated[Length, POSITIVE], Annotated[Stress, POSITIVE]], ...] = ()
+    """(largest diameter, least ultimate strength) of drawn wire, rising in diameter. The stated ultimate_strength is
+    that of one diameter, and the yield strength keeps its share of it."""
+    sustained_stress: Annotated[Stress, NOT_NEGATIVE] | None = None
+    """Largest stress under a load that stays."""
+    sustained_modulus: Annotated[Stress, POSITIVE] | None = None
+    """Modulus under a load that stays (creep modulus)."""
+    temperature_factors: tuple[tuple[Temperature, Annotated[float, Field(gt=0)]], ...] = ()
+    """(temperature, factor on strength), rising in temperature."""
+    fatigue: Fatigue | None = None
+    minimum_safety_factor: Annotated[float, Field(gt=0)] | None = None
+    """Default limit for a static check of an untested part."""
+    minimum_safety_factor_tested: Annotated[float, Field(gt=0)] | None = None
+    """Default limit where parts of the same make were tested."""
+    sources: dict[str, Text]
+    """Entry -> where its value comes from; at least of density, elastic constants and strengths."""
+    status: dict[str, Status]
+    """Entry -> how well it is known; at least of density, elastic constants and strengths."""
+
+    @model_validator(mode="after")
+    def _strengths(self) -> "Material":
+        if (self.yield_strength if self.strength == "yield" else self.ultimate_strength) is None:
+            raise PydanticCustomError(
+                "no_strength",
+                "strength names '{which}', but {which}_strength is not given; state it or name the other",
+                {"which": self.strength},
+            )
+        if self.yield_strength and self.ultimate_strength and self.yield_strength > self.ultimate_strength:
+            raise PydanticCustomError(
+                "yield_above_ultimate",
+                "yield_strength {y} MPa is above ultimate_strength {u} MPa, which no material can have; "
+                "check the units and the decimal point",
+                {"y": f"{self.yield_strength:g}", "u": f"{self.ultimate_strength:g}"},
+            )
+        temperatures = [temperature for temperature, _ in self.temperature_factors]
+        if any(a >= b for a, b in itertools.pairwise(temperatures)):
+            raise PydanticCustomError(
+                "temperatures_not_rising", "temperature_factors must rise in temperature; sort them and state each once"
+            )
+        diameters = [diameter for diameter, _ in self.ultimate_strength_by_diameter]
+        if any(a >= b for a, b in itertools.pairwise(diameters)):
+            raise PydanticCustomError(
+                "diameters_not_rising",
+                "ultimate_strength_by_diameter must rise in diameter; sort it and state each diameter once",
+            )
+        if diameters and self.ultimate_strength is None:
+            raise PydanticCustomError(
+                "no_strength_to_scale",
+                "ultimate_strength_by_diameter needs ultimate_strength, that of one diameter; state it too",
+            )
+        if unknown := [entry for entry in (*self.sources, *self.status) if entry not in type(self).model_fields]:
+            raise PydanticCustomError(
+                "no_such_entry",
+                "sources or status speak of '{entry}', but a material has no such entry; correct its name",
+                {"entry": unknown[0]},
+            )
+        for where, told in (("sources", self.sources), ("status", self.status)):
+            for entry in TOLD:
+                if getattr(self, entry) is not None and entry not in told:
+                    raise PydanticCustomError(
+                        "not_told",
+                        "{where} says nothing of {entry}; add {entry} = {example} to {where}",
+                        {
+                            "where": where,
+                            "entry": entry,
+                            "example": '"data sheet of the maker"' if where == "sources" else '"datasheet"',
+                        },
+                    )
+        return self
+
+    def drawn(self, entry: str, diameter: float) -> "Material":
+        """Return the material as round wire of a diameter [mm]; ``entry`` of the case states it.
+
+        Raises ``CaseError`` for wire that is thicker than the card knows.
+        """
+        points = self.ultimate_strength_by_diameter
+        if not points:
+            return self
+        found = next((strength for limit, strength in points if diameter <= limit * (1.0 + 1e-9)), None)
+        if found is None:
+            raise CaseError(
+                f"{entry}: '{self.title}' has a strength up to {points[-1][0]:g} mm, not for {diameter:g} mm; make it "
+                "thinner or use another material"
+            )
+        assert self.ultimate_strength is not None
+        ratio = found / self.ultimate_strength
+        changed: dict[str, object] = {"ultimate_strength": found}
+        if self.yield_strength is not None:
+            changed["yield_strength"] = self.yield_strength * ratio
+        if self.strength_range is not None:
+            changed["strength_range"] = tuple(ratio * bound for bound in self.strength_range)
+        return self.model_copy(update=changed)
+
+    @property
+    def allowable(self) -> float:
+        """The strength that the safety factor uses [MPa]."""
+        value = self.yield_strength if self.strength == "yield" else self.ultimate_strength
+        assert value is not None
+        return value
+
+    @property
+    def brittle(self) -> bool:
+        """True where the largest principal stress is set against the ultimate strength."""
+        return self.strength == "ultimate"
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) [MPa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+
+
+def stress_measure(*, brittle: bool) -> str:
+    """Return the name of the stress that a strength is set against."""
+    return "largest principal" if brittle else "von Mises"
+
+
+@cache
+def library() -> dict[str, Material]:
+    """Return the materials that alula ships (``geometry/materials.toml``), by name."""
+    text = files("geometry").joinpath("materials.toml").read_text(encoding="utf-8")
+    return {name: Material.model_validate(card) for name, card in tomllib.loads(text).items()}

@@ -1,0 +1,105 @@
+"""Whether the values of a material card are usual for what it is: a slip of a unit is a factor of ten or a thousand.
+
+Name or title say what it is; where neither does, it is bounded loosely by whether it is light or heavy. The ranges are
+those of Ashby, Materials Selection in Mechanical Design, 4th ed., appendix A, rounded outwards, and wider for wire and
+printed parts (assumed).
+"""
+
+import re
+from dataclasses import dataclass
+
+from geometry.parts.material import Material
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MaterialClass:
+    """Usual values of a class of materials.
+
+    words     of which one begins a word of the name or title; up to four letters, is one
+    density   [kg/m³]
+    modulus   [GPa]
+    strength  yield or ultimate [MPa]
+    """
+
+    title: str
+    words: tuple[str, ...]
+    density: Range
+    modulus: Range
+    strength: Range
+
+
+CLASSES = (
+    MaterialClass(
+        title="steel", words=("steel",), density=(7500, 8200), modulus=(180, 220), strength=(100, 3500)
+    ),
+    MaterialClass(
+        title="an aluminium alloy",
+        words=("aluminium", "aluminum", "alu"),
+        density=(2500, 2900),
+        modulus=(65, 85),
+        strength=(20, 800),
+    ),
+    MaterialClass(
+        title="a titanium alloy", words=("titan",), density=(4300, 4900), modulus=(85, 130), strength=(150, 1700)
+    ),
+    MaterialClass(
+        title="a copper alloy",
+        words=("copper", "brass", "bronze"),
+        density=(7300, 9000),
+        modulus=(80, 160),
+        strength=(30, 1500),
+    ),
+    MaterialClass(
+        title="a magnesium alloy", words=("magnes",), density=(1700, 2000), modulus=(40, 50), strength=(50, 500)
+    ),
+    MaterialClass(
+        title="a filled or fibre-reinforced plastic",
+        words=("carbon", "glass", "fibre", "fiber", "filled", "reinforced", "laminate", "cfrp", "gfrp"),
+        density=(1000, 2300),
+        modulus=(1, 400),
+        strength=(10, 4000),
+    ),
+    MaterialClass(
+        title="a plastic",
+        words=("pvc", "pla", "abs", "pom", "peek", "petg", "ptfe", "nylon", "polya", "polyc", "polye", "polyl", "polyp",
+               "acetal", "resin", "epoxy", "plastic", "hdpe"),
+        density=(850, 2300),
+        modulus=(0.1, 6),
+        strength=(5, 200),
+    ),
+)  # fmt: skip
+"""The first whose word is found counts: carbon steel is steel, and nylon with glass is filled."""
+LIGHT = MaterialClass(
+    title="a material lighter than 2300 kg/m³", words=(), density=(20, 2300), modulus=(0.001, 400), strength=(0.1, 4000)
+)
+HEAVY = MaterialClass(
+    title="a material heavier than 2300 kg/m³", words=(), density=(2300, 23000), modulus=(10, 1100), strength=(5, 6000)
+)
+
+
+def class_of(name: str, material: Material) -> MaterialClass:
+    """Return the class that name or title tell, else that of its density."""
+    told = re.findall(r"[a-z]+", f"{name} {material.title}".lower())
+    for found in CLASSES:
+        if any(word == token if len(word) <= 4 else token.startswith(word) for word in found.words for token in told):
+            return found
+    return LIGHT if material.density * 1e12 < LIGHT.density[1] else HEAVY
+
+
+def unusual(name: str, material: Material) -> tuple[str, ...]:
+    """Return one sentence for each value of a card that is unusual for its class; ``name`` is the card's."""
+    usual = class_of(name, material)
+    values = (
+        ("density", 1e12 * material.density, usual.density, "kg/m³"),
+        ("youngs_modulus", 1e-3 * material.youngs_modulus, usual.modulus, "GPa"),
+        ("yield_strength", material.yield_strength, usual.strength, "MPa"),
+        ("ultimate_strength", material.ultimate_strength, usual.strength, "MPa"),
+    )
+    return tuple(
+        f"materials.{name}.{entry} is {value:.4g} {unit}, but {usual.title} usually has {least:g} to {most:g} {unit}; "
+        "check the value and its unit"
+        for entry, value, (least, most), unit in values
+        if value is not None and not least <= value <= most
+    )

@@ -1,0 +1,165 @@
+"""Reading a case: a TOML file or a built-in name, overrides, and errors in one sentence each."""
+
+import os
+import tomllib
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from geometry.base.errors import CaseError
+from geometry.mechanisms.ornithopter import OrnithopterRules
+from loads.case.case import SCHEMA_VERSION, Case
+from loads.case.ornithopter_case import ornithopter_settings
+from loads.text.entries import alike, names_tables
+from loads.text.explain import printable, sentence
+
+LARGEST_FILE = 1 << 20
+"""Bytes; a case file is some kilobytes."""
+
+
+def built_in_cases() -> tuple[str, ...]:
+    """Names of the cases that alula ships."""
+    folder = files("loads.cases")
+    return tuple(sorted(f.name[:-5] for f in folder.iterdir() if f.name.endswith(".toml")))
+
+
+def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
+    """Read and validate a case by its built-in name or its path, with ``path=value`` overrides.
+
+    Raises ``CaseError`` with one sentence for whatever is wrong.
+    """
+    text, where = read_text(name_or_path)
+    try:
+        data = tomllib.loads(text)
+    except RecursionError:
+        raise CaseError(f"{where}: the tables are nested too deeply; flatten them") from None
+    except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
+        raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; correct that line") from None
+    for override in overrides:
+        _override(data, override)
+    if "ornithopter" in data:
+        for entry in _by_rules(data["ornithopter"]):
+            _override(data, entry, "ornithopter sets")
+        for override in overrides:  # what is stated outright wins
+            _override(data, override)
+    return validate(data)
+
+
+def _by_rules(stated: object) -> list[str]:
+    """Return the entries, as ``path=value``, that follow from the table ``[ornithopter]``."""
+    try:
+        (rules,) = TypeAdapter(dict[str, OrnithopterRules]).validate_python({"ornithopter": stated}).values()
+    except ValidationError as error:
+        raise CaseError(sentence(error, Case)) from None
+    return ornithopter_settings(rules)
+
+
+def read_text(name_or_path: str) -> tuple[str, str]:
+    """Return the text of a case and what to call it in messages."""
+    if name_or_path in built_in_cases():
+        return files("loads.cases").joinpath(f"{name_or_path}.toml").read_text(encoding="utf-8"), name_or_path
+    path, shown = Path(name_or_path), printable(name_or_path)
+    try:
+        exists = path.is_file()
+    except (OSError, ValueError):
+        exists = False
+    if not exists:
+        what = "there is no such file or built-in case"
+        if os.path.lexists(name_or_path):
+            what = "it is a folder" if os.path.isdir(name_or_path) else "it is no regular file that can be reached"
+        choice = ", ".join(built_in_cases())
+        raise CaseError(f"case '{shown}': {what}; give a path to a case file or one of {choice}")
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise CaseError(f"case '{shown}': the file is larger than 1 MiB; a case file is some kilobytes")
+        text = path.read_bytes().decode("utf-8-sig")  # Windows editors put a byte order mark
+    except OSError as error:
+        raise CaseError(f"case '{shown}': it cannot be read ({error.strerror}); check its permissions") from None
+    except UnicodeDecodeError:
+        raise CaseError(f"case '{shown}': it is not UTF-8 text; save it as UTF-8") from None
+    if not text.strip():
+        raise CaseError(f"case '{shown}': the file is empty; start from 'alula new'")
+    return text, printable(path.name)
+
+
+def read_companion(case_path: str, name: str) -> str:
+    """Read a text file that stands beside a case file (or ships with a built-in case)."""
+    if Path(name).name != name or name.startswith("."):
+        raise CaseError(f"'{printable(name)}' must be the plain name of a file beside the case file")
+    built_in = case_path in built_in_cases()
+    source = files("loads.cases").joinpath(name) if built_in else Path(case_path).parent / name
+    try:
+        if source.is_file() and (built_in or Path(str(source)).stat().st_size <= LARGEST_FILE):
+            return source.read_text(encoding="utf-8-sig")
+    except (OSError, ValueError):  # no permission, a name too long, not UTF-8
+        pass
+    raise CaseError(f"'{printable(name)}' is not a readable file beside the case file; put it there")
+
+
+def validate(data: dict[str, Any]) -> Case:
+    """Validate a case given as nested tables; raises ``CaseError``."""
+    version = data.get("schema_version")
+    if version != SCHEMA_VERSION or type(version) is not int:
+        for key in () if "schema_version" in data else data:
+            if meant := alike(key, ("schema_version",)):
+                raise CaseError(f"{printable(key)}: this key is unknown{meant}")
+        what = "it is missing" if version is None else f"it is {printable(repr(version))}"
+        raise CaseError(
+            f"schema_version: {what}, but this version of alula reads {SCHEMA_VERSION}; "
+            f"write schema_version = {SCHEMA_VERSION}"
+        )
+    try:
+        return Case.model_validate(data)
+    except ValidationError as error:
+        raise CaseError(sentence(error, Case)) from None
+
+
+def _override(data: dict[str, Any], override: str, who: str = "--set") -> None:
+    """Set an entry anew; ``who`` begins the message where it cannot be.
+
+    A name that the case does not have is refused where names stand for tables or points: mistyped, it would add one
+    beside the one that is meant, and change nothing else.
+    """
+    path, sign, text = override.partition("=")
+    path = path.strip()
+    keys = [key.strip().strip("\"'") for key in path.split(".")]
+    try:
+        override.encode()
+    except UnicodeEncodeError:  # what a terminal hands over of bytes that are no text
+        raise CaseError(f"--set '{printable(override)}': it is not UTF-8 text; write it in UTF-8") from None
+    if not sign or not all(keys):
+        raise CaseError(f"--set '{printable(override)}': write it as path=value, for example pose.angle=\"30 deg\"")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except (ValueError, RecursionError):
+        value = text.strip()
+    here: Any = data
+    for i, key in enumerate(keys):
+        last = i == len(keys) - 1
+        if isinstance(here, list):
+            if not (key.isascii() and key.isdigit() and len(key) < 6 and int(key) < len(here)):
+                raise CaseError(
+                    f"{who} {printable(path)}: '{printable(key)}' does not name one of the {len(here)} entries of this "
+                    "list; count them from 0"
+                )
+            index: Any = int(key)
+        elif isinstance(here, dict):
+            index = key
+            if key not in here and names_tables(Case, keys[:i]):
+                there = printable(".".join(keys[:i]))
+                remedy = alike(key, here) or f"; correct the name, or add '{printable(key)}' to the case file"
+                raise CaseError(f"{who} {printable(path)}: '{there}' has no '{printable(key)}' to change{remedy}")
+            if not last and key not in here:
+                here[key] = {}
+        else:
+            above = printable(".".join(keys[:i]))
+            raise CaseError(
+                f"{who} {printable(path)}: '{above}' is a value, so nothing can be set below it; correct the path"
+            )
+        if last:
+            here[index] = value
+        else:
+            here = here[index]

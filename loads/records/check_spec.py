@@ -1,0 +1,109 @@
+"""The checks that a case file may ask for."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from geometry.base.model import CaseModel, Name
+from geometry.base.units import POSITIVE, AngularSpeed, Current, Length, Moment, Voltage
+
+
+class SafetyFactorCheck(CaseModel):
+    """The safety factor of each link must be at least the minimum."""
+
+    type: Literal["safety-factor"]
+    minimum: Annotated[float, Field(gt=0)] | None = None
+    """The limit; the material's own when left out."""
+    links: tuple[Name, ...] = ()
+    """The links to check; all that have a part when left out."""
+
+
+class DisplacementCheck(CaseModel):
+    """The largest displacement must be small enough: of each link by itself, or of one point of the linkage.
+
+    Without ``at`` it is that of each link from the line through its own pins, which tells nothing of where the linkage
+    as a whole takes its tip; with it, how far the named point moves while the linkage deforms.
+    """
+
+    type: Literal["displacement"]
+    maximum: Annotated[Length, POSITIVE]
+    links: tuple[Name, ...] = ()
+    """The links to check, each by itself; all that have a part when neither these nor a point are stated."""
+    at: Name | None = None
+    """The point whose displacement with the whole linkage is checked, by the frame."""
+    link: Name | None = None
+    """The moving link that has the point; may be left out where only one has, or where pins join those that have."""
+
+
+class SustainedCheck(CaseModel):
+    """The stress of each link must stay below what its material bears for as long and as warm as [conditions] say."""
+
+    type: Literal["sustained"]
+    links: tuple[Name, ...] = ()
+
+
+class PinCheck(CaseModel):
+    """The safety factor of each pin, in shear and bending under its joint force, must be at least the minimum."""
+
+    type: Literal["pins"]
+    minimum: Annotated[float, Field(gt=0)] | None = None
+    """The limit; that of the pin's material when left out."""
+    joints: tuple[Name, ...] = ()
+    """The joints to check; all whose pin joins a link with a part when left out."""
+
+
+class BearingCheck(CaseModel):
+    """Bearing of each pin on its eyes, F/(d t), against the ultimate strength of the softer one."""
+
+    type: Literal["bearing"]
+    minimum: Annotated[float, Field(gt=0)] | None = None
+    """The least safety factor; 3.33 when left out, 6.67 where flight depends on the joint."""
+    flight_depends: bool = False
+    """True for hinges that flight depends on."""
+    joints: tuple[Name, ...] = ()
+    """The joints to check; all whose pin joins a link with a part, or slides in its slot, when left out."""
+
+    @property
+    def limit(self) -> float:
+        """The least safety factor: what is stated, else that of 14 CFR 23.693 or 23.657."""
+        return self.minimum or (6.67 if self.flight_depends else 3.33)
+
+
+class MotorCheck(CaseModel):
+    """The motor must cover the drive power over the [motion], in every load case with a speed.
+
+    Where its speed and torque are stated, those of the driven link must keep to them too. All are at the driven link:
+    behind a gear they are those of its output.
+    """
+
+    type: Literal["motor"]
+    voltage: Annotated[Voltage, POSITIVE]
+    current: Annotated[Current, POSITIVE]
+    efficiency: Annotated[float, Field(gt=0, le=1)]
+    """Share of the electrical power that reaches the crank."""
+    no_load_speed: Annotated[AngularSpeed, POSITIVE] | None = None
+    """Speed without load, which the drive must not exceed."""
+    stall_torque: Annotated[Moment, POSITIVE] | None = None
+    """Torque at standstill; the motor's torque falls from it in a straight line to nothing at no_load_speed."""
+    rated_torque: Annotated[Moment, POSITIVE] | None = None
+    """Torque that it may give for long, which the root mean square of the drive torque must not exceed."""
+
+    @model_validator(mode="after")
+    def _line(self) -> "MotorCheck":
+        if self.stall_torque is not None and self.no_load_speed is None:
+            raise PydanticCustomError(
+                "half_a_line", "stall_torque alone does not say how torque falls with speed; add no_load_speed"
+            )
+        return self
+
+    @property
+    def output_power(self) -> float:
+        """Mechanical power at the crank [W]."""
+        return self.voltage * self.current * self.efficiency
+
+
+Check = Annotated[
+    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck | BearingCheck | MotorCheck,
+    Field(discriminator="type"),
+]

@@ -1,0 +1,107 @@
+"""Load cases as a user states them: forces, moments, spread loads, air, weight and speed."""
+
+import math
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, PlainValidator, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from geometry.base.model import CaseModel, Name, Text
+from geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, parse
+from loads.records.aero import AirLoad
+from loads.text.scatter import LoadScatter
+
+Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
+Axes = Literal["global", "link"]
+
+
+def _moment(stated: object) -> tuple[float, float, float]:
+    if not isinstance(stated, list | tuple):
+        return 0.0, 0.0, parse(stated, "moment")
+    if len(stated) != 3:
+        raise PydanticCustomError(
+            "not_a_moment", 'it must be one moment about z or three about x, y and z; write for example "130 N*mm"'
+        )
+    x, y, z = (parse(component, "moment") for component in stated)
+    return x, y, z
+
+
+MomentVector = Annotated[
+    tuple[float, float, float],
+    PlainValidator(_moment),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "description": "moment about z with its unit", "examples": ["130 N*mm"]},
+                {"type": "array", "items": {"type": "string"}, "minItems": 3, "maxItems": 3},
+            ]
+        }
+    ),
+]
+
+
+class PointForce(CaseModel):
+    """A force at a point of a link."""
+
+    link: Name
+    at: Name
+    force: Vector
+    axes: Axes = "global"
+    """Axes of the components: global, or the link's own, so that the force turns with the link from pose to pose. While
+    the linkage deforms in a pose, the force keeps its direction either way."""
+
+
+class PointMoment(CaseModel):
+    """A moment at a point of a link, in global axes: about z, counter-clockwise positive, or about x, y and z."""
+
+    link: Name
+    at: Name
+    moment: MomentVector
+
+
+class SpreadForce(CaseModel):
+    """A force spread evenly along the axis of a link between two of its points."""
+
+    link: Name
+    start: Name
+    end: Name
+    total: Vector
+    axes: Axes = "global"
+    """Axes of the components: global, or the link's own, so that the force turns with the link from pose to pose. While
+    the linkage deforms in a pose, the force keeps its direction either way."""
+
+
+class LoadCase(CaseModel):
+    """One set of loads that act at the same time."""
+
+    title: Text = ""
+    own_weight: bool = False
+    """True: every link weighs what its part's volume and density say and what it carries. False: links are
+    massless, and a stated total weight stands among the forces."""
+    gravity: Annotated[Acceleration, NOT_NEGATIVE] = 9810.0
+    gravity_direction: Angle = -math.pi / 2
+    """Direction of the weight, from the global x axis."""
+    speed: AngularSpeed = 0.0
+    """Constant angular speed of the pose's coordinate, counter-clockwise positive; where stated, the
+    inertia of the parts and of what they carry acts as well."""
+    carried: bool = True
+    """False: without the masses that the links carry."""
+    scatter: LoadScatter = (1.0, 1.0)
+    """How far all loads of this load case may be off together, such as "20 %", or { low = "90 %", high = "130 %" };
+    the bands of all that they do hold it."""
+    forces: tuple[PointForce, ...] = ()
+    moments: tuple[PointMoment, ...] = ()
+    spread: tuple[SpreadForce, ...] = ()
+    air: tuple[AirLoad, ...] = ()
+
+
+def gravity(load_case: LoadCase) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Return the weight per mass of a load case (3,) [mm/s²]."""
+    direction = load_case.gravity_direction
+    return load_case.gravity * np.array([math.cos(direction), math.sin(direction), 0.0])
+
+
+def vector3(components: tuple[float, ...]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Return a stated vector of two or three components as (3,)."""
+    return np.array([*components, 0.0][:3])

@@ -1,0 +1,91 @@
+"""The table ``[motion]`` of a case file: what drives the linkage, over which range, how fast."""
+
+import math
+from typing import Annotated
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from geometry.base.model import CaseModel, Name
+from geometry.base.units import Acceleration, Angle, AngularAcceleration, AngularSpeed, Length, Speed
+
+
+class MotionSpec(CaseModel):
+    """The motion of the linkage on the branch of its stated pose."""
+
+    coordinate: Name | None = None
+    """The link whose direction is prescribed, or with a travel the slider or slot; the pose's own coordinate when left
+    out."""
+    range: tuple[Angle, Angle] | None = None
+    """First and last direction of that link; from 350 deg to 10 deg it turns back by 340 deg."""
+    travel: tuple[Length, Length] | None = None
+    """First and last travel of the slider or slot, in place of a range."""
+    turn: bool = False
+    """True for a full turn from the stated pose: counter-clockwise, or clockwise at a negative speed."""
+    poses: Annotated[int, Field(ge=2, le=100_000)] = 361
+    """Number of poses, evenly spaced in the angle or travel, both ends included."""
+    speed: AngularSpeed = 0.0
+    """Angular speed of the coordinate's link at the first pose; constant unless an acceleration is stated."""
+    acceleration: AngularAcceleration = 0.0
+    """Constant angular acceleration along the motion; negative where the drive slows down."""
+    travel_speed: Speed = 0.0
+    """Speed of the slider or slot at the first pose, in place of the angular speed."""
+    travel_acceleration: Acceleration = 0.0
+    """Constant acceleration of the slider or slot, in place of the angular one."""
+    inertia: bool = False
+    """True: the inertia of the links' parts and of what they carry loads the joints."""
+
+    @property
+    def ends(self) -> tuple[float, float] | None:
+        """First and last angle [rad] or travel [mm]; None for a full turn."""
+        return self.range if self.travel is None else self.travel
+
+    @property
+    def rate(self) -> tuple[float, float]:
+        """Speed and acceleration of the coordinate: rad/s and rad/s², or mm/s and mm/s²."""
+        if self.travel is None:
+            return self.speed, self.acceleration
+        return self.travel_speed, self.travel_acceleration
+
+    @model_validator(mode="after")
+    def _fits(self) -> "MotionSpec":
+        if self.turn + (self.range is not None) + (self.travel is not None) != 1:
+            raise PydanticCustomError(
+                "turn_or_range",
+                'it needs either turn = true or a range such as range = ["0 deg", "90 deg"] or '
+                'travel = ["0 mm", "10 mm"]; state one of them',
+            )
+        if self.turn and self.poses < 3:
+            raise PydanticCustomError(
+                "poses_of_a_turn",
+                "a full turn of 2 poses is one pose twice, since it ends where it began; ask for 3",
+            )
+        if (self.speed, self.acceleration) != (0.0, 0.0) and self.travel is not None:
+            raise PydanticCustomError(
+                "angular_speed_of_travel",
+                "a slider has no angular speed or acceleration; state travel_speed and travel_acceleration",
+            )
+        if (self.travel_speed, self.travel_acceleration) != (0.0, 0.0) and self.travel is None:
+            raise PydanticCustomError(
+                "speed_without_travel", "travel_speed and travel_acceleration are of a slider; state its travel as well"
+            )
+        if self.ends is not None and math.isclose(*self.ends, abs_tol=1e-12):
+            what = "angle" if self.travel is None else "travel"
+            raise PydanticCustomError(
+                "empty_range", "range begins and ends at the same {what}; state two different ones", {"what": what}
+            )
+        speed, acceleration = self.rate
+        if self.ends is not None and speed < 0.0:
+            raise PydanticCustomError(
+                "speed_sign",
+                "the order of the range gives the direction, so speed must not be negative; swap the ends of the range",
+            )
+        if self.inertia and speed == 0.0 and acceleration == 0.0:
+            raise PydanticCustomError(
+                "no_speed", 'inertia = true needs a speed; state one, for example speed = "150 rpm"'
+            )
+        if speed == 0.0 and acceleration < 0.0:
+            raise PydanticCustomError(
+                "no_start", "from rest the acceleration must be positive; state a speed or turn it"
+            )
+        return self

@@ -1,0 +1,152 @@
+"""The motion of a case: poses, joint forces and drive torque over its range, for every load case."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base.errors import CaseError
+from geometry.linkage.motion import Motion, solve_motion
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.records.load_case import LoadCase
+from loads.states.actions import PartMass, needs_masses, stated_loads
+from loads.states.kinetostatics import (
+    Kinetostatics,
+    dead_points,
+    is_determinate,
+    solve_kinetostatics,
+    torque_by_virtual_work,
+)
+from loads.states.masses import laden_masses, part_masses
+from loads.statics.statics import Drive
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CaseMotion:
+    """A case over its motion.
+
+    masses  of the links' parts; empty where nothing weighs and inertia is left out
+    forces  load case -> joint forces; empty where they do not follow from equilibrium (redundant linkages)
+    torque  load case -> drive torque (n,) [N mm], or force along the guide [N] where the drive ``pushes``; NaN at dead
+            points of the driven link
+    dead_points  values of the coordinate [rad, mm] at which the driven link turns back
+    """
+
+    case: Case
+    motion: Motion
+    drive: Drive
+    masses: Mapping[str, PartMass]
+    forces: Mapping[str, Kinetostatics]
+    torque: Mapping[str, Real]
+    dead_points: tuple[float, ...]
+
+    @property
+    def pushes(self) -> bool:
+        """True where the drive is a force along a guide, and no torque."""
+        return self.drive.pushes(self.case.linkage)
+
+    @property
+    def effort(self) -> tuple[str, str]:
+        """What the drive exerts, and its unit, for people."""
+        return ("force", "N") if self.pushes else ("torque", "N·mm")
+
+
+def solve_case_motion(case: Case) -> CaseMotion:
+    """Move the case's linkage as its table [motion] says and solve every load case at every pose.
+
+    A load case that states its own speed moves over the same poses at that speed, with inertia; its speed is
+    the one of the pose's coordinate.
+
+    Raises ``CaseError`` where the motion meets a dead point or the case states no motion, drive or masses.
+    """
+    coordinate = case.motion_coordinate
+    spec, drive = case.motion, case.pinned_drive
+    assert spec is not None
+    if drive is None:
+        raise CaseError("drive: the linkage moves, but nothing drives it; add a [drive] with its link and joint")
+    pose = case.solve_pose()
+    angles = drive_angles(case, pose)
+    speed, acceleration = drive_speeds(case, angles)
+    slides = spec.travel is not None
+    motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate, slides=slides)
+    masses = part_masses(case) if spec.inertia or needs_masses(case) else {}
+    for name, load_case in case.load_cases.items():
+        if load_case.speed != 0.0 and (slides or coordinate != case.pose.coordinate):
+            raise CaseError(
+                f"load_cases.{name}.speed: it is the speed of the pose's coordinate '{case.pose.coordinate}', but the "
+                f"motion prescribes '{coordinate}'; use one link for both, or leave this speed out"
+            )
+    laden = laden_masses(case, masses) if masses or case.carried else {}
+    held = {name: laden if load_case.carried else masses for name, load_case in case.load_cases.items()}
+    loads = {name: stated_loads(case, load_case, held[name]) for name, load_case in case.load_cases.items()}
+    moved = {name: _at_speed_of(motion, load_case) for name, load_case in case.load_cases.items()}
+    inert = {name: held[name] if with_inertia(case, name) else {} for name in loads}
+    forces: dict[str, Kinetostatics] = {}
+    if is_determinate(case.linkage):
+        forces = {n: solve_kinetostatics(moved[n], drive, acting, inert[n]) for n, acting in loads.items()}
+    torque = {
+        n: drive_effort(forces[n]) if forces else torque_by_virtual_work(moved[n], drive, acting, inert[n])
+        for n, acting in loads.items()
+    }
+    return CaseMotion(
+        case=case,
+        motion=motion,
+        drive=drive,
+        masses=masses,
+        forces=forces,
+        torque=torque,
+        dead_points=dead_points(motion, drive),
+    )
+
+
+def drive_effort(solved: Kinetostatics) -> Real:
+    """Return the drive torque (n,) [N mm], or the drive force (n,) [N] where the drive pushes a slider."""
+    return solved.push if solved.drive.pushes(solved.motion.linkage) else solved.torque
+
+
+def with_inertia(case: Case, load_case: str) -> bool:
+    """Whether inertia acts in a load case of a motion: where the motion asks for it or the case states a speed."""
+    asked = case.motion is not None and case.motion.inertia
+    return asked or case.load_cases[load_case].speed != 0.0
+
+
+def _at_speed_of(motion: Motion, load_case: LoadCase) -> Motion:
+    """Return the motion at the load case's own constant speed, where it states one."""
+    if load_case.speed == 0.0:
+        return motion
+    still = np.zeros_like(motion.acceleration)
+    return replace(motion, speed=np.full_like(motion.speed, load_case.speed), acceleration=still)
+
+
+def drive_angles(case: Case, pose: Pose) -> Real:
+    """Values of the motion's coordinate (poses,) [rad, mm]: its range, or a full turn from the stated pose."""
+    spec = case.motion
+    assert spec is not None
+    if spec.ends is not None:
+        return np.linspace(*spec.ends, spec.poses)
+    start = pose.angles[case.motion_coordinate]
+    return np.linspace(start, start + math.copysign(2.0 * math.pi, spec.speed), spec.poses)
+
+
+def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
+    """Speed and acceleration of the motion's coordinate at its angles or travels (poses,), per second and second².
+
+    With constant acceleration: speed² = first speed² + 2 acceleration (angle - first angle).
+    """
+    spec = case.motion
+    assert spec is not None
+    sense, first, rate = math.copysign(1.0, angles[-1] - angles[0]), abs(spec.rate[0]), spec.rate[1]
+    square = first**2 + 2.0 * rate * np.abs(angles - angles[0])
+    if square.min() < 0.0:
+        stop = angles[0] + sense * first**2 / (-2.0 * rate)
+        where = f"{math.degrees(stop):.6g} deg" if spec.travel is None else f"{stop:.6g} mm"
+        raise CaseError(
+            f"motion.acceleration: the drive slows down to a stop at {where}, before the motion ends; "
+            "state a smaller deceleration, a higher speed or a shorter range"
+        )
+    return sense * np.sqrt(square), np.full(len(angles), sense * rate)

@@ -1,0 +1,114 @@
+"""What is wrong with a case file, in one sentence: entry, value, rule, remedy."""
+
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from loads.text.entries import alike, known_keys
+
+_TABLE = "it must be a table of entries; write it as [{entry}] with one entry per line below"
+_LIST = "it must be a list of values in square brackets; write for example {example}"
+_RULES = {
+    "string_type": "it must be text; write it in double quotes",
+    "dict_type": _TABLE,
+    "model_type": _TABLE,
+    "model_attributes_type": _TABLE,
+    "tuple_type": _LIST,
+    "bool_type": "it must be true or false; write one of them without quotes",
+    "bool_parsing": "it must be true or false; write one of them without quotes",
+    "int_type": "it must be a whole number; write for example 5",
+    "int_parsing": "it must be a whole number; write for example 5",
+    "int_from_float": "it must be a whole number; write for example 5",
+    "float_type": "it must be a number without unit; write for example 1.5",
+    "float_parsing": "it must be a number without unit; write for example 1.5",
+    "finite_number": "it must be a finite number; write for example 1.5",
+    "greater_than": "it must be greater than {gt:g}; make it larger",
+    "greater_than_equal": "it must be at least {ge:g}; make it larger",
+    "less_than": "it must be less than {lt:g}; make it smaller",
+    "less_than_equal": "it must be at most {le:g}; make it smaller",
+    "literal_error": "it must be one of {expected}; choose one of them",
+    "too_short": "it has {actual_length}, but at least {min_length} must be there; add what is missing",
+    "too_long": "it must hold at most {max_length}, but holds more; remove some",
+    "not_positive": "it must be greater than zero; make it larger",
+    "negative": "it must not be negative; write zero or more",
+}
+
+
+def printable(text: str) -> str:
+    """Return text without control characters, shortened, for a message."""
+    clean = _clean(text)
+    return clean if len(clean) <= 80 else clean[:77] + "..."
+
+
+def sentence(error: ValidationError, model: type[BaseModel]) -> str:
+    """One sentence for the first problem: entry, value, rule, remedy; ``model`` is what was validated.
+
+    A mistyped key comes before the entry that it leaves missing.
+    """
+    try:
+        problems = error.errors(include_url=False)
+    except UnicodeEncodeError:  # pydantic itself cannot quote it
+        return "case: a text in it holds half of a surrogate pair, which is no character; remove it"
+    first = problems[0]
+    if first["type"] == "missing":
+        beside = (p for p in problems if p["type"] == "extra_forbidden" and p["loc"][:-1] == first["loc"][:-1])
+        first = next(beside, first)
+    kind, place, value = first["type"], _place(first["loc"]), first["input"]
+    context: dict[str, Any] = dict(first.get("ctx", {}))
+    meant = ""
+    if kind == "extra_forbidden":
+        above = first["loc"][:-1]
+        meant = alike(str(place[-1]), known_keys(model, above) or known_keys(model, _place(above)))
+    if kind.startswith("union_tag"):
+        # A part, check or the like whose kind decides what else belongs to it.
+        place = (*place, context["discriminator"].strip("'"))
+        if kind == "union_tag_not_found":
+            kind = "missing"
+            for key in value if isinstance(value, dict) else ():
+                if meant := alike(str(key), (str(place[-1]),)):
+                    kind, place = "extra_forbidden", (*place[:-1], str(key))
+                    break
+        else:
+            kind, value = "literal_error", context["tag"]
+            context["expected"] = context["expected_tags"]
+    if kind == "missing" and isinstance(place[-1], int):
+        kind, place = "too_few_values", place[:-1]
+    entry = printable(".".join(map(str, place))) or "case"
+    if kind == "extra_forbidden":
+        rule = "this key is unknown" + (meant or "; correct its name or remove it")
+    elif kind == "missing":
+        rule = "this entry is missing; add it"
+    elif kind == "too_few_values":
+        rule = "the list has too few values; add what is missing"
+    elif kind in _RULES:
+        example = f'["{printable(value)}", ...]' if isinstance(value, str) else '["A", "B"]'
+        rule = _RULES[kind].format(**context, entry=entry, example=example)
+    else:
+        rule = first["msg"]
+    more = len(problems) - 1
+    also = f" ({more} more problems follow)" if more > 3 else ""
+    shown = "" if first["loc"][-1:] == ("[key]",) else _shown(kind, value)
+    return _clean(f"{entry}{shown}: {rule}{also}")
+
+
+def _place(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
+    """Where the problem is, as a user would write it.
+
+    Leaves out what pydantic adds: the kind behind the name of a part, check or carried mass, and the mark of a key.
+    """
+    if location and location[0] in ("parts", "checks", "carried"):
+        location = (*location[:2], *location[3:])
+    return tuple(part for part in location if part != "[key]")
+
+
+def _shown(kind: str, value: object) -> str:
+    if kind in ("missing", "extra_forbidden") or isinstance(value, dict) or not isinstance(value, _PLAIN):
+        return ""
+    return f" (it is {printable(repr(value))})"
+
+
+_PLAIN = (str, int, float, bool, list)
+
+
+def _clean(text: str) -> str:
+    return "".join(c if c.isprintable() else "?" for c in text)

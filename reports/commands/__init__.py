@@ -1,0 +1,1 @@
+"""The command ``alula``: one file a command, and how the program ends."""

@@ -1,0 +1,392 @@
+"""The command ``alula``. Heavy libraries are imported by the command that needs them."""
+
+import sys
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+from reports.commands.ending import end_if_stopped, run
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+app = typer.Typer(
+    name="alula",
+    help="Check planar linkages: pose, statics, stress, verdict.\n\n"
+    "Exit status: 0 pass, 1 fail, 2 bad input, 3 undecided, 4 could not run.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+CaseArgument = Annotated[
+    str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".'),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
+ThreadsOption = Annotated[
+    int,
+    typer.Option(min=1, max=256, help="Threads that each library may use, and child processes that may run at once."),
+]
+MemoryOption = Annotated[
+    str | None,
+    typer.Option(
+        help='Memory that the solver\'s process may hold, such as "4 GB"; without it: what the system leaves.',
+        show_default=False,
+    ),
+]
+AccuracyOption = Annotated[
+    str | None,
+    typer.Option(
+        help='Error of the meshes to reach in every link, such as "5 %"; without it: a clear verdict or 5 %.',
+        show_default=False,
+    ),
+]
+UnknownsOption = Annotated[int, typer.Option(min=1000, help="Largest system that is solved to reach the accuracy.")]
+TimeOption = Annotated[float, typer.Option(min=0.0, help="Seconds after which no finer mesh is begun.")]
+
+
+def main() -> NoReturn:
+    """Run the command line."""
+    run(app)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"alula {version('alula')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
+    ] = False,
+) -> None:
+    """Options of the command itself."""
+
+
+@app.command()
+def check(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for report.html, result.json, pictures and VTU files.")
+    ] = None,
+    json: JsonOption = False,
+    overrides: SetOption = None,
+    fidelity: Annotated[
+        str, typer.Option(help="Model that decides: auto (the cheapest that can), beam, frame, submodel or solid.")
+    ] = "auto",
+    threads: ThreadsOption = 2,
+    memory: MemoryOption = None,
+    accuracy: AccuracyOption = None,
+    max_unknowns: UnknownsOption = 600_000,
+    time_limit: TimeOption = 600.0,
+    second_opinion: Annotated[
+        bool,
+        typer.Option(
+            "--second-opinion",
+            help="Write a CalculiX deck of each link and, where ccx is installed, set its answer beside ours "
+            "(every link as a solid, unless --fidelity says otherwise).",
+        ),
+    ] = False,
+) -> None:
+    """Check a case and end in a verdict."""
+    from fea.check.run import check_case, effort_of
+    from loads.case.case_file import read_case
+    from reports.page.folder import report_names
+    from reports.page.output import refuse_unusable
+    from reports.tables.console import print_result
+    from reports.tables.record import as_json
+    from reports.words.limits import limited
+
+    if second_opinion and fidelity == "auto":
+        fidelity = "solid"  # a link that beam theory decides has no mesh that CalculiX could be given
+    with limited(threads, memory), ExitStack() as scratch:
+        parsed = read_case(case, overrides or ())
+        refuse_unusable(output, "check", report_names(parsed))
+        effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
+        result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)
+        decks = None
+        if second_opinion:
+            from reports.tables.second_opinion import with_second_opinions
+
+            decks = Path(scratch.enter_context(TemporaryDirectory(prefix="alula-")))
+            result = with_second_opinions(result, decks, threads=threads, progress=_progress)
+        _show(result, as_json if json else None, print_result)
+        if output is not None:
+            from reports.page.folder import write_report
+
+            write_report(result, output, decks=decks, progress=_progress)
+            _tell(f"Report: {output / 'report.html'}", json)
+    raise SystemExit(result.verdict.exit_status)
+
+
+@app.command()
+def statics(
+    case: CaseArgument,
+    matrix: Annotated[bool, typer.Option("--matrix", help="Print [A] and [b] with named rows and columns.")] = False,
+    json: JsonOption = False,
+    overrides: SetOption = None,
+) -> None:
+    """Solve the pose and the joint reactions alone."""
+    from fea.check.run import solve_case_statics
+    from loads.case.case_file import read_case
+    from reports.commands.statics import print_statics
+
+    parsed = read_case(case, overrides or ())
+    print_statics(solve_case_statics(parsed, case), matrix=matrix, json=json)
+
+
+@app.command()
+def motion(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder in whose subfolder motion/ tables, figures and the animation go."),
+    ] = None,
+    json: JsonOption = False,
+    overrides: SetOption = None,
+    threads: ThreadsOption = 2,
+) -> None:
+    """Move a linkage: directions, paths, joint forces and drive torque over its range."""
+    from loads.case.case_file import read_case
+    from loads.states.case_motion import solve_case_motion
+    from reports.commands.motion import print_motion, write_motion
+    from reports.page.output import refuse_unusable, write_folder
+    from reports.words.limits import limited
+
+    with limited(threads):
+        parsed = read_case(case, overrides or ())
+        refuse_unusable(output, "motion")
+        result = solve_case_motion(parsed)
+        print_motion(result, case, json=json)
+        if output is not None:
+            _progress("Drawing figures and the animation ...")
+            write_folder(output, "motion", lambda folder: write_motion(result, folder, case))
+            _tell(f"\nTables and figures: {output / 'motion'}", json)
+
+
+@app.command()
+def envelope(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", help="Folder in whose subfolder envelope/ result.json, curves, pictures and VTU files go."
+        ),
+    ] = None,
+    json: JsonOption = False,
+    overrides: SetOption = None,
+    repetitions: Annotated[
+        float | None,
+        typer.Option(
+            min=1.0,
+            help="How often the motion is to be borne, for fatigue; the cycles of the material's card when left out.",
+            show_default=False,
+        ),
+    ] = None,
+    growth: Annotated[
+        float,
+        typer.Option(min=1.0, help="Growth of the drive torque towards a dead point, beyond which poses are left out."),
+    ] = 20.0,
+    threads: ThreadsOption = 2,
+    memory: MemoryOption = None,
+    accuracy: AccuracyOption = None,
+    max_unknowns: UnknownsOption = 600_000,
+    time_limit: TimeOption = 600.0,
+) -> None:
+    """Check every link over the whole motion: least safety factor, where and when, and fatigue."""
+    from fea.check.run import effort_of
+    from fea.motion.envelope import envelope_case
+    from loads.case.case_file import read_case
+    from reports.commands.envelope import as_json, print_envelope, write_envelope
+    from reports.page.output import refuse_unusable
+    from reports.words.limits import limited
+
+    with limited(threads, memory):
+        parsed = read_case(case, overrides or ())
+        refuse_unusable(output, "envelope")
+        result = envelope_case(
+            parsed,
+            name=case,
+            threads=threads,
+            repetitions=repetitions,
+            growth=growth,
+            effort=effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit),
+            progress=_progress,
+        )
+        _show(result, as_json if json else None, print_envelope)
+        if output is not None:
+            write_envelope(result, output, progress=_progress)
+            _tell(f"Curves, pictures and fields: {output / 'envelope'}", json)
+    raise SystemExit(result.verdict.exit_status)
+
+
+@app.command()
+def claims(
+    case: Annotated[
+        str | None,
+        typer.Argument(
+            help="Path to a case file, or the name of a built-in case or source document; all sources when left out.",
+            show_default=False,
+        ),
+    ] = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="End with exit status 1 if a claim does not hold or does not follow.")
+    ] = False,
+    json: JsonOption = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Print a page of Markdown.")] = False,
+    overrides: SetOption = None,
+    fidelity: Annotated[str, typer.Option(help="Model for claims on stress: solid or beam.")] = "solid",
+    threads: ThreadsOption = 2,
+    memory: MemoryOption = None,
+) -> None:
+    """Re-derive published figures and say which of them hold."""
+    from fea.claims.audit import check_all, check_claims
+    from geometry.base.errors import CaseError
+    from loads.records.claim import read_source, sources
+    from reports.tables.claims import as_json, as_markdown, as_text
+    from reports.words.limits import limited
+
+    if case is None and overrides:
+        raise CaseError("--set: no case is named whose entries could be set anew; name one")
+    with limited(threads, memory):
+        if case is None:
+            found = check_all(fidelity=fidelity, threads=threads)
+        else:
+            found = {case: check_claims(case, overrides=overrides or (), fidelity=fidelity, threads=threads)}
+    results = [result for group in found.values() for result in group]
+    if json:
+        print(as_json(results))
+    elif markdown:
+        titles = {name: read_source(name).title if name in sources() else name for name in found}
+        print(as_markdown(found, titles), end="")
+    else:
+        print(as_text(results))
+    if strict and any(result.finding.refutes for result in results):
+        raise SystemExit(1)
+
+
+@app.command()
+def synth(
+    points: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--point",
+            help='A precision point "theta, psi"; give three. Left out: those of Arango and Hurtado, '
+            '"0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg".',
+        ),
+    ] = None,
+    ground: Annotated[str, typer.Option("--ground", help="Length d of the ground link.")] = "10 m",
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder in whose subfolder synth/ result.json and the drawing go."),
+    ] = None,
+    json: JsonOption = False,
+) -> None:
+    """Synthesise a four-bar through three precision points, and name its defects."""
+    from reports.commands.synthesis import PUBLISHED_POINTS, print_synthesis, read_synthesis, write_synthesis
+    from reports.page.output import refuse_unusable, write_folder
+
+    refuse_unusable(output, "synth")
+    found = read_synthesis(points or PUBLISHED_POINTS, ground)
+    print_synthesis(found, json=json)
+    if output is not None:
+        write_folder(output, "synth", lambda folder: write_synthesis(found, folder))
+        _tell(f"\nRecord and drawing: {output / 'synth'}", json)
+
+
+@app.command()
+def cases() -> None:
+    """List the built-in cases."""
+    from loads.case.case_file import built_in_cases, read_case
+
+    width = max(map(len, built_in_cases()))
+    for name in built_in_cases():
+        print(f"{name:<{width}}  {read_case(name).title}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of the case file."""
+    import json
+
+    from loads.case.case import Case
+
+    print(json.dumps(Case.model_json_schema(), indent=2))
+
+
+@app.command()
+def new(
+    path: Annotated[Path, typer.Argument(help="The file to write.", show_default=False)],
+) -> None:
+    """Write a commented starter case: a four-bar linkage."""
+    from importlib.resources import files
+
+    from geometry.base.errors import CannotRunError, CaseError
+
+    text = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
+    try:
+        with path.open("x", encoding="utf-8") as stream:
+            stream.write(text)
+    except FileExistsError:
+        raise CaseError(f"'{path}' exists; choose another name, so that nothing is lost") from None
+    except OSError as error:
+        if path.is_file():
+            path.unlink()  # half of it
+        raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
+    print(f"Wrote {path}. Check it with: alula check {path} -o out")
+
+
+@app.command()
+def export(
+    case: CaseArgument,
+    step: Annotated[bool, typer.Option("--step", help="Write the parts as STEP files (mm).")] = False,
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for the files.")] = Path("parts"),
+    overrides: SetOption = None,
+) -> None:
+    """Write the parts of a case to CAD files."""
+    from geometry.base.errors import CaseError
+    from geometry.meshing.mesh import export_step, step_names
+    from loads.case.case_file import read_case
+    from reports.page.output import EXPORT, refuse_unusable, write_folder
+
+    if not step:
+        raise CaseError("export: name a format; STEP is the one there is: add --step")
+    parsed = read_case(case, overrides or ())
+    bodies = {link: parsed.body(link) for link in parsed.checked_links}
+    refuse_unusable(output, EXPORT, step_names(bodies))
+    write_folder(output, EXPORT, lambda folder: export_step(bodies, folder))
+    for name in step_names(bodies):
+        print(output / name)
+
+
+def _show(result: Any, as_json: Callable[[Any], str] | None, show: Callable[[Any, "Console"], None]) -> None:
+    """Print a result, as JSON or for people: before its folder is written, so that a full disk keeps no verdict."""
+    if as_json is not None:
+        print(as_json(result), flush=True)
+    else:
+        from rich.console import Console
+
+        show(result, Console())
+
+
+def _tell(written: str, json: bool) -> None:
+    """Say where the folder is, unless standard output is JSON."""
+    if not json:
+        print(written)
+
+
+def _progress(message: str) -> None:
+    end_if_stopped()
+    print(message, file=sys.stderr, flush=True)

@@ -1,0 +1,146 @@
+"""How the program ends: every way has its exit status and at most one sentence on standard error."""
+
+import codecs
+import contextlib
+import errno
+import io
+import logging
+import os
+import sys
+from collections.abc import Callable
+from typing import NoReturn
+
+from geometry.base.errors import AlulaError
+
+INTERRUPTED = 130
+CRASHED = 4
+PIPE_CLOSED = 141
+"""As the shell says of a program that ends since nobody reads on: 128 and the number of SIGPIPE."""
+
+
+def run(app: Callable[[], object]) -> NoReturn:
+    """Run the command line to its end."""
+    end_cleanly_on_signals()
+    make_writable()
+    try:
+        try:
+            app()
+        except SystemExit as stop:
+            if _pipe_was_closed(stop):
+                raise BrokenPipeError from None
+            end_if_stopped()
+            sys.stdout.flush()  # here, where a full disk can still be explained
+            raise
+        except BaseException:
+            with contextlib.suppress(OSError):
+                sys.stdout.flush()
+            raise
+    except AlulaError as error:
+        _stop(str(error), error.exit_status)
+    except KeyboardInterrupt:
+        _stop("interrupted", INTERRUPTED)
+    except MemoryError:
+        _stop("memory ran out; use a coarser mesh (solid.mesh_size) or fewer links", CRASHED)
+    except BrokenPipeError:
+        _abandon_output()
+        sys.exit(PIPE_CLOSED)
+    except OSError as error:
+        _abandon_output()
+        missing = "the current folder" if isinstance(error, FileNotFoundError) else "standard output"
+        where = f"'{error.filename}'" if error.filename else missing
+        _stop(f"{where} failed ({error.strerror or error}); free space on the disk or choose another place", CRASHED)
+    except UnicodeEncodeError as error:
+        if os.environ.get("ALULA_TRACEBACK"):
+            raise
+        _stop(
+            f"a name with {error.object[error.start : error.end]!a} cannot be given to a file under this locale, whose "
+            f"encoding is {error.encoding}; set LC_ALL=C.UTF-8",
+            CRASHED,
+        )
+    except Exception as error:
+        if os.environ.get("ALULA_TRACEBACK"):
+            raise
+        _stop(
+            f"a fault of alula's own, not of the case: {type(error).__name__}: {error}; "
+            "set ALULA_TRACEBACK=1 to see where, and please report it",
+            CRASHED,
+        )
+    sys.exit(0)
+
+
+def make_writable() -> None:
+    """Let text be written whatever the streams are: closed ones take it and lose it, poor encodings escape it.
+
+    The escapes are those of JSON, so that a record stays one.
+    """
+
+    def escaped(error: UnicodeError) -> tuple[str, int]:
+        if not isinstance(error, UnicodeEncodeError):
+            raise error
+        units = error.object[error.start : error.end].encode("utf-16-be", "surrogatepass").hex()
+        return "".join(f"\\u{units[i : i + 4]}" for i in range(0, len(units), 4)), error.end
+
+    codecs.register_error("alula", escaped)
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+        elif isinstance(stream, io.TextIOWrapper) and stream.encoding.lower().replace("-", "") != "utf8":
+            stream.reconfigure(errors="alula")
+    # It tells of a folder for its cache where HOME cannot be written.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+
+
+def end_cleanly_on_signals() -> None:
+    """Let a signal to end do what Ctrl-C does: stop the children, remove half-written folders, end with 130."""
+    import signal
+
+    def end(number: int, frame: object) -> None:
+        for other in ending:
+            signal.signal(other, signal.SIG_IGN)  # a second one would cut the cleaning short
+        from geometry.base.child import stop_all
+
+        stop_all()
+        raise KeyboardInterrupt
+
+    told = sys.unraisablehook
+
+    def tell(unraisable: "sys.UnraisableHookArgs") -> None:
+        """Stay silent on the interruption that a callback swallowed; ``end_if_stopped`` makes up for it."""
+        from geometry.base.child import stopped
+
+        if not (stopped() and isinstance(unraisable.exc_value, KeyboardInterrupt)):
+            told(unraisable)
+
+    sys.unraisablehook = tell
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    found = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    # One that is ignored stays so: nohup says that the end of the terminal is to be survived.
+    ending = [number for number in found if signal.getsignal(number) is not signal.SIG_IGN]
+    for number in ending:
+        signal.signal(number, end)
+
+
+def end_if_stopped() -> None:
+    """End where a signal was to end the process but a library swallowed it."""
+    from geometry.base.child import stopped
+
+    if stopped():
+        raise KeyboardInterrupt
+
+
+def _pipe_was_closed(stop: SystemExit) -> bool:
+    """Return True if typer took a closed pipe for the end, with the status that means a failed check."""
+    cause = stop.__context__
+    return isinstance(cause, OSError) and cause.errno == errno.EPIPE
+
+
+def _abandon_output() -> None:
+    """Keep the interpreter from trying once more to write what could not be written."""
+    with contextlib.suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _stop(sentence: str, status: int) -> NoReturn:
+    print(f"alula: {' '.join(sentence.split())}", file=sys.stderr)
+    sys.exit(status)

@@ -1,0 +1,349 @@
+"""What ``alula envelope`` prints and writes: the least safety factor of each link over the motion, and its curve."""
+
+import csv
+import json
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.band import Band
+from fea.common.verdict import SAFETY_FACTOR
+from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
+from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from fea.outcomes.unchecked import unchecked
+from geometry.parts.material import Material
+from loads.records.check_spec import SafetyFactorCheck
+from reports.page.output import MARK, write_folder
+from reports.tables.console import COLOURS, verdict_line
+from reports.tables.meshes import solver_record
+from reports.words.terminal import KEPT, say, say_table
+from reports.words.wording import band, fixed, not_checked, number, plain
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+Real = NDArray[np.float64]
+
+ENVELOPE_SCHEMA_VERSION = 1
+UNITS = {"angle": "deg", "length": "mm", "stress": "MPa"}
+CURVES = "envelope.csv"
+FIGURE = "envelope.png"
+
+
+def drive_angle(result: EnvelopeResult, pose: int) -> float:
+    """Direction of the driven link at a pose [degrees]."""
+    return math.degrees(float(result.drive_angles[pose]))
+
+
+def write_envelope(
+    result: EnvelopeResult, target: Path, *, progress: Callable[[str], None] = lambda message: None
+) -> None:
+    """Write ``result.json``, ``envelope.csv``, ``envelope.png``, ``vtu/<link>.vtu`` and ``pictures/stress-<link>.png``.
+
+    VTU file and picture show the worst pose under the worst load case. Raises as ``write_folder`` does.
+    """
+    from reports.figures.envelope_figures import envelope_figure
+    from reports.figures.figures import plots_of, scene_from
+    from reports.page.export import write_vtu
+
+    def fill(folder: Path) -> None:
+        (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")
+        write_curves(result, folder / CURVES)
+        progress("Drawing the envelope ...")
+        (folder / FIGURE).write_bytes(envelope_figure(result))
+        progress("Rendering the stress plots ...")
+        scenes = {
+            name: scene_from(
+                link.field,
+                link.displacement,
+                link.worst.discretisation,
+                result.case.part_of(name).section,
+                brittle=result.case.material_of(name).brittle,
+            )
+            for name, link in result.links.items()
+        }
+        stations = {name: {p: x for p, (x, _) in result.case.links[name].points.items()} for name in result.links}
+        plots, warnings = plots_of(scenes, stations)
+        for warning in warnings:
+            progress(f"Warning: {warning}")
+        (folder / "pictures").mkdir()
+        for name, plot in plots.items():
+            (folder / "pictures" / f"stress-{name}.png").write_bytes(plot)
+        (folder / "vtu").mkdir()
+        for name, link in result.links.items():
+            write_vtu(folder / "vtu" / f"{name}.vtu", link.displacement, link.field)
+
+    write_folder(target, "envelope", fill)
+
+
+def write_curves(result: EnvelopeResult, path: Path) -> None:
+    """Write the curves over the motion as CSV, load case below load case; poses left out have empty fields."""
+    angles = {
+        f"{result.moved.motion.coordinate} angle [deg]": np.degrees(result.angles),
+        f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles),
+    }
+    header = ["load case", *angles]
+    for link, found in result.links.items():
+        header += [f"{link} {found.measure} stress{end} [MPa]" for end in ("", " low", " high")]
+        header += [f"{link} safety factor{end} [1]" for end in ("", " low", " high")]
+        header += [f"{link} signed stress at the critical point [MPa]"]
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(header)
+        for name in result.case.load_cases:
+            columns = list(angles.values())
+            for found in result.links.values():
+                columns += _columns(found, name, len(result.angles))
+            for row in np.column_stack(columns).tolist():
+                writer.writerow([name, *(f"{v:.9g}" if math.isfinite(v) else "" for v in row)])
+
+
+def _columns(link: LinkEnvelope, load_case: str, count: int) -> list[Real]:
+    if load_case not in link.load_cases:
+        return [np.full(count, np.nan)] * 7
+    found = link.load_cases[load_case]
+    with np.errstate(divide="ignore"):
+        factors = [link.strength / np.maximum(stress, 0.0) for stress in (found.value, found.high, found.low)]
+    history = np.full(count, np.nan) if found.fatigue is None else found.fatigue.history
+    return [found.value, found.low, found.high, *factors, history]
+
+
+def as_json(result: EnvelopeResult) -> str:
+    """Return the result as JSON text."""
+    return json.dumps(record(result), indent=2, allow_nan=False)
+
+
+def record(result: EnvelopeResult) -> dict[str, Any]:
+    """Return the result as plain data: angles in degrees, infinite or unknown numbers as null."""
+    motion = result.moved.motion
+    return {
+        "schema_version": ENVELOPE_SCHEMA_VERSION,
+        "case": result.name,
+        "title": result.case.title,
+        "verdict": result.verdict.value,
+        "units": UNITS,
+        "motion": {
+            "coordinate": motion.coordinate,
+            "first": math.degrees(float(result.angles[0])),
+            "last": math.degrees(float(result.angles[-1])),
+            "poses": len(result.angles),
+            "evaluated": int(result.evaluated.sum()),
+            "returns_to_start": motion.returns,
+            "drive": {"link": result.drive.link, "joint": result.drive.joint},
+            "dead_points": [math.degrees(angle) for angle in result.moved.dead_points],
+        },
+        "links": {name: _link_record(result, link) for name, link in result.links.items()},
+        "idle_links": list(result.idle),
+        "not_checked": list(unchecked(result.case, (SafetyFactorCheck,))),
+        "checks": [
+            {
+                "name": check.name,
+                "link": check.link,
+                "load_case": check.load_case,
+                "quantity": check.quantity,
+                "value": _band_record(check.value),
+                "limit": check.limit,
+                "verdict": check.verdict.value,
+                "reason": check.reason,
+            }
+            for check in result.checks
+        ],
+        "warnings": list(result.warnings),
+        "timings_s": dict(result.timings),
+    }
+
+
+def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
+    material = result.case.material_of(link.link)
+    return {
+        "measure": link.measure,
+        "strength": link.strength,
+        "worst_load_case": link.worst.name,
+        "load_cases": {name: _load_case_record(result, found, material) for name, found in link.load_cases.items()},
+        "no_fatigue": link.no_fatigue or None,
+        "elements": link.elements,
+        "unknowns": link.unknowns,
+        "unit_loads": link.units,
+        "solutions": link.modes,
+        **solver_record(link),
+        "support_reaction": link.reaction,
+        "imbalance": link.imbalance,
+        "notes": list(link.notes),
+    }
+
+
+def _load_case_record(result: EnvelopeResult, found: LoadCaseEnvelope, material: Material) -> dict[str, Any]:
+    return {
+        "stress": _band_record(found.stress),
+        "safety_factor": _band_record(found.safety_factor),
+        "at": {
+            "pose": found.pose,
+            "coordinate": math.degrees(float(result.angles[found.pose])),
+            "drive": drive_angle(result, found.pose),
+            "location": found.location.tolist(),
+            "pin_pressure_span": found.governing.span,
+            "transfer": found.governing.transfer,
+        },
+        "fatigue": None if found.fatigue is None else _fatigue_record(found.fatigue, material),
+    }
+
+
+def _fatigue_record(fatigue: LinkFatigue, material: Material) -> dict[str, Any]:
+    assert material.fatigue is not None
+    life = fatigue.life
+    return {
+        "measure": measure_of(material),
+        "rule": material.fatigue.rule,
+        "location": fatigue.location.tolist(),
+        "smallest": life.smallest,
+        "largest": life.largest,
+        "range": life.stress_range,
+        "cycles": [{"range": size, "mean": mean, "count": count} for size, mean, count in life.cycles],
+        "equivalent_peak_stress": _band_record(fatigue.stress),
+        "wanted_repetitions": fatigue.wanted,
+        "strength_at_wanted": fatigue.strength,
+        "repetitions": None if fatigue.repetitions is None else _band_record(fatigue.repetitions),
+        "scatter": scatter_of(material),
+        "source": material.fatigue.source,
+    }
+
+
+def _band_record(value: Band) -> dict[str, Any]:
+    return {
+        "value": _finite(value.value),
+        "low": _finite(value.low),
+        "high": _finite(value.high),
+        "holds": list(value.told),
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def measure_of(material: Material) -> str:
+    """What stands for the stress that varies."""
+    if material.brittle:
+        return "the principal stress of largest size"
+    return "the von Mises stress with the sign of the principal stress of largest size"
+
+
+def scatter_of(material: Material) -> str:
+    """How far a life may be off, in one sentence."""
+    fatigue = material.fatigue
+    assert fatigue is not None
+    asked = f"the limits of {STRESS_FACTOR:g} on stress and {LIFE_FACTOR:g} on life are to cover it"
+    if fatigue.exponent is None:
+        return f"the card states one point of the S-N curve and no scatter; {asked}"
+    return (
+        f"the card states no scatter in numbers; 10 % more stress shortens a life by a factor of "
+        f"{1.1**fatigue.exponent:.2g}; {asked}"
+    )
+
+
+def print_envelope(result: EnvelopeResult, console: "Console") -> None:
+    """Print a compact account; broken at spaces where the terminal is narrow."""
+    verdict_line(result.verdict, result.case.title, console)
+    coordinate, (first, last) = result.moved.motion.coordinate, np.degrees(result.angles[[0, -1]])
+    say(
+        console,
+        f"Motion: {coordinate} from {first:.6g} to {last:.6g} deg, driven at {result.drive.link}; "
+        f"{int(result.evaluated.sum())} of {len(result.angles)} poses.",
+    )
+    if left_out := not_checked(unchecked(result.case, (SafetyFactorCheck,))):
+        say(console, left_out)
+    _links(result, console)
+    fatigued = {n: link for n, link in result.links.items() if any(c.fatigue for c in link.load_cases.values())}
+    if fatigued:
+        _fatigue(fatigued, console)
+        for material in {result.case.part_of(n).material: result.case.material_of(n) for n in fatigued}.values():
+            say(console, f"Fatigue of {material.title}: of {measure_of(material)}; {scatter_of(material)}.")
+    missing: dict[str, list[str]] = {}
+    for name, link in result.links.items():
+        if link.no_fatigue:
+            missing.setdefault(link.no_fatigue, []).append(name)
+    for why, names in missing.items():
+        say(console, f"No fatigue of {', '.join(names)}: {why}.")
+    _checks(result, console)
+    if result.idle:
+        say(console, f"Nothing acts on {', '.join(result.idle)}.")
+    for warning in result.warnings:
+        say(console, f"Warning: {warning}.", style="yellow")
+
+
+def _links(result: EnvelopeResult, console: "Console") -> None:
+    measures = {link.measure for link in result.links.values()}
+    mixed = len(measures) > 1
+    columns = (
+        ("link", False),
+        ("load case", False),
+        ("least safety\nfactor (band)", True),
+        ("decisive stress\n[MPa]" if mixed else f"{next(iter(measures), '')}\n[MPa]", True),
+        (f"at {result.drive.link}\n[deg]", True),
+        ("at x, y, z\n[mm]", True),
+    )
+    rows = [
+        (
+            name,
+            load_case,
+            band(found.safety_factor),
+            (f"{link.measure} " if mixed else "") + number(found.stress.value, 3),
+            fixed(drive_angle(result, found.pose), 1),
+            ", ".join(fixed(float(v), 1) for v in found.location),
+        )
+        for name, link in result.links.items()
+        for load_case, found in link.load_cases.items()
+    ]
+    say_table(console, columns, rows)
+
+
+def _fatigue(links: Mapping[str, LinkEnvelope], console: "Console") -> None:
+    columns = (
+        ("link", False),
+        ("load case", False),
+        ("signed stress\n[MPa]", True),
+        ("range\n[MPa]", True),
+        ("repetitions to\nfailure (band)", True),
+    )
+    rows = [
+        (
+            name,
+            load_case,
+            f"{number(fatigue.life.smallest, 3)} to {number(fatigue.life.largest, 3)}",
+            number(fatigue.life.stress_range, 3),
+            "no exponent known" if fatigue.repetitions is None else band(fatigue.repetitions, 2),
+        )
+        for name, link in links.items()
+        for load_case, found in link.load_cases.items()
+        if (fatigue := found.fatigue) is not None
+    ]
+    say_table(console, columns, rows)
+
+
+def _checks(result: EnvelopeResult, console: "Console") -> None:
+    from rich.text import Text
+
+    columns = (
+        ("check", False),
+        ("link", False),
+        ("load case", False),
+        ("value\n(band)", True),
+        ("limit", True),
+        ("verdict", False),
+    )
+    rows = [
+        (
+            check.name if check.quantity == SAFETY_FACTOR else check.quantity,
+            check.link,
+            check.load_case,
+            band(check.value),
+            f"≥{KEPT}{plain(check.limit)}",
+            Text(check.verdict.value, style=COLOURS[check.verdict]),
+        )
+        for check in result.checks
+    ]
+    say_table(console, columns, rows)

@@ -1,0 +1,124 @@
+"""What ``alula statics`` prints: pose, reactions, and the equations themselves."""
+
+import json as jsonlib
+import math
+
+import numpy as np
+
+from fea.check.run import CaseStatics
+from loads.statics.statics import Reactions, System
+from reports.tables.frames import AXES, shown_components
+
+
+def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
+    """Print pose and reactions of every load case; with ``matrix`` also [A] and [b]."""
+    if json:
+        print(jsonlib.dumps(_record(statics, matrix=matrix), indent=2))
+        return
+    pose = statics.pose
+    print(f"Mobility (Gruebler): {pose.linkage.mobility}")
+    print(f"Closure residual: {pose.residual:.1e} of the longest link")
+    left = max(12, *map(len, pose.points), *map(len, pose.linkage.moving))
+    for link in pose.linkage.moving:
+        print(f"  {link:<{left}} at {math.degrees(pose.angles[link]) % 360.0:9.4f} deg")
+    for name, (x, y) in pose.points.items():
+        print(f"  {name:<{left}} at ({_column(x, pose.linkage.longest)}, {_column(y, pose.linkage.longest)}) mm")
+    for title, reactions in statics.reactions.items():
+        print(f"\nLoad case {title}")
+        shown = shown_components(reactions)
+        width = max(4, *map(len, reactions.joints))
+        places = [AXES.index(axis) for axis in shown]
+        largest = max((float(np.abs(joint.wrench[:3]).max()) for joint in reactions.joints.values()), default=0.0)
+        forces, moments = [i for i in places if i < 3], [i for i in places if i >= 3]
+        for joint in reactions.joints.values():
+            force = ", ".join(_column(joint.wrench[i], largest) for i in forces)
+            size = _column(joint.magnitude, largest).strip()
+            turned = "".join(f", {AXES[i]} {joint.wrench[i]:.4g}" for i in moments)
+            print(
+                f"  {joint.joint:<{width}} {joint.by} pushes {joint.on} with ({force}) N, {size} N"
+                f"{turned}{' N·mm' if turned else ''}"
+            )
+        if reactions.drive:
+            drive = reactions.drive
+            if drive.pushes(reactions.pose.linkage):
+                print(f"  drive force on {drive.link}: {reactions.drive_force:.5g} N (along {drive.joint} +)")
+            else:
+                print(f"  drive torque on {drive.link}: {reactions.drive_torque:.5g} N·mm (counter-clockwise +)")
+        system = reactions.system
+        print(f"  system {len(system.rows)}×{len(system.columns)}, condition number {system.condition:.4g} (scaled),")
+        print(f"  residual {reactions.residual:.1e} of the load")
+        if matrix:
+            _print_matrix(reactions)
+
+
+def _print_matrix(reactions: Reactions) -> None:
+    """Print [A] and [b]; every unknown is what a joint's first link does to its second."""
+    system = reactions.system
+    labels = [f"{link} {kind}" for link, kind in system.rows]
+    left = max(map(len, labels))
+    largest = float(np.abs(system.matrix).max())
+    widths = [max(10, len(name) + 1) for name in system.columns]
+    print("\n  [A][R] = [b]; force rows in N, moment rows (about the first point of the link) in N·mm")
+    print(" " * (left + 2) + "".join(f"{n:>{w}}" for n, w in zip(system.columns, widths, strict=True)) + f"{'b':>12}")
+    for label, row, b in zip(labels, system.matrix, system.rhs, strict=True):
+        cells = "".join(f"{_cell(x, largest):>{w}}" for x, w in zip(row, widths, strict=True))
+        print(f"  {label:<{left}}{cells}{b:>12.5g}")
+    solution = "".join(f"{x:>{w}.4g}" for x, w in zip(reactions.unknowns, widths, strict=True))
+    print(f"  {'[R]':<{left}}{solution}")
+
+
+def _column(value: float, beside: float) -> str:
+    """Four decimals, or four digits where these would lose the number; what is rounding ``beside`` another is zero."""
+    shown = 0.0 if abs(value) <= 1e-12 * beside else float(value)
+    return f"{shown:10.4f}" if shown == 0.0 or 0.1 <= abs(shown) < 1e5 else f"{shown:10.4g}"
+
+
+def _cell(value: float, beside: float) -> str:
+    if value == 0.0:
+        return "."
+    if abs(value) == 1.0 or abs(value) <= 1e-12 * beside:
+        return f"{value:.0f}"
+    return f"{value:.3f}" if 1e-2 <= abs(value) < 1e4 else f"{value:.3g}"
+
+
+def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
+    pose = statics.pose
+    return {
+        "units": {"length": "mm", "force": "N", "moment": "N*mm", "angle": "deg"},
+        "pose": {
+            "mobility": pose.linkage.mobility,
+            "closure_residual": pose.residual,
+            "angles": {link: math.degrees(angle) % 360.0 for link, angle in pose.angles.items()},
+            "points": {name: point.tolist() for name, point in pose.points.items()},
+        },
+        "load_cases": {
+            title: {
+                "reactions": [
+                    {
+                        "joint": joint.joint,
+                        "on": joint.on,
+                        "by": joint.by,
+                        "force": joint.force[:2].tolist(),
+                        "magnitude": joint.magnitude,
+                        "wrench": joint.wrench.tolist(),
+                    }
+                    for joint in reactions.joints.values()
+                ],
+                "drive_torque": reactions.drive_torque,
+                "drive_force": reactions.drive_force,
+                "residual": reactions.residual,
+                "condition": reactions.system.condition,
+                **({"system": _system(reactions.system)} if matrix else {}),
+            }
+            for title, reactions in statics.reactions.items()
+        },
+    }
+
+
+def _system(system: System) -> dict[str, object]:
+    return {
+        "rows": [f"{link} {kind}" for link, kind in system.rows],
+        "columns": list(system.columns),
+        "matrix": np.asarray(system.matrix).tolist(),
+        "rhs": np.asarray(system.rhs).tolist(),
+    }

@@ -1,0 +1,4 @@
+"""Pictures: the linkage, diagrams, stress plots, motion and envelope.
+
+Hands on PNG files as bytes.
+"""

@@ -1,0 +1,30 @@
+"""Paths of the joints and points of a moving linkage, for tables, figures and the animation."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.motion import Motion
+
+Real = NDArray[np.float64]
+_SAME = 1e-9
+"""Points nearer than this share of the longest link are one."""
+
+
+def moving_points(motion: Motion) -> dict[str, Real]:
+    """Paths (n, 2) [mm] of all points that move, by name; ``link.point`` where points of one name differ."""
+    groups: dict[str, list[tuple[str, Real]]] = {}
+    for link, point in motion.closure.point_names:
+        groups.setdefault(point, []).append((link, motion.position(link, point)))
+    found: dict[str, Real] = {}
+    near = _SAME * motion.linkage.longest
+    for point, members in groups.items():
+        same = all(float(np.max(np.abs(xy - members[0][1]))) <= near for _, xy in members)
+        for link, xy in members[:1] if same else members:
+            if float(np.max(np.abs(xy - xy[0]))) > near:
+                found[point if same else f"{link}.{point}"] = xy
+    return found
+
+
+def path_length(xy: Real) -> float:
+    """Length of the path along xy (n, 2), in its unit."""
+    return float(np.sum(np.linalg.norm(np.diff(xy, axis=0), axis=1)))

@@ -1,0 +1,73 @@
+"""The moving linkage as an animated GIF, drawn without a display."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from numpy.typing import NDArray
+from PIL import Image
+
+from geometry.linkage.motion import Motion
+from reports.figures.joint_paths import moving_points
+from reports.figures.motion_figures import COLOURS, chains, ground, plane, quiet_glyphs
+
+Real = NDArray[np.float64]
+
+FRAMES = 60
+SECONDS = 3.0
+"""Length of one full turn, or of the way there and back."""
+_COLOURS = 64
+_DPI = 80
+
+
+def draw_animation(motion: Motion, path: Path) -> None:
+    """Draw one full turn, or a range there and back, as a GIF that repeats for ever."""
+    figure, axes = plane(motion, width=7.0)
+    for xy in moving_points(motion).values():
+        axes.plot(*xy.T, color="0.75", linewidth=1.0, zorder=1)
+    ground(axes, motion)
+    drawn = []
+    for i, chain in enumerate(chains(motion.linkage)):
+        colour = COLOURS[i % len(COLOURS)]
+        [line] = axes.plot([], [], color=colour, linewidth=3.0, marker="o", markersize=5, markerfacecolor="white")
+        drawn.append((line, [motion.column(link, point) for link, point in chain]))
+    title = axes.set_title("", parse_math=False, loc="left", fontsize=10)
+    figure.set_dpi(_DPI)
+    canvas = FigureCanvasAgg(figure)
+    angles = _angles(motion)
+    points = motion.closure.positions(motion.track.at(angles))
+    frames = []
+    with quiet_glyphs():
+        title.set_text(motion.coordinate)
+        canvas.draw()
+        figure.set_layout_engine("none")  # laid out once: a layout of its own per frame would shake
+        for angle, here in zip(angles, points, strict=True):
+            for line, columns in drawn:
+                line.set_data(here[columns].real, here[columns].imag)
+            title.set_text(f"{motion.coordinate} at {motion.told(angle):.1f} {motion.unit}")
+            canvas.draw()
+            frames.append(np.array(canvas.buffer_rgba())[..., :3])
+    # Colours are chosen for all frames together, or they would flicker.
+    strip = Image.fromarray(np.concatenate(frames)).quantize(_COLOURS, dither=Image.Dither.NONE)
+    height, width = frames[0].shape[:2]
+    pictures = [strip.crop((0, i * height, width, (i + 1) * height)) for i in range(len(frames))]
+    pictures[0].save(
+        path,
+        save_all=True,
+        append_images=pictures[1:],
+        duration=round(1000.0 * SECONDS / len(frames)),
+        loop=0,
+        optimize=True,
+    )
+
+
+def _angles(motion: Motion) -> Real:
+    """Angles of the coordinate at the frames: evenly spread in time (in the angle where there is none)."""
+    clock = motion.times if motion.times is not None else np.abs(motion.angles - motion.angles[0])
+    last = float(clock[-1])
+    if motion.returns:
+        wanted = np.linspace(0.0, last, FRAMES, endpoint=False)
+    else:
+        there = np.linspace(0.0, last, FRAMES // 2 + 1)
+        wanted = np.concatenate([there, there[-2:0:-1]])
+    return np.interp(wanted, clock, motion.angles)

@@ -1,0 +1,239 @@
+"""Figures of a motion, drawn without a display: link directions, joint paths, drive torque, joint forces."""
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from geometry.linkage.linkage import Linkage
+from geometry.linkage.motion import Motion
+from loads.states.case_motion import CaseMotion
+from reports.figures.joint_paths import moving_points
+
+Real = NDArray[np.float64]
+
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d00", "#56b4e9", "#444444", "#e69f00")
+"""Okabe and Ito's colours, told apart by the colour-blind; two of them darkened for lines on white."""
+DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)))
+DPI = 130
+_SIZE = (8.0, 4.8)
+_POSES = 5
+_CLIP, _HEADROOM = 4.0, 1.6
+"""Beside a dead point of the drive the axis ends at these multiples of the median and of the ends' values."""
+
+
+@contextmanager
+def quiet_glyphs() -> Iterator[None]:
+    """Names may hold letters that the figures' font lacks; a box in their place is no reason to warn."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        yield
+
+
+def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
+    """Draw all figures of a motion as PNG files into a folder and return their paths."""
+    figures = {
+        "link-angles": angles_figure(result),
+        "paths": paths_figure(result.motion),
+        "torque": torque_figure(result),
+    }
+    for i, load_case in enumerate(result.forces):
+        name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
+        figures[name] = forces_figure(result, load_case)
+    paths = []
+    with quiet_glyphs():
+        for name, figure in figures.items():
+            paths.append(folder / f"{name}.png")
+            figure.savefig(paths[-1], dpi=DPI)
+    return paths
+
+
+def angles_figure(result: CaseMotion) -> Figure:
+    """Direction of every moving link over the coordinate's angle."""
+    motion = result.motion
+    figure, axes = _over_angle(motion, "direction of the link [deg]")
+    for i, link in enumerate(motion.linkage.moving):
+        _line(axes, motion, np.degrees(motion.angle(link)), link, i)
+    _dead_points(axes, result)
+    _legend(axes, "link")
+    return figure
+
+
+def torque_figure(result: CaseMotion) -> Figure:
+    """Drive torque over the coordinate's angle, one line per load case."""
+    motion = result.motion
+    figure, axes = _over_angle(motion, f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]")
+    for i, (load_case, torque) in enumerate(result.torque.items()):
+        _line(axes, motion, _broken(result, torque), load_case, i)
+    axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
+    _clip(axes, result, list(result.torque.values()), symmetric=True)
+    _dead_points(axes, result)
+    _legend(axes, "load case")
+    return figure
+
+
+def forces_figure(result: CaseMotion, load_case: str) -> Figure:
+    """Size of every joint force over the coordinate's angle under one load case."""
+    motion, forces = result.motion, result.forces[load_case].forces
+    figure, axes = _over_angle(motion, "joint force [N]")
+    sizes = {joint: np.linalg.norm(force, axis=1) for joint, force in forces.items()}
+    for i, joints in enumerate(_equal(sizes)):
+        _line(axes, motion, _broken(result, sizes[joints[0]]), ", ".join(joints), i)
+    axes.set_ylim(bottom=0.0)
+    _clip(axes, result, list(sizes.values()), symmetric=False)
+    axes.set_title(f"load case {load_case}", parse_math=False, loc="left", fontsize=10)
+    _dead_points(axes, result)
+    _legend(axes, "joint")
+    return figure
+
+
+def paths_figure(motion: Motion) -> Figure:
+    """Paths of the moving points, with the linkage at a few poses from light to dark."""
+    figure, axes = plane(motion, width=8.0)
+    indices = np.unique(np.linspace(0, len(motion.angles) - 1, _POSES).round().astype(int))
+    if motion.returns:
+        indices = np.unique(np.linspace(0, len(motion.angles) - 1, _POSES + 1).round().astype(int))[:-1]
+    for i, (label, xy) in enumerate(moving_points(motion).items()):
+        style = {"color": COLOURS[i % len(COLOURS)], "linestyle": DASHES[i // len(COLOURS) % len(DASHES)]}
+        axes.plot(*xy.T, linewidth=1.6, label=label, zorder=2, **style)
+    for index, shade in zip(indices, np.linspace(0.78, 0.0, len(indices)), strict=True):
+        colour = str(shade)
+        for chain in chains(motion.linkage):
+            xy = np.array([motion.position(link, point)[index] for link, point in chain])
+            axes.plot(*xy.T, color=colour, linewidth=1.4, marker="o", markersize=3.5, markerfacecolor="white", zorder=3)
+    ground(axes, motion)
+    last = f"{motion.told(motion.angles[indices[-1]]):.5g} {motion.unit}"
+    axes.set_title(
+        f"{motion.coordinate} from {motion.told(motion.angles[0]):.5g} {motion.unit} (light) to {last} (black)",
+        parse_math=False,
+        loc="left",
+        fontsize=10,
+    )
+    _legend(axes, "path of")
+    return figure
+
+
+def plane(motion: Motion, *, width: float) -> tuple[Figure, Any]:
+    """Return an empty figure and axes that hold the whole motion to scale, in mm."""
+    everything = motion.points
+    x, y = everything.real, everything.imag
+    margin = 0.06 * max(np.ptp(x), np.ptp(y))
+    spans = (np.ptp(x) + 2 * margin, np.ptp(y) + 2 * margin)
+    height = float(np.clip(width * 0.82 * spans[1] / spans[0] + 0.9, 3.6, 7.5))
+    figure = Figure(figsize=(width, height), layout="constrained")
+    axes = figure.add_subplot()
+    axes.set_aspect("equal")
+    axes.set_xlim(x.min() - margin, x.max() + margin)
+    axes.set_ylim(y.min() - margin, y.max() + margin)
+    axes.set_xlabel("x [mm]")
+    axes.set_ylabel("y [mm]")
+    axes.grid(color="0.92", linewidth=0.8)
+    axes.set_axisbelow(True)
+    return figure, axes
+
+
+def chains(linkage: Linkage) -> list[list[tuple[str, str]]]:
+    """Lines that draw each moving link: its points in order, closed where they do not lie on one line."""
+    found = []
+    for link in linkage.moving:
+        points = linkage.links[link].points
+        chain = [(link, name) for name in points]
+        xy = np.array(list(points.values()))
+        if len(xy) > 2 and np.linalg.svd(xy - xy.mean(axis=0), compute_uv=False)[1] > 1e-6 * linkage.longest:
+            chain.append(chain[0])
+        found.append(chain)
+    return found
+
+
+def ground(axes: Any, motion: Motion) -> None:
+    """Mark and name the joints of the ground: pivots as triangles, its slots as bars of the length of the travel."""
+    base = motion.linkage.ground
+    for name in motion.linkage.joints_of(base):
+        joint = motion.linkage.joints[name]
+        x, y = motion.linkage.links[base].points[motion.linkage.point_of(name, base)]
+        if joint.type != "revolute" and joint.links[0] == base:
+            travel = motion.travel(name)
+            reach = np.array([travel.min(), travel.max()])
+            bar = complex(x, y) + np.exp(1j * joint.direction) * reach
+            axes.plot(bar.real, bar.imag, color="0.82", linewidth=8.0, solid_capstyle="round", zorder=0.5)
+            x, y = bar[0].real, bar[0].imag
+        else:
+            axes.plot(x, y, marker="^", markersize=10, color="0.35", zorder=1)
+        axes.annotate(name, (x, y), xytext=(7, -13), textcoords="offset points", fontsize=10, parse_math=False)
+
+
+def _over_angle(motion: Motion, label: str) -> tuple[Figure, Any]:
+    figure = Figure(figsize=_SIZE, layout="constrained")
+    axes = figure.add_subplot()
+    what = "travel" if motion.slides else "direction"
+    axes.set_xlabel(f"{what} of {motion.coordinate} [{motion.unit}]", parse_math=False)
+    axes.set_ylabel(label, parse_math=False)
+    first, last = motion.told(motion.angles[[0, -1]])
+    axes.set_xlim(first, last)
+    axes.grid(color="0.9", linewidth=0.8)
+    return figure, axes
+
+
+def _line(axes: Any, motion: Motion, values: Real, label: str, index: int) -> None:
+    style = {"color": COLOURS[index % len(COLOURS)], "linestyle": DASHES[index // len(COLOURS) % len(DASHES)]}
+    axes.plot(motion.told(motion.angles), values, label=label, linewidth=1.8, **style)
+
+
+def _equal(sizes: dict[str, Real]) -> list[list[str]]:
+    """Joints by equal force, as at both ends of a link that nothing else loads: one line serves them all."""
+    groups: list[list[str]] = []
+    for joint, size in sizes.items():
+        for group in groups:
+            if np.allclose(size, sizes[group[0]], rtol=1e-9, atol=1e-12, equal_nan=True):
+                group.append(joint)
+                break
+        else:
+            groups.append([joint])
+    return groups
+
+
+def _broken(result: CaseMotion, values: Real) -> Real:
+    """The values with a gap at every dead point, so that no line joins the two sides of a pole."""
+    out = values.copy()
+    for angle in result.dead_points:
+        out[int(np.argmin(np.abs(result.motion.angles - angle)))] = np.nan
+    return out
+
+
+def _clip(axes: Any, result: CaseMotion, values: list[Real], *, symmetric: bool) -> None:
+    if not result.dead_points:
+        return
+    limit = max(_CLIP * float(np.nanmedian(np.abs(v))) for v in values)
+    ends = [abs(float(v[i])) for v in values for i in (0, -1) if np.isfinite(v[i])]
+    limit = max([limit, *(_HEADROOM * end for end in ends)])
+    if limit > 0.0:
+        axes.set_ylim(-limit if symmetric else 0.0, limit)
+
+
+def _dead_points(axes: Any, result: CaseMotion) -> None:
+    for angle in result.motion.told(result.dead_points):
+        axes.axvline(angle, color="0.25", linewidth=1.0, linestyle=(0, (2, 2)), zorder=1)
+        axes.annotate(
+            f"dead point of {result.drive.link}: {angle:.2f} {result.motion.unit}",
+            (angle, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(-4, -6),
+            textcoords="offset points",
+            rotation=90,
+            ha="right",
+            va="top",
+            fontsize=8.5,
+            parse_math=False,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0},
+        )
+
+
+def _legend(axes: Any, title: str) -> None:
+    legend = axes.legend(title=title, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, borderaxespad=0.0)
+    for text in legend.get_texts():
+        text.set_parse_math(False)

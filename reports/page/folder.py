@@ -1,0 +1,70 @@
+"""The output folder of a check: report, result, pictures and VTU files."""
+
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from fea.outcomes.result import CheckResult
+from loads.case.case import Case
+from reports.page.output import MARK, write_folder
+from reports.page.pictures import diagram_name, linkage_name, stress_name
+from reports.tables.record import as_json, worst_load_case
+
+REPORT = "report.html"
+PICTURES = "pictures"
+FIELDS = "vtu"
+DECKS = "calculix"
+
+
+def report_names(case: Case) -> set[str]:
+    """Return the names of all files that the report of a case can consist of."""
+    links, pictures = case.checked_links, set(map(linkage_name, case.load_cases))
+    pictures |= {name(link) for link in links for name in (diagram_name, stress_name)}
+    return {
+        REPORT,
+        MARK,
+        *(f"{PICTURES}/{name}.png" for name in pictures),
+        *(f"{FIELDS}/{link}.vtu" for link in links),
+        *(f"{DECKS}/{link}.inp" for link in links),
+    }
+
+
+def write_report(
+    result: CheckResult,
+    target: Path,
+    *,
+    decks: Path | None = None,
+    progress: Callable[[str], None] = lambda message: None,
+) -> None:
+    """Write ``report.html``, ``result.json``, ``pictures/*.png`` and ``vtu/<link>.vtu`` into a folder, or nothing.
+
+    decks   folder whose CalculiX decks go into ``calculix/``
+
+    The VTU file of a link holds the load case that stresses it most. Pictures that cannot be rendered are
+    left out with a warning in report and result. Raises as ``write_folder`` does.
+    """
+    from reports.page.export import write_vtu
+    from reports.page.html import render
+    from reports.page.pictures import draw_pictures
+
+    def fill(folder: Path) -> None:
+        pictures, warnings = draw_pictures(result, progress)
+        told = replace(result, warnings=(*result.warnings, *warnings))
+        for warning in warnings:
+            progress(f"Warning: {warning}")
+        (folder / REPORT).write_text(render(told, pictures), encoding="utf-8")
+        (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
+        (folder / PICTURES).mkdir()
+        for name, picture in pictures.items():
+            (folder / PICTURES / f"{name}.png").write_bytes(picture)
+        progress("Writing the VTU files ...")
+        for link in next(iter(result.load_cases.values())).links:
+            found = worst_load_case(result, link).links[link]
+            if found.stress is not None and found.solid_case is not None:
+                (folder / FIELDS).mkdir(exist_ok=True)
+                write_vtu(folder / FIELDS / f"{link}.vtu", found.solid_case.displacement, found.stress)
+        if decks is not None and result.second_opinions:
+            shutil.copytree(decks, folder / DECKS)
+
+    write_folder(target, "check", fill)

@@ -1,0 +1,216 @@
+"""``report.html``: one file that holds everything, pictures included, and loads nothing from elsewhere."""
+
+import base64
+import math
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from fea.claims.audit import ClaimResult, check_claims
+from fea.common.verdict import DRIVE_POWER, Verdict
+from fea.frame.joint_forces import PINNED_STATICS
+from fea.outcomes.judge import reason_for
+from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
+from geometry.linkage.pose import NEAR_DEAD_POINT
+from geometry.parts.material import Material
+from loads.case.case_file import built_in_cases
+from reports.page.coverage import not_covered
+from reports.page.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
+from reports.tables.claims import as_records, count
+from reports.tables.frames import AXES, shown_components
+from reports.tables.loads import air_record, anchor_record, weight_sentence
+from reports.tables.mechanism import design_of
+from reports.tables.meshes import solver_sentence
+from reports.tables.record import alula_version, worst_load_case
+from reports.words.wording import (
+    agreement,
+    apart,
+    band,
+    checks_of,
+    fixed,
+    headline,
+    joined,
+    number,
+    percent,
+    plain,
+    sentence,
+    turning,
+)
+
+MEANING = {
+    Verdict.PASS: "In this pose and under these loads every checked link keeps the margin that was asked for, "
+    "wherever in its error band the truth lies. What the model leaves out is listed at the end.",
+    Verdict.FAIL: "At least one check misses its limit wherever in its error band the truth lies: "
+    "change the section, the material, the load, or how the linkage is held.",
+    Verdict.UNDECIDED: "At least one answer cannot be given with the models that ran: its error band reaches over "
+    "the limit, or the model leaves out what matters there. This is neither a pass nor a fail.",
+}
+MODEL = {"solid": "Solid model", "submodel": "Solid models of eyes and holes", "beam": "Beam theory"}
+HAND = "Hand calculation"
+"""What gave the numbers of a link: ``HAND`` where beam theory has calibrated bands, so that it decides."""
+_PROPERTIES = (
+    ("density", "density", "kg/m³", 1e12),
+    ("youngs_modulus", "Young's modulus E", "GPa", 1e-3),
+    ("poissons_ratio", "Poisson's ratio ν", "", 1.0),
+    ("yield_strength", "yield strength", "MPa", 1.0),
+    ("ultimate_strength", "ultimate strength", "MPa", 1.0),
+)
+
+
+def _claims(result: CheckResult) -> dict[str, Any] | None:
+    """Findings on what the source of a case published; None where it published nothing that is entered."""
+    if not result.case.claims and result.name not in built_in_cases():
+        return None
+    found = _findings(result.name)
+    return {"count": count(found), "rows": as_records(found)} if found else None
+
+
+@cache
+def _findings(name: str) -> tuple[ClaimResult, ...]:
+    return check_claims(name, fidelity="beam")
+
+
+def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
+    """Return the report as one HTML page.
+
+    figures   PNG pictures by the names of ``reports.page.pictures``; a missing one is left out of the page
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("reports"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "number": number,
+        "plain": plain,
+        "fixed": fixed,
+        "band": band,
+        "percent": percent,
+        "joined": joined,
+        "sentence": sentence,
+        "capitalize_first": lambda text: text[:1].upper() + text[1:],
+        "solved": solver_sentence,
+        "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
+    }
+    first = next(iter(result.load_cases.values()))
+    return environment.get_template("report.html.jinja").render(
+        result=result,
+        case=result.case,
+        pose=result.pose,
+        first=first,
+        several=len(result.load_cases) > 1,
+        verdict=result.verdict.value,
+        headline=headline(result),
+        meaning=MEANING[result.verdict],
+        checks=checks_of(result),
+        bands=_bands(result),
+        reasons=_reasons(result),
+        drawings=[
+            (name, result.load_cases[name], figures.get(linkage_name(name))) for name in governing_load_cases(result)
+        ],
+        dead_points=_dead_points(result),
+        near_dead_point=NEAR_DEAD_POINT,
+        anchors={name: anchor_record(case) for name, case in result.load_cases.items()},
+        air={name: found for name in result.load_cases if (found := air_record(result, name))},
+        turning=turning,
+        axes=AXES,
+        shown_components=shown_components,
+        weight_sentence=weight_sentence,
+        guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
+        links=[_link(result, link, figures) for link in first.links],
+        agreement=agreement,
+        materials=_materials(result),
+        claims=_claims(result),
+        not_covered=not_covered(result),
+        pinned_statics=PINNED_STATICS,
+        out_of_plane=lambda load_case: len(shown_components(load_case.reactions)) > 3,
+        design=design_of(result.case),
+        version=alula_version(),
+        data_uri=data_uri,
+    )
+
+
+def data_uri(picture: bytes) -> str:
+    """Return a PNG as a URI that holds it."""
+    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
+
+
+def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
+    """What the bands in the table of checks hold: name of the check -> each source of error once, without particulars.
+
+    A check without any width stands there only where its values say why.
+    """
+    checks = checks_of(result)
+    wide = {check.name for check in checks if check.value.low < check.value.high}
+    found: dict[str, dict[str, None]] = {}
+    for check in checks:
+        every = check.value.holds if check.name in wide else ()
+        held = [text.partition(" (")[0] if text.endswith(")") else text for text in every]
+        for text in [f"nothing ({check.value.without})"] if check.value.without else held:
+            found.setdefault(check.name, {})[text] = None
+    return {name: tuple(held) for name, held in found.items()}
+
+
+def _reasons(result: CheckResult) -> list[str]:
+    """What each check says beyond its row, which has value, limit and verdict; "" where it says no more."""
+    return [
+        ""
+        if check.quantity != DRIVE_POWER
+        and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
+        else check.reason
+        for check in checks_of(result)
+    ]
+
+
+def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
+    """(what, link, distance from its dead point)."""
+    pose, drive = result.pose, result.case.pinned_drive
+    found = []
+    if pose.coordinate is not None:
+        distance = pose.dead_point_distance(pose.coordinate, slides=pose.slides)
+        found.append(("the pose coordinate", pose.coordinate, distance))
+    if drive is not None:
+        found.append(("the driven link", drive.link, drive.dead_point_distance(pose)))
+    return found
+
+
+def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[str, Any]:
+    """What the page tells of one link, under the load case that stresses it most."""
+    worst: LoadCaseResult = worst_load_case(result, name)
+    found: LinkResult = worst.links[name]
+    return {
+        "name": name,
+        "load_case": worst.name,
+        "found": found,
+        "material": result.case.material_of(name),
+        "part": result.case.part_of(name),
+        "plot": figures.get(stress_name(name)),
+        "diagram": figures.get(diagram_name(name)),
+        "apart": apart(found.comparisons),
+        "model": HAND if found.fidelity == "beam" and found.decided_by else MODEL[found.fidelity],
+        "checks": [c for c in worst.checks if c.link == name],
+        "others": [(case.name, case.links[name]) for case in result.load_cases.values() if case is not worst],
+    }
+
+
+def _materials(result: CheckResult) -> list[dict[str, Any]]:
+    used: dict[str, list[str]] = {}
+    for link in result.case.checked_links:
+        used.setdefault(result.case.part_of(link).material, []).append(link)
+    return [_material(name, result.case.all_materials[name], links) for name, links in used.items()]
+
+
+def _material(name: str, material: Material, links: list[str]) -> dict[str, Any]:
+    rows = [
+        (title, f"{plain(float(f'{value * factor:.6g}'))} {unit}".strip(),
+         material.status.get(key, "not stated"), material.sources.get(key, "not stated"))
+        for key, title, unit, factor in _PROPERTIES
+        for value in [getattr(material, key)]
+        if value is not None
+    ]  # fmt: skip
+    return {"name": name, "title": material.title, "links": links, "rows": rows, "strength": material.strength,
+            "allowable": material.allowable, "brittle": material.brittle}  # fmt: skip

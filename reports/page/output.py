@@ -1,0 +1,271 @@
+"""An output folder: alula replaces there what alula wrote, all of it or nothing, and leaves every other file alone.
+
+Each command keeps a list of its files and their digests in the folder, ``.alula-COMMAND.json``. A run fills a hidden
+folder inside of the output folder. When that is whole, the files of the earlier run are moved out and the new ones in.
+A journal of these moves lets the next run take them back where this one was killed in between.
+"""
+
+import contextlib
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from geometry.base import child
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.base.locks import locked
+
+MARK = "result.json"
+"""The last file to be put and the first to be taken: a folder that holds it holds a whole result."""
+EXPORT = "export"
+"""The command whose runs add to a folder: parts of several cases may stand side by side."""
+_TOP = ("check", EXPORT)
+"""Commands that write into the folder itself; the others write into a subfolder of their own name."""
+_PREFIX = ".alula-"
+_NEW, _OLD, _JOURNAL = "new", "old", "journal.json"
+
+
+def place(output: Path, command: str) -> Path:
+    """Return the folder that takes a command's files."""
+    target = Path(os.path.abspath(output))
+    return target if command in _TOP else target / command
+
+
+def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> None:
+    """Let ``fill`` write a command's files into an empty folder, then put them in their place.
+
+    Files of the command's earlier run are replaced, or removed where this one has no such file (those of ``export``
+    stay), if they are as alula left them. Of several runs into one folder the last to finish stays. Raises
+    ``CaseError`` for a file in the way, ``CannotRunError`` where the disk refuses; nothing is changed then.
+    """
+    target = place(output, command)
+    made = [folder for folder in (target, *target.parents) if not os.path.lexists(folder)]
+    work, mine = None, None
+    try:
+        try:
+            _refuse_no_folder(output, target)
+            target.mkdir(parents=True, exist_ok=True)
+            with _alone_in(target):
+                _recover(target)
+                _refuse_in_the_way(target, command, ())
+                work = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=target))
+                mine = locked(work)
+        except OSError as error:
+            raise _unwritable(target, error) from None
+        try:
+            _replace(target, command, work, fill)
+        except OSError as error:
+            begun = (work / _JOURNAL).exists()
+            state = "the next run into it restores what was there" if begun else "nothing was changed there"
+            raise CannotRunError(f"output: writing to '{target}' failed ({error.strerror or error}); {state}") from None
+    finally:
+        if work is not None and not (work / _JOURNAL).exists():
+            shutil.rmtree(work, ignore_errors=True)
+        if mine is not None:
+            os.close(mine)
+        for folder in made:
+            with contextlib.suppress(OSError):  # it holds the result
+                folder.rmdir()
+
+
+def refuse_unusable(output: Path | None, command: str, names: Iterable[str] = (MARK,)) -> None:
+    """Refuse an output folder before anything is computed for it.
+
+    names   the files that the command will write, as far as they are known
+
+    Raises as ``write_folder`` does.
+    """
+    if output is None:
+        return
+    target = place(output, command)
+    try:
+        _refuse_no_folder(output, target)
+        if target.is_dir():
+            with _alone_in(target):
+                _recover(target)
+                _refuse_in_the_way(target, command, names)
+        nearest = next(folder for folder in (target, *target.parents) if folder.exists())
+        with tempfile.TemporaryDirectory(prefix=_PREFIX, dir=nearest, ignore_cleanup_errors=True):
+            pass
+    except OSError as error:
+        raise _unwritable(target, error) from None
+
+
+def _unwritable(target: Path, error: OSError) -> CannotRunError:
+    return CannotRunError(f"output: '{target}' cannot be written ({error.strerror}); choose another folder")
+
+
+def _refuse_no_folder(output: Path, target: Path) -> None:
+    for folder in (Path(os.path.abspath(output)), target):
+        if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+            raise CaseError(f"output: '{folder}' exists and is not a folder; choose another name")
+
+
+def _refuse_in_the_way(target: Path, command: str, names: Iterable[str]) -> None:
+    """Refuse files that would be lost: the user's own under a name that is needed, and alula's that were edited."""
+    left = _written(target, command)
+    for name in sorted({_list_of(command), *names, *(() if command == EXPORT else left)}):
+        path = target / name
+        if not _stands_in_folders(target, name):
+            raise CaseError(
+                f"output: a folder is needed at '{path.parent}', and something else is there; rename it or choose "
+                "another folder for the output"
+            )
+        if os.path.lexists(path) and not (name in left and _is(path, left[name])):
+            raise CaseError(
+                f"output: '{path}' is not, or no longer, what alula wrote there; rename it or choose another folder, "
+                "so that it is not lost"
+            )
+
+
+def _replace(target: Path, command: str, work: Path, fill: Callable[[Path], object]) -> None:
+    """Fill the working folder and exchange its files for those of the earlier run."""
+    new = work / _NEW
+    new.mkdir()
+    fill(new)
+    files = {path.relative_to(new).as_posix(): _digest(path) for path in sorted(new.rglob("*")) if path.is_file()}
+    with _alone_in(target):
+        _refuse_in_the_way(target, command, files)
+        own, left = _list_of(command), _written(target, command)
+        kept = {name: left[name] for name in left if command == EXPORT and name not in {own, *files}}
+        leaving = [name for name in left if name not in kept and _is(target / name)]
+        (new / own).write_text(json.dumps({"files": files | kept}, indent=1) + "\n", encoding="utf-8")
+        entering = files | {own: _digest(new / own)}
+        journal = {"leaving": _mark_last(leaving)[::-1], "entering": {n: entering[n] for n in _mark_last(entering)}}
+        (work / _JOURNAL).write_text(json.dumps(journal), encoding="utf-8")
+        for path in (*work.rglob("*"), work):
+            _flush(path)
+        if child.stopped():
+            (work / _JOURNAL).unlink()
+            raise KeyboardInterrupt
+        try:
+            for name in journal["leaving"]:
+                _move(target / name, work / _OLD / name)
+            for name in journal["entering"]:
+                _move(new / name, target / name)
+        except BaseException:
+            _take_back(target, work)
+            raise
+        (work / _JOURNAL).unlink()  # from here on the new result stands
+        _remove_empty(target, leaving)
+
+
+def _mark_last(names: Iterable[str]) -> list[str]:
+    return sorted(names, key=lambda name: (name == MARK, name))
+
+
+def _take_back(target: Path, work: Path) -> None:
+    """Undo the moves that the journal in a working folder tells of, as far as they were made."""
+    try:
+        journal = json.loads((work / _JOURNAL).read_text(encoding="utf-8"))
+        entering, leaving = _files_in(journal["entering"]), _files_in(dict.fromkeys(journal["leaving"], ""))
+    except (FileNotFoundError, ValueError, LookupError, TypeError):  # killed before the first move
+        return
+    for name, digest in reversed(entering.items()):
+        if not os.path.lexists(work / _NEW / name) and _stands_in_folders(target, name) and _is(target / name, digest):
+            _move(target / name, work / _NEW / name)
+    for name in reversed(leaving):
+        if _is(work / _OLD / name) and _stands_in_folders(target, name) and not os.path.lexists(target / name):
+            _move(work / _OLD / name, target / name)
+    (work / _JOURNAL).unlink()
+    _remove_empty(target, entering)
+
+
+def _recover(target: Path) -> None:
+    """Take back what killed runs began, and remove their working folders: those that no process holds."""
+    for left in target.glob(f"{_PREFIX}*"):
+        held = None
+        with contextlib.suppress(FileNotFoundError):  # its run has ended meanwhile and removed it
+            if left.is_dir() and not left.is_symlink() and _is_working_folder(left):
+                held = locked(left, wait=False)
+        if held is not None:
+            try:
+                _take_back(target, left)
+                shutil.rmtree(left, ignore_errors=True)
+            finally:
+                os.close(held)
+
+
+def _is_working_folder(folder: Path) -> bool:
+    return {path.name for path in folder.iterdir()} <= {_NEW, _OLD, _JOURNAL}
+
+
+def _list_of(command: str) -> str:
+    return f"{_PREFIX}{command}.json"
+
+
+def _written(target: Path, command: str) -> dict[str, str]:
+    """Return name -> digest of the files that the command's earlier run left, and of the list itself."""
+    path = target / _list_of(command)
+    if not _is(path):
+        return {}
+    try:
+        found = _files_in(json.loads(path.read_text(encoding="utf-8"))["files"])
+    except (ValueError, LookupError, TypeError):
+        return {}  # no list of ours, so that it is in the way itself
+    return found | {path.name: _digest(path)}
+
+
+def _files_in(found: Any) -> dict[str, str]:
+    """Return name -> digest as read from a file; raises ``ValueError`` for a name that leaves the folder."""
+    if not isinstance(found, Mapping):
+        raise ValueError("no table of files")
+    for name, digest in found.items():
+        pure = PurePosixPath(name)
+        if pure.is_absolute() or ".." in pure.parts or not pure.parts or not isinstance(digest, str):
+            raise ValueError(f"{name!r} is no file of this folder")
+    return dict(found)
+
+
+def _is(path: Path, digest: str | None = None) -> bool:
+    """Return True for a file, no link, with this digest where one is given."""
+    return not path.is_symlink() and path.is_file() and digest in (None, _digest(path))
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _stands_in_folders(target: Path, name: str) -> bool:
+    """Return True if what the name has above it in the target are folders, no links, or not there yet."""
+    above = [target / part for part in PurePosixPath(name).parents][:-1]
+    return all(not folder.is_symlink() and (folder.is_dir() or not folder.exists()) for folder in above)
+
+
+def _move(source: Path, to: Path) -> None:
+    to.parent.mkdir(parents=True, exist_ok=True)
+    source.rename(to)
+
+
+def _remove_empty(target: Path, names: Iterable[str]) -> None:
+    """Remove the subfolders that nothing is left in, of those that held these files."""
+    for folder in sorted({above for name in names for above in PurePosixPath(name).parents}, reverse=True):
+        if folder != PurePosixPath() and _stands_in_folders(target, str(folder)):
+            with contextlib.suppress(OSError):  # something is left in it, or it is gone
+                (target / folder).rmdir()
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Keep other runs from changing names in a folder meanwhile."""
+    held = locked(folder)
+    try:
+        yield
+    finally:
+        if held is not None:
+            os.close(held)
+
+
+def _flush(path: Path) -> None:
+    """Have a file, or the names in a folder, written to the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

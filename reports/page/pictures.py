@@ -1,0 +1,51 @@
+"""All pictures of a report, by name."""
+
+from collections.abc import Callable
+
+from fea.outcomes.result import CheckResult
+from reports.tables.record import worst_load_case
+
+
+def linkage_name(load_case: str) -> str:
+    """Name of the linkage's drawing under a load case."""
+    return f"linkage-{load_case}"
+
+
+def diagram_name(link: str) -> str:
+    """Name of a link's N, V and M diagram, under the load case that stresses it most."""
+    return f"diagram-{link}"
+
+
+def stress_name(link: str) -> str:
+    """Name of a link's stress plot, under the load case that stresses it most."""
+    return f"stress-{link}"
+
+
+def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
+    """The first load case and those that stress some link most."""
+    first = next(iter(result.load_cases.values()))
+    return tuple(dict.fromkeys([first.name, *(worst_load_case(result, link).name for link in first.links)]))
+
+
+def draw_pictures(
+    result: CheckResult, progress: Callable[[str], None] = lambda message: None
+) -> tuple[dict[str, bytes], tuple[str, ...]]:
+    """Draw every picture of a report: name -> PNG, and what to warn of.
+
+    The linkage under every governing load case; every link's internal forces and, where it ran as a
+    solid, its stress, under the load case that stresses it most.
+    """
+    from reports.figures.diagrams import internal_force_diagram
+    from reports.figures.drawings import linkage_drawing
+    from reports.figures.figures import stress_plots
+
+    progress("Drawing the linkage and the internal forces ...")
+    worst = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
+    stations = {link: {point: x for point, (x, _) in result.case.links[link].points.items()} for link in worst}
+    pictures = {linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)}
+    pictures |= {
+        diagram_name(link): internal_force_diagram(found.beam, stations[link]) for link, found in worst.items()
+    }
+    progress("Rendering the stress plots ...")
+    plots, warnings = stress_plots(worst, stations)
+    return pictures | {stress_name(link): plot for link, plot in plots.items()}, warnings

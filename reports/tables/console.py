@@ -1,0 +1,159 @@
+"""The result on the terminal: verdict first, then links, checks, hand calculations, warnings."""
+
+from typing import TYPE_CHECKING
+
+from fea.check.anchor import anchor_loads
+from fea.common.verdict import DRIVE_POWER, Verdict
+from fea.outcomes.result import CheckResult, LoadCaseResult
+from loads.records.aero import AirForces
+from reports.tables.frames import frame_lines
+from reports.tables.second_opinion import say_opinions
+from reports.words.terminal import KEPT, say, say_table
+from reports.words.wording import agreement, apart, band, fixed, headline, joined, number, percent, plain, turning
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+COLOURS = {Verdict.PASS: "green", Verdict.FAIL: "red", Verdict.UNDECIDED: "yellow"}
+
+
+def print_result(result: CheckResult, console: "Console") -> None:
+    """Print a compact account of a check; broken at spaces where the terminal is narrow."""
+    verdict_line(result.verdict, result.case.title, console)
+    say(console, headline(result))
+    several = len(result.load_cases) > 1
+    for case in result.load_cases.values():
+        say(console, "")
+        if several:
+            say(console, f"Load case {case.name}", style="bold")
+        for air in result.case.air_forces(case.name):
+            say(console, _air(air))
+        say(console, _statics(case))
+        for line in frame_lines(result, case):
+            say(console, line)
+        say(console, _anchor(case))
+        _links(case, console)
+        if case.checks:
+            _checks(case, console)
+        for check in case.checks:
+            if check.quantity == DRIVE_POWER:
+                say(console, f"Motor: {check.reason}.")
+        for line in _hand(case):
+            say(console, line)
+    for name, hand in result.hand.items():
+        say(
+            console,
+            f"Hand calculation {name}: cantilever, M {number(hand.moment)} N·mm, "
+            f"bending stress {number(hand.stress)} MPa, n {number(hand.safety_factor)}.",
+        )
+    if result.audit is not None:
+        wrong = [str(row.number) for row in result.audit.rows if not row.valid]
+        found = (
+            f"equations {joined(wrong)} are no equilibrium equations" if wrong else "every equation is an equilibrium"
+        )
+        say(console, f"Published statics ({result.audit.source}): {found} of this linkage.")
+    if result.second_opinions:
+        say_opinions(result.second_opinions, console)
+    for warning in result.warnings:
+        say(console, f"Warning: {warning}", style="yellow")
+
+
+def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
+    """Print the verdict, in its colour, and the title of the case."""
+    from rich.text import Text
+
+    badge = (f" {verdict.value.upper()} ", f"bold reverse {COLOURS[verdict]}")
+    say(console, Text.assemble(badge, f" {title}"))
+
+
+def _statics(case: LoadCaseResult) -> str:
+    largest = max((joint.magnitude for joint in case.reactions.joints.values()), default=0.0)
+    forces = "  ".join(
+        f"{name}{KEPT}{number(joint.magnitude, beside=largest)}" for name, joint in case.reactions.joints.items()
+    )
+    torque = case.reactions.drive_torque
+    drive = case.reactions.drive
+    driven = "" if drive is None else f"\nDrive torque on {drive.link}: {number(torque)} N·mm ({turning(torque)})"
+    if drive is not None and drive.pushes(case.reactions.pose.linkage):
+        driven = f"\nDrive force on {drive.link}: {number(case.reactions.drive_force)} N along {drive.joint}"
+    return f"Joint forces [N]: {forces}{driven}"
+
+
+def _air(air: AirForces) -> str:
+    lift, drag = (f" (C {number(c, 3)})" for c in air.coefficients) if air.coefficients else ("", "")
+    pressure = "" if air.pressure is None else f", q {number(air.pressure * 1e6, 3)} Pa"
+    return f"Air: lift {number(air.lift)} N{lift}, drag {number(air.drag)} N{drag}{pressure}"
+
+
+def _anchor(case: LoadCaseResult) -> str:
+    anchor = anchor_loads(case)
+    rows = {**anchor.joints, f"all, about {anchor.about}": anchor.total}
+    undeformed = ", undeformed (no stable equilibrium beyond)" if anchor.unstable else ""
+    shape = ", deformed" if anchor.deformed else undeformed
+    lines = [f"On the ground{shape}: force x, y, z [N]; moment x, y, z [N·mm]"]
+    for name, wrench in rows.items():
+        force, moment = (", ".join(number(float(x)) for x in part) for part in (wrench[:3], wrench[3:]))
+        lines.append(f"  {name}: {force}; {moment}")
+    return "\n".join(lines)
+
+
+def _links(case: LoadCaseResult, console: "Console") -> None:
+    measures = {link.measure for link in case.links.values()}
+    mixed = len(measures) > 1
+    columns = [
+        ("link", False),
+        ("model", False),
+        ("decisive stress\n[MPa]" if mixed else f"{next(iter(measures), '')}\n[MPa]", True),
+        ("safety factor n\n(band)", True),
+        ("displacement\n[mm]", True),
+        ("worst at x\n[mm]", True),
+    ]
+    rows = [
+        (
+            name,
+            link.decided_by or link.fidelity,
+            (f"{link.measure} " if mixed else "") + number(link.decisive.value, 3),
+            band(link.safety_factor),
+            number(link.displacement_max.value, 3),
+            fixed(float(link.location[0]), 1),
+        )
+        for name, link in case.links.items()
+    ]
+    say_table(console, columns, rows)
+
+
+def _checks(case: LoadCaseResult, console: "Console") -> None:
+    from rich.text import Text
+
+    columns = (("check", False), ("link", False), ("value (band)", True), ("limit", True), ("verdict", False))
+    rows = []
+    for check in case.checks:
+        unit = f" {check.unit}" if check.unit else ""
+        sign = "≥" if check.at_least else "≤"
+        rows.append(
+            (
+                check.name,
+                check.link,
+                band(check.value) + unit,
+                f"{sign}{KEPT}{plain(check.limit)}{unit}",
+                Text(check.verdict.value, style=COLOURS[check.verdict]),
+            )
+        )
+    say_table(console, columns, rows)
+
+
+def _hand(case: LoadCaseResult) -> list[str]:
+    """Where hand calculation and solid model agree, and by how much they differ where they do not."""
+    compared = {name: link.comparisons for name, link in case.links.items() if link.comparisons}
+    if not compared:
+        return []
+    far = {name: max(found, key=lambda c: abs(c.difference)) for name, found in compared.items() if apart(found)}
+    every = [c for found in compared.values() for c in found]
+    told = agreement(every) if not far else f"{agreement(every)} on {joined(list(far))}"
+    lines = [f"Hand calculation against solid model at {len(every)} sections: {told}."]
+    for name, c in far.items():
+        lines.append(
+            f"  {name}, {c.kind} stress at x = {c.x:.1f} mm: hand {number(c.hand)} MPa, "
+            f"solid {number(c.solid)} MPa ({percent(c.difference)})"
+        )
+    return lines

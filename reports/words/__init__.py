@@ -1,0 +1,1 @@
+"""Numbers, bands and verdicts in words, for console and page alike."""
