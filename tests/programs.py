@@ -96,7 +96,7 @@ def hidden(folder: Path) -> list[str]:
     return [path.name for path in folder.rglob(".*") if not (path.name.startswith(".alula-") and path.is_file())]
 
 
-def gone(scratch: Path, within: float = 15.0) -> bool:
+def gone(scratch: Path, within: float = 60.0) -> bool:
     """Return True if every temporary file of the program vanishes in time: its children remove theirs."""
     deadline = time.monotonic() + within
     while time.monotonic() < deadline:

@@ -160,7 +160,7 @@ def compressed(first: float, last: float, **changes: float) -> tuple[float, floa
     return float(column), material.youngs_modulus
 
 
-@pytest.mark.parametrize(("first", "last"), [(12.0, 50.0), (30.0, 50.0), (9.0, 60.0)])
+@pytest.mark.parametrize(("first", "last"), [(12.0, 50.0), (30.0, 50.0), (12.0, 60.0)])
 def test_a_slotted_column_buckles_as_by_vianello(first: float, last: float) -> None:
     """By iteration from shape to moment to shape. Short slots sway: their column buckles to either side of the slot."""
     column, young = compressed(first, last)
