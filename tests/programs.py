@@ -16,7 +16,7 @@ BEAM = ("check", "owl-wing-static", "--fidelity", "beam")
 WRITING = (
     "import json, os, sys\n"
     "from pathlib import Path\n"
-    "from reports import output\n"
+    "from reports.page import output\n"
     "def write_folder(folder, fill):\n"
     "    output.write_folder(folder, 'check', fill)\n"
     "def fill(text):\n"
