@@ -1,9 +1,7 @@
-"""The cheapest model that decides a link: hand calculation, frame, submodels of its eyes and holes, whole solid.
+"""The cheapest model that decides a link: hand calculation, else a solid model.
 
-A rung decides only where the whole band of its model, as calibrated against solid models (``fea.beam.calibration``),
-clears every limit on the link, and all that stated scatter makes of it; else the next one is taken. Hand calculation
-and frame give the stress of a link in the same way; a frame is a rung of its own where equilibrium alone does not give
-the joint forces.
+Hand calculation decides only where its whole band, as calibrated against solid models (``fea.beam.calibration``),
+clears every limit on the link, and all that stated scatter makes of it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,8 +11,6 @@ from typing import Literal
 from fea.beam.calibration import Calibration, Factors, calibration_of, uncalibrated
 from fea.beam.spots import Spot, displacement_estimate, spots
 from fea.beam.theory import BeamCheck
-from fea.check.eye_models import EyePeaks, covers, peaks, plan
-from fea.check.submodel import Submodel
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.refine.refinement import Effort, LinkTask, Progress, RefinedSolid, refine_links
@@ -24,8 +20,7 @@ from geometry.parts.body_rules import extent, eye_reach, reference_line, section
 from geometry.parts.part import Body
 from loads.records.bearing import CONTACT_HOLDS, CONTACT_SHORTFALL
 
-Rung = Literal["beam", "frame", "submodel", "solid"]
-RUNGS: tuple[Rung, ...] = ("beam", "frame", "submodel", "solid")
+Model = Literal["beam", "solid"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,23 +53,22 @@ class HandBands:
 
 @dataclass(frozen=True, kw_only=True)
 class Decision:
-    """Which rung decided a link under all load cases, why, and what the next one would have cost ("" on the last).
+    """Which model decided a link under all load cases, why, and what a solid would have cost ("" where it ran).
 
-    The rung is "" where one was asked for that cannot decide.
+    The model is "" where hand calculation was asked for and cannot decide.
     """
 
-    rung: Rung | Literal[""]
+    model: Model | Literal[""]
     why: str
     next_cost: str
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Climb:
-    """How far one link had to climb, and what it found.
+class DecidedLink:
+    """The decision on one link, and what it stands on.
 
-    hands   load case -> bands by hand, with those of submodels where they were solved; empty where neither was asked
-            for
-    solid   the whole link's solutions; None where a lower rung decided
+    hands   load case -> bands by hand; empty where none were asked for
+    solid   the link's solutions; None where hand calculation decided
     """
 
     decision: Decision
@@ -82,128 +76,56 @@ class Climb:
     solid: RefinedSolid | None = None
 
 
-def climb(
+def decide(
     tasks: Mapping[str, LinkTask],
     beams: Mapping[str, Mapping[str, BeamCheck]],
     start: MeshSettings,
     effort: Effort,
     *,
     fidelity: str,
-    framed: bool,
     threads: int | None = None,
     progress: Progress = lambda message: None,
-) -> dict[str, Climb]:
-    """Take every link up the ladder until a rung decides it; ``fidelity`` "solid" goes straight to the top.
+) -> dict[str, DecidedLink]:
+    """Decide every link by hand where that can, else by a solid; ``fidelity`` "solid" takes solids at once.
 
     tasks    of the links on which something acts; ``beams`` link -> load case -> its hand calculation
-    framed   True where a frame gave the joint forces
 
     Raises what ``refine_links`` raises.
     """
     hands: dict[str, dict[str, HandBands]] = {}
     reasons: dict[str, str] = {}
-    found: dict[str, Climb] = {}
-    cuts: dict[str, tuple[Submodel, ...]] = {}
+    found: dict[str, DecidedLink] = {}
     for link, task in tasks.items():
         if fidelity == "solid" or effort.stated:
             reasons[link] = "a solid was asked for" if fidelity == "solid" else "an accuracy was asked for"
             continue
-        hands[link] = {loads.name: hand_bands(task, loads, beams[link][loads.name]) for loads in task.loads}
-        bands = [*hands[link].values()]
-        decision, reasons[link] = decided_by_hand(task, bands, "frame" if framed else "beam")
-        if decision is not None and fidelity == "auto":
-            found[link] = Climb(decision=decision, hands=hands[link])
-            continue
-        reasons[link] = reasons[link] or "submodels were asked for"
-        cuts[link] = _cuts(
-            task, [beams[link][loads.name] for loads in task.loads], bands, forced=fidelity == "submodel"
-        )
-    parts = {f"{link}, {cut.name}": cut.task for link in cuts for cut in cuts[link]}
-    solved = refine_links(parts, start, effort, threads=threads, progress=progress)
-    for link in cuts:
-        refined = [(cut, solved[f"{link}, {cut.name}"]) for cut in cuts[link]]
-        climbed = _decided_by_submodels(tasks[link], hands[link], refined, reasons[link]) if refined else None
-        if climbed is not None:
-            found[link] = climbed
-        elif refined:
-            reasons[link] += ", and submodels did not decide it"
+        hands[link] = _hands(task, beams[link])
+        decision, reasons[link] = decided_by_hand(task, [*hands[link].values()])
+        if decision is not None:
+            found[link] = DecidedLink(decision=decision, hands=hands[link])
     rest = {link: task for link, task in tasks.items() if link not in found}
     solids = refine_links(rest, start, effort, threads=threads, progress=progress)
     for link, solid in solids.items():
-        decision = Decision(rung="solid", why=reasons[link], next_cost="")
-        found[link] = Climb(decision=decision, hands=hands.get(link, {}), solid=solid)
+        decision = Decision(model="solid", why=reasons[link], next_cost="")
+        found[link] = DecidedLink(decision=decision, hands=hands.get(link, {}), solid=solid)
     return {link: found[link] for link in tasks}
 
 
-def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck], *, framed: bool) -> Climb:
+def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck]) -> DecidedLink:
     """Return what a link is by hand alone, where that was asked for; without decision where it has no bands.
 
-    beams   load case -> its hand calculation; ``framed`` True where a frame gave the joint forces
+    beams   load case -> its hand calculation
     """
-    hands = {loads.name: hand_bands(task, loads, beams[loads.name]) for loads in task.loads}
-    rung: Rung = "frame" if framed else "beam"
+    hands = _hands(task, beams)
     outside = next((hand.outside for hand in hands.values() if hand.outside), "")
     if outside:
         why = f"hand calculation is not calibrated for it, since {outside}, so it cannot decide; run the solid model"
-        return Climb(decision=Decision(rung="", why=why, next_cost=""), hands=hands)
-    return Climb(decision=Decision(rung=rung, why="hand calculation was asked for", next_cost=""), hands=hands)
+        return DecidedLink(decision=Decision(model="", why=why, next_cost=""), hands=hands)
+    return DecidedLink(decision=Decision(model="beam", why="hand calculation was asked for", next_cost=""), hands=hands)
 
 
-def _cuts(
-    task: LinkTask, beams: Sequence[BeamCheck], hands: Sequence[HandBands], *, forced: bool
-) -> tuple[Submodel, ...]:
-    """Submodels of what hand calculation leaves open or, where ``forced``, of whatever may bear the peak."""
-    if any(hand.outside for hand in hands) or undecided(task, [], [hand.displacement for hand in hands]):
-        return ()
-
-    def critical(spot: Spot) -> bool:
-        rows = [(hand, row) for hand in hands for row in hand.spots if row.spot.name == spot.name]
-        if forced:
-            return any(_own(row, task).high >= hand.deciding(brittle=task.brittle).low for hand, row in rows)
-        return bool(undecided(task, [_own(row, task) for _, row in rows], []))
-
-    def elements(cut: Submodel) -> float:
-        return expected_elements(cut.body)
-
-    allowed = 1.0 if forced else LARGEST_SHARE
-    spots = [row.spot for row in hands[0].spots]
-    return plan(task, beams, spots, critical, elements, allowed * expected_elements(task.body))
-
-
-def _own(row: SpotBand, task: LinkTask) -> Band:
-    return row.principal if task.brittle else row.von_mises
-
-
-def _decided_by_submodels(
-    task: LinkTask, hands: Mapping[str, HandBands], refined: Sequence[tuple[Submodel, RefinedSolid]], reason: str
-) -> Climb | None:
-    """Return what submodels decide, with the bands of hand calculation where they do not reach; None if they do not."""
-    solved = [(cut, peaks(cut, solid)) for cut, solid in refined]
-    combined = {}
-    for load, hand in hands.items():
-        own: list[EyePeaks] = []
-        for _, found in solved:
-            if found is None:
-                return None
-            own.append(found[load])
-        others = [row for row in hand.spots if not any(covers(cut, row.spot) for cut, _ in solved)]
-        combined[load] = replace(
-            hand,
-            von_mises=largest([*(p.von_mises for p in own), *(row.von_mises for row in others)]),
-            principal=largest([*(p.principal for p in own), *(row.principal for row in others)]),
-        )
-    bands = [*combined.values()]
-    stresses = [hand.deciding(brittle=task.brittle) for hand in bands]
-    if undecided(task, stresses, [hand.displacement for hand in bands]):
-        return None
-    band = max(stresses, key=lambda band: band.high)
-    names = ", ".join(cut.name for cut, _ in refined)
-    elements = sum(solid.meshes[-1].elements for _, solid in refined)
-    why = (
-        f"{reason}; submodels of {names}, of {elements:,} elements, put it between {band.low:.3g} and "
-        f"{band.high:.3g} MPa, clear of it"
-    )
-    return Climb(decision=Decision(rung="submodel", why=why, next_cost=cost(task.body, "solid")), hands=combined)
+def _hands(task: LinkTask, beams: Mapping[str, BeamCheck]) -> dict[str, HandBands]:
+    return {loads.name: hand_bands(task, loads, beams[loads.name]) for loads in task.loads}
 
 
 def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
@@ -274,35 +196,33 @@ def _limit(ends: tuple[float, float]) -> str:
     return f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g} (with stated scatter)"
 
 
-def decided_by_hand(task: LinkTask, hands: Sequence[HandBands], rung: Rung) -> tuple[Decision | None, str]:
+def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decision | None, str]:
     """Return the decision if hand calculation makes it, else None and why not."""
-    name = "hand calculation" if rung == "beam" else "hand calculation with the frame's forces"
     for hand in hands:
         if hand.outside:
-            return None, f"{name} is not calibrated for it: {hand.outside}"
+            return None, f"hand calculation is not calibrated for it: {hand.outside}"
     stresses = [hand.deciding(brittle=task.brittle) for hand in hands]
     open_limit = undecided(task, stresses, [hand.displacement for hand in hands])
     if open_limit:
-        return None, f"by {name} {open_limit}"
+        return None, f"by hand calculation {open_limit}"
     worst = max(range(len(hands)), key=lambda i: stresses[i].high)
     band, spot = stresses[worst], hands[worst].spots[0].spot
     limits = ", ".join(map(_limit, task.stress_limits))
-    why = f"by {name} its peak stress lies between {band.low:.3g} and {band.high:.3g} MPa, at most at {spot.name}"
+    ends = f"{band.low:.3g} and {band.high:.3g} MPa"
+    why = f"by hand calculation its peak stress lies between {ends}, at most at {spot.name}"
     why += f", clear of the limit {limits} MPa" if limits else ""
     if task.displacement_limits:
         moved = largest([hand.displacement for hand in hands])
         why += f", and its displacement, {moved.low:.3g} to {moved.high:.3g} mm, of its limits"
-    return Decision(rung=rung, why=why, next_cost=cost(task.body, "solid")), ""
+    return Decision(model="beam", why=why, next_cost=_solid_cost(task.body)), ""
 
 
-def cost(body: Body, rung: Rung) -> str:
-    """Say what a first mesh of a link would cost."""
+def _solid_cost(body: Body) -> str:
+    """Say what a link's first mesh would cost."""
     elements = expected_elements(body)
-    return f"a {rung} model of some {elements:,} elements, about {max(1, round(SECONDS * elements)):,} s"
+    return f"a solid model of some {elements:,} elements, about {max(1, round(SECONDS * elements)):,} s"
 
 
-LARGEST_SHARE = 0.7
-"""Of a whole link's elements that its submodels may have: else the whole is solved at once."""
 SECONDS = 1.0e-3
 """Of meshing, solving and judging per element, on one core."""
 

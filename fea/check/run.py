@@ -8,7 +8,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from fea.beam.theory import CantileverCheck, uniform_cantilever
-from fea.check.fidelity import Climb, HandBands, by_hand, climb
+from fea.check.fidelity import DecidedLink, HandBands, by_hand, decide
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.load_growth import Growths, growths
 from fea.check.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
@@ -45,8 +45,7 @@ from loads.statics.statics import Reactions
 from loads.text.accuracy import parse_accuracy
 
 Progress = Callable[[str], None]
-FIDELITIES = ("auto", "beam", "frame", "submodel", "solid")
-FORCED_BEAM = ("beam", "frame")
+FIDELITIES = ("auto", "beam", "frame", "solid")
 BEAM_ALONE = "beam theory without stress concentration"
 
 
@@ -139,8 +138,7 @@ def check_case(
     name       path or built-in name of the case, for companion files and the report
     fidelity   "auto" for the cheapest model that decides each link (``fea.check.fidelity``), or one for all of them:
                "solid", "beam" for hand calculation alone, in calibrated bands where there are any and else without
-               verdict, "frame" for the same where a frame gives the joint forces, "submodel" for submodels of the eyes
-               that may bear a link's peak, where they can
+               verdict; "frame" is another name of "beam", since a frame gives joint forces where they need one
     effort     accuracy of solid models and what it may cost, by default what the case says
     progress   called with a sentence before every stage that may take long
 
@@ -179,28 +177,26 @@ def check_case(
         for i, title in enumerate(moved)
     }
     clock("hand calculations")
-    climbs: dict[str, Climb] = {}
+    decided: dict[str, DecidedLink] = {}
     loaded = {link: [x for x in loads if acts(x, sizes[x.name], case.linkage.longest)] for link, loads in cut.items()}
     idle = set(sizes) - {loads.name for acting in loaded.values() for loads in acting} if cut else set()
     tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
-    framed = any(forces.model != PINNED_STATICS for forces in statics.forces.values())
     checked = {
         link: {loads.name: beam.check for loads, beam in zip(cut[link], beams[link], strict=True)} for link in cut
     }
-    if fidelity in FORCED_BEAM:
-        climbs = {link: by_hand(task, checked[link], framed=framed) for link, task in tasks.items()}
+    if fidelity in ("beam", "frame"):
+        decided = {link: by_hand(task, checked[link]) for link, task in tasks.items()}
     else:
-        if fidelity in ("solid", "submodel"):
+        if fidelity == "solid":
             for task in tasks.values():
                 require_compressible(task.nu)  # before the first mesh
         start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
-        climbs = climb(
+        decided = decide(
             tasks,
             checked,
             start,
             effort or effort_of(case),
             fidelity=fidelity,
-            framed=framed,
             threads=threads,
             progress=progress,
         )
@@ -212,7 +208,7 @@ def check_case(
     for i, (title, forces) in enumerate(statics.forces.items()):
         links = {
             link: _scattered(
-                case, title, _link_result(case, link, title, beams[link][i], climbs.get(link)), uneven[title]
+                case, title, _link_result(case, link, title, beams[link][i], decided.get(link)), uneven[title]
             )
             for link in cut
         }
@@ -254,20 +250,18 @@ def check_case(
     )
 
 
-def _link_result(case: Case, link: str, title: str, beam: LinkByHand, climbed: Climb | None) -> LinkResult:
+def _link_result(case: Case, link: str, title: str, beam: LinkByHand, decided: DecidedLink | None) -> LinkResult:
     material = case.material_of(link)
     result = _beam_result(link, material, beam)
-    if climbed is None:
+    if decided is None:
         return replace(result, decided_by="beam", why="nothing acts on it")
-    decision = climbed.decision
-    found = None if climbed.solid is None else solid_result(case, link, title, beam.check, climbed.solid)
+    decision = decided.decision
+    found = None if decided.solid is None else solid_result(case, link, title, beam.check, decided.solid)
     if found is not None:
         result = replace(found, notes=(*found.notes, *beam.remarks))
-    elif climbed.solid is None and title in climbed.hands and not climbed.hands[title].outside:
-        result = _calibrated(result, material, climbed.hands[title])
-    if decision.rung == "submodel":
-        result = replace(result, fidelity="submodel")
-    return replace(result, decided_by=decision.rung, why=decision.why, next_cost=decision.next_cost)
+    elif decided.solid is None and title in decided.hands and not decided.hands[title].outside:
+        result = _calibrated(result, material, decided.hands[title])
+    return replace(result, decided_by=decision.model, why=decision.why, next_cost=decision.next_cost)
 
 
 def _scattered(case: Case, title: str, result: LinkResult, uneven: Growths) -> LinkResult:

@@ -82,9 +82,9 @@ class LinkResult:
     notes              what the reader must know about this link's numbers
     brittle            True where the largest principal stress decides, False where von Mises stress does
     discretisation     the error that the meshes leave; None when no solid ran
-    decided_by         rung of ``fea.check.fidelity`` that decided: "beam", "frame", "submodel" or "solid"; "" where a
-                       model was forced that may not decide, with ``why``, for people
-    next_cost          what the next rung would have cost; "" where there is none
+    decided_by         model that decided: "beam" or "solid"; "" where a model was forced that may not decide;
+                       ``why`` for people
+    next_cost          what a solid would have cost; "" where one ran
     """
 
     link: str

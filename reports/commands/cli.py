@@ -84,7 +84,7 @@ def check(
     json: JsonOption = False,
     overrides: SetOption = None,
     fidelity: Annotated[
-        str, typer.Option(help="Model that decides: auto (the cheapest that can), beam, frame, submodel or solid.")
+        str, typer.Option(help="Model that decides: auto (the cheapest that can), beam (also called frame) or solid.")
     ] = "auto",
     threads: ThreadsOption = 2,
     memory: MemoryOption = None,

@@ -45,7 +45,7 @@ MEANING = {
     Verdict.UNDECIDED: "At least one answer cannot be given with the models that ran: its error band reaches over "
     "the limit, or the model leaves out what matters there. This is neither a pass nor a fail.",
 }
-MODEL = {"solid": "Solid model", "submodel": "Solid models of eyes and holes", "beam": "Beam theory"}
+MODEL = {"solid": "Solid model", "beam": "Beam theory"}
 HAND = "Hand calculation"
 """What gave the numbers of a link: ``HAND`` where beam theory has calibrated bands, so that it decides."""
 _PROPERTIES = (

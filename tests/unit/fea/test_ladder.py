@@ -1,4 +1,4 @@
-"""The cheapest model that decides: which rung does, and that no rung speaks where it was not calibrated."""
+"""The cheapest model that decides: which one does, and that hand calculation is silent where it was not calibrated."""
 
 import math
 from dataclasses import replace
@@ -8,23 +8,23 @@ import pytest
 
 from fea.beam.calibration import calibrations
 from fea.beam.spots import shoulder_factors, spots
-from fea.check.eye_models import plan
-from fea.check.fidelity import climb, decided_by_hand, hand_bands
+from fea.check.fidelity import decide, decided_by_hand, hand_bands
+from fea.check.run import check_case
 from fea.refine.refinement import START, Effort
 from geometry.parts.part import HoleRow
+from loads.case.case_file import read_case
 from loads.records.bearing import CONTACT_SHORTFALL
 
 
-def climbed(limit, **options):
+def decided(limit):
     task = eye_link.task(limit)
     beams = {"AC": {"mixed": eye_link.beam(task)}}
-    settings = {"fidelity": "auto", "framed": False, "threads": 1} | options
-    return climb({"AC": task}, beams, START, Effort(), **settings)["AC"]
+    return decide({"AC": task}, beams, START, Effort(), fidelity="auto", threads=1)["AC"]
 
 
 def test_a_limit_far_off_is_decided_by_hand_without_a_mesh():
-    found = climbed(40.0)
-    assert (found.decision.rung, found.solid) == ("beam", None)
+    found = decided(40.0)
+    assert (found.decision.model, found.solid) == ("beam", None)
     assert "clear of the limit 40 MPa" in found.decision.why
     assert "at most at the eye at B" in found.decision.why
     assert "elements" in found.decision.next_cost
@@ -32,35 +32,29 @@ def test_a_limit_far_off_is_decided_by_hand_without_a_mesh():
 
 
 def test_a_limit_far_below_fails_by_hand():
-    assert climbed(2.0).decision.rung == "beam"
+    assert decided(2.0).decision.model == "beam"
 
 
-def test_the_rung_has_the_name_of_the_model_that_gave_the_forces():
-    assert climbed(40.0, framed=True).decision.rung == "frame"
+def test_what_hand_calculation_leaves_open_a_solid_decides():
+    found = decided(18.0)
+    assert found.decision.model == "solid"
+    assert "holds the limit 18" in found.decision.why
+    precision = found.solid.precision[0]
+    assert precision.low("von_mises") < 7.07 < precision.high("von_mises") < 18.0  # 7.07 MPa: on a mesh of its own
 
 
-def test_what_one_eye_leaves_open_its_submodel_decides():
-    found = climbed(18.0)
-    assert (found.decision.rung, found.solid) == ("submodel", None)
-    assert "holds the limit 18; submodels of the eye at B" in found.decision.why
-    band = found.hands["mixed"].von_mises
-    assert band.low < 7.07 < band.high < 18.0  # 7.07 MPa: the whole link on the mesh of test_submodel.py
-
-
-def test_holes_are_cut_out_unless_an_eyes_submodel_covers_them():
-    row = HoleRow(count=1, diameter="1 mm", first="27 mm", last="27 mm", along="y")
-    beside = HoleRow(count=1, diameter="1 mm", first="48 mm", last="48 mm", along="y")
-    task = eye_link.task(stretch=1.5, holes=(row, beside))
-    beam = eye_link.beam(task)
-    found = spots(task.body, task.loads[0], beam)
-
-    def cuts(*names, allowed=1e9):
-        return [c.name for c in plan(task, (beam,), found, lambda s: s.name in names, lambda cut: 1e3, allowed)]
-
-    assert cuts("hole at x = 27 mm of row 1") == ["the hole at x = 27 mm"]
-    assert cuts("hole at x = 48 mm of row 2", "the eye at B") == ["the eye at B"]
-    assert cuts("hole at x = 27 mm of row 1", "the plain section") == []
-    assert cuts("hole at x = 27 mm of row 1", "the eye at B", allowed=1.5e3) == []
+def test_frame_is_another_name_of_beam():
+    """A structure whose joint forces a frame gives, whichever name was asked for."""
+    case = read_case("owl-wing-static", ["joint_model=bonded"])
+    beam, frame = (check_case(case, name="owl-wing-static", fidelity=name) for name in ("beam", "frame"))
+    for title, found in frame.load_cases.items():
+        assert "frame" in found.forces.model
+        assert found.checks == beam.load_cases[title].checks
+        for link, result in found.links.items():
+            other = beam.load_cases[title].links[link]
+            assert (result.decided_by, result.why) == (other.decided_by, other.why)
+            assert (result.von_mises_max, result.displacement_max) == (other.von_mises_max, other.displacement_max)
+    assert "beam" in {result.decided_by for found in frame.load_cases.values() for result in found.links.values()}
 
 
 def test_contact_widens_the_hand_bands_of_eyes_alone():
@@ -75,7 +69,7 @@ def test_contact_widens_the_hand_bands_of_eyes_alone():
 
 def test_a_limit_within_the_band_is_not_decided_by_hand():
     task = eye_link.task(9.0)
-    decision, why = decided_by_hand(task, [hand_bands(task, task.loads[0], eye_link.beam(task))], "beam")
+    decision, why = decided_by_hand(task, [hand_bands(task, task.loads[0], eye_link.beam(task))])
     assert decision is None
     assert "holds the limit 9" in why
 
@@ -94,7 +88,7 @@ def test_hand_calculation_says_nothing_outside_of_its_calibration(change, says):
     hand = hand_bands(other, other.loads[0], eye_link.beam(other))
     assert says in hand.outside
     assert hand.von_mises.unknowable
-    assert decided_by_hand(other, [hand], "beam")[0] is None
+    assert decided_by_hand(other, [hand])[0] is None
 
 
 def test_every_shape_is_calibrated_with_factors_in_order():

@@ -114,9 +114,9 @@ def test_all_effects_of_a_load_scatter_with_it(path):
 def test_hand_calculation_decides_on_the_whole_band():
     what = eye_link.task(1000.0)
     hand = hand_bands(what, what.loads[0], eye_link.beam(what))
-    assert decided_by_hand(what, [hand], "beam")[0] is not None
+    assert decided_by_hand(what, [hand])[0] is not None
     ranged = replace(what, stress_limits=((0.5 * hand.von_mises.low, 1000.0),))
-    decision, why = decided_by_hand(ranged, [hand], "beam")
+    decision, why = decided_by_hand(ranged, [hand])
     assert decision is None
     assert "(with stated scatter)" in why
 
