@@ -1,8 +1,9 @@
-"""The choice among solvers of symmetric positive definite systems, by work, memory and Poisson's ratio.
+"""The choice among solvers of symmetric positive definite systems, by unknowns, right-hand sides and memory.
 
-Work in seconds of one core and memory are estimated from figures measured on quadratic tetrahedra, on one
-core of an AMD EPYC server. Cubes have the fullest factors, and memory is estimated by them; work is estimated
-by links and bars six times as long as wide, whose factors take a third of it.
+Conjugate gradients over linear elements (``fea.solid.two_level``) take little to set up and much for each right-hand
+side; a factorisation the reverse, and its work grows faster than the unknowns. So a factorisation takes less work up
+to a number of unknowns that rises with the right-hand sides (``WORTH_FACTORISING``). Measured on quadratic tetrahedra,
+on one core of an AMD EPYC server (cubes have the fullest factors: memory is estimated by them):
 
     MKL PARDISO    cubes of 47,000 unknowns: 2.3 s and 0.26 GB; 152,000: 1.35 GB; 499,000: 7.2 GB
                    bar of 160,000: 9.8 s and 1.07 GB, 0.1 s for each right-hand side
@@ -36,8 +37,10 @@ SLENDER = 60.0
 """Slenderness from which a factorisation is taken: linear elements bend so stiffly that the two-level cycle takes 52
 iterations at a slenderness of 19 (30 diameters), 132 at 62, 376 at 187 and more than it may beyond, while a factor's
 work grows with the length alone: 785,000 unknowns of a tube of 1000 diameters took 15 s and 2.2 GB, all in all."""
-SWIFT = 1.0
-"""Seconds of work by factorisation up to which nothing else is considered: it does not depend on mesh quality."""
+WORTH_FACTORISING: dict[DirectMethod, tuple[float, int]] = {"pardiso": (20_000.0, 1), "superlu": (1_250.0, 3)}
+"""(a, b): for k right-hand sides a factorisation takes less work up to a (k + b) unknowns.
+
+By the figures above, links between bars and tubes in work and with 31 iterations for a right-hand side (ν = 0.38)."""
 _NAMES = {"pardiso": "MKL PARDISO", "superlu": "SuperLU", "two-level": "conjugate gradients over linear elements"}
 
 
@@ -76,15 +79,6 @@ class Factor:
             return self.solver.solve(rhs)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Estimate:
-    """Work [seconds of one core] and memory [bytes] that a method will take."""
-
-    method: Method
-    work: float
-    memory: float
-
-
 def available_methods() -> tuple[DirectMethod, ...]:
     """Return the direct solvers of this installation, the fastest first."""
     return ("pardiso", "superlu") if mkl.installed() else ("superlu",)
@@ -103,7 +97,7 @@ def factorise(
 
     level             of linear elements; without it only direct solvers are considered
     right_hand_sides  that will be solved for: the more, the better a factorisation pays
-    method            by default the one with the least estimated work among those that fit into memory
+    method            by default the one that takes less work, or fits into memory
     threads           upper bound on the threads of the solver, by default what its libraries choose
     memory_limit      bytes that the whole process may hold, by default what the system leaves
 
@@ -126,7 +120,7 @@ def factorise(
             raise CannotRunError("the two-level solver needs quadratic elements; choose a direct solver")
     with bounded(threads):
         if method == "two-level" and level is not None:
-            needed = two_level_estimate(K, level, right_hand_sides, direct[0]).memory
+            needed = two_level_memory(K, level, right_hand_sides, direct[0])
             memory.require(needed, _task(method, K.size), memory_limit)
             coarse = _direct(level.stiffness(), direct[0], memory_limit)
             solver: Solver = TwoLevelFactor(K, level, coarse)
@@ -137,7 +131,7 @@ def factorise(
 
 def _direct(K: SymmetricBlockMatrix, method: DirectMethod, limit: float | None) -> PardisoFactor | SuperLUFactor:
     if method == "superlu":
-        memory.require(direct_estimate("superlu", K.size, 1).memory, _task("superlu", K.size), limit)
+        memory.require(direct_memory("superlu", K.size, 1), _task("superlu", K.size), limit)
         return SuperLUFactor(K)
     return PardisoFactor(K, memory_limit=limit)
 
@@ -146,33 +140,19 @@ def _task(method: Method, unknowns: int) -> str:
     return f"the solution of {unknowns:,} unknowns by {_NAMES[method]}"
 
 
-def direct_estimate(method: DirectMethod, unknowns: int, right_hand_sides: int) -> Estimate:
-    """Work and memory of a factorisation."""
+def direct_memory(method: DirectMethod, unknowns: int, right_hand_sides: int) -> float:
+    """Memory of a factorisation [bytes]."""
     size = unknowns / 47_000.0
-    if method == "pardiso":
-        work, space = 0.75 * size**2 + 0.015 * size**1.41 * right_hand_sides, 0.27e9 * size**1.41
-    else:
-        work, space = 36.0 * size**2.6 + 0.056 * size**1.8 * right_hand_sides, 1.45e9 * size**1.8
-    return Estimate(method=method, work=work, memory=space + 24.0 * unknowns * right_hand_sides)
+    factor: float = 0.27e9 * size**1.41 if method == "pardiso" else 1.45e9 * size**1.8
+    return factor + 24.0 * unknowns * right_hand_sides
 
 
-def two_level_estimate(
-    K: SymmetricBlockMatrix, level: LinearLevel, right_hand_sides: int, direct: DirectMethod
-) -> Estimate:
-    """Work and memory of conjugate gradients with a factorisation of the linear elements."""
-    size = K.size / 160_000.0
-    coarse = direct_estimate(direct, 3 * level.space.corners, 1)
-    slow = 1.0 if direct == "pardiso" else 2.5  # products by scipy
-    iterations = iterations_estimate(level.nu)
-    work = coarse.work + slow * size * (0.3 + 0.04 * iterations * right_hand_sides)
+def two_level_memory(K: SymmetricBlockMatrix, level: LinearLevel, right_hand_sides: int, direct: DirectMethod) -> float:
+    """Memory of conjugate gradients with a factorisation of the linear elements [bytes]."""
+    coarse = direct_memory(direct, 3 * level.space.corners, 1)
     copy = 0.0 if direct == "pardiso" else 1.2 * K.blocks.nbytes
     vectors = 8.0 * K.size * (2 * right_hand_sides + 10 * min(right_hand_sides, 8))
-    return Estimate(method="two-level", work=work, memory=coarse.memory + copy + 0.15 * K.blocks.nbytes + vectors)
-
-
-def iterations_estimate(nu: float) -> float:
-    """Iterations of the two-level cycle, fitted to the figures of meshed links in ``fea.solid.two_level``."""
-    return float(1.7 * np.sqrt(190.0 + 38.0 / (1.0 - 2.0 * nu)))
+    return coarse + copy + 0.15 * K.blocks.nbytes + vectors
 
 
 def _chosen(
@@ -182,32 +162,27 @@ def _chosen(
     direct: DirectMethod,
     limit: float | None,
 ) -> tuple[Method, str]:
-    """Return the method of least work that fits, and why it is that one."""
+    """Return the method that takes less work, or fits into memory, and why it is that one."""
     room = memory.room(limit)
-    one = direct_estimate(direct, K.size, right_hand_sides)
+    needed = direct_memory(direct, K.size, right_hand_sides)
     count = f"{K.size:,} unknowns, {right_hand_sides} right-hand side{'' if right_hand_sides == 1 else 's'}"
-    fits = one.memory <= room
+    fits = needed <= room
     if level is None:
         return direct, f"{count}: factorisation alone suits this system"
-    if level.nu > LARGEST_POISSON_RATIO and fits:
-        return direct, f"ν = {level.nu:g} is above {LARGEST_POISSON_RATIO}, where linear elements lock"
     # MKL PARDISO refuses what does not fit by itself, by its own count: the estimate is far too large here.
     if level.slenderness > SLENDER and (fits or direct == "pardiso"):
         return direct, f"{count}: the body is {level.slenderness:.0f} times as long as wide, where linear elements lock"
-    if one.work <= SWIFT and fits:
-        return direct, f"{count}: small enough for a factorisation"
-    other = two_level_estimate(K, level, right_hand_sides, direct)
+    if level.nu > LARGEST_POISSON_RATIO:
+        memory.require(needed, _task(direct, K.size), limit)
+        return direct, f"ν = {level.nu:g} is above {LARGEST_POISSON_RATIO}, where linear elements lock"
     if not fits:
-        if other.memory > room or level.nu > LARGEST_POISSON_RATIO:
-            least = one if level.nu > LARGEST_POISSON_RATIO else min(one, other, key=lambda e: e.memory)
-            memory.require(least.memory, _task(least.method, K.size), limit)
-        return (
-            "two-level",
-            f"{count}: a factorisation needs about {one.memory / 1e9:.2g} GB of {room / 1e9:.2g} GB left",
-        )
-    if other.work < one.work and other.memory <= room:
-        return (
-            "two-level",
-            f"{count}, ν = {level.nu:g}: about {other.work / one.work:.1g} of the work of {_NAMES[direct]}",
-        )
-    return direct, f"{count}: a factorisation pays for that many right-hand sides"
+        iterated = two_level_memory(K, level, right_hand_sides, direct)
+        if iterated > room:
+            least: Method = direct if needed < iterated else "two-level"
+            memory.require(min(needed, iterated), _task(least, K.size), limit)
+        return "two-level", f"{count}: a factorisation needs about {needed / 1e9:.2g} GB of {room / 1e9:.2g} GB left"
+    each, more = WORTH_FACTORISING[direct]
+    most = int(each * (right_hand_sides + more))
+    if K.size <= most:
+        return direct, f"{count}: small enough for a factorisation"
+    return "two-level", f"{count}: more than {most:,} unknowns, up to which {_NAMES[direct]} takes less work"
