@@ -11,7 +11,7 @@ import pytest
 )
 def test_the_numbers_are_what_they_were(name: str) -> None:
     kept = json.loads(golden.path_of(name).read_text(encoding="utf-8"))
-    found = golden.differences(kept, golden.run(name), golden.MESHED if golden.meshed(name) else golden.EXACT)
+    found = golden.differences(kept, golden.run(name), golden.tolerance(name))
     assert not found, "\n".join([f"{len(found)} entries differ; make golden renews them", *found[:20]])
 
 
