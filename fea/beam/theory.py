@@ -477,15 +477,3 @@ def uniform_cantilever(weight: float, length: float, section: Section, strength:
     moment = abs(weight) * length / 2.0
     stress = moment * section.half_y / section.i_z
     return CantileverCheck(moment=moment, stress=stress, safety_factor=strength / stress if stress > 0.0 else np.inf)
-
-
-def euler_load(young: float, inertia: float, length: float, effective_length: float = 1.0) -> float:
-    """Euler's critical load π² E I/(k L)² [N] of a column (Gere & Goodno, 8th ed., section 11.3 and table 11-1).
-
-    ``effective_length`` k: 1 pinned at both ends, 0.5 built in at both, 0.699 built in and pinned, 2 built in and
-    free. For a link pinned along z bending in the linkage's plane (``inertia`` i_z) has k = 1; bending out of it
-    (i_y) is held by the pins' length, with k between 0.5 and 1. E in MPa, I in mm⁴, L in mm.
-    """
-    if not (length > 0.0 and effective_length > 0.0):
-        raise CannotRunError(f"a column needs a length above zero, not {length:g} mm times {effective_length:g}")
-    return float(np.pi**2 * young * inertia / (effective_length * length) ** 2)

@@ -18,7 +18,6 @@ from pydantic_core import PydanticCustomError, core_schema
 INTERNAL_UNITS = {
     "length": "mm",
     "area": "mm^2",
-    "volume": "mm^3",
     "angle": "rad",
     "force": "N",
     "moment": "N*mm",
@@ -40,7 +39,6 @@ INTERNAL_UNITS = {
 EXAMPLES = {
     "length": "125 mm",
     "area": "20 mm^2",
-    "volume": "2 cm^3",
     "angle": "30 deg",
     "force": "0.25 N",
     "moment": "130 N*mm",
@@ -203,7 +201,6 @@ NOT_NEGATIVE = AfterValidator(_not_negative)
 
 Length = Annotated[float, Quantity("length")]
 Area = Annotated[float, Quantity("area")]
-Volume = Annotated[float, Quantity("volume")]
 Angle = Annotated[float, Quantity("angle")]
 Force = Annotated[float, Quantity("force")]
 Moment = Annotated[float, Quantity("moment")]

@@ -179,17 +179,6 @@ class FlappingWing:
             coupler_pin=coupler_pin,
         )
 
-    def wing_points(
-        self, theta2: ArrayLike, *, inner: float, outer: float, side: Side = "right"
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return the ends D of the inner and E of the outer wing in mm, shape ``theta2.shape + (2,)``."""
-        pose = self.pose(theta2, side)
-        mirror = 1.0 if side == "right" else -1.0
-        pivot = np.array([mirror * self.width, self.height])
-        elbow = pivot + inner * np.stack([mirror * np.cos(pose.beta), np.sin(pose.beta)], axis=-1)
-        tip = elbow + outer * np.stack([mirror * np.cos(pose.lambda_), np.sin(pose.lambda_)], axis=-1)
-        return elbow, tip
-
     @cached_property
     def _turn(self) -> tuple[FlappingPose, FlappingPose]:
         theta2 = np.linspace(0.0, 2 * np.pi, SAMPLES)

@@ -76,10 +76,6 @@ class TurningRange:
     change_points: tuple[float, ...]
     """Angles at which the links become collinear without stopping: there the branches meet."""
 
-    def contains(self, angle: float) -> bool:
-        """Whether the link can take this angle (rad, any turn)."""
-        return self.interval_of(angle) is not None
-
     def interval_of(self, angle: float) -> int | None:
         """Return the index of the interval that holds this angle (rad, any turn), or None."""
         slack = 1e-12  # rounding must not put an end outside its own interval
@@ -95,11 +91,6 @@ class TransmissionRange:
 
     minimum: float
     maximum: float
-
-    @property
-    def least_acute(self) -> float:
-        """The smallest acute transmission angle μ (Norton, 5th ed., chapters 3 and 4)."""
-        return min(self.minimum, math.pi - self.maximum)
 
     @property
     def worst_deviation(self) -> float:
@@ -293,18 +284,6 @@ class FourBar:
             intervals=intervals,
             dead_points=tuple(sign * angle for angle in limits.values() for sign in (1, -1)),
             change_points=tuple(changes),
-        )
-
-    def output_range(self) -> TurningRange:
-        """Return the range of θ4; its ends are the poses in which input and coupler are collinear."""
-        mirrored = self.driven_by_output().input_range()
-        return TurningRange(
-            full_turn=mirrored.full_turn,
-            intervals=mirrored.intervals
-            if mirrored.full_turn
-            else tuple((math.pi - high, math.pi - low) for low, high in mirrored.intervals),
-            dead_points=tuple(math.pi - angle for angle in mirrored.dead_points),
-            change_points=tuple(math.pi - angle for angle in mirrored.change_points),
         )
 
     def transmission_range(self) -> TransmissionRange:

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from euler_column import euler_load
 from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipkinc
 
-from fea.beam.theory import euler_load
 from fea.frame.corotational import buckling_factor, solve_large_displacement
 from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support
 from geometry.parts.part import rectangle, ring

@@ -6,9 +6,9 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from euler_column import euler_load
 
 from fea.beam.column_factor import AxialForce, column_factors
-from fea.beam.theory import euler_load
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
 from fea.frame.corotational import buckling_factor

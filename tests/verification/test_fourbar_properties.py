@@ -125,7 +125,7 @@ def test_the_range_is_where_the_loop_closes(bar):
     reach = bar.input_range()
     theta2 = np.linspace(-np.pi, np.pi, 181)
     closes = ~np.ma.getmaskarray(bar.position(theta2).theta3)
-    inside = np.array([reach.contains(angle) for angle in theta2])
+    inside = np.array([reach.interval_of(angle) is not None for angle in theta2])
     # Angles at an end may fall either way by rounding, and with A on O4 the pose is not definite.
     ends = [end for interval in reach.intervals for end in interval]
     off = np.min([np.abs(np.sin((theta2 - end) / 2)) for end in ends], axis=0) > 1e-6
@@ -141,7 +141,6 @@ def test_transmission_stays_in_its_range(pose, branch):
     reach = bar.transmission_range()
     transmission = float(bar.position(theta2, branch=branch).transmission)
     assert reach.minimum - 1e-9 <= transmission <= reach.maximum + 1e-9
-    assert 0.0 <= reach.least_acute <= math.pi / 2
 
 
 @given(lengths, lengths, st.floats(-10, 10), angles, branches, st.floats(-30, 30), st.floats(-100, 100))

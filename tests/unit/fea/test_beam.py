@@ -7,7 +7,6 @@ from fea.beam.theory import (
     PointLoad,
     check_beam,
     deflection,
-    euler_load,
     internal_forces,
     section_stress,
     uniform_cantilever,
@@ -221,11 +220,3 @@ def test_deflection_from_the_section_at_one_station() -> None:
         per_force = x**2 * (240 - x) / (6 * 2400 * TUBE.i_z) + x / shear
         assert line.at(x)[1:3] == pytest.approx([3 * per_force, 2 * per_force])
     assert line.at(0.0)[4:] == pytest.approx([0.0, 0.0], abs=1e-12)
-
-
-def test_euler_load_and_its_end_conditions() -> None:
-    # Tube 5 over 2.5 mm, E 2400 MPa, 125 mm between pins: π² 2400 28.7621 / 125² = 43.60 N.
-    assert euler_load(2400.0, TUBE.i_z, 125.0) == pytest.approx(43.602, abs=5e-3)
-    assert euler_load(2400.0, TUBE.i_z, 125.0, 2.0) == pytest.approx(43.602 / 4, abs=2e-3)
-    with pytest.raises(CannotRunError, match="length above zero"):
-        euler_load(2400.0, TUBE.i_z, 0.0)

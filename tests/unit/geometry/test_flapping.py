@@ -99,19 +99,6 @@ def test_holds_where_the_crank_pin_is_level_with_or_below_the_pivot():
         assert math.dist(pose.coupler_pin, (wing.width, wing.height)) == pytest.approx(wing.rocker, abs=1e-12)
 
 
-def test_wing_points_lie_along_the_wings():
-    for side, mirror in (("right", 1), ("left", -1)):
-        pose = CHOSEN.pose(TURN, side)
-        elbow, tip = CHOSEN.wing_points(TURN, inner=33.0, outer=28.0, side=side)
-        pivot = np.array([mirror * CHOSEN.width, CHOSEN.height])
-        # B, O4 and D lie on one line.
-        inner, rocker = elbow - pivot, pivot - pose.coupler_pin
-        np.testing.assert_allclose(inner / 33.0, rocker / CHOSEN.rocker, atol=1e-12)
-        outer = tip - elbow
-        np.testing.assert_allclose(np.hypot(*outer.T), 28.0, atol=1e-12)
-        np.testing.assert_allclose(np.arctan2(outer[:, 1], mirror * outer[:, 0]), pose.lambda_, atol=1e-12)
-
-
 def test_criteria_of_the_chosen_design_and_of_one_that_fails_them():
     assert all(criterion.fulfilled for criterion in CHOSEN.criteria())
     failing = FlappingWing(crank=5, coupler=20, rocker=9, width=8.5, height=20)

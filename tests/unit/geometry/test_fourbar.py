@@ -32,7 +32,7 @@ def test_arrays_are_masked_where_the_loop_stays_open():
     theta2 = np.linspace(-np.pi, np.pi, 91)
     position = TRIPLE_ROCKER.position(theta2)
     (interval, *_) = TRIPLE_ROCKER.input_range().intervals
-    reachable = np.array([TRIPLE_ROCKER.input_range().contains(angle) for angle in theta2])
+    reachable = np.array([TRIPLE_ROCKER.input_range().interval_of(angle) is not None for angle in theta2])
     assert 0 < reachable.sum() < theta2.size
     assert interval[0] < interval[1]
     for values in (position.theta3, position.theta4, position.transmission):
@@ -123,18 +123,9 @@ def test_transmission_range_of_a_crank_rocker_lies_at_zero_and_half_turn():
     transmission = CRANK_ROCKER.position(np.linspace(-np.pi, np.pi, 721)).transmission
     assert reach.minimum == pytest.approx(float(transmission.min()), abs=1e-12)
     assert reach.maximum == pytest.approx(float(transmission.max()), abs=1e-12)
-    assert reach.least_acute == reach.minimum
     # An input with two ranges runs between its folded and its stretched dead point.
     stopped = FourBar(a=7, b=2, c=6, d=9).transmission_range()
     assert (stopped.minimum, stopped.maximum) == (0.0, math.pi)
-
-
-def test_output_range_bounds_the_output():
-    position = CRANK_ROCKER.position(np.linspace(-np.pi, np.pi, 3601))
-    low, high = CRANK_ROCKER.output_range().intervals[0]
-    assert float(position.theta4.min()) == pytest.approx(low, abs=1e-6)
-    assert float(position.theta4.max()) == pytest.approx(high, abs=1e-6)
-    assert float(position.theta4.min()) >= low - 1e-12
 
 
 def test_branch_of_recognises_its_own_poses():
