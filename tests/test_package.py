@@ -1,10 +1,11 @@
-"""The wheel holds the four rooms with their data and nothing else, and its command runs from any folder."""
+"""The wheel holds ``alula.py`` and the four rooms with their data alone, and its command runs from any folder."""
 
 import os
 import shutil
 import subprocess
 import sys
 import sysconfig
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -64,7 +65,7 @@ def test_the_wheel_holds_the_rooms_with_their_data_and_no_tests(wheel):
         for file in (ROOT / room).rglob("*")
         if file.is_file() and "__pycache__" not in file.parts
     }
-    assert shipped == tracked
+    assert shipped == tracked | {"alula.py"}
     assert "geometry/materials.toml" in shipped
 
 
@@ -79,16 +80,20 @@ def test_the_installed_packages_are_those_of_the_wheel(installed, tmp_path):
     files = run(
         installed / "bin" / "python",
         "-c",
-        "import fea, geometry, loads, reports\nfor room in (geometry, loads, fea, reports): print(room.__file__)",
+        "import alula, fea, geometry, loads, reports\n"
+        "for module in (alula, geometry, loads, fea, reports): print(module.__file__)",
         cwd=tmp_path,
     ).splitlines()
-    assert [Path(file).parent.name for file in files] == list(ROOMS)
+    assert Path(files[0]).name == "alula.py"
+    assert [Path(file).parent.name for file in files[1:]] == list(ROOMS)
     assert all(Path(file).is_relative_to(installed) for file in files)
 
 
 def test_the_command_runs_from_another_folder(installed, tmp_path):
     alula = installed / "bin" / "alula"
-    assert run(alula, "--version", cwd=tmp_path).startswith("alula ")
+    told = run(alula, "--version", cwd=tmp_path)
+    assert told == f"alula {tomllib.loads((ROOT / 'pyproject.toml').read_text())['project']['version']}\n"
+    assert run(installed / "bin" / "python", "-m", "alula", "--version", cwd=tmp_path) == told
     assert "check" in run(alula, "--help", cwd=tmp_path)
     listed = {line.split()[0] for line in run(alula, "cases", cwd=tmp_path).splitlines()}
     assert listed == {file.stem for file in (ROOT / "loads" / "cases").glob("*.toml")}
@@ -96,7 +101,7 @@ def test_the_command_runs_from_another_folder(installed, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_command_line_imports_late(installed, tmp_path):
+def test_the_command_line_and_the_face_import_late(installed, tmp_path):
     slow = {"numpy", "scipy", "skfem", "gmsh", "pyvista", "matplotlib", "pint", "pydantic", "meshio"}
-    script = f"import sys, reports.commands.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
+    script = f"import sys, alula, reports.commands.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
     assert run(installed / "bin" / "python", "-c", script, cwd=tmp_path).split() == []

@@ -127,5 +127,4 @@ def _softened(case: Case, title: str, factor: float) -> Case:
     }
     load_case = case.load_cases[title].model_copy(update={"scatter": (1.0, 1.0)})
     load_cases = {**case.load_cases, title: load_case}
-    # The cached materials would be copied as they are.
-    return case.model_copy(update={"materials": materials, "all_materials": materials, "load_cases": load_cases})
+    return case.model_copy(update={"materials": materials, "load_cases": load_cases})

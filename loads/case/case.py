@@ -20,6 +20,7 @@ from geometry.mechanisms.ornithopter import OrnithopterRules
 from geometry.parts.material import Material, library
 from geometry.parts.part import Body, Part, Pin, PlainEnd, Tube
 from loads.case.case_rules import check_point, check_rules, check_slots
+from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
 from loads.records.carried import Carried
 from loads.records.check_spec import (
@@ -120,7 +121,7 @@ class SolidSettings(CaseModel):
     it meshes are refined until the verdict is clear or that error is 5 %."""
 
 
-class Case(CaseModel):
+class Case(Revisable):
     """A linkage with its pose, drive, parts, loads and checks."""
 
     schema_version: Literal[1]

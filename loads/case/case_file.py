@@ -2,10 +2,12 @@
 
 import os
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -13,11 +15,20 @@ from geometry.base.errors import CaseError
 from geometry.mechanisms.ornithopter import OrnithopterRules
 from loads.case.case import SCHEMA_VERSION, Case
 from loads.case.ornithopter_case import ornithopter_settings
+from loads.case.revisable import Origin
 from loads.text.entries import alike, names_tables
 from loads.text.explain import printable, sentence
 
 LARGEST_FILE = 1 << 20
 """Bytes; a case file is some kilobytes."""
+
+
+class Change(NamedTuple):
+    """An entry of a case and its new value; `who` sets it and begins the message where that cannot be."""
+
+    path: str
+    value: object
+    who: str = "--set"
 
 
 def built_in_cases() -> tuple[str, ...]:
@@ -38,14 +49,24 @@ def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
         raise CaseError(f"{where}: the tables are nested too deeply; flatten them") from None
     except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
         raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; correct that line") from None
-    for override in overrides:
-        _override(data, override)
+    return _changed(data, tuple(map(_stated, overrides)), name_or_path)
+
+
+def _changed(tables: dict[str, Any], changes: Sequence[Change], name: str) -> Case:
+    """Return the case that the tables of a file state after some changes, which later ones can be added to."""
+    data = deepcopy(tables)
+    for change in changes:
+        _override(data, change)
     if "ornithopter" in data:
         for entry in _by_rules(data["ornithopter"]):
-            _override(data, entry, "ornithopter sets")
-        for override in overrides:  # what is stated outright wins
-            _override(data, override)
-    return validate(data)
+            _override(data, _stated(entry, "ornithopter sets"))
+        for change in changes:  # what is stated outright wins
+            _override(data, change)
+    return validate(data).read_from(Origin(name=name, revise=partial(_revised, tables, tuple(changes), name)))
+
+
+def _revised(tables: dict[str, Any], changes: Sequence[Change], name: str, values: Mapping[str, object]) -> Case:
+    return _changed(tables, [*changes, *(Change(path, value, "with_values") for path, value in values.items())], name)
 
 
 def _by_rules(stated: object) -> list[str]:
@@ -117,25 +138,36 @@ def validate(data: dict[str, Any]) -> Case:
         raise CaseError(sentence(error, Case)) from None
 
 
-def _override(data: dict[str, Any], override: str, who: str = "--set") -> None:
-    """Set an entry anew; ``who`` begins the message where it cannot be.
-
-    A name that the case does not have is refused where names stand for tables or points: mistyped, it would add one
-    beside the one that is meant, and change nothing else.
-    """
+def _stated(override: str, who: str = "--set") -> Change:
+    """Read ``path=value``; a value that is not TOML is text."""
     path, sign, text = override.partition("=")
-    path = path.strip()
-    keys = [key.strip().strip("\"'") for key in path.split(".")]
     try:
         override.encode()
     except UnicodeEncodeError:  # what a terminal hands over of bytes that are no text
         raise CaseError(f"--set '{printable(override)}': it is not UTF-8 text; write it in UTF-8") from None
-    if not sign or not all(keys):
+    if not sign or not all(_keys(path)):
         raise CaseError(f"--set '{printable(override)}': write it as path=value, for example pose.angle=\"30 deg\"")
     try:
         value = tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError):
         value = text.strip()
+    return Change(path.strip(), value, who)
+
+
+def _keys(path: str) -> list[str]:
+    return [key.strip().strip("\"'") for key in path.strip().split(".")]
+
+
+def _override(data: dict[str, Any], change: Change) -> None:
+    """Set an entry anew.
+
+    A name that the case does not have is refused where names stand for tables or points: mistyped, it would add one
+    beside the one that is meant, and change nothing else.
+    """
+    path, who = change.path, change.who
+    keys = _keys(path)
+    if not all(keys):
+        raise CaseError(f"{who} '{printable(path)}': write keys with dots between them, for example pose.angle")
     here: Any = data
     for i, key in enumerate(keys):
         last = i == len(keys) - 1
@@ -160,6 +192,6 @@ def _override(data: dict[str, Any], override: str, who: str = "--set") -> None:
                 f"{who} {printable(path)}: '{above}' is a value, so nothing can be set below it; correct the path"
             )
         if last:
-            here[index] = value
+            here[index] = deepcopy(change.value)  # a later change may be about a part of it
         else:
             here = here[index]

@@ -60,9 +60,9 @@ def main() -> NoReturn:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
+        from geometry.base.version import alula_version
 
-        print(f"alula {version('alula')}")
+        print(f"alula {alula_version()}")
         raise typer.Exit
 
 

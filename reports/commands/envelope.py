@@ -46,8 +46,7 @@ def write_envelope(
 
     VTU file and picture show the worst pose under the worst load case. Raises as ``write_folder`` does.
     """
-    from reports.figures.envelope_figures import envelope_figure
-    from reports.figures.figures import plots_of, scene_from
+    from reports.figures.envelope_figures import envelope_figure, stress_pictures
     from reports.page.export import write_vtu
 
     def fill(folder: Path) -> None:
@@ -56,18 +55,7 @@ def write_envelope(
         progress("Drawing the envelope ...")
         (folder / FIGURE).write_bytes(envelope_figure(result))
         progress("Rendering the stress plots ...")
-        scenes = {
-            name: scene_from(
-                link.field,
-                link.displacement,
-                link.worst.discretisation,
-                result.case.part_of(name).section,
-                brittle=result.case.material_of(name).brittle,
-            )
-            for name, link in result.links.items()
-        }
-        stations = {name: {p: x for p, (x, _) in result.case.links[name].points.items()} for name in result.links}
-        plots, warnings = plots_of(scenes, stations)
+        plots, warnings = stress_pictures(result, result.links)
         for warning in warnings:
             progress(f"Warning: {warning}")
         (folder / "pictures").mkdir()

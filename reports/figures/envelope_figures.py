@@ -1,5 +1,6 @@
 """The curve of an envelope: safety factor of every link over the drive angle (matplotlib, PNG)."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -59,6 +60,24 @@ def envelope_figure(result: EnvelopeResult) -> bytes:
         for text in legend.get_texts():
             text.set_parse_math(False)
         return as_png(figure)
+
+
+def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[str, bytes], tuple[str, ...]]:
+    """Draw the stress of some links at their worst pose: link -> PNG, and what to warn of."""
+    from reports.figures.figures import plots_of, scene_from
+
+    scenes, stations = {}, {}
+    for name in links:
+        link = result.links[name]
+        scenes[name] = scene_from(
+            link.field,
+            link.displacement,
+            link.worst.discretisation,
+            result.case.part_of(name).section,
+            brittle=result.case.material_of(name).brittle,
+        )
+        stations[name] = {point: x for point, (x, _) in result.case.links[name].points.items()}
+    return plots_of(scenes, stations)
 
 
 def abscissa(result: EnvelopeResult) -> tuple[Real, str]:

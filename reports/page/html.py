@@ -11,6 +11,7 @@ from fea.common.verdict import DRIVE_POWER, Verdict
 from fea.frame.joint_forces import PINNED_STATICS
 from fea.outcomes.judge import reason_for
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
+from geometry.base.version import alula_version
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.parts.material import Material
 from loads.case.case_file import built_in_cases
@@ -21,7 +22,7 @@ from reports.tables.frames import AXES, shown_components
 from reports.tables.loads import air_record, anchor_record, weight_sentence
 from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
-from reports.tables.record import alula_version, worst_load_case
+from reports.tables.record import worst_load_case
 from reports.words.wording import (
     agreement,
     apart,

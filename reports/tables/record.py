@@ -3,12 +3,12 @@
 import json
 import math
 from collections.abc import Iterable, Mapping
-from importlib.metadata import version
 from typing import Any
 
 from fea.common.band import Band
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.unchecked import unchecked
+from geometry.base.version import alula_version
 from geometry.parts.material import Material
 from loads.claims.published import StaticsAudit
 from loads.statics.statics import Reactions
@@ -85,11 +85,6 @@ FIELD_UNITS = {
     "conditions.temperature": "degC",
     "timings": "s",
 } | {**FRAME_UNITS, **LOAD_UNITS, **MESH_UNITS, **OPINION_UNITS}
-
-
-def alula_version() -> str:
-    """The installed version."""
-    return version("alula")
 
 
 def result_record(result: CheckResult) -> dict[str, Any]:

@@ -1,0 +1,259 @@
+"""alula from Python: read a case, check it, move it, look at the result.
+
+The functions do what the commands of the same names do. What they return shows itself in a notebook, and hands its
+numbers to a script; units are mm, N, N·mm and MPa unless a name says otherwise. ``python -m alula`` is the command.
+
+Examples
+--------
+>>> import alula
+>>> case = alula.read_case("owl-wing-closed")
+>>> for diameter in ("3.5 mm", "4 mm"):
+...     report = alula.check(case.with_values({"parts.tube.outer_diameter": diameter}), fidelity="beam")
+...     print(diameter, report.verdict, f"{report.safety_factors['AE'].value:.1f}")
+3.5 mm undecided 4.4
+4 mm pass 8.7
+"""
+
+from collections.abc import Callable, Mapping
+from os import PathLike, fspath
+from typing import TYPE_CHECKING
+
+from geometry.base.version import alula_version
+
+if TYPE_CHECKING:
+    from loads.case.case import Case
+    from reports.notebook.check_report import CheckReport
+    from reports.notebook.claims_report import ClaimsReport
+    from reports.notebook.envelope_report import EnvelopeReport
+    from reports.notebook.motion_report import MotionReport
+
+__all__ = ["cases", "check", "claims", "envelope", "motion", "read_case"]
+__version__ = alula_version()
+
+
+def cases() -> tuple[str, ...]:
+    """Return the names of the built-in cases.
+
+    Examples
+    --------
+    >>> "owl-wing-static" in cases()
+    True
+    """
+    from loads.case.case_file import built_in_cases
+
+    return built_in_cases()
+
+
+def read_case(name_or_path: "str | PathLike[str]", values: Mapping[str, object] | None = None) -> "Case":
+    """Read and validate a case.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        Name of a built-in case, or path of a case file.
+    values : mapping of str to object, optional
+        Other values for some entries, as for ``Case.with_values``.
+
+    Returns
+    -------
+    Case
+        The case with its links, joints, parts, load cases and checks; ``case.with_values(...)`` changes entries.
+
+    Raises
+    ------
+    CaseError
+        With one sentence for whatever is wrong.
+
+    Examples
+    --------
+    >>> case = read_case("owl-wing-static")
+    >>> case.title
+    'Owl-wing prosthesis, static: 0.25 N at the wing tip'
+    >>> case.parts["tube"].outer_diameter  # mm
+    5.0
+    """
+    from loads.case import case_file
+
+    case = case_file.read_case(fspath(name_or_path))
+    return case.with_values(values) if values else case
+
+
+def check(
+    case: "Case | str | PathLike[str]",
+    *,
+    fidelity: str = "auto",
+    accuracy: str | None = None,
+    threads: int = 2,
+    progress: Callable[[str], None] | None = None,
+) -> "CheckReport":
+    """Check a case: pose, statics, stress in every link, verdict.
+
+    Parameters
+    ----------
+    case : Case, str or path
+        A case, the name of a built-in one, or the path of a case file.
+    fidelity : {"auto", "beam", "solid"}
+        The model that decides: hand calculation where it can, else a solid; or one of them for all links.
+    accuracy : str, optional
+        Error of the meshes to reach in every link, such as ``"5 %"``; without it: a clear verdict or 5 %.
+    threads : int
+        Threads that each library may use, and child processes that may run at once.
+    progress : callable, optional
+        Called with a sentence before every stage that may take long, such as ``print``.
+
+    Returns
+    -------
+    CheckReport
+        Verdict, numbers, tables and pictures.
+
+    Raises
+    ------
+    CaseError
+        For a wrong case or option.
+    CannotRunError
+        Where a stage fails.
+
+    Examples
+    --------
+    >>> report = check("owl-wing-closed", fidelity="beam")
+    >>> print(report.verdict)
+    pass
+    >>> [row["link"] for row in report.table("links")]
+    ['GF', 'AE', 'CF', 'CH', 'ED']
+    >>> round(report.drive_torques["weight"], 1)  # N·mm
+    -19.9
+    """
+    from fea.check.run import check_case, effort_of
+    from reports.notebook.check_report import CheckReport
+
+    found = _case(case)
+    return CheckReport(
+        check_case(
+            found,
+            name=found.origin,
+            fidelity=fidelity,
+            threads=threads,
+            effort=effort_of(found, accuracy),
+            progress=progress or _silent,
+        )
+    )
+
+
+def motion(case: "Case | str | PathLike[str]", *, threads: int = 2) -> "MotionReport":
+    """Move a linkage: directions, paths, joint forces and drive torque over its range.
+
+    Parameters
+    ----------
+    case : Case, str or path
+        A case with a table ``[motion]``, the name of a built-in one, or the path of a case file.
+    threads : int
+        Threads that each library may use.
+
+    Returns
+    -------
+    MotionReport
+        Curves, table and pictures.
+
+    Raises
+    ------
+    CaseError
+        For a case without motion or drive, and where the motion meets a dead point.
+    """
+    from fea.common.threads import bounded
+    from loads.states.case_motion import solve_case_motion
+    from reports.notebook.motion_report import MotionReport
+
+    with bounded(threads):
+        return MotionReport(solve_case_motion(_case(case)))
+
+
+def envelope(
+    case: "Case | str | PathLike[str]",
+    *,
+    repetitions: float | None = None,
+    accuracy: str | None = None,
+    threads: int = 2,
+    progress: Callable[[str], None] | None = None,
+) -> "EnvelopeReport":
+    """Check every link over the whole motion: least safety factor, where and when, and fatigue.
+
+    Parameters
+    ----------
+    case : Case, str or path
+        A case with a table ``[motion]``, the name of a built-in one, or the path of a case file.
+    repetitions : float, optional
+        How often the motion is to be borne, for fatigue; the cycles of the material's card when left out.
+    accuracy, threads, progress
+        As for ``check``.
+
+    Returns
+    -------
+    EnvelopeReport
+        Verdict, curves, tables and pictures.
+
+    Raises
+    ------
+    CaseError
+        For a case without motion, drive or part, and for a wrong option.
+    CannotRunError
+        Where a stage fails.
+    """
+    from fea.check.run import effort_of
+    from fea.motion.envelope import envelope_case
+    from reports.notebook.envelope_report import EnvelopeReport
+
+    found = _case(case)
+    return EnvelopeReport(
+        envelope_case(
+            found,
+            name=found.origin,
+            threads=threads,
+            repetitions=repetitions,
+            effort=effort_of(found, accuracy),
+            progress=progress or _silent,
+        )
+    )
+
+
+def claims(name_or_path: "str | PathLike[str]", *, fidelity: str = "solid", threads: int = 2) -> "ClaimsReport":
+    """Re-derive the published figures of a source or case, and say which of them hold.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        Name of a source document, such as ``"owl-wing"``, or of a built-in case, or the path of a case file.
+    fidelity : {"solid", "beam"}
+        Model for figures on stress; with ``"beam"`` those that need a solid model cannot be re-derived.
+    threads : int
+        As for ``check``.
+
+    Returns
+    -------
+    ClaimsReport
+        Findings and their table.
+
+    Raises
+    ------
+    CaseError
+        For a name that is neither.
+    """
+    from fea.claims.audit import check_claims
+    from fea.common.threads import bounded
+    from reports.notebook.claims_report import ClaimsReport
+
+    with bounded(threads):
+        return ClaimsReport(check_claims(fspath(name_or_path), fidelity=fidelity, threads=threads))
+
+
+def _case(case: "Case | str | PathLike[str]") -> "Case":
+    return read_case(case) if isinstance(case, str | PathLike) else case
+
+
+def _silent(message: str) -> None:
+    """Say nothing of the progress."""
+
+
+if __name__ == "__main__":
+    from reports.commands.cli import main
+
+    main()

@@ -1,0 +1,84 @@
+"""A case knows what it was read from, so that it can be read once more with other values for some entries."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+from pydantic import PrivateAttr
+
+from geometry.base.errors import CaseError
+from geometry.base.model import CaseModel
+
+
+@dataclass(frozen=True, kw_only=True)
+class Origin:
+    """Where a case was read from; no part of what makes two cases equal.
+
+    name    path or built-in name; "" for a case that was not read
+    revise  reads it once more, with other values for some entries; None where that cannot be
+    """
+
+    name: str = field(default="", compare=False)
+    revise: Callable[[Mapping[str, object]], Any] | None = field(default=None, compare=False)
+
+
+class Revisable(CaseModel):
+    """A record that can be read once more with other values."""
+
+    _origin: Origin = PrivateAttr(default_factory=Origin)
+
+    @property
+    def origin(self) -> str:
+        """Path or built-in name that it was read from; "" where it was put together in Python."""
+        return self._origin.name
+
+    def read_from(self, origin: Origin) -> Self:
+        """Return a copy with an origin."""
+        copied = self.model_copy()
+        copied._origin = origin
+        return copied
+
+    def with_values(self, values: Mapping[str, object]) -> Self:
+        """Return the case with other values for some entries; this one stays as it is.
+
+        Parameters
+        ----------
+        values : mapping of str to object
+            New value by the path of its entry, as for ``--set`` of the command: ``"parts.tube.outer_diameter"``, or
+            ``"links.AE.points.P.0"`` for the first entry of a list. Quantities are text with their unit.
+
+        Returns
+        -------
+        Case
+            Read and validated anew, with all that follows from the entries.
+
+        Raises
+        ------
+        CaseError
+            For an entry that the case does not have, a value that breaks a rule of the case file, and a case that
+            ``read_case`` did not return.
+
+        Examples
+        --------
+        >>> import alula
+        >>> case = alula.read_case("owl-wing-static")
+        >>> thicker = case.with_values({"parts.tube.outer_diameter": "6 mm"})
+        >>> case.parts["tube"].outer_diameter, thicker.parts["tube"].outer_diameter  # mm
+        (5.0, 6.0)
+        """
+        if self._origin.revise is None:
+            raise CaseError(
+                "with_values: this case was put together or changed in Python, so it has no file to read once more; "
+                "start from one that read_case returned"
+            )
+        revised: Self = self._origin.revise(values)
+        return revised
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with other fields, and without what was worked out from the fields before."""
+        copied = super().model_copy(update=update, deep=deep)
+        if update:
+            for name in copied.__dict__.keys() - type(self).model_fields.keys() - update.keys():
+                del copied.__dict__[name]
+            copied._origin = Origin(name=self.origin)
+        return copied

@@ -1,0 +1,233 @@
+"""What ``alula.check`` returns."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from fea.common.band import Band
+from fea.common.verdict import CheckOutcome, Verdict
+from fea.outcomes.result import CheckResult, LoadCaseResult
+from geometry.base.errors import CannotRunError, CaseError
+from reports.notebook.shown import Picture, Row, Table, pick, summary
+from reports.tables.record import worst_load_case
+from reports.words.wording import checks_of, headline
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """A check of a case, as ``alula check`` makes it.
+
+    Parameters
+    ----------
+    result : CheckResult
+        The record that the numbers come from, with everything else that was found.
+    """
+
+    result: CheckResult
+
+    @property
+    def verdict(self) -> Verdict:
+        """Pass, fail or undecided; equal to the text ``"pass"``, ``"fail"`` or ``"undecided"``."""
+        return self.result.verdict
+
+    @property
+    def headline(self) -> str:
+        """The verdict and its reason in a few sentences."""
+        return headline(self.result)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One sentence each."""
+        return self.result.warnings
+
+    @property
+    def load_cases(self) -> tuple[str, ...]:
+        """Names of the load cases."""
+        return tuple(self.result.load_cases)
+
+    @property
+    def safety_factors(self) -> Mapping[str, Band]:
+        """Least safety factor of every link over the load cases [1], with its band: ``value``, ``low``, ``high``."""
+        return {link: worst_load_case(self.result, link).links[link].safety_factor for link in self._links}
+
+    @property
+    def stresses(self) -> Mapping[str, Band]:
+        """Stress that decides the safety factor of every link [MPa]: von Mises, or largest principal if brittle."""
+        return {link: worst_load_case(self.result, link).links[link].decisive for link in self._links}
+
+    @property
+    def displacements(self) -> Mapping[str, Band]:
+        """Largest displacement of every link from its own pins over the load cases [mm]."""
+        cases = self.result.load_cases.values()
+        return {
+            link: max((case.links[link].displacement_max for case in cases), key=lambda band: band.high)
+            for link in self._links
+        }
+
+    @property
+    def drive_torques(self) -> Mapping[str, float]:
+        """Drive torque of every load case in the undeformed pose, counter-clockwise [N·mm]; empty without a drive."""
+        found = self.result.load_cases.items()
+        return {name: case.reactions.drive_torque for name, case in found if case.reactions.drive is not None}
+
+    def table(self, of: Literal["checks", "links", "joints"] = "checks") -> Table:
+        """Return a table of the result.
+
+        Parameters
+        ----------
+        of : {"checks", "links", "joints"}
+            The checks with value, band and limit; the links with stress, safety factor and displacement; or the joint
+            forces in the undeformed pose. All have a row per load case.
+
+        Returns
+        -------
+        Table
+            A sequence of mappings, shown as a table.
+
+        Raises
+        ------
+        CaseError
+            For another table.
+        """
+        tables = {"checks": self._check_rows, "links": self._link_rows, "joints": self._joint_rows}
+        return Table(tuple(pick(tables, of, "table")()))
+
+    def plot_linkage(self, load_case: str | None = None) -> Picture:
+        """Draw the linkage in its pose with the joint forces.
+
+        Parameters
+        ----------
+        load_case : str, optional
+            Its name; the first one when left out.
+
+        Raises
+        ------
+        CaseError
+            For a load case that there is not.
+        """
+        from reports.figures.drawings import linkage_drawing
+
+        name = self.load_cases[0] if load_case is None else load_case
+        pick(self.result.load_cases, name, "load case")
+        return Picture(linkage_drawing(self.result, name))
+
+    def plot_stress(self, link: str, load_case: str | None = None) -> Picture:
+        """Draw the stress of a link on its deformed shape, and around its largest value.
+
+        Parameters
+        ----------
+        link : str
+            A link that was solved as a solid.
+        load_case : str, optional
+            Its name; the one that stresses the link most when left out.
+
+        Raises
+        ------
+        CaseError
+            For a link or load case that there is not, and for a link without a solid model.
+        CannotRunError
+            Where rendering fails.
+        """
+        from reports.figures.figures import stress_plots
+
+        pick({name: name for name in self._links}, link, "link")
+        found = self._case(link, load_case).links[link]
+        if found.stress is None:
+            raise CaseError(
+                f"link {link} has no stress field, since {found.why or 'no solid model ran'}; check the case with "
+                'fidelity="solid"'
+            )
+        stations = {name: x for name, (x, _) in self.result.case.links[link].points.items()}
+        plots, warnings = stress_plots({link: found}, {link: stations})
+        if link not in plots:
+            raise CannotRunError("; ".join(warnings))
+        return Picture(plots[link])
+
+    def write(self, folder: str | Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
+        """Write ``report.html``, ``result.json``, pictures and VTU files into a folder, as ``alula check -o`` does.
+
+        Raises
+        ------
+        CaseError
+            Where files that alula did not write are in the way.
+        CannotRunError
+            Where the folder cannot be written.
+        """
+        from reports.page.folder import write_report
+
+        write_report(self.result, Path(folder), progress=progress)
+
+    def __str__(self) -> str:
+        return f"{self.headline}\n\n{self.table()}"
+
+    def __repr__(self) -> str:
+        return f"<check of {self.result.case.title!r}: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        return summary(self.verdict, self.result.case.title, self.headline, self.table(), self.warnings)
+
+    @property
+    def _links(self) -> tuple[str, ...]:
+        return tuple(next(iter(self.result.load_cases.values())).links)
+
+    def _case(self, link: str, load_case: str | None) -> LoadCaseResult:
+        if load_case is None:
+            return worst_load_case(self.result, link)
+        return pick(self.result.load_cases, load_case, "load case")
+
+    def _check_rows(self) -> list[Row]:
+        return check_rows(checks_of(self.result))
+
+    def _link_rows(self) -> list[Row]:
+        return [
+            {
+                "load case": case.name,
+                "link": name,
+                "model": link.decided_by or link.fidelity,
+                "stress": link.measure,
+                "stress [MPa]": link.decisive.value,
+                "safety factor": link.safety_factor.value,
+                "low": link.safety_factor.low,
+                "high": link.safety_factor.high,
+                "displacement [mm]": link.displacement_max.value,
+                "worst at x [mm]": float(link.location[0]),
+            }
+            for case in self.result.load_cases.values()
+            for name, link in case.links.items()
+        ]
+
+    def _joint_rows(self) -> list[Row]:
+        return [
+            {
+                "load case": case.name,
+                "joint": name,
+                "by": joint.by,
+                "on": joint.on,
+                "Fx [N]": float(joint.force[0]),
+                "Fy [N]": float(joint.force[1]),
+                "size [N]": float(joint.magnitude),
+            }
+            for case in self.result.load_cases.values()
+            for name, joint in case.reactions.joints.items()
+        ]
+
+
+def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:
+    """Return a row for every outcome."""
+    return [
+        {
+            "check": check.name,
+            "link": check.link,
+            "load case": check.load_case,
+            "quantity": check.quantity,
+            "value": check.value.value,
+            "low": check.value.low,
+            "high": check.value.high,
+            "unit": check.unit,
+            "sense": "≥" if check.at_least else "≤",
+            "limit": check.limit,
+            "verdict": check.verdict.value,
+        }
+        for check in checks
+    ]

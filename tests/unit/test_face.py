@@ -1,0 +1,134 @@
+"""``alula.py``: what a script and a notebook call, and its docstrings' examples."""
+
+import doctest
+import importlib
+import shutil
+import subprocess
+import sys
+import tomllib
+
+import programs
+import pytest
+
+import alula
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_case, read_text, validate
+
+OWL = "owl-wing-static"
+TUBE = "parts.tube.outer_diameter"
+
+
+@pytest.mark.parametrize(
+    "module", ["alula", "loads.case.revisable", "reports.notebook.claims_report", "reports.notebook.motion_report"]
+)
+def test_examples_of_docstrings(module):
+    found = doctest.testmod(importlib.import_module(module))
+    assert found.attempted > 0
+    assert found.failed == 0
+
+
+def test_the_version_is_that_of_the_project():
+    stated = tomllib.loads((programs.ROOT / "pyproject.toml").read_text())["project"]["version"]
+    run = [sys.executable, "-m", "alula"]
+    told = subprocess.run([*run, "--version"], env=programs.environment(), capture_output=True, text=True, check=True)
+    assert (alula.__version__, told.stdout) == (stated, f"alula {stated}\n")
+
+
+def test_all_that_is_offered_is_there():
+    assert all(callable(getattr(alula, name)) for name in alula.__all__)
+    assert OWL in alula.cases()
+
+
+@pytest.mark.parametrize("name", [OWL, "copy.toml"])
+def test_values_mean_what_they_mean_to_the_command(name, tmp_path):
+    if name.endswith(".toml"):
+        name = tmp_path / name
+        name.write_text(read_text(OWL)[0], encoding="utf-8")
+    case = alula.read_case(name)
+    before = case.linkage
+    changed = case.with_values({TUBE: "6 mm", "links.AE.points.E.0": "191 mm", "solid.mesh_size": 0.9})
+    expected = ["parts.tube.outer_diameter=6 mm", "links.AE.points.E.0=191 mm", "solid.mesh_size=0.9"]
+    assert changed == read_case(str(name), expected) == alula.read_case(name, {**dict(e.split("=") for e in expected)})
+    assert changed.linkage.links["AE"].points["E"][0] == pytest.approx(191.0)
+    assert case == read_case(str(name))
+    assert case != changed
+    assert case.linkage is before
+    assert changed.origin == case.origin == str(name)
+
+
+def test_changes_add_up():
+    case = alula.read_case(OWL)
+    once = case.with_values({TUBE: "6 mm"})
+    assert once.with_values({"title": "thick"}) == case.with_values({"title": "thick", TUBE: "6 mm"})
+    assert once.with_values({TUBE: "5 mm"}) == case
+
+
+def test_rules_of_a_mechanism_are_applied_anew():
+    """Dimensions follow from the ornithopter's angle; what is stated outright wins, also over a later change."""
+    case = alula.read_case("ornithopter")
+    changed = case.with_values({"ornithopter.wing_angle": "30 deg"})
+    assert changed == read_case("ornithopter", ["ornithopter.wing_angle=30 deg"])
+    assert changed.links != case.links
+
+
+def test_a_list_stays_the_callers():
+    point = ["125 mm", "0 mm"]
+    changed = alula.read_case(OWL).with_values({"links.AE.points.B": point, "links.AE.points.B.0": "120 mm"})
+    assert changed.links["AE"].points["B"] == pytest.approx((120.0, 0.0))
+    assert point == ["125 mm", "0 mm"]
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ({"parts.tub.outer_diameter": "6 mm"}, "with_values parts.tub.outer_diameter: .* did you mean 'tube'"),
+        ({"parts.tube.outer_diametr": "6 mm"}, "did you mean 'outer_diameter'"),
+        ({"links.XY.part": "tube"}, "'links' has no 'XY' to change"),
+        ({TUBE: 6.0}, "unit"),
+        ({TUBE: "6 N"}, "outer_diameter"),
+        ({"parts..tube": 1}, "with_values 'parts..tube'"),
+        ({"links.AE.points.B.7": "1 mm"}, "does not name one of the 2 entries"),
+    ],
+)
+def test_wrong_values_are_told_in_a_sentence(values, told):
+    with pytest.raises(CaseError, match=told):
+        alula.read_case(OWL).with_values(values)
+
+
+def test_only_what_was_read_can_be_read_once_more():
+    built = validate(tomllib.loads(read_text(OWL)[0]))
+    read = alula.read_case(OWL)
+    assert built == read  # where a case comes from makes no difference to what it states
+    assert built.origin == ""
+    for case in (built, read.model_copy(update={"title": "other"})):
+        with pytest.raises(CaseError, match="start from one that read_case returned"):
+            case.with_values({TUBE: "6 mm"})
+
+
+def test_a_copy_with_other_links_has_their_linkage():
+    case = alula.read_case(OWL)
+    assert "J" not in case.linkage.links["AE"].points
+    link = case.links["AE"]
+    longer = link.model_copy(update={"points": {**link.points, "J": (10.0, 0.0)}})
+    changed = case.model_copy(update={"links": {**case.links, "AE": longer}})
+    assert "J" in changed.linkage.links["AE"].points
+    assert "J" not in case.linkage.links["AE"].points
+
+
+def test_a_case_of_a_file_finds_the_files_beside_it(tmp_path):
+    folder = programs.ROOT / "loads" / "cases"
+    for file in (f"{OWL}.toml", "owl-wing-statics-exact.csv", "owl-wing-statics-printed.csv"):
+        shutil.copy(folder / file, tmp_path)
+    case = alula.read_case(tmp_path / f"{OWL}.toml").with_values({"title": "mine"})
+    assert alula.check(case, fidelity="beam").result.audit is not None
+
+
+def test_options_are_those_of_the_command():
+    with pytest.raises(CaseError, match="fidelity: 'bem' is unknown"):
+        alula.check(OWL, fidelity="bem")
+    with pytest.raises(CaseError, match="accuracy"):
+        alula.check(OWL, accuracy="5 mm")
+    with pytest.raises(CaseError, match="add \\[motion\\]"):
+        alula.motion("owl-wing-closed")
+    with pytest.raises(CaseError, match="there is no such file or built-in case"):
+        alula.check("owl-wing")
