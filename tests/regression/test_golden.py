@@ -10,7 +10,10 @@ import pytest
     "name", [pytest.param(n, marks=[pytest.mark.converged] if golden.slow(n) else []) for n in golden.commands()]
 )
 def test_the_numbers_are_what_they_were(name: str) -> None:
-    kept = json.loads(golden.path_of(name).read_text(encoding="utf-8"))
+    path = golden.path_of(name)
+    if golden.slow(name) and not path.exists():
+        pytest.skip("this result is not recorded yet; make golden records it")
+    kept = json.loads(path.read_text(encoding="utf-8"))
     found = golden.differences(kept, golden.run(name), golden.tolerance(name))
     assert not found, "\n".join([f"{len(found)} entries differ; make golden renews them", *found[:20]])
 
