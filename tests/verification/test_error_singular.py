@@ -19,8 +19,8 @@ def checked(effort=None, **changes):
 
 @pytest.mark.parametrize(
     ("part", "force"),
-    [(arm_case.BAR, -1.0), (arm_case.BAR, -60.0), (arm_case.TUBE, -60.0)],
-    ids=["bar far below the limit", "bar far above it", "tube far above it"],
+    [(arm_case.BAR, -1.0), (arm_case.TUBE, -60.0)],
+    ids=["bar far below the limit", "tube far above it"],
 )
 def test_sharp_edge_gets_no_safety_factor(part, force):
     link, check = checked(Effort(max_meshes=4), part=part, fillet=0.0, force=force)
