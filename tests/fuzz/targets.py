@@ -94,7 +94,7 @@ def override(text: str) -> bool:
     tables = starter_tables()
     with watched():
         try:
-            case_file._override(tables, text)
+            case_file._override(tables, case_file._stated(text))
             _used(validate(tables))
         except CaseError as error:
             return _told(error)
