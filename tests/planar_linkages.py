@@ -9,9 +9,12 @@ from geometry.linkage.linkage import Joint, Link, Linkage
 
 
 def link(*, ground: bool = False, **points: tuple[float, float]) -> Link:
-    return Link(
-        ground=ground, points={name: (f"{float(x)!r} mm", f"{float(y)!r} mm") for name, (x, y) in points.items()}
-    )  # type: ignore[misc]
+    return Link(ground=ground, points={name: (mm(x), mm(y)) for name, (x, y) in points.items()})  # type: ignore[misc]
+
+
+def mm(length: float) -> str:
+    """A length as text; what is smaller than any that a case may state is none."""
+    return f"{float(length) if abs(length) > 1e-15 else 0.0!r} mm"
 
 
 def joint(first: str, second: str, **entries: Any) -> Joint:
@@ -19,7 +22,7 @@ def joint(first: str, second: str, **entries: Any) -> Joint:
 
 
 def deg(angle: float) -> str:
-    return f"{float(angle)!r} deg"
+    return f"{float(angle) if abs(angle) > 1e-15 else 0.0!r} deg"
 
 
 def four_bar(a: float, b: float, c: float, d: float) -> Linkage:
