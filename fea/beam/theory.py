@@ -389,7 +389,7 @@ def deflection(
     state = np.zeros(6)
     for i, (c, x, h) in enumerate(zip(forces.coefficients, middles, np.diff(forces.breaks), strict=True)):
         slot = next((slot for slot in flanks if slot.first < x < slot.last), None)
-        strain = c * _flexibility(section if slot is None else slot.together, young, poisson)[:, None]
+        strain = c * flexibility(section if slot is None else slot.together, young, poisson)[:, None]
         if slot is not None:
             own = slot.together.i_z
             mean = _moment_between(forces, slot.first, slot.last) / slot.length
@@ -415,7 +415,7 @@ def deflection(
     return Deflection(functions=functions, largest=value, largest_x=x)
 
 
-def _flexibility(section: Section, young: float, poisson: float) -> Floats:
+def flexibility(section: Section, young: float, poisson: float) -> Floats:
     """Strains (6,) per unit of N, V_y, V_z, T, M_y, M_z [1/N, 1/(N·mm²)]."""
     shear_modulus = young / (2.0 * (1.0 + poisson))
     shear = 1.0 / (section.shear_coefficient(poisson) * shear_modulus * section.area)

@@ -22,11 +22,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.beam.theory import flexibility
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
 from geometry.parts.body_rules import hand_section, section_height, section_width
-from geometry.parts.part import Body, Disc, HoleRow, Part, Pin, Section, Tube
+from geometry.parts.part import Body, Disc, HoleRow, Part, Pin, Tube
 from loads.case.case import Case
 
 Real = NDArray[np.float64]
@@ -188,7 +189,7 @@ def _terms(loaded: FrameSolution, unit: FrameSolution, i: int, zones: Sequence[Z
     """Virtual work (6,) of one element's internal forces: nominal, with the least and with the largest flexibility."""
     element, length = loaded.model.elements[i], loaded.model.length(i)
     real, virtual = loaded.internal_forces(i), unit.internal_forces(i)
-    flexible = _flexibility(element.section, element.young, element.poisson)
+    flexible = flexibility(element.section, element.young, element.poisson)
     nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
     whole = Zone(start=0.0, end=length, least=np.ones(6), most=np.ones(6))
     nominal, least, most = np.zeros(6), np.zeros(6), np.zeros(6)
@@ -207,22 +208,6 @@ def _on_nodes(solution: FrameSolution) -> Real:
     for load in solution.model.loads:
         found[load.node] += load.wrench
     return found
-
-
-def _flexibility(section: Section, young: float, poisson: float) -> Real:
-    """Strains (6,) per unit of N, V_y, V_z, T, M_y, M_z."""
-    shear = young / (2.0 + 2.0 * poisson)
-    across = 1.0 / (section.shear_coefficient(poisson) * shear * section.area)
-    return np.array(
-        [
-            1.0 / (young * section.area),
-            across,
-            across,
-            1.0 / (shear * section.torsion),
-            1.0 / (young * section.i_y),
-            1.0 / (young * section.i_z),
-        ]
-    )
 
 
 def _diameter(body: Body, foot: tuple[float, float]) -> float:
