@@ -36,25 +36,73 @@ _places = _Places(None)
 
 
 def module_command(module: str, *arguments: str) -> list[str]:
-    """Return the command that runs a module of alula's."""
+    """Return the command that runs a module of alula's.
+
+    Parameters
+    ----------
+    module : str
+        Name of the module.
+    *arguments : str
+        Its command-line arguments.
+
+    Returns
+    -------
+    list of str
+        The command, for ``run``.
+    """
     # -P: a folder named "geometry" where the user stands must not be taken for this package.
     return [sys.executable, "-P", "-m", module, *arguments]
 
 
 def foreign_command(program: str, *arguments: str) -> list[str]:
-    """Return the command that runs a program which is not alula's."""
+    """Return the command that runs a program which is not alula's, and ends it with this process.
+
+    Parameters
+    ----------
+    program : str
+        Path of the program.
+    *arguments : str
+        Its command-line arguments.
+
+    Returns
+    -------
+    list of str
+        The command, for ``run``.
+    """
     return module_command("geometry.base.leash", str(os.getpid()), os.path.abspath(program), *arguments)
 
 
 def environment(**more: str) -> dict[str, str]:
-    """Return the environment in which a child finds alula's modules."""
+    """Return the environment in which a child finds alula's modules.
+
+    Parameters
+    ----------
+    **more : str
+        Further variables.
+
+    Returns
+    -------
+    dict of str to str
+        All variables of this process, with what differs for the child.
+    """
     paths = os.pathsep.join(filter(None, [_ROOT, os.environ.get("PYTHONPATH", "")]))
     return os.environ | {"PYTHONPATH": paths} | _SINGLE | more
 
 
 @contextmanager
 def at_most(children: int) -> Iterator[None]:
-    """Let so many children run at once, never more than already stated; others wait, their time limit not begun."""
+    """Bound how many children run at once; others wait, and their time limits start when they do.
+
+    Parameters
+    ----------
+    children : int
+        How many; an outer bound that is smaller stays.
+
+    Yields
+    ------
+    None
+        While the bound holds.
+    """
     global _places
     before = _places
     if before.count is None or children < before.count:
@@ -73,14 +121,36 @@ def run(
     folder: Path | None = None,
     output: Path | None = None,
 ) -> tuple[int, str]:
-    """Run a child and return its status (negative: the signal that ended it) and the last line of its standard error.
+    """Run a child process to its end.
 
-    time_limit   seconds
-    folder       in which it works, by default this process's
-    output       file that takes its standard output, which is lost otherwise
+    Parameters
+    ----------
+    command : list of str
+        Program and arguments.
+    environment : dict of str to str
+        Its environment variables.
+    time_limit : float
+        Time after which it is killed [s].
+    folder : Path, optional
+        Its working directory; this process's unless given.
+    output : Path, optional
+        File that takes its standard output, which is discarded otherwise.
 
-    Raises ``subprocess.TimeoutExpired`` at the limit, ``OSError`` if it cannot be started, ``CannotRunError``
-    after an interruption.
+    Returns
+    -------
+    status : int
+        Exit status, or minus the number of the signal that ended it.
+    message : str
+        Last line of its standard error.
+
+    Raises
+    ------
+    subprocess.TimeoutExpired
+        At the time limit.
+    OSError
+        If it cannot be started.
+    CannotRunError
+        After ``stop_all``.
     """
     with _places.free:
         status, told = _communicate(command, environment, time_limit, folder, output)
@@ -130,7 +200,13 @@ def stopped() -> bool:
 
 
 def end_with_parent(scratch: Path) -> None:
-    """In a child: when the parent has gone, remove the folder that both used, and end."""
+    """End this child process, and remove the folder that it shared with its parent, once the parent has ended.
+
+    Parameters
+    ----------
+    scratch : Path
+        The shared folder.
+    """
 
     def wait() -> None:
         while os.read(sys.stdin.fileno(), 1):

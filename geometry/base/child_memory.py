@@ -15,7 +15,18 @@ _HARD = 1.25
 
 
 def allowed(wanted: float) -> float:
-    """Return the bytes that a child may hold: ``wanted``, but at most half of what the machine has: two may run."""
+    """Return how much memory a child may hold: at most half of the machine's, since two may run.
+
+    Parameters
+    ----------
+    wanted : float
+        Limit that was asked for [bytes].
+
+    Returns
+    -------
+    float
+        The limit to apply [bytes].
+    """
     try:
         return min(wanted, os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2.0)
     except (AttributeError, ValueError, OSError):  # not a Unix, or it does not tell
@@ -23,10 +34,17 @@ def allowed(wanted: float) -> float:
 
 
 def bound(limit: float, tell: Callable[[], None]) -> None:
-    """End this process once it holds more than so many bytes; ``tell`` is called before (on Linux; elsewhere nothing).
+    """End this process once it holds more than a limit of memory (on Linux; elsewhere nothing happens).
 
     What counts is private memory that can be written, as for ``RLIMIT_DATA``. That limit alone would not do: libraries
     to which it refuses memory say so, say something else, or crash.
+
+    Parameters
+    ----------
+    limit : float
+        Largest amount of memory [bytes].
+    tell : callable
+        Called without arguments before the process ends.
     """
     if not sys.platform.startswith("linux"):
         return

@@ -13,7 +13,15 @@ _SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of <linux/prctl.h>; it outlives exec
 
 
 def main(parent: int, command: list[str]) -> None:
-    """Run a command in the place of this process; ``parent`` is the process that it must not outlive."""
+    """Replace this process by a command that ends with another process.
+
+    Parameters
+    ----------
+    parent : int
+        Number of the process that it must not outlive.
+    command : list of str
+        Program and arguments.
+    """
     if sys.platform.startswith("linux"):
         ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, int(signal.SIGKILL))
         if os.getppid() != parent:  # it went before that

@@ -5,9 +5,21 @@ from pathlib import Path
 
 
 def locked(folder: Path, *, wait: bool = True) -> int | None:
-    """Lock a folder and return the descriptor that holds the lock; None where that is not to be had.
+    """Lock a folder against other runs of alula.
 
     The system takes the lock from a process that ends, however it ends. Programs that do not ask are not kept out.
+
+    Parameters
+    ----------
+    folder : Path
+        An existing folder.
+    wait : bool
+        Whether to wait while another process holds the lock.
+
+    Returns
+    -------
+    int or None
+        Descriptor that holds the lock until it is closed; None where there is none to be had.
     """
     try:
         import fcntl

@@ -43,7 +43,20 @@ Text = Annotated[str, AfterValidator(_text)]
 
 
 def check_file_names(entry: str, names: Iterable[str]) -> None:
-    """Raise ``CaseError`` for two names whose files some disks take for one: alike but for case or composition."""
+    """Refuse two names whose files some disks take for one: alike but for case or composition.
+
+    Parameters
+    ----------
+    entry : str
+        Entry of the case file that holds the names, for the message.
+    names : iterable of str
+        The names.
+
+    Raises
+    ------
+    CaseError
+        With the first two such names.
+    """
     seen: dict[str, str] = {}
     for name in names:
         other = seen.setdefault(unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold()), name)

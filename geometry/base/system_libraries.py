@@ -30,7 +30,18 @@ _RENDERER_PACKAGE = "libegl1"
 
 
 def loads(library: str) -> bool:
-    """Whether the dynamic loader finds `library` and everything that it needs."""
+    """Return whether the dynamic loader finds a library and everything that it needs.
+
+    Parameters
+    ----------
+    library : str
+        File name, such as ``"libGL.so.1"``.
+
+    Returns
+    -------
+    bool
+        Whether it loads.
+    """
     try:
         ctypes.CDLL(library)
     except OSError:
@@ -39,7 +50,7 @@ def loads(library: str) -> bool:
 
 
 def missing_packages() -> list[str]:
-    """Debian packages whose libraries do not load; empty on systems other than Linux, whose wheels need none."""
+    """Return the Debian packages whose libraries do not load; none on other systems, whose wheels need none."""
     if not sys.platform.startswith("linux"):
         return []
     missing = [package for library, package in _MESHER.items() if not loads(library)]
@@ -49,13 +60,24 @@ def missing_packages() -> list[str]:
 
 
 def install_command(packages: list[str]) -> str:
-    """Return the one command that installs `packages` on Debian and its relatives."""
+    """Return the one command that installs packages on Debian and its relatives.
+
+    Parameters
+    ----------
+    packages : list of str
+        Names of the packages.
+
+    Returns
+    -------
+    str
+        A line for the shell.
+    """
     command = f"apt-get update && apt-get install --yes --no-install-recommends {' '.join(packages)}"
     return f"sudo sh -c '{command}'" if shutil.which("sudo") else f"su -c '{command}'"
 
 
 def advice() -> str:
-    """Say in one sentence what to run when gmsh or VTK cannot load a shared library.
+    """Return one sentence that says what to run when gmsh or VTK cannot load a shared library.
 
     All packages are named when none is found missing: what failed may be a library that this list does not test.
     """

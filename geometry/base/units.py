@@ -78,10 +78,24 @@ def registry() -> Any:
 
 
 def parse(text: object, dimension: str) -> float:
-    """Convert text such as ``"2.4 GPa"`` to a float in alula's unit of that dimension.
+    """Convert text such as ``"2.4 GPa"`` to a float in alula's unit of its dimension.
 
-    Raises ``PydanticCustomError`` (so that a model names the entry) for anything but text made of
-    one finite number and one unit of the right dimension.
+    Parameters
+    ----------
+    text : object
+        What stands in the case file.
+    dimension : str
+        A key of ``INTERNAL_UNITS``, such as ``"stress"``.
+
+    Returns
+    -------
+    float
+        The value in ``INTERNAL_UNITS[dimension]``.
+
+    Raises
+    ------
+    PydanticCustomError
+        For anything but text made of one finite number and one unit of the dimension; a model adds the entry's name.
     """
     example = EXAMPLES[dimension]
     if isinstance(text, bool | int | float):
