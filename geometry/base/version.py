@@ -1,8 +1,18 @@
-"""The version of alula, from the one place that states it: ``pyproject.toml``, as installed."""
+"""The versions of alula and of its formats; ``docs/versions.md`` says what changes them."""
+
+CASE_SCHEMA_VERSION = 1
+"""Of the case file: raised when a case of today is no longer read, or means something else."""
+RESULT_SCHEMA_VERSION = 2
+"""Of ``result.json`` and ``--json``: raised when a key goes, or changes its name, type, unit or meaning."""
 
 
 def alula_version() -> str:
-    """Return the installed version, such as ``"0.1.0"``."""
+    """Return the installed version, such as ``"0.1.0"``; ``pyproject.toml`` states it."""
     from importlib.metadata import version
 
     return version("alula")
+
+
+def result_stamp() -> dict[str, object]:
+    """Return what the JSON of every command begins with: the version of its format and that of alula."""
+    return {"schema_version": RESULT_SCHEMA_VERSION, "version": alula_version()}

@@ -37,8 +37,6 @@ from loads.records.motion_spec import MotionSpec
 from loads.statics.statics import Drive
 from loads.text.accuracy import Accuracy
 
-SCHEMA_VERSION = 1
-
 
 class PoseSpec(CaseModel):
     """Which position the linkage is in."""
@@ -125,6 +123,7 @@ class Case(Revisable):
     """A linkage with its pose, drive, parts, loads and checks."""
 
     schema_version: Literal[1]
+    """Version of the case file's format."""
     title: Text
     description: Text = ""
     source: Text = ""

@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 from pydantic import TypeAdapter, ValidationError
 
 from geometry.base.errors import CaseError
+from geometry.base.version import CASE_SCHEMA_VERSION, alula_version
 from geometry.mechanisms.ornithopter import OrnithopterRules
-from loads.case.case import SCHEMA_VERSION, Case
+from loads.case.case import Case
 from loads.case.ornithopter_case import ornithopter_settings
 from loads.case.revisable import Origin
 from loads.text.entries import alike, names_tables
@@ -122,20 +123,30 @@ def read_companion(case_path: str, name: str) -> str:
 
 def validate(data: dict[str, Any]) -> Case:
     """Validate a case given as nested tables; raises ``CaseError``."""
-    version = data.get("schema_version")
-    if version != SCHEMA_VERSION or type(version) is not int:
-        for key in () if "schema_version" in data else data:
-            if meant := alike(key, ("schema_version",)):
-                raise CaseError(f"{printable(key)}: this key is unknown{meant}")
-        what = "it is missing" if version is None else f"it is {printable(repr(version))}"
-        raise CaseError(
-            f"schema_version: {what}, but this version of alula reads {SCHEMA_VERSION}; "
-            f"write schema_version = {SCHEMA_VERSION}"
-        )
+    _check_version(data)
     try:
         return Case.model_validate(data)
     except ValidationError as error:
         raise CaseError(sentence(error, Case)) from None
+
+
+def _check_version(data: Mapping[str, Any]) -> None:
+    """Refuse a case of another version of the format; ``docs/versions.md`` says what changes it."""
+    remedy = f"write schema_version = {CASE_SCHEMA_VERSION}"
+    if "schema_version" not in data:
+        for key in data:
+            if meant := alike(key, ("schema_version",)):
+                raise CaseError(f"{printable(key)}: this key is unknown{meant}")
+        raise CaseError(f"schema_version: it is missing; {remedy}, the version of the case file's format")
+    stated = data["schema_version"]
+    shown = printable(repr(stated))
+    if type(stated) is int and stated > CASE_SCHEMA_VERSION:
+        raise CaseError(
+            f"schema_version: the case is written in version {shown} of the format, but alula {alula_version()} reads "
+            f"version {CASE_SCHEMA_VERSION}; install a newer alula"
+        )
+    if type(stated) is not int or stated != CASE_SCHEMA_VERSION:
+        raise CaseError(f"schema_version: it is {shown}, but there is no such version of the format; {remedy}")
 
 
 def _stated(override: str, who: str = "--set") -> Change:

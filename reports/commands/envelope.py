@@ -15,6 +15,7 @@ from fea.common.verdict import SAFETY_FACTOR
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.unchecked import unchecked
+from geometry.base.version import result_stamp
 from geometry.parts.material import Material
 from loads.records.check_spec import SafetyFactorCheck
 from reports.page.output import MARK, write_folder
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
 Real = NDArray[np.float64]
 
-ENVELOPE_SCHEMA_VERSION = 1
 UNITS = {"angle": "deg", "length": "mm", "stress": "MPa"}
 CURVES = "envelope.csv"
 FIGURE = "envelope.png"
@@ -109,7 +109,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
     """Return the result as plain data: angles in degrees, infinite or unknown numbers as null."""
     motion = result.moved.motion
     return {
-        "schema_version": ENVELOPE_SCHEMA_VERSION,
+        **result_stamp(),
         "case": result.name,
         "title": result.case.title,
         "verdict": result.verdict.value,

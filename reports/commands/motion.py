@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.version import result_stamp
 from geometry.linkage.motion import Motion
 from loads.states.case_motion import CaseMotion, with_inertia
 from reports.figures.joint_paths import moving_points, path_length
@@ -17,7 +18,6 @@ from reports.tables.mechanism import design_lines, design_record
 
 Real = NDArray[np.float64]
 
-MOTION_SCHEMA_VERSION = 1
 UNITS = {"angle": "deg", "length": "mm", "force": "N", "moment": "N*mm", "time": "s", "power": "W"}
 
 
@@ -46,7 +46,7 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
     """Return the motion's result as plain data; angles in degrees, unbounded torques as null."""
     motion = result.motion
     return {
-        "schema_version": MOTION_SCHEMA_VERSION,
+        **result_stamp(),
         "case": name,
         "title": result.case.title,
         "units": UNITS,

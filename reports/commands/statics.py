@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from fea.check.run import CaseStatics
+from geometry.base.version import result_stamp
 from loads.statics.statics import Reactions, System
 from reports.tables.frames import AXES, shown_components
 
@@ -84,6 +85,7 @@ def _cell(value: float, beside: float) -> str:
 def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
     pose = statics.pose
     return {
+        **result_stamp(),
         "units": {"length": "mm", "force": "N", "moment": "N*mm", "angle": "deg"},
         "pose": {
             "mobility": pose.linkage.mobility,

@@ -13,10 +13,10 @@ from pydantic import ValidationError
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel
 from geometry.base.units import POSITIVE, Angle, Length
+from geometry.base.version import result_stamp
 from geometry.mechanisms.synthesis import DRIVES, PrecisionPoint, Synthesis, synthesise
 from loads.text.explain import printable, sentence
 
-SYNTHESIS_SCHEMA_VERSION = 1
 PUBLISHED_POINTS = ("0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg")
 """Precision points (theta, psi) of Arango and Hurtado."""
 PUBLISHED_GROUND = "10 m"
@@ -66,7 +66,7 @@ def record(found: Synthesis) -> dict[str, Any]:
     """Return the synthesis as plain data; lengths in mm, angles in degrees from -180 to 180."""
     bar, grashof = found.four_bar, found.four_bar.grashof
     return {
-        "schema_version": SYNTHESIS_SCHEMA_VERSION,
+        **result_stamp(),
         "units": {"length": "mm", "angle": "deg"},
         "coefficients": {"K1": found.K[0], "K2": found.K[1], "K3": found.K[2]},
         "condition": found.condition,

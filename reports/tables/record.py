@@ -8,7 +8,7 @@ from typing import Any
 from fea.common.band import Band
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.unchecked import unchecked
-from geometry.base.version import alula_version
+from geometry.base.version import result_stamp
 from geometry.parts.material import Material
 from loads.claims.published import StaticsAudit
 from loads.statics.statics import Reactions
@@ -21,8 +21,6 @@ from reports.tables.meshes import UNITS as MESH_UNITS
 from reports.tables.meshes import discretisation_record, solver_record
 from reports.tables.second_opinion import UNITS as OPINION_UNITS
 from reports.tables.second_opinion import opinion_records
-
-RESULT_SCHEMA_VERSION = 1
 
 UNITS = {
     "length": "mm",
@@ -94,8 +92,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
     """
     first = next(iter(result.load_cases.values()))
     record = {
-        "schema_version": RESULT_SCHEMA_VERSION,
-        "version": alula_version(),
+        **result_stamp(),
         "units": UNITS | {"fields": FIELD_UNITS},
         "case": result.name,
         "title": result.case.title,

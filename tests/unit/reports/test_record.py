@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from fea.common.band import Band
+from geometry.base.version import RESULT_SCHEMA_VERSION, alula_version
 from reports.tables.record import FIELD_UNITS, as_json, result_record
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -18,7 +19,7 @@ def record(result):
 
 
 def test_the_published_keys_are_there(record):
-    assert record["schema_version"] == 1
+    assert (record["schema_version"], record["version"]) == (RESULT_SCHEMA_VERSION, alula_version())
     assert record["case"] == "owl-wing-static"
     assert record["verdict"] == "pass"
     assert set(record["pose"]) >= {"points", "mobility", "closure_residual"}
