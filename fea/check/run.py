@@ -1,7 +1,7 @@
 """The whole check of a case: pose, statics, beams, solids, bands, verdict."""
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.frame.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
 from fea.frame.large_displacement import LargeDisplacement, examine
-from fea.outcomes.bearing import bearing_outcomes
+from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.buckling import buckling_outcomes
 from fea.outcomes.judge import outcomes
 from fea.outcomes.motor import limit_outcomes, motor_outcomes
@@ -330,12 +330,13 @@ def _pins(case: Case, reactions: Reactions) -> dict[str, PinStress]:
     return {joint: stress_at(case, joint, reactions.joints[joint]) for joint in asked}
 
 
-def _bearing(case: Case, title: str, reactions: Reactions, uneven: Growths) -> list[CheckOutcome]:
+def _bearing(case: Case, title: str, reactions: Reactions, uneven: Growths) -> Iterator[CheckOutcome]:
     """Outcomes of the checks that ask for bearing."""
-    asked = [(name, check) for name, check in case.checks.items() if isinstance(check, BearingCheck)]
-    return [
-        found for name, check in asked for found in bearing_outcomes(case, title, name, check, reactions, uneven.joints)
-    ]
+    for name, check in case.checks.items():
+        if isinstance(check, BearingCheck):
+            for joint in check.joints or case.bearing_joints:
+                force = float(np.hypot(*reactions.joints[joint].wrench[:2]))
+                yield bearing_outcome(case, title, name, check, joint, force, uneven.joints.get(joint))
 
 
 def _cantilever(case: Case, title: str) -> CantileverCheck:

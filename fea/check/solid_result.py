@@ -9,7 +9,7 @@ from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.outcomes.compare import compare_sections
-from fea.outcomes.judge import displacement_limits, stress_limits
+from fea.outcomes.limits import displacement_limits, stress_limits
 from fea.outcomes.result import LinkResult, VariantPeak
 from fea.refine.convergence import GridConvergence
 from fea.refine.discretisation import holds, judged

@@ -1,7 +1,7 @@
 """A number with its error band."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +54,16 @@ class Band:
             holds=self.holds,
             without=self.without,
         )
+
+    def times(self, factor: float) -> "Band":
+        """Return ``factor`` times the number.
+
+        Parameters
+        ----------
+        factor : float
+            A number that is not negative.
+        """
+        return replace(self, value=factor * self.value, low=factor * self.low, high=factor * self.high)
 
     @property
     def told(self) -> tuple[str, ...]:

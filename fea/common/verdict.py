@@ -1,22 +1,11 @@
 """Verdicts: pass, fail, or undecided where the error band straddles the limit."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from enum import StrEnum
+from dataclasses import dataclass, replace
+from enum import Enum, StrEnum
+from typing import Literal
 
 from fea.common.band import Band
-
-SAFETY_FACTOR = "safety factor"
-LOAD_SHARE = "share of the load that is held"
-BUCKLING_FACTOR = "buckling factor"
-DRIVE_POWER = "drive power"
-LINKAGE = "the linkage"
-"""Stands in the place of a link where a check is about all of them."""
-PIN = "pin "
-"""Begins what stands in the place of a link where a check is about the pin of a joint."""
-
-POINT = "point "
-"""Begins what stands in the place of a link where a check is about a point of the linkage."""
 
 
 class Verdict(StrEnum):
@@ -32,54 +21,214 @@ class Verdict(StrEnum):
         return {"pass": 0, "fail": 1, "undecided": 3}[self.value]
 
 
+class Sense(Enum):
+    """On which side of its limit a quantity must be; the value is the sign that people read."""
+
+    AT_LEAST = "≥"
+    AT_MOST = "≤"
+
+    def verdict(self, value: Band, limit: float) -> Verdict:
+        """Decide on the whole band whether a number is on the safe side of its limit.
+
+        Parameters
+        ----------
+        value : Band
+            The number; where it is not known, the verdict is undecided.
+        limit : float
+            In the unit of the number.
+        """
+        if self is Sense.AT_LEAST:
+            kept, missed = value.low >= limit, value.high < limit
+        else:
+            kept, missed = value.high <= limit, value.low > limit
+        return Verdict.PASS if kept else Verdict.FAIL if missed else Verdict.UNDECIDED
+
+
+class Quantity(StrEnum):
+    """What is set against a limit: its name, as text, with its unit ("" for a pure number) and its sense."""
+
+    unit: str
+    sense: Sense
+
+    def __new__(cls, name: str, unit: str, sense: Sense) -> "Quantity":
+        """Return a member that is its name."""
+        found = str.__new__(cls, name)
+        found._value_, found.unit, found.sense = name, unit, sense
+        return found
+
+    SAFETY_FACTOR = "safety factor", "", Sense.AT_LEAST
+    SUSTAINED_STRESS = "sustained stress", "MPa", Sense.AT_MOST
+    DEFLECTION = "deflection from its pins", "mm", Sense.AT_MOST
+    """Of a link by itself: displacement from the line through its own pins, as if these stayed."""
+    DISPLACEMENT = "displacement", "mm", Sense.AT_MOST
+    """Of a point, with the whole linkage."""
+    BUCKLING_FACTOR = "buckling factor", "", Sense.AT_LEAST
+    LOAD_SHARE = "share of the load that is held", "", Sense.AT_LEAST
+    FATIGUE_STRESS = "fatigue, stress", "", Sense.AT_LEAST
+    """Fatigue strength over stress."""
+    FATIGUE_LIFE = "fatigue, life", "", Sense.AT_LEAST
+    """Life over the repetitions that are wanted."""
+    DRIVE_POWER = "drive power", "W", Sense.AT_MOST
+    DRIVE_SPEED = "drive speed", "rpm", Sense.AT_MOST
+    DRIVE_TORQUE = "drive torque over time", "N·mm", Sense.AT_MOST
+    TORQUE_SHARE = "share of the motor's torque at its speed", "", Sense.AT_MOST
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What a check is about; its text is what files and tables show.
+
+    Attributes
+    ----------
+    kind : {"link", "pin", "point", "the linkage"}
+    name : str
+        Of the link; of the joint, for its pin; ``"H of CH"`` for a point; none for the linkage.
+    """
+
+    kind: Literal["link", "pin", "point", "the linkage"]
+    name: str = ""
+
+    @classmethod
+    def link(cls, name: str) -> "Subject":
+        """Return the link of that name."""
+        return cls("link", name)
+
+    @classmethod
+    def pin(cls, joint: str) -> "Subject":
+        """Return the pin of a joint."""
+        return cls("pin", joint)
+
+    @classmethod
+    def point(cls, name: str, link: str) -> "Subject":
+        """Return a point of a link."""
+        return cls("point", f"{name} of {link}")
+
+    def __str__(self) -> str:
+        """Return the bare name of a link, ``pin A``, ``point H of CH`` or ``the linkage``."""
+        return self.name if self.kind == "link" else self.long
+
+    @property
+    def long(self) -> str:
+        """The text in a sentence: ``link CH`` for a link, too."""
+        return f"{self.kind} {self.name}".rstrip()
+
+
+LINKAGE = Subject("the linkage")
+"""All links together."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class CheckOutcome:
-    """One check of one link under one load case.
+    """One check of one subject under one load case; ``CheckOutcome.of`` decides it.
 
-    link       its name; "pin " and the joint's name for a pin, "point H of CH" for a point, "the linkage" for all
-               together
-    quantity   what was checked: "safety factor", "displacement" of a point, "deflection from its pins" of a link
-    unit       of value and limit; "" for a pure number
-    reason     one sentence that says why the verdict is what it is
+    Attributes
+    ----------
+    name : str
+        Of the check, as the case names it.
+    subject : Subject
+        What it is about.
+    load_case : str
+    quantity : Quantity
+        What was set against the limit, with its unit and sense.
+    value : Band
+    limit : float
+        In the unit of the quantity, as the value.
+    verdict : Verdict
+    reason : str
+        One sentence that says why the verdict is what it is.
     """
 
     name: str
-    link: str
+    subject: Subject
     load_case: str
-    quantity: str
-    unit: str
+    quantity: Quantity
     value: Band
     limit: float
     verdict: Verdict
     reason: str
 
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        subject: Subject,
+        load_case: str,
+        quantity: Quantity,
+        value: Band,
+        limit: float,
+        reason: str = "",
+    ) -> "CheckOutcome":
+        """Decide a check on its whole band.
+
+        Parameters
+        ----------
+        name, subject, load_case, quantity, value, limit
+            As the attributes.
+        reason : str, optional
+            By default where the band lies beside the limit.
+        """
+        verdict = quantity.sense.verdict(value, limit)
+        return cls(
+            name=name,
+            subject=subject,
+            load_case=load_case,
+            quantity=quantity,
+            value=value,
+            limit=limit,
+            verdict=verdict,
+            reason=reason or reason_for(value, limit, verdict),
+        )
+
+    def because(self, reason: str) -> "CheckOutcome":
+        """Return the outcome with another reason."""
+        return replace(self, reason=reason)
+
+    def left_open(self, reason: str) -> "CheckOutcome":
+        """Return the outcome undecided whatever its band says, for a reason."""
+        return replace(self, verdict=Verdict.UNDECIDED, reason=reason)
+
+    @property
+    def link(self) -> str:
+        """The subject as text: a link's own name, ``pin A``, ``point H of CH`` or ``the linkage``."""
+        return str(self.subject)
+
+    @property
+    def unit(self) -> str:
+        """Unit of value and limit; "" for a pure number."""
+        return self.quantity.unit
+
     @property
     def at_least(self) -> bool:
         """True where the quantity must be at least its limit, False where it must be at most that."""
-        return self.quantity in (SAFETY_FACTOR, LOAD_SHARE, BUCKLING_FACTOR)
-
-    @property
-    def what(self) -> str:
-        """What was checked, for people: a link of that name, a pin, a point or the whole linkage."""
-        return self.link if self.link == LINKAGE or self.link.startswith((PIN, POINT)) else f"link {self.link}"
+        return self.quantity.sense is Sense.AT_LEAST
 
 
-def at_least(value: Band, limit: float) -> Verdict:
-    """Decide on the whole band whether a number is at least its limit."""
-    if value.low >= limit:
-        return Verdict.PASS
-    return Verdict.FAIL if value.high < limit else Verdict.UNDECIDED
+def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
+    """Say in a few words why a band gives its verdict.
 
-
-def at_most(value: Band, limit: float) -> Verdict:
-    """Decide on the whole band whether a number is at most its limit."""
-    if value.high <= limit:
-        return Verdict.PASS
-    return Verdict.FAIL if value.low > limit else Verdict.UNDECIDED
+    Parameters
+    ----------
+    value : Band
+    limit : float
+        In the unit of the value.
+    verdict : Verdict
+        What the band gave.
+    """
+    band = f"its band {value.low:.3g} to {value.high:.3g}"
+    if verdict is Verdict.UNDECIDED:
+        return f"{band} straddles the limit {limit:g}"
+    side = "on the safe side" if verdict is Verdict.PASS else "on the wrong side"
+    return f"{band} lies wholly {side} of the limit {limit:g}"
 
 
 def overall(verdicts: Iterable[Verdict]) -> Verdict:
-    """Any fail gives fail, else any undecided gives undecided; nothing checked is undecided."""
+    """Return fail where any check fails, else undecided where any is; nothing checked is undecided.
+
+    Parameters
+    ----------
+    verdicts : iterable of Verdict
+        Of all checks.
+    """
     found = set(verdicts)
     for verdict in (Verdict.FAIL, Verdict.UNDECIDED, Verdict.PASS):
         if verdict in found:

@@ -5,14 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.scatter import compliance_scatter, load_scatter
-from fea.common.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
+from fea.common.verdict import CheckOutcome, Verdict
 from fea.frame.large_displacement import linkage_factor
 from fea.frame.linear import solve_frame
 from fea.frame.linkage_frame import build_frame
-from fea.frame.toggle import SNAP, dead_point_factor
-from fea.outcomes.buckling import NAME
+from fea.frame.toggle import dead_point_factor
+from fea.outcomes.linkage import by_linear_theory
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
 from loads.states.case_motion import CaseMotion
@@ -23,7 +21,13 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
     """Yield an outcome for every load case under which the linkage may give way at a pose that was looked at.
 
     Looked at are the pose next to a dead point of the driven link and that of the largest drive torque.
-    By the rule of single poses (``fea.outcomes.buckling.linkage_outcome``). Inertia is that of a constant speed.
+    By the rule of single poses (``fea.outcomes.linkage``). Inertia is that of a constant speed.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
     """
     case, motion = moved.case, moved.motion
     if case.large_displacement == "off":
@@ -33,7 +37,6 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         for i in np.flatnonzero(evaluated)
     }
     nearest = min(poses, key=lambda i: moved.drive.dead_point_distance(poses[i]))
-    slack = max((compliance_scatter(case.material_of(link)).high for link in case.checked_links), default=1.0)
     for title, load_case in case.load_cases.items():
         found = []
         hardest = max(poses, key=lambda i: abs(float(moved.torque[title][i])))
@@ -49,23 +52,9 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         if not found:
             continue
         least, factor, i = min(found)
-        band = Band(value=least, low=least / SNAP / slack, high=factor, holds=("snap-through of a shallow toggle",))
-        band = load_scatter(case, title).inverse.on(band)
-        verdict = at_least(band, 1.0)
-        if verdict is Verdict.PASS:
-            continue
         where = f"{motion.coordinate} = {np.degrees(motion.angles[i]):.5g} deg"
-        yield CheckOutcome(
-            name=NAME,
-            link=LINKAGE,
-            load_case=title,
-            quantity=BUCKLING_FACTOR,
-            unit="",
-            value=band,
-            limit=1.0,
-            verdict=verdict,
-            reason=(
-                f"at {where} linear theory finds it unstable or at a dead point at {least:.3g} times the load; it may "
-                "snap through: check that pose with alula check, which follows the deformed shape"
-            ),
-        )
+        how = f"at {where} linear theory finds it unstable or at a dead point at {least:.3g} times the load"
+        remedy = "check that pose with alula check, which follows the deformed shape"
+        outcome = by_linear_theory(case, title, least, factor, how, remedy)
+        if outcome.verdict is not Verdict.PASS:
+            yield outcome

@@ -6,18 +6,12 @@ turn, 6.67 times as 14 CFR 23.657 asks of hinges that flight depends on. Both me
 for which the ultimate tensile strength of the card stands; that in bearing is rarely below it.
 """
 
-from collections.abc import Iterator, Mapping
-
-import numpy as np
-
 from fea.common.band import Band
 from fea.common.scatter import Scatter, load_scatter, strength_scatter
-from fea.common.verdict import PIN, SAFETY_FACTOR, CheckOutcome, at_least
-from fea.outcomes.judge import reason_for
+from fea.common.verdict import CheckOutcome, Quantity, Subject
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.records.check_spec import BearingCheck
-from loads.statics.statics import Reactions
 
 WITHOUT = "the joint force of statics, evenly over the pin's projected area"
 
@@ -59,32 +53,31 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
     return weakest, factors[weakest]
 
 
-def bearing_outcomes(
-    case: Case,
-    title: str,
-    name: str,
-    check: BearingCheck,
-    reactions: Reactions,
-    uneven: Mapping[str, Scatter] | None = None,
-) -> Iterator[CheckOutcome]:
-    """Yield the outcome of each joint under the load case ``title``: that of its softer or thinner eye.
+def bearing_outcome(
+    case: Case, title: str, name: str, check: BearingCheck, joint: str, force: float, growth: Scatter | None = None
+) -> CheckOutcome:
+    """Return the outcome of one joint: that of its softer or thinner eye.
 
-    uneven  joint -> how its force grows beside scattered loads (``fea.check.load_growth``)
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+    name : str
+        Of the check.
+    check : BearingCheck
+    joint : str
+    force : float
+        Across its pin [N].
+    growth : Scatter, optional
+        By which that force grows beside scattered loads (``fea.check.load_growth``).
 
-    Raises ``CaseError`` for a joint without pin diameter.
+    Raises
+    ------
+    CaseError
+        For a joint without pin diameter.
     """
-    for joint in check.joints or case.bearing_joints:
-        load = load_scatter(case, title).times((uneven or {}).get(joint, Scatter()))
-        eye, factor = weakest_eye(case, name, joint, float(np.hypot(*reactions.joints[joint].wrench[:2])), load)
-        verdict = at_least(factor, check.limit)
-        yield CheckOutcome(
-            name=name,
-            link=f"{PIN}{joint}",
-            load_case=title,
-            quantity=SAFETY_FACTOR,
-            unit="",
-            value=factor,
-            limit=check.limit,
-            verdict=verdict,
-            reason=f"bearing on the eye of {eye}: {reason_for(factor, check.limit, verdict)}",
-        )
+    load = load_scatter(case, title).times(growth or Scatter())
+    eye, factor = weakest_eye(case, name, joint, force, load)
+    found = CheckOutcome.of(name, Subject.pin(joint), title, Quantity.SAFETY_FACTOR, factor, check.limit)
+    return found.because(f"bearing on the eye of {eye}: {found.reason}")

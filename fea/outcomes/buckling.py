@@ -1,4 +1,4 @@
-"""Buckling of links in compression, and of the linkage as a whole.
+"""Buckling of links in compression, each by itself.
 
 A link is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks
 take the section's place (``fea.beam.flanks``). How its joints hold it
@@ -16,11 +16,8 @@ low    a third of the value, since nothing is relied on below 3 (see below), tim
        the lesser of the value and the factor of the link built in at the drive's joint, or at either of the
        outermost pins, and free elsewhere.
 
-That joints stay where they are is taken for granted: sway of the whole linkage is the other outcome, the lowest
-factor on all loads at which its linear frame becomes unstable (``fea.frame.corotational.buckling_factor``). It leaves
-out how the frame moves before that, by which a toggle snaps through at a linear factor of 5.2 (``fea.frame.toggle``):
-the lower end of its band. Where equilibrium was followed on the deformed shape (``fea.frame.large_displacement``), as
-it is below a factor of 10, that answer rules and is the only outcome (``fea.outcomes.judge``).
+That joints stay where they are is taken for granted: sway of the whole linkage is the subject of
+``fea.outcomes.linkage``.
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
@@ -41,10 +38,8 @@ from fea.beam.flanks import Flanks, flanks_of
 from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.scatter import load_scatter
-from fea.common.verdict import BUCKLING_FACTOR, LINKAGE, CheckOutcome, Verdict, at_least
+from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
-from fea.frame.toggle import SNAP, growth
-from geometry.parts.material import Material
 from geometry.parts.part import Section
 from loads.case.case import Case
 
@@ -91,20 +86,38 @@ class ColumnFactors:
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
-    """A link in compression as a column.
+    """A link in compression as a column, over one pose or several.
 
-    compression   the largest along the link [N]
-    outermost     x of the pins that hold it [mm]
-    factors       of this one pose
+    Attributes
+    ----------
+    pose : int
+        Number of the pose with the least factor.
+    compression : float
+        The largest along the link in that pose [N].
+    outermost : tuple of float
+        x of the pins that hold it [mm].
+    value, least, most : float
+        Least factors of all poses, as in ``ColumnFactors``.
     """
 
+    pose: int
     compression: float
     outermost: tuple[float, ...]
-    factors: ColumnFactors
+    value: float
+    least: float
+    most: float
 
 
 def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
-    """Return the column that stands for a link under a load case; None where nothing makes it buckle."""
+    """Return the column that stands for a link in one pose; None where nothing makes it buckle.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    beam : BeamCheck
+        Its hand calculation, whose normal force is that of the column.
+    """
     _, _, compression = beam.forces.largest(lambda f: -float(f[0]))
     forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
     if compression <= NO_COMPRESSION * forces:
@@ -114,9 +127,41 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
         [-at(a, "after")[0], -at((a + b) / 2.0, "after")[0], -at(b, "before")[0]] for a, b in itertools.pairwise(breaks)
     ]
     factors = link_factors(case, link, beam.section, AxialForce(breaks=breaks, values=np.array(values)[:, :, None]))
-    if math.isinf(factors.value[0]):
+    return worst_column(case, link, np.array([compression]), factors, np.array([True]))
+
+
+def worst_column(
+    case: Case, link: str, compression: Real, factors: ColumnFactors, counted: NDArray[np.bool_]
+) -> Column | None:
+    """Return the column of several poses; None where nothing makes the link buckle in any.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    compression : ndarray, shape (P,)
+        The largest along the link in every pose [N].
+    factors : ColumnFactors
+        Of every pose.
+    counted : ndarray of bool, shape (P,)
+        The poses that count.
+    """
+    pose = first_largest(np.where(counted, 1.0 / factors.value, -np.inf))
+    if math.isinf(factors.value[pose]):
         return None
-    return Column(compression=compression, outermost=holding(case, link).outermost, factors=factors)
+    value, least, most = (float(f[counted].min()) for f in (factors.value, factors.least, factors.most))
+    outermost, pressed = holding(case, link).outermost, float(compression[pose])
+    return Column(pose=pose, compression=pressed, outermost=outermost, value=value, least=least, most=most)
+
+
+def first_largest(values: Real) -> int:
+    """Return the number of the first of the largest values: both ends of a turn are one pose, whatever rounding says.
+
+    Parameters
+    ----------
+    values : ndarray, shape (P,)
+    """
+    return int(np.argmax(values >= values.max() * (1.0 - 1e-9)))
 
 
 def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
@@ -192,57 +237,89 @@ def holding(case: Case, link: str) -> Holding:
     )
 
 
-def factor_band(material: Material, value: float, least: float, most: float) -> Band:
-    """Return the band of a link's buckling factor from the factors of ``ColumnFactors``."""
+def buckling_outcomes(
+    case: Case, title: str, beams: Mapping[str, BeamCheck], moved: LargeDisplacement
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every link that is compressed under a load case.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+    beams : mapping of str to BeamCheck
+        Link -> its hand calculation.
+    moved : LargeDisplacement
+    """
+    for link, beam in beams.items():
+        if (found := column(case, link, beam)) is not None:
+            outcome = column_outcome(case, title, link, found, moved)
+            yield outcome.because(outcome.reason + beyond_strength({link: beam}))
+
+
+def column_outcome(
+    case: Case, title: str, link: str, found: Column, moved: LargeDisplacement | None = None, where: str = ""
+) -> CheckOutcome:
+    """Return the outcome of a link in compression.
+
+    A link fails where its compression buckles it however its joints hold it, whatever its stress says.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+    link : str
+    found : Column
+    moved : LargeDisplacement, optional
+        What became of the linkage in large displacement; left out over a motion, whose links are taken as rigid.
+    where : str, optional
+        Of several poses the one of ``found``, for people.
+    """
+    material = case.material_of(link)
     moduli = (material.youngs_modulus, *(material.youngs_modulus_range or ()))
-    return Band(
-        value=value,
-        low=min(moduli) / material.youngs_modulus * least / LEAST_LINEAR,
-        high=max(moduli) / material.youngs_modulus * most,
+    band = Band(
+        value=found.value,
+        low=min(moduli) / material.youngs_modulus * found.least / LEAST_LINEAR,
+        high=max(moduli) / material.youngs_modulus * found.most,
         holds=(
             "the modulus",
             "bending that grows with compression, which linear stress leaves out",
             "how stiffly its neighbours hold it",
         ),
     )
+    band = load_scatter(case, title).inverse.on(band)
+    pins = " and ".join(f"{x:.4g}" for x in found.outermost)
+    held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
+    load = f"up to {found.compression:.3g} N compress it{where}, and {band.value:.3g} times that buckle it, {held}"
+    outcome = CheckOutcome.of(NAME, Subject.link(link), title, Quantity.BUCKLING_FACTOR, band, 1.0, load)
+    return outcome.because(load + _judgement(outcome, moved))
 
 
-def buckling_outcomes(
-    case: Case, title: str, beams: Mapping[str, BeamCheck], moved: LargeDisplacement
-) -> Iterator[CheckOutcome]:
-    """Yield the outcome of every link that is compressed under the load case ``title``.
-
-    A link fails where its compression buckles it however its joints hold it, whatever its stress says.
-    """
-    for link, beam in beams.items():
-        found = column(case, link, beam)
-        if found is None:
-            continue
-        factors, material = found.factors, case.material_of(link)
-        band = factor_band(material, *(float(f[0]) for f in (factors.value, factors.least, factors.most)))
-        band = load_scatter(case, title).inverse.on(band)
-        verdict = at_least(band, 1.0)
-        yield CheckOutcome(
-            name=NAME,
-            link=link,
-            load_case=title,
-            quantity=BUCKLING_FACTOR,
-            unit="",
-            value=band,
-            limit=1.0,
-            verdict=verdict,
-            reason=_reason(found, band, verdict, moved) + beyond_strength({link: beam}),
-        )
-
-
-def grown(factor: float) -> str:
-    """Say how much bending grows at a factor, for the end of a reason."""
-    times = 1.0 / (1.0 - 1.0 / factor)
-    return f"bending grows to up to {times:.3g} times that of linear theory, which its stress and deflection hold"
+def _judgement(outcome: CheckOutcome, moved: LargeDisplacement | None) -> str:
+    band, verdict = outcome.value, outcome.verdict
+    if verdict is Verdict.FAIL:
+        return f", {band.high:.3g} times where its joints hold it as well as they can, so it buckles"
+    if verdict is Verdict.UNDECIDED and band.value < 1.0:
+        return f"; stiffer neighbours and a drive may hold it, up to {band.high:.3g} times"
+    if verdict is Verdict.UNDECIDED:
+        return f"; within {LEAST_LINEAR:g} times the load, small faults of shape grow too much"
+    if band.value < LEAST_FACTOR and moved is not None and moved.state == "small":
+        return f"; in the linkage, which buckles at {moved.buckling:.3g} times the load, bending grows little"
+    if band.value < LEAST_FACTOR and (moved is None or moved.state in ("deformed", "off", "unknown")):
+        times = 1.0 / (1.0 - 1.0 / band.value)
+        return f"; bending grows to up to {times:.3g} times that of linear theory, which its stress and deflection hold"
+    return ""
 
 
 def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
-    """Say, for the end of a reason, which link bears more than its strength by beam theory; nothing where none does."""
+    """Say, for the end of a reason, which link bears more than its strength by beam theory; nothing where none does.
+
+    Parameters
+    ----------
+    beams : mapping of str to BeamCheck
+        Link -> its hand calculation.
+    """
     link, worst = max(beams.items(), key=lambda item: item[1].worst.equivalent / item[1].strength)
     stress = worst.worst.equivalent
     if stress <= worst.strength:
@@ -251,65 +328,3 @@ def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
         f"; all this is elastic and void once material gives way, and {link} bears {stress:.3g} MPa by beam theory "
         f"where its strength is {worst.strength:.3g} MPa"
     )
-
-
-def linkage_outcome(
-    case: Case, title: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]
-) -> Iterator[CheckOutcome]:
-    """Yield the outcome of the linkage as a whole where its frame can buckle under the load case ``title``.
-
-    None where equilibrium was followed on the deformed shape, whose outcome rules. The band goes from what a shallow
-    toggle holds, with the least ratio of a stated least modulus to the modulus, to linear theory's factor.
-    """
-    value, least = moved.buckling, moved.factor
-    if value is None or least is None or moved.followed or (math.isinf(value) and least >= LEAST_FACTOR):
-        return
-    materials = [case.material_of(link) for link in case.checked_links]
-    softest = min(min((m.youngs_modulus, *(m.youngs_modulus_range or ()))) / m.youngs_modulus for m in materials)
-    factor = f"all links together become unstable at {value:.3g} times the load by linear theory"
-    if least < value:
-        factor = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
-    band = Band(
-        value=least,
-        low=softest * least / SNAP,
-        high=value,
-        holds=("the modulus", "snap-through of a shallow toggle, which linear theory puts too high"),
-    )
-    band = load_scatter(case, title).inverse.on(band)
-    verdict = at_least(band, 1.0)
-    if verdict is Verdict.FAIL:
-        reason = f"{factor}, so the linkage gives way"
-    elif verdict is Verdict.UNDECIDED:
-        reason = f"{factor}; a linkage may snap through at {least / SNAP:.3g} times the load: follow its deformed shape"
-    elif least < LEAST_FACTOR:
-        reason = f"{factor}; displacements are up to {growth(least):.3g} times those of linear theory"
-    else:
-        reason = factor
-    yield CheckOutcome(
-        name=NAME,
-        link=LINKAGE,
-        load_case=title,
-        quantity=BUCKLING_FACTOR,
-        unit="",
-        value=band,
-        limit=1.0,
-        verdict=verdict,
-        reason=reason + beyond_strength(beams),
-    )
-
-
-def _reason(found: Column, band: Band, verdict: Verdict, moved: LargeDisplacement) -> str:
-    pins = " and ".join(f"{x:.4g}" for x in found.outermost)
-    held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
-    load = f"up to {found.compression:.3g} N compress it, and {band.value:.3g} times that buckle it, {held}"
-    if verdict is Verdict.FAIL:
-        return f"{load}, {band.high:.3g} times where its joints hold it as well as they can, so it buckles"
-    if verdict is Verdict.UNDECIDED and band.value < 1.0:
-        return f"{load}; stiffer neighbours and a drive may hold it, up to {band.high:.3g} times"
-    if verdict is Verdict.UNDECIDED:
-        return f"{load}; within {LEAST_LINEAR:g} times the load, small faults of shape grow too much"
-    if band.value < LEAST_FACTOR and moved.state == "small":
-        return f"{load}; in the linkage, which buckles at {moved.buckling:.3g} times the load, bending grows little"
-    if band.value < LEAST_FACTOR and moved.state in ("deformed", "off", "unknown"):
-        return f"{load}; {grown(band.value)}"
-    return load

@@ -1,22 +1,20 @@
 """From results to verdicts: every check that the case asks for, decided on its band."""
 
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
-from fea.beam.theory import BeamCheck
 from fea.common.band import Band
-from fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
-from fea.common.verdict import LINKAGE, LOAD_SHARE, PIN, POINT, SAFETY_FACTOR, CheckOutcome, Verdict, at_least, at_most
+from fea.common.scatter import Scatter, load_scatter
+from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.large_displacement import LARGE, LargeDisplacement, displaced
 from fea.frame.toggle import SNAP, growth
-from fea.outcomes.buckling import beyond_strength, linkage_outcome
-from fea.outcomes.pins import PinStress
+from fea.outcomes.limits import least_safety_factor
+from fea.outcomes.linkage import linkage_outcomes
+from fea.outcomes.pins import PinStress, pin_outcome
 from fea.outcomes.result import LinkResult
-from geometry.base.errors import CaseError
-from geometry.parts.material import Material
+from fea.refine.discretisation import Discretisation
 from loads.case.case import Case
 from loads.records.check_spec import (
     BearingCheck,
@@ -27,12 +25,6 @@ from loads.records.check_spec import (
     SustainedCheck,
 )
 
-LARGE_DISPLACEMENT = "large displacement"
-DEFLECTION = "deflection from its pins"
-"""Of a link by itself: displacement from the line through its own pins, as if these stayed."""
-DISPLACEMENT = "displacement"
-"""Of a point, with the whole linkage."""
-
 
 def outcomes(
     case: Case,
@@ -42,63 +34,105 @@ def outcomes(
     moved: LargeDisplacement,
     uneven: Mapping[str, Scatter] | None = None,
 ) -> tuple[CheckOutcome, ...]:
-    """Return the outcome of every check of a load case called ``title``, but for motors, bearing and links' buckling.
-
-    uneven  joint -> how its force grows beside scattered loads (``fea.check.load_growth``)
+    """Return the outcome of every check of a load case, but for motors, bearing and links' buckling.
 
     These are in ``fea.outcomes.motor``, ``fea.outcomes.bearing`` and ``fea.outcomes.buckling``.
 
-    Raises ``CaseError`` where neither check nor material states a limit.
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+    links : mapping of str to LinkResult
+    pins : mapping of str to PinStress
+        Of every joint whose pin a check asks for.
+    moved : LargeDisplacement
+    uneven : mapping of str to Scatter, optional
+        Joint -> how its force grows beside scattered loads (``fea.check.load_growth``).
+
+    Raises
+    ------
+    CaseError
+        Where neither check nor material states a limit.
     """
     found: list[CheckOutcome] = []
     for name, check in case.all_checks.items():
         if isinstance(check, PinCheck):
-            found += _pins(case, name, check, title, pins, uneven or {})
+            found += [
+                pin_outcome(case, title, name, check, joint, pins[joint], (uneven or {}).get(joint))
+                for joint in check.joints or case.pinned_joints
+            ]
         elif isinstance(check, DisplacementCheck) and check.at is not None:
             found.append(_point(case, name, check, title, moved))
         elif not isinstance(check, MotorCheck | BearingCheck):
             found += [_link(case, name, check, title, links[link]) for link in check.links or case.checked_links]
     beams = {link: result.beam for link, result in links.items()}
-    found += _large_displacement(title, moved, beams)
-    found += linkage_outcome(case, title, moved, beams)
-    return tuple(found)
+    return (*found, *linkage_outcomes(case, title, moved, beams))
 
 
 def _link(
     case: Case, name: str, check: SafetyFactorCheck | DisplacementCheck | SustainedCheck, title: str, result: LinkResult
 ) -> CheckOutcome:
-    material = case.material_of(result.link)
+    material, meshes = case.material_of(result.link), result.discretisation
     if isinstance(check, SafetyFactorCheck):
-        limit = least_safety_factor(name, check.minimum, material, result.link)
-        quantity, unit, value = SAFETY_FACTOR, "", result.safety_factor
-        verdict = at_least(value, limit)
-    elif isinstance(check, SustainedCheck):
-        assert material.sustained_stress is not None
-        limit = material.sustained_stress
-        quantity, unit = "sustained stress", "MPa"
-        value = result.principal_max if material.brittle else result.von_mises_max
-        verdict = at_most(value, limit)
+        outcome = safety_factor_outcome(case, name, check, title, result.link, result.safety_factor, meshes)
     else:
-        limit = check.maximum
-        quantity, unit, value = DEFLECTION, "mm", result.displacement_max
-        verdict = at_most(value, limit)
+        quantity, limit, value = Quantity.DEFLECTION, 0.0, result.displacement_max
+        if isinstance(check, SustainedCheck):
+            assert material.sustained_stress is not None
+            quantity, limit, value = Quantity.SUSTAINED_STRESS, material.sustained_stress, result.decisive
+        else:
+            limit = check.maximum
+        outcome = CheckOutcome.of(name, Subject.link(result.link), title, quantity, value, limit)
+        outcome = _with_meshes(outcome, meshes)
     forced = result.fidelity == "beam" and not result.decided_by
-    if forced and verdict is not Verdict.UNDECIDED and result.beam.worst.equivalent > 0.0:
-        verdict = Verdict.UNDECIDED
-        reason = result.why
-    else:
-        reason = _why(result, value, limit, verdict)
-    return CheckOutcome(
-        name=name,
-        link=result.link,
-        load_case=title,
-        quantity=quantity,
-        unit=unit,
-        value=value,
-        limit=limit,
-        verdict=verdict,
-        reason=reason,
-    )
+    if forced and outcome.verdict is not Verdict.UNDECIDED and result.beam.worst.equivalent > 0.0:
+        return outcome.left_open(result.why)
+    return outcome
+
+
+def safety_factor_outcome(
+    case: Case,
+    name: str,
+    check: SafetyFactorCheck,
+    title: str,
+    link: str,
+    factor: Band,
+    meshes: Discretisation | None,
+) -> CheckOutcome:
+    """Return the outcome of a link's safety factor.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Of the check.
+    check : SafetyFactorCheck
+    title : str
+        The load case.
+    link : str
+    factor : Band
+        Of one pose, or the least of a motion.
+    meshes : Discretisation or None
+        What the meshes of the link leave open; None where hand calculation gave the factor.
+
+    Raises
+    ------
+    CaseError
+        Where neither check nor material states a limit.
+    """
+    limit = least_safety_factor(name, check.minimum, case.material_of(link), link)
+    outcome = CheckOutcome.of(name, Subject.link(link), title, Quantity.SAFETY_FACTOR, factor, limit)
+    return _with_meshes(outcome, meshes)
+
+
+def _with_meshes(outcome: CheckOutcome, meshes: Discretisation | None) -> CheckOutcome:
+    """Return an outcome on a link with what its meshes have to do with it where it is open."""
+    if meshes is not None and outcome.value.unknowable:
+        return outcome.because(meshes.sentence)
+    if meshes is not None and outcome.verdict is Verdict.UNDECIDED and meshes.stopped:
+        return outcome.because(f"{outcome.reason}; the meshes were refined no further since {meshes.stopped}")
+    return outcome
 
 
 def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: LargeDisplacement) -> CheckOutcome:
@@ -107,32 +141,24 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
     Its band is that of ``_point_band``.
     """
     link, point = case.displaced_point(name, check)
-    displacement, factor = moved.points.get((link, point)), moved.factor
-    value, limit = Band.unknown(), check.maximum
+    displacement, factor, value = moved.points.get((link, point)), moved.factor, Band.unknown()
     why = f"the frame does not tell how far it moves: {moved.sentence}"
     if displacement is not None and moved.state in ("small", "deformed", "off"):
         size = float(np.linalg.norm(displacement))
         near = factor is not None and factor < SNAP
         if moved.followed or not (near or size > LARGE * moved.span):
-            value = _point_band(case, title, moved, link, point, size)
-            shape = "on its deformed shape" if moved.followed else "by linear theory"
-            why = f"by the frame of the linkage, {shape}: {reason_for(value, limit, at_most(value, limit))}"
-            why += "".join(f"; {note}" for note in ([] if moved.frame is None else moved.frame.notes))
+            value, why = _point_band(case, title, moved, link, point, size), ""
         else:
             far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
             what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
             why = f"the linear frame {what}, so it does not hold; take large_displacement = off out of the case"
-    return CheckOutcome(
-        name=name,
-        link=f"{POINT}{point} of {link}",
-        load_case=title,
-        quantity=DISPLACEMENT,
-        unit="mm",
-        value=value,
-        limit=limit,
-        verdict=at_most(value, limit),
-        reason=why,
-    )
+    subject = Subject.point(point, link)
+    found = CheckOutcome.of(name, subject, title, Quantity.DISPLACEMENT, value, check.maximum, why)
+    if why:
+        return found
+    shape = "on its deformed shape" if moved.followed else "by linear theory"
+    notes = () if moved.frame is None else moved.frame.notes
+    return found.because("; ".join([f"by the frame of the linkage, {shape}: {found.reason}", *notes]))
 
 
 def _point_band(case: Case, title: str, moved: LargeDisplacement, link: str, point: str, size: float) -> Band:
@@ -158,116 +184,3 @@ def _point_band(case: Case, title: str, moved: LargeDisplacement, link: str, poi
     grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
     most = high * grown * size if size > 0.0 else 0.0
     return Band(value=size, low=low * size, high=most, holds=(*holds, "growth towards buckling or a dead point"))
-
-
-def _pins(
-    case: Case,
-    name: str,
-    check: PinCheck,
-    title: str,
-    pins: Mapping[str, PinStress],
-    uneven: Mapping[str, Scatter],
-) -> Iterator[CheckOutcome]:
-    for joint in check.joints or case.pinned_joints:
-        material = case.pin_material(joint)
-        limit = least_safety_factor(name, check.minimum, material, f"{PIN}{joint}")
-        stress = load_scatter(case, title).times(uneven.get(joint, Scatter())).on(pins[joint].equivalent)
-        value = strength_scatter(material).on(stress.inverse(material.allowable))
-        verdict = at_least(value, limit)
-        yield CheckOutcome(
-            name=name,
-            link=f"{PIN}{joint}",
-            load_case=title,
-            quantity=SAFETY_FACTOR,
-            unit="",
-            value=value,
-            limit=limit,
-            verdict=verdict,
-            reason=reason_for(value, limit, verdict),
-        )
-
-
-def _large_displacement(title: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]) -> Iterator[CheckOutcome]:
-    """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
-    if not moved.followed:
-        return
-    value = moved.held_band
-    verdict = at_least(value, 1.0)
-    open_end = f"; {reason_for(value, 1.0, verdict)}" if verdict is Verdict.UNDECIDED else ""
-    linear = moved.buckling is not None and math.isfinite(moved.buckling)
-    informs = f"; for information, its buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
-    yield CheckOutcome(
-        name=LARGE_DISPLACEMENT,
-        link=LINKAGE,
-        load_case=title,
-        quantity=LOAD_SHARE,
-        unit="",
-        value=value,
-        limit=1.0,
-        verdict=verdict,
-        reason=moved.sentence + open_end + informs + beyond_strength(beams),
-    )
-
-
-def least_safety_factor(name: str, stated: float | None, material: Material, what: str) -> float:
-    """Return the limit that a check states, else the material's; raises ``CaseError`` where neither is there."""
-    limit = stated or material.minimum_safety_factor
-    if limit is None:
-        raise CaseError(f"checks.{name}.minimum: the material of '{what}' has no default; state the limit")
-    return limit
-
-
-def stress_limits(case: Case, link: str) -> tuple[tuple[float, float], ...]:
-    """Limits [MPa] on a link's deciding stress, of all checks, each from the least to the largest by stated scatter.
-
-    Raises ``CaseError`` where one is not stated.
-    """
-    material, load, found = case.material_of(link), _widest_load(case), []
-    for name, check in case.all_checks.items():
-        if isinstance(check, SafetyFactorCheck | SustainedCheck) and link in (check.links or case.checked_links):
-            if isinstance(check, SafetyFactorCheck):
-                limit = material.allowable / least_safety_factor(name, check.minimum, material, link)
-                found.append(_spread(limit, strength_scatter(material).times(load.inverse)))
-            elif material.sustained_stress is not None:
-                found.append(_spread(material.sustained_stress, load.inverse))
-    return tuple(found)
-
-
-def displacement_limits(case: Case, link: str) -> tuple[tuple[float, float], ...]:
-    """Limits [mm] on a link's displacement from the line through its pins, of all checks, as ``stress_limits``."""
-    scatter = compliance_scatter(case.material_of(link)).times(_widest_load(case))
-    return tuple(
-        _spread(check.maximum, scatter.inverse)
-        for check in case.all_checks.values()
-        if isinstance(check, DisplacementCheck) and check.at is None and link in (check.links or case.checked_links)
-    )
-
-
-def _widest_load(case: Case) -> Scatter:
-    """Return the widest scatter of any load case: a link's meshes serve all of them."""
-    every = [load_scatter(case, title) for title in case.load_cases]
-    return Scatter(low=min(one.low for one in every), high=max(one.high for one in every))
-
-
-def _spread(limit: float, scatter: Scatter) -> tuple[float, float]:
-    return limit * scatter.low, limit * scatter.high
-
-
-def _why(result: LinkResult, value: Band, limit: float, verdict: Verdict) -> str:
-    """Reason of a verdict on a link, with what its meshes have to do with it where it is open."""
-    meshes = result.discretisation
-    if value.unknowable and meshes is not None:
-        return meshes.sentence
-    reason = reason_for(value, limit, verdict)
-    if verdict is Verdict.UNDECIDED and meshes is not None and meshes.stopped:
-        return f"{reason}; the meshes were refined no further since {meshes.stopped}"
-    return reason
-
-
-def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
-    """Say in a few words why a band gives its verdict."""
-    band = f"its band {value.low:.3g} to {value.high:.3g}"
-    if verdict is Verdict.UNDECIDED:
-        return f"{band} straddles the limit {limit:g}"
-    side = "on the safe side" if verdict is Verdict.PASS else "on the wrong side"
-    return f"{band} lies wholly {side} of the limit {limit:g}"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
-from fea.common.verdict import DRIVE_POWER, CheckOutcome, Verdict, at_most
+from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
 from loads.states.case_motion import CaseMotion, solve_case_motion
@@ -93,18 +93,14 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
     solved, times, link = moved.forces[title], _times(moved, title), moved.drive.link
     torque, speed = solved.torque, solved.motion.angular_speed(link)
 
-    def outcome(quantity: str, unit: str, value: Band, limit: float, reason: str) -> CheckOutcome:
-        verdict = at_most(value, limit)
-        return CheckOutcome(
-            name=name, link=link, load_case=title, quantity=quantity, unit=unit, value=value, limit=limit,
-            verdict=verdict, reason=reason,
-        )  # fmt: skip
+    def outcome(quantity: Quantity, value: Band, limit: float, reason: str) -> CheckOutcome:
+        return CheckOutcome.of(name, Subject.link(link), title, quantity, value, limit, reason)
 
     if check.no_load_speed is not None:
         rpm = 30.0 / math.pi
         fastest, free = rpm * float(np.abs(speed).max()), rpm * check.no_load_speed
         reason = f"the drive turns at up to {fastest:.4g} rpm, the motor without load at {free:.4g} rpm"
-        yield outcome("drive speed", "rpm", Band.exact(fastest), free, reason)
+        yield outcome(Quantity.DRIVE_SPEED, Band.exact(fastest), free, reason)
         if check.stall_torque is not None:
             mean, most = line_share(torque, speed, times, check.stall_torque, check.no_load_speed)
             reason = (
@@ -112,7 +108,7 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
                 f"{mean:.3g} of its power; stall torque {check.stall_torque:.3g} N·mm, straight down to {free:.4g} rpm"
             )
             value = Band(value=most, low=mean, high=most, holds=HOLDS)
-            yield outcome("share of the motor's torque at its speed", "", value, 1.0, reason)
+            yield outcome(Quantity.TORQUE_SHARE, value, 1.0, reason)
     if check.rated_torque is not None:
         effective, mean = (
             math.sqrt(_mean(torque**2, times)),
@@ -123,7 +119,7 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
             f"flywheel would leave, against {check.rated_torque:.3g} N·mm rated"
         )
         value = Band(value=effective, low=min(mean, effective), high=effective, holds=HOLDS)
-        yield outcome("drive torque over time", "N·mm", value, check.rated_torque, reason)
+        yield outcome(Quantity.DRIVE_TORQUE, value, check.rated_torque, reason)
 
 
 def _times(moved: CaseMotion, title: str) -> Real:
@@ -141,12 +137,12 @@ def _outcome(
     found = demand(solved.drive_power, solved.torque, times)
     limit = check.output_power
     value = Band(value=found.peak_power, low=found.mean_power, high=found.peak_power, holds=HOLDS)
-    verdict = at_most(value, limit)
+    outcome = CheckOutcome.of(name, Subject.link(laden.drive.link), title, Quantity.DRIVE_POWER, value, limit)
     side = {
         Verdict.PASS: "the motor's output covers its peak",
         Verdict.FAIL: "the motor's output stays below its mean",
         Verdict.UNDECIDED: "the motor covers its mean but not its peak, so a flywheel decides",
-    }[verdict]
+    }[outcome.verdict]
     reason = (
         f"the drive asks for {found.peak_torque:.3g} N·mm and {found.peak_power:.3g} W at most, "
         f"{found.mean_power:.3g} W on average; {side}, "
@@ -158,17 +154,7 @@ def _outcome(
         carried = 1e6 * sum(mass.mass for mass in case.carried)
         if 0.0 < factor < math.inf:
             reason += f"; it drives up to {factor * carried:.3g} g of carried mass, where {carried:.3g} g are carried"
-    return CheckOutcome(
-        name=name,
-        link=laden.drive.link,
-        load_case=title,
-        quantity=DRIVE_POWER,
-        unit="W",
-        value=value,
-        limit=limit,
-        verdict=verdict,
-        reason=reason,
-    )
+    return outcome.because(reason)
 
 
 def largest_factor(bare: Real, load: Real, limit: float) -> float:

@@ -24,8 +24,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.common.band import Band
+from fea.common.scatter import Scatter, load_scatter, strength_scatter
+from fea.common.verdict import CheckOutcome, Quantity, Subject
+from fea.outcomes.limits import least_safety_factor
 from geometry.base.errors import CaseError
 from loads.case.case import Case
+from loads.records.check_spec import PinCheck
 from loads.statics.statics import JointReaction
 
 HOLDS = ("how the two eyes share the couple of the joint force, and bear it",)
@@ -112,3 +116,34 @@ def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinS
         raise CaseError(f'joints.{joint}.pin_diameter: the check of its pin needs it; state it, for example "1.5 mm"')
     poisson = case.all_materials[record.pin_material].poissons_ratio
     return pin_stress(force, record.pin_diameter, eyes(case, joint), record.pin_gap, moment=moment, poisson=poisson)
+
+
+def pin_outcome(
+    case: Case, title: str, name: str, check: PinCheck, joint: str, stress: PinStress, growth: Scatter | None = None
+) -> CheckOutcome:
+    """Return the outcome of a joint's pin.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+    name : str
+        Of the check.
+    check : PinCheck
+    joint : str
+    stress : PinStress
+        Of its pin.
+    growth : Scatter, optional
+        By which the joint's force grows beside scattered loads (``fea.check.load_growth``).
+
+    Raises
+    ------
+    CaseError
+        Where neither check nor material states a limit.
+    """
+    material, subject = case.pin_material(joint), Subject.pin(joint)
+    limit = least_safety_factor(name, check.minimum, material, str(subject))
+    equivalent = load_scatter(case, title).times(growth or Scatter()).on(stress.equivalent)
+    factor = strength_scatter(material).on(equivalent.inverse(material.allowable))
+    return CheckOutcome.of(name, subject, title, Quantity.SAFETY_FACTOR, factor, limit)

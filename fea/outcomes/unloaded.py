@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from fea.common.band import Band
 from fea.common.link_loads import LineLoad, LinkLoads
-from fea.common.verdict import DRIVE_POWER, PIN, SAFETY_FACTOR, CheckOutcome, Verdict
-from fea.outcomes.judge import least_safety_factor
+from fea.common.verdict import CheckOutcome, Quantity, Subject
+from fea.outcomes.limits import least_safety_factor
 from loads.case.case import Case
 from loads.records.applied import BodyForce, Load, PointLoad
 from loads.records.check_spec import SafetyFactorCheck
@@ -94,11 +94,11 @@ def undecided(
     """
     bearing = {name for name, force in joints.items() if force > SHARE * size}
     for outcome in outcomes:
-        borne = outcome.link.startswith(PIN) and outcome.link.removeprefix(PIN) in bearing
-        if borne or (outcome.quantity == DRIVE_POWER and bearing):
+        borne = outcome.subject.kind == "pin" and outcome.subject.name in bearing
+        if borne or (outcome.quantity is Quantity.DRIVE_POWER and bearing):
             yield outcome
         else:
-            yield replace(outcome, verdict=Verdict.UNDECIDED, reason=nothing_acts(title, size))
+            yield outcome.left_open(nothing_acts(title, size))
 
 
 def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
@@ -107,17 +107,8 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
         if not isinstance(check, SafetyFactorCheck):
             continue
         for link in check.links or case.checked_links:
-            yield CheckOutcome(
-                name=name,
-                link=link,
-                load_case=title,
-                quantity=SAFETY_FACTOR,
-                unit="",
-                value=Band.unknown(),
-                limit=least_safety_factor(name, check.minimum, case.material_of(link), link),
-                verdict=Verdict.UNDECIDED,
-                reason="",
-            )
+            limit = least_safety_factor(name, check.minimum, case.material_of(link), link)
+            yield CheckOutcome.of(name, Subject.link(link), title, Quantity.SAFETY_FACTOR, Band.unknown(), limit)
 
 
 def stated_size(case: Case, title: str) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
-from fea.common.verdict import SAFETY_FACTOR
+from fea.common.verdict import Quantity
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.unchecked import unchecked
@@ -325,11 +325,11 @@ def _checks(result: EnvelopeResult, console: "Console") -> None:
     )
     rows = [
         (
-            check.name if check.quantity == SAFETY_FACTOR else check.quantity,
+            check.name if check.quantity is Quantity.SAFETY_FACTOR else check.quantity,
             check.link,
             check.load_case,
             band(check.value),
-            f"≥{KEPT}{plain(check.limit)}",
+            f"{check.quantity.sense.value}{KEPT}{plain(check.limit)}",
             Text(check.verdict.value, style=COLOURS[check.verdict]),
         )
         for check in result.checks

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import SAFETY_FACTOR
+from fea.common.verdict import Quantity, Subject
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from reports.figures.drawings import GROUND, INK, STYLE, WIDTH, as_png
 from reports.figures.motion_figures import COLOURS, DASHES, quiet_glyphs
@@ -40,7 +40,11 @@ def envelope_figure(result: EnvelopeResult) -> bytes:
         panels = grid.ravel().tolist()
         handles: dict[str, Any] = {}
         for axes, (name, link) in zip(panels, result.links.items(), strict=False):
-            limits = {c.limit for c in result.checks if c.link == name and c.quantity == SAFETY_FACTOR}
+            limits = {
+                c.limit
+                for c in result.checks
+                if c.subject == Subject.link(name) and c.quantity is Quantity.SAFETY_FACTOR
+            }
             _panel(axes, angles, link, names, limits, handles)
         for axes in panels[len(result.links) :]:
             axes.remove()

@@ -225,7 +225,7 @@ def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:
             "low": check.value.low,
             "high": check.value.high,
             "unit": check.unit,
-            "sense": "≥" if check.at_least else "≤",
+            "sense": check.quantity.sense.value,
             "limit": check.limit,
             "verdict": check.verdict.value,
         }

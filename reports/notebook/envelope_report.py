@@ -123,7 +123,7 @@ class EnvelopeReport:
     @property
     def _lead(self) -> str:
         missed = [c for c in self.result.checks if c.verdict is self.verdict and c.verdict is not Verdict.PASS]
-        named = joined(list(dict.fromkeys(f"{check.quantity}, {check.what}" for check in missed)))
+        named = joined(list(dict.fromkeys(f"{check.quantity}, {check.subject.long}" for check in missed)))
         poses = f"{int(self.result.evaluated.sum())} of {len(self.result.angles)} poses"
         return f"{self.verdict.value.capitalize()} over {poses}" + (f": {named}." if named else ".")
 

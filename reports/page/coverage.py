@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 
-from fea.common.verdict import BUCKLING_FACTOR, LINKAGE
+from fea.common.verdict import LINKAGE, Quantity, Subject
 from fea.outcomes.result import CheckResult, LinkResult
 from reports.words.wording import joined
 
@@ -85,9 +85,12 @@ def _under(result: CheckResult, names: list[str]) -> str:
 
 def _buckling(result: CheckResult) -> str:
     judged = {
-        check.link for case in result.load_cases.values() for check in case.checks if check.quantity == BUCKLING_FACTOR
+        check.subject
+        for case in result.load_cases.values()
+        for check in case.checks
+        if check.quantity is Quantity.BUCKLING_FACTOR
     }
-    links = [link for link in result.case.checked_links if link in judged]
+    links = [link for link in result.case.checked_links if Subject.link(link) in judged]
     found = (
         f"{joined(links)} {_was(links)} judged" if links else "No link is in compression; one that is would be judged"
     )

@@ -7,9 +7,8 @@ from functools import cache
 from typing import Any
 
 from fea.claims.audit import ClaimResult, check_claims
-from fea.common.verdict import DRIVE_POWER, Verdict
+from fea.common.verdict import Quantity, Subject, Verdict, reason_for
 from fea.frame.joint_forces import PINNED_STATICS
-from fea.outcomes.judge import reason_for
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from geometry.base.version import alula_version
 from geometry.linkage.pose import NEAR_DEAD_POINT
@@ -160,7 +159,7 @@ def _reasons(result: CheckResult) -> list[str]:
     """What each check says beyond its row, which has value, limit and verdict; "" where it says no more."""
     return [
         ""
-        if check.quantity != DRIVE_POWER
+        if check.quantity is not Quantity.DRIVE_POWER
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
         else check.reason
         for check in checks_of(result)
@@ -193,7 +192,7 @@ def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[
         "diagram": figures.get(diagram_name(name)),
         "apart": apart(found.comparisons),
         "model": HAND if found.fidelity == "beam" and found.decided_by else MODEL[found.fidelity],
-        "checks": [c for c in worst.checks if c.link == name],
+        "checks": [c for c in worst.checks if c.subject == Subject.link(name)],
         "others": [(case.name, case.links[name]) for case in result.load_cases.values() if case is not worst],
     }
 

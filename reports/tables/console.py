@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from fea.check.anchor import anchor_loads
-from fea.common.verdict import DRIVE_POWER, Verdict
+from fea.common.verdict import Quantity, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult
 from loads.records.aero import AirForces
 from reports.tables.frames import frame_lines
@@ -36,7 +36,7 @@ def print_result(result: CheckResult, console: "Console") -> None:
         if case.checks:
             _checks(case, console)
         for check in case.checks:
-            if check.quantity == DRIVE_POWER:
+            if check.quantity is Quantity.DRIVE_POWER:
                 say(console, f"Motor: {check.reason}.")
         for line in _hand(case):
             say(console, line)
@@ -129,7 +129,7 @@ def _checks(case: LoadCaseResult, console: "Console") -> None:
     rows = []
     for check in case.checks:
         unit = f" {check.unit}" if check.unit else ""
-        sign = "≥" if check.at_least else "≤"
+        sign = check.quantity.sense.value
         rows.append(
             (
                 check.name,

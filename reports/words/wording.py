@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from fea.common.band import Band
-from fea.common.verdict import LOAD_SHARE, CheckOutcome, Verdict
+from fea.common.verdict import CheckOutcome, Quantity, Verdict
 from fea.outcomes.result import CheckResult, SectionComparison
 from fea.outcomes.unchecked import unchecked
 
@@ -139,7 +139,7 @@ def _named(check: CheckOutcome) -> str:
 
 
 def _of(check: CheckOutcome) -> str:
-    return "by" if check.quantity == LOAD_SHARE else "of"
+    return "by" if check.quantity is Quantity.LOAD_SHARE else "of"
 
 
 def sentence(text: str) -> str:
@@ -152,6 +152,6 @@ def _nearest(result: CheckResult, check: CheckOutcome, lead: str) -> str:
     asked = "at least" if check.at_least else "at most"
     under = f" under load case {check.load_case}" if len(result.load_cases) > 1 else ""
     return (
-        f"{lead}: the {check.quantity} {_of(check)} {check.what}{under} is {band(check.value)}{unit}, "
+        f"{lead}: the {check.quantity} {_of(check)} {check.subject.long}{under} is {band(check.value)}{unit}, "
         f"where {asked} {plain(check.limit)}{unit} is asked for."
     )

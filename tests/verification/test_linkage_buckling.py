@@ -72,7 +72,7 @@ def critical() -> float:
 
 def outcome(case: Case):
     result = check_case(case, fidelity="beam").load_cases["weight"]
-    (found,) = [check for check in result.checks if (check.name, check.link) == ("buckling", LINKAGE)]
+    (found,) = [check for check in result.checks if (check.name, check.subject) == ("buckling", LINKAGE)]
     return result.large_displacement, found
 
 
@@ -85,7 +85,7 @@ def test_the_factor_of_a_parallelogram_is_that_of_the_closed_form() -> None:
     assert found.value.low == pytest.approx(found.value.value / 5.196, rel=1e-4)
     assert (found.verdict, found.limit, found.at_least) == (Verdict.PASS, 1.0, True)
     links = check_case(parallelogram(0.09 * critical()), fidelity="beam").load_cases["weight"].checks
-    alone = {c.link: c.value.value for c in links if c.name == "buckling" and c.link != LINKAGE}
+    alone = {c.link: c.value.value for c in links if c.name == "buckling" and c.subject != LINKAGE}
     assert min(alone.values()) > found.value.value
 
 
@@ -102,7 +102,7 @@ def test_the_factor_of_a_parallelogram_is_that_of_the_closed_form() -> None:
 def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, state, verdict) -> None:
     """One limit load, one outcome: straight up to its buckling load, but within 3 times of it none passes."""
     result = check_case(parallelogram(share * critical()), fidelity="beam").load_cases["weight"]
-    moved, (found,) = result.large_displacement, [c for c in result.checks if c.link == LINKAGE]
+    moved, (found,) = result.large_displacement, [c for c in result.checks if c.subject == LINKAGE]
     assert found.name == "large displacement"
     assert moved.share < 1e-3
     assert (moved.state, found.verdict) == (state, verdict)
@@ -126,7 +126,7 @@ def test_pulled_it_never_buckles() -> None:
     case = parallelogram(-0.2 * critical())
     result = check_case(case, fidelity="beam").load_cases["weight"]
     assert result.large_displacement.buckling == np.inf
-    assert not [check for check in result.checks if (check.name, check.link) == ("buckling", LINKAGE)]
+    assert not [check for check in result.checks if (check.name, check.subject) == ("buckling", LINKAGE)]
 
 
 COMPRESSION = {"AB": 2.0, "BE": 1.0, "GF": 1.5, "FB": 1.2, "BC": 0.7, "CD": 0.9, "DH": 0.4, "ED": 1.1}

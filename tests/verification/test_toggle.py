@@ -14,7 +14,7 @@ from scipy.optimize import minimize_scalar
 from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.scatter import Scatter
-from fea.common.verdict import LINKAGE, SAFETY_FACTOR, Verdict
+from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.frame.toggle import SNAP, growth
 from fea.motion.linkage_history import linkage_outcomes
 from loads.case.case import Case
@@ -116,7 +116,7 @@ def limit_load(case: Case, rise: float, bars: str = "bar") -> float:
 def linkage(case: Case):
     result = check_case(case, fidelity="beam")
     found = result.load_cases["push"]
-    return result.verdict, found.large_displacement, [c for c in found.checks if c.link == LINKAGE]
+    return result.verdict, found.large_displacement, [c for c in found.checks if c.subject == LINKAGE]
 
 
 def test_the_limit_load_of_a_shallow_toggle_stands_at_three_root_three() -> None:
@@ -196,7 +196,7 @@ def test_a_motion_over_a_pose_that_may_snap_through_does_not_pass(force: float, 
     data = tomllib.loads(text) | {"motion": {"poses": 5, "range": ["90 deg", "92 deg"]}}
     outcomes = list(linkage_outcomes(solve_case_motion(validate(data)), np.ones(5, dtype=bool)))
     assert bool(outcomes) is found
-    assert all(c.verdict is Verdict.UNDECIDED and c.link == LINKAGE for c in outcomes)
+    assert all(c.verdict is Verdict.UNDECIDED and c.subject == LINKAGE for c in outcomes)
 
 
 def scattered(force: float, way: str, high: float | None = None):
@@ -212,11 +212,11 @@ def test_the_upper_end_of_scatter_is_what_the_larger_load_does(way: str) -> None
     """The flatter a toggle gets, the more it presses: pins, eyes and bars bear more than the load's share."""
     nominal, wide, larger = scattered(-1.0, way), scattered(-1.0, way, 1.7), scattered(-1.7, way)
     for plain, ours, theirs in zip(nominal.checks, wide.checks, larger.checks, strict=True):
-        if ours.quantity == SAFETY_FACTOR:
+        if ours.quantity is Quantity.SAFETY_FACTOR:
             assert (ours.value.value, ours.value.high) == (plain.value.value, plain.value.high), ours
             assert ours.value.low == pytest.approx(theirs.value.low, rel=2e-3), ours
             assert not (way == "auto" and ours.link == "pin B") or ours.value.low < plain.value.low / 1.8
-    assert sum(c.quantity == SAFETY_FACTOR for c in wide.checks) > 10
+    assert sum(c.quantity is Quantity.SAFETY_FACTOR for c in wide.checks) > 10
 
 
 def test_no_safety_factor_is_known_at_a_load_under_which_the_toggle_gives_way() -> None:

@@ -41,7 +41,7 @@ def test_every_pose_has_the_factor_of_its_own_beam(name: str, overrides: list[st
                 expected = column(case, link, beam)
                 assert expected is not None
                 for name in ("value", "least", "most"):
-                    (single,) = getattr(expected.factors, name)
+                    single = getattr(expected, name)
                     assert getattr(found, name)[pose] == pytest.approx(single, rel=1e-5), name
                 compared += 1
             for pose in np.flatnonzero(np.isinf(found.value)):

@@ -155,7 +155,7 @@ def test_the_wings_pins_pass_and_thin_ones_fail():
         limits = [f'checks.pins={{type="pins",minimum={minimum},joints=["A"]}}']
         result = check_case(edited(WING, limits), name=WING, fidelity="beam")
         (one,) = [c for c in result.load_cases["weight"].checks if c.name == "pins"]
-        assert (one.verdict, one.what) == (verdict, "pin A")
+        assert (one.verdict, one.subject.long) == (verdict, "pin A")
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from fea.frame import large_displacement
 from fea.frame.corotational import NoEquilibriumError
 from fea.motion.envelope import envelope_case
 from fea.motion.envelope_outcomes import envelope_outcomes
-from fea.outcomes.judge import _large_displacement
+from fea.outcomes.linkage import linkage_outcomes
 from fea.refine.refinement import Effort
 from geometry.base.errors import CaseError
 from geometry.parts.material import library
@@ -199,7 +199,7 @@ def test_the_limit_load_holds_load_over_least_modulus(monkeypatch, state, held, 
     )
     band = large_displacement._held_band(None, found, Scatter(low=0.8, high=1.25, holds=("E",)), ("E",))
     assert (band.low, band.high) == pytest.approx(ends, abs=0.0)
-    [outcome] = _large_displacement("lift", replace(found, held_band=band), {"link": _Idle()})
+    [outcome] = linkage_outcomes(None, "lift", replace(found, held_band=band), {"link": _Idle()})
     expected = Verdict.PASS if band.low == 1.0 else Verdict.FAIL if band.high < 1.0 else Verdict.UNDECIDED
     assert outcome.verdict is expected
 

@@ -1,7 +1,7 @@
 import pytest
 
 from fea.common.band import Band
-from fea.common.verdict import Verdict, at_least, at_most, overall
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Sense, Subject, Verdict, overall
 
 
 def band(low: float, value: float, high: float) -> Band:
@@ -19,8 +19,8 @@ def band(low: float, value: float, high: float) -> Band:
     ],
 )
 def test_the_whole_band_decides(low: float, high: float, least: Verdict, most: Verdict) -> None:
-    assert at_least(band(low, low, high), 3.0) is least
-    assert at_most(band(low, high, high), 3.0) is most
+    assert Sense.AT_LEAST.verdict(band(low, low, high), 3.0) is least
+    assert Sense.AT_MOST.verdict(band(low, high, high), 3.0) is most
 
 
 def test_any_fail_fails_and_any_doubt_is_doubt() -> None:
@@ -50,3 +50,37 @@ def test_strength_over_a_stress_band_turns_it_round() -> None:
 def test_a_band_around_variants_reaches_the_outermost() -> None:
     found = Band.around(12.0, (11.0, 12.5), "two models")
     assert (found.low, found.value, found.high, found.holds) == (11.0, 12.0, 12.5, ("two models",))
+
+
+@pytest.mark.parametrize(
+    ("quantity", "unit", "sign"),
+    [("safety factor", "", "≥"), ("fatigue, life", "", "≥"), ("displacement", "mm", "≤"), ("drive speed", "rpm", "≤")],
+)
+def test_a_quantity_is_its_name_and_knows_unit_and_sense(quantity: str, unit: str, sign: str) -> None:
+    found = Quantity(quantity)
+    assert (str(found), found.unit, found.sense.value) == (quantity, unit, sign)
+
+
+@pytest.mark.parametrize(
+    ("subject", "short", "long"),
+    [
+        (Subject.link("CH"), "CH", "link CH"),
+        (Subject.pin("A"), "pin A", "pin A"),
+        (Subject.point("H", "CH"), "point H of CH", "point H of CH"),
+        (LINKAGE, "the linkage", "the linkage"),
+    ],
+)
+def test_a_subject_in_a_table_and_in_a_sentence(subject: Subject, short: str, long: str) -> None:
+    assert (str(subject), subject.long) == (short, long)
+    assert Subject.link(short) != subject or subject.kind == "link"  # a link of that name is another subject
+
+
+def test_an_outcome_is_decided_by_its_quantity_and_stays_open_where_told() -> None:
+    stress = CheckOutcome.of("creep", Subject.link("CH"), "rain", Quantity.SUSTAINED_STRESS, band(2.0, 2.5, 3.0), 4.0)
+    assert (stress.verdict, stress.unit, stress.reason) == (
+        Verdict.PASS, "MPa", "its band 2 to 3 lies wholly on the safe side of the limit 4",
+    )  # fmt: skip
+    factor = CheckOutcome.of("strength", LINKAGE, "rain", Quantity.SAFETY_FACTOR, band(2.0, 2.5, 3.0), 4.0, "too thin")
+    assert (factor.verdict, factor.unit, factor.reason) == (Verdict.FAIL, "", "too thin")
+    opened = factor.left_open("no one knows")
+    assert (opened.verdict, opened.reason, opened.value) == (Verdict.UNDECIDED, "no one knows", factor.value)

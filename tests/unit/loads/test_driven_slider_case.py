@@ -84,7 +84,7 @@ def test_its_check_holds_the_piston() -> None:
     assert reactions.drive_torque == 0.0
     assert reactions.joints["S"].wrench[0] == pytest.approx(reactions.drive_force)
     assert result.load_cases["brake"].large_displacement.state == "small"
-    assert LINKAGE in {check.link for check in result.load_cases["brake"].checks}
+    assert LINKAGE in {check.subject for check in result.load_cases["brake"].checks}
     # The guide's force acts where the piston stands: the ground holds the moment on the crank, and no force.
     assert anchor_loads(result.load_cases["brake"]).total == pytest.approx([0, 0, 0, 0, 0, -300.0], abs=1e-9)
 

@@ -9,7 +9,7 @@ from solid_meshes import bar
 from fea.beam.cut_free import link_loads
 from fea.check.run import check_case
 from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Verdict, at_least, at_most, overall
+from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, overall
 from fea.outcomes.result import LinkResult, SectionComparison, VariantPeak
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
@@ -86,23 +86,12 @@ def solid_result(beam, material, loads):
 def checks_of(title, links):
     found = []
     for name, link in links.items():
-        for check, quantity, unit, value, limit, decide in (
-            ("strength", "safety factor", "", link.safety_factor, 3.0, at_least),
-            ("stiffness", "displacement", "mm", link.displacement_max, 10.0, at_most),
+        for check, quantity, value, limit in (
+            ("strength", Quantity.SAFETY_FACTOR, link.safety_factor, 3.0),
+            ("stiffness", Quantity.DISPLACEMENT, link.displacement_max, 10.0),
         ):
-            found.append(
-                CheckOutcome(
-                    name=check,
-                    link=name,
-                    load_case=title,
-                    quantity=quantity,
-                    unit=unit,
-                    value=value,
-                    limit=limit,
-                    verdict=decide(value, limit),
-                    reason="as the band says",
-                )
-            )
+            subject = Subject.link(name)
+            found.append(CheckOutcome.of(check, subject, title, quantity, value, limit, "as the band says"))
     return tuple(found)
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 import pytest
 
 from fea.common.band import Band
-from fea.common.verdict import SAFETY_FACTOR, Verdict
+from fea.common.verdict import Quantity, Verdict
 from reports.words import wording
 
 
@@ -90,7 +90,7 @@ def test_the_worst_of_a_fail_is_one_that_failed(result, changed):
 @pytest.mark.parametrize("at_least", [True, False])
 def test_the_unfavourable_end_of_a_band_says_which_check_is_nearest_to_its_limit(result, changed, at_least):
     """CH has the better value and the wider band: its unfavourable end is the nearer one."""
-    quantity = SAFETY_FACTOR if at_least else "displacement"
+    quantity = Quantity.SAFETY_FACTOR if at_least else Quantity.DISPLACEMENT
     bands = {"CH": Band(value=2.0, low=1.1, high=2.9, holds=()), "CF": Band(value=1.6, low=1.5, high=1.7, holds=())}
     if not at_least:
         bands = {name: Band(value=2.0 - b.value / 2, low=2.0 - b.high / 2, high=2.0 - b.low / 2, holds=())

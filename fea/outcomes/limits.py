@@ -1,0 +1,83 @@
+"""The limits that a case states on its links, for what decides whether hand calculation or a mesh is good enough."""
+
+from fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
+from geometry.base.errors import CaseError
+from geometry.parts.material import Material
+from loads.case.case import Case
+from loads.records.check_spec import DisplacementCheck, SafetyFactorCheck, SustainedCheck
+
+Ends = tuple[float, float]
+
+
+def least_safety_factor(name: str, stated: float | None, material: Material, what: str) -> float:
+    """Return the limit on a safety factor: that of the check, else the material's.
+
+    Parameters
+    ----------
+    name : str
+        Of the check.
+    stated : float or None
+        Its own limit.
+    material : Material
+    what : str
+        What the check is about, for the error.
+
+    Raises
+    ------
+    CaseError
+        Where neither states a limit.
+    """
+    limit = stated or material.minimum_safety_factor
+    if limit is None:
+        raise CaseError(f"checks.{name}.minimum: the material of '{what}' has no default; state the limit")
+    return limit
+
+
+def stress_limits(case: Case, link: str) -> tuple[Ends, ...]:
+    """Return the limits [MPa] of all checks on a link's deciding stress, each with both ends of its stated scatter.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Raises
+    ------
+    CaseError
+        Where a check has no limit.
+    """
+    material, load, found = case.material_of(link), _widest_load(case), []
+    for name, check in case.all_checks.items():
+        if isinstance(check, SafetyFactorCheck | SustainedCheck) and link in (check.links or case.checked_links):
+            if isinstance(check, SafetyFactorCheck):
+                limit = material.allowable / least_safety_factor(name, check.minimum, material, link)
+                found.append(_spread(limit, strength_scatter(material).times(load.inverse)))
+            elif material.sustained_stress is not None:
+                found.append(_spread(material.sustained_stress, load.inverse))
+    return tuple(found)
+
+
+def displacement_limits(case: Case, link: str) -> tuple[Ends, ...]:
+    """Return the limits [mm] on a link's displacement from the line through its pins, as ``stress_limits``.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    """
+    scatter = compliance_scatter(case.material_of(link)).times(_widest_load(case))
+    return tuple(
+        _spread(check.maximum, scatter.inverse)
+        for check in case.all_checks.values()
+        if isinstance(check, DisplacementCheck) and check.at is None and link in (check.links or case.checked_links)
+    )
+
+
+def _widest_load(case: Case) -> Scatter:
+    """Return the widest scatter of any load case: a link's meshes serve all of them."""
+    every = [load_scatter(case, title) for title in case.load_cases]
+    return Scatter(low=min(one.low for one in every), high=max(one.high for one in every))
+
+
+def _spread(limit: float, scatter: Scatter) -> Ends:
+    return limit * scatter.low, limit * scatter.high

@@ -1,0 +1,97 @@
+"""The linkage as a whole: equilibrium that was followed on the deformed shape, else buckling by linear theory.
+
+Sway of the whole linkage is the lowest factor on all loads at which its linear frame becomes unstable
+(``fea.frame.corotational.buckling_factor``). It leaves out how the frame moves before that, by which a toggle snaps
+through at a linear factor of 5.2 (``fea.frame.toggle``): the lower end of its band. Where equilibrium was followed on
+the deformed shape (``fea.frame.large_displacement``), as it is below a factor of 10, that answer rules and is the only
+outcome.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+
+from fea.beam.theory import BeamCheck
+from fea.common.band import Band
+from fea.common.scatter import compliance_scatter, load_scatter
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict
+from fea.frame.large_displacement import LEAST_FACTOR, LargeDisplacement
+from fea.frame.toggle import SNAP, growth
+from fea.outcomes.buckling import NAME as BUCKLING
+from fea.outcomes.buckling import beyond_strength
+from loads.case.case import Case
+
+NAME = "large displacement"
+
+
+def linkage_outcomes(
+    case: Case, title: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]
+) -> Iterator[CheckOutcome]:
+    """Yield the one outcome of the linkage as a whole; none where its frame never buckles.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+    moved : LargeDisplacement
+        What became of it.
+    beams : mapping of str to BeamCheck
+        Link -> its hand calculation, which says where material gives way first.
+    """
+    value, least = moved.buckling, moved.factor
+    if moved.followed:
+        yield _followed(title, moved, beyond_strength(beams))
+    elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
+        how = f"all links together become unstable at {value:.3g} times the load by linear theory"
+        if least < value:
+            how = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
+        found = by_linear_theory(case, title, least, value, how)
+        yield found.because(found.reason + beyond_strength(beams))
+
+
+def by_linear_theory(
+    case: Case, title: str, least: float, factor: float, how: str, remedy: str = "follow its deformed shape"
+) -> CheckOutcome:
+    """Return the outcome of the linkage by its linear frame.
+
+    The band goes from what a shallow toggle holds, with the largest stated compliance, to linear theory's factor.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+    least : float
+        The lesser of ``factor`` and the factor on the displacements that takes the linkage to a dead point.
+    factor : float
+        On all loads, at which the linear frame becomes unstable.
+    how : str
+        What happens at ``least``, for people.
+    remedy : str, optional
+        What tells more, for people.
+    """
+    slack = max((compliance_scatter(case.material_of(link)).high for link in case.checked_links), default=1.0)
+    band = Band(
+        value=least,
+        low=least / SNAP / slack,
+        high=factor,
+        holds=("the modulus", "snap-through of a shallow toggle, which linear theory puts too high"),
+    )
+    band = load_scatter(case, title).inverse.on(band)
+    found = CheckOutcome.of(BUCKLING, LINKAGE, title, Quantity.BUCKLING_FACTOR, band, 1.0, how)
+    if found.verdict is Verdict.FAIL:
+        return found.because(f"{how}, so the linkage gives way")
+    if found.verdict is Verdict.UNDECIDED:
+        return found.because(f"{how}; a linkage may snap through at {least / SNAP:.3g} times the load: {remedy}")
+    if least < LEAST_FACTOR:
+        return found.because(f"{how}; displacements are up to {growth(least):.3g} times those of linear theory")
+    return found
+
+
+def _followed(title: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome:
+    """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
+    found = CheckOutcome.of(NAME, LINKAGE, title, Quantity.LOAD_SHARE, moved.held_band, 1.0)
+    open_end = f"; {found.reason}" if found.verdict is Verdict.UNDECIDED else ""
+    linear = moved.buckling is not None and math.isfinite(moved.buckling)
+    informs = f"; for information, its buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
+    return found.because(moved.sentence + open_end + informs + beyond)
