@@ -30,7 +30,7 @@ NOT_YET = (
     "geometry/meshing",
     "geometry/parts",
     "loads/case",
-    "loads/claims",
+    "loads/sources",
     "loads/records",
     "loads/states",
     "loads/statics",

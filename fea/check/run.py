@@ -35,9 +35,9 @@ from geometry.linkage.pose import NEAR_DEAD_POINT, Pose
 from geometry.parts.material import Material
 from loads.case.case import Case
 from loads.case.case_file import read_companion
-from loads.claims.published import StaticsAudit, audit
 from loads.records.applied import Load
 from loads.records.check_spec import BearingCheck, MotorCheck, PinCheck
+from loads.sources.published_statics import StaticsAudit, audit
 from loads.states.actions import PartMass, needs_masses
 from loads.states.inertia import acting_loads
 from loads.states.masses import part_mass

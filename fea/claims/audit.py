@@ -25,7 +25,7 @@ from fea.claims.data import Tree, case_tree, flapping_tree, look_up, system_tree
 from geometry.base.errors import CaseError
 from geometry.mechanisms.flapping import FlappingWing
 from loads.case.case_file import built_in_cases, read_case, read_companion
-from loads.records.claim import Claim, Printed, Source, System, TableSystem, read_printed, read_source, sources
+from loads.sources.claim import Claim, Printed, Source, System, TableSystem, read_printed, read_source, sources
 from loads.text.explain import printable
 from loads.text.expression import ANGLE, Path, Value, evaluate
 

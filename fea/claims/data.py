@@ -31,14 +31,14 @@ from geometry.mechanisms.ornithopter import OrnithopterDimensions, WingDrive
 from geometry.mechanisms.synthesis import Synthesis, synthesise
 from loads.case.case import Case
 from loads.case.case_file import read_case, read_companion
-from loads.claims.published import read_matrix
-from loads.records.claim import (
+from loads.sources.claim import (
     CaseSystem,
     FlappingSystem,
     OrnithopterSystem,
     SynthesisSystem,
     System,
 )
+from loads.sources.published_statics import read_matrix
 from loads.text.explain import printable
 from loads.text.expression import Path, Value
 

@@ -20,7 +20,7 @@ from fea.solid.stress import StressField
 from geometry.linkage.pose import Pose
 from geometry.parts.material import stress_measure
 from loads.case.case import Case
-from loads.claims.published import StaticsAudit
+from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions
 
 

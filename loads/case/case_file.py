@@ -9,13 +9,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
 from geometry.base.errors import CaseError
 from geometry.base.version import CASE_SCHEMA_VERSION, alula_version
-from geometry.mechanisms.ornithopter import OrnithopterRules
 from loads.case.case import Case
-from loads.case.ornithopter_case import ornithopter_settings
 from loads.case.revisable import Origin
 from loads.text.entries import alike, names_tables
 from loads.text.explain import printable, sentence
@@ -58,25 +56,17 @@ def _changed(tables: dict[str, Any], changes: Sequence[Change], name: str) -> Ca
     data = deepcopy(tables)
     for change in changes:
         _override(data, change)
-    if "ornithopter" in data:
-        for entry in _by_rules(data["ornithopter"]):
-            _override(data, _stated(entry, "ornithopter sets"))
-        for change in changes:  # what is stated outright wins
-            _override(data, change)
+    derived = Case.derived(data)
+    for table, entries in derived.items():
+        for path, value in entries.items():
+            _override(data, Change(path, value, f"{table} sets"))
+    for change in changes if derived else ():  # what is stated outright wins
+        _override(data, change)
     return validate(data).read_from(Origin(name=name, revise=partial(_revised, tables, tuple(changes), name)))
 
 
 def _revised(tables: dict[str, Any], changes: Sequence[Change], name: str, values: Mapping[str, object]) -> Case:
     return _changed(tables, [*changes, *(Change(path, value, "with_values") for path, value in values.items())], name)
-
-
-def _by_rules(stated: object) -> list[str]:
-    """Return the entries, as ``path=value``, that follow from the table ``[ornithopter]``."""
-    try:
-        (rules,) = TypeAdapter(dict[str, OrnithopterRules]).validate_python({"ornithopter": stated}).values()
-    except ValidationError as error:
-        raise CaseError(sentence(error, Case)) from None
-    return ornithopter_settings(rules)
 
 
 def read_text(name_or_path: str) -> tuple[str, str]:
@@ -149,7 +139,7 @@ def _check_version(data: Mapping[str, Any]) -> None:
         raise CaseError(f"schema_version: it is {shown}, but there is no such version of the format; {remedy}")
 
 
-def _stated(override: str, who: str = "--set") -> Change:
+def _stated(override: str) -> Change:
     """Read ``path=value``; a value that is not TOML is text."""
     path, sign, text = override.partition("=")
     try:
@@ -162,7 +152,7 @@ def _stated(override: str, who: str = "--set") -> Change:
         value = tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError):
         value = text.strip()
-    return Change(path.strip(), value, who)
+    return Change(path.strip(), value)
 
 
 def _keys(path: str) -> list[str]:

@@ -25,7 +25,7 @@ from loads.records.mass_rules import check_masses, check_weighed
 from loads.statics.statics import Drive, check_drive
 
 if TYPE_CHECKING:
-    from loads.case.case import Case, WaysToHold
+    from loads.case.core import CoreCase, WaysToHold
 
 MOST_RESULTS = 2_000
 """Load cases times links with a part: each pair is solved, drawn and told of."""
@@ -33,7 +33,7 @@ MOST_MOTION = 40_000_000
 """Entries of a motion's equilibrium equations, some 44 bytes each (measured: 100,000 poses of four moving links)."""
 
 
-def check_rules(case: "Case") -> None:
+def check_rules(case: "CoreCase") -> None:
     """Check that all of a case fits together; raises ``CaseError``."""
     check_file_names("links", case.links)
     check_file_names("load_cases", case.load_cases)
@@ -117,16 +117,11 @@ def check_rules(case: "Case") -> None:
             raise CaseError(
                 f"hand_calculations.{name}.part: '{hand.part}' is unknown; the parts are {', '.join(case.parts)}"
             )
-    if case.flapping_wing is not None:
-        case.flapping_wing.wing(case.linkage)
     if case.motion is not None:
         _check_motion(case)
-    for audited in case.published_statics.links if case.published_statics else ():
-        if audited not in case.linkage.moving:
-            raise CaseError(f"published_statics.links: '{audited}' is not a moving link; name moving links")
 
 
-def _check_size(case: "Case") -> None:
+def _check_size(case: "CoreCase") -> None:
     results = len(case.load_cases) * len(case.checked_links)
     if results > MOST_RESULTS:
         raise CaseError(
@@ -145,7 +140,7 @@ def _check_size(case: "Case") -> None:
         )
 
 
-def _check_pose(case: "Case") -> None:
+def _check_pose(case: "CoreCase") -> None:
     moving, slides = case.linkage.moving, case.pose.travel is not None
     for entry, names in (("pose.coordinate", [case.pose.coordinate]), ("pose.near", [*case.pose.near])):
         for name in names:
@@ -163,7 +158,7 @@ def _check_pose(case: "Case") -> None:
         )
 
 
-def _check_slides(case: "Case", entry: str, stated: str, name: str | None) -> None:
+def _check_slides(case: "CoreCase", entry: str, stated: str, name: str | None) -> None:
     slots = [joint for joint, record in case.joints.items() if record.type != "revolute"]
     if name not in slots:
         raise CaseError(
@@ -172,7 +167,7 @@ def _check_slides(case: "Case", entry: str, stated: str, name: str | None) -> No
         )
 
 
-def _check_motion(case: "Case") -> None:
+def _check_motion(case: "CoreCase") -> None:
     spec, name = case.motion, case.motion_coordinate
     assert spec is not None
     if spec.travel is not None:
@@ -193,7 +188,7 @@ def _check_body(entry: str, body: Body) -> None:
         raise CaseError(f"{entry}: {error}") from None
 
 
-def _check_loads(case: "Case", where: str, load_case: LoadCase) -> None:
+def _check_loads(case: "CoreCase", where: str, load_case: LoadCase) -> None:
     for kind in ("forces", "moments", "spread"):
         for i, load in enumerate(getattr(load_case, kind)):
             entry = f"{where}.{kind}.{i}"
@@ -227,7 +222,7 @@ def _check_loads(case: "Case", where: str, load_case: LoadCase) -> None:
         )
 
 
-def _check_moves(case: "Case", entry: str, link: str) -> None:
+def _check_moves(case: "CoreCase", entry: str, link: str) -> None:
     if link == case.linkage.ground:
         raise CaseError(
             f"{entry}.link: '{link}' is the ground, where a load does nothing; name a moving link: "
@@ -235,7 +230,7 @@ def _check_moves(case: "Case", entry: str, link: str) -> None:
         )
 
 
-def _check_torque(case: "Case", entry: str, load: PointMoment) -> None:
+def _check_torque(case: "CoreCase", entry: str, load: PointMoment) -> None:
     """A pin that turns freely passes no torque about its own axis; only the drive's does."""
     linkage = case.linkage
     pins = [name for name in linkage.joints_of(load.link)
@@ -249,7 +244,7 @@ def _check_torque(case: "Case", entry: str, load: PointMoment) -> None:
         )
 
 
-def _check_masses(case: "Case") -> None:
+def _check_masses(case: "CoreCase") -> None:
     known = {
         "moving": case.linkage.moving,
         "with_part": case.checked_links,
@@ -264,7 +259,7 @@ def _check_masses(case: "Case") -> None:
         check_weighed("motion.inertia", **known)
 
 
-def _check_pins(case: "Case", name: str, check: PinCheck | BearingCheck) -> None:
+def _check_pins(case: "CoreCase", name: str, check: PinCheck | BearingCheck) -> None:
     bearing = isinstance(check, BearingCheck)
     known = case.bearing_joints if bearing else case.pinned_joints
     for joint in check.joints:
@@ -283,7 +278,7 @@ def _check_pins(case: "Case", name: str, check: PinCheck | BearingCheck) -> None
             )
 
 
-def check_point(case: "Case", entry: str, link: str, point: str) -> None:
+def check_point(case: "CoreCase", entry: str, link: str, point: str) -> None:
     """Raise ``CaseError`` where ``link`` does not move or has no such point."""
     if link not in case.linkage.moving:
         raise CaseError(f"{entry}.link: '{link}' is not a moving link; choose among {', '.join(case.linkage.moving)}")
@@ -293,7 +288,7 @@ def check_point(case: "Case", entry: str, link: str, point: str) -> None:
         )
 
 
-def _check_published(case: "Case", asked: "WaysToHold") -> None:
+def _check_published(case: "CoreCase", asked: "WaysToHold") -> None:
     """A published displacement stands beside that of the loads that it was published for, and of no others."""
     known = ", ".join(case.load_cases)
     if asked.load_case is not None and asked.load_case not in case.load_cases:
@@ -302,7 +297,7 @@ def _check_published(case: "Case", asked: "WaysToHold") -> None:
         raise CaseError(f"ways_to_hold.load_case: it is missing; name the one that was published for, among {known}")
 
 
-def _check_displaced(case: "Case", name: str, check: DisplacementCheck) -> None:
+def _check_displaced(case: "CoreCase", name: str, check: DisplacementCheck) -> None:
     if check.at is None:
         raise CaseError(f"checks.{name}.link: it says whose point is meant, but none is named; add at, or use links")
     if check.links:
@@ -312,7 +307,7 @@ def _check_displaced(case: "Case", name: str, check: DisplacementCheck) -> None:
     case.displaced_point(name, check)
 
 
-def _check_motor(case: "Case", name: str) -> None:
+def _check_motor(case: "CoreCase", name: str) -> None:
     if case.motion is None or case.drive is None:
         raise CaseError(f"checks.{name}: a motor needs a motion to drive; add [motion] and [drive]")
     if Drive(link=case.drive.link, joint=case.drive.joint).pushes(case.linkage):
@@ -324,7 +319,7 @@ def _check_motor(case: "Case", name: str) -> None:
         )
 
 
-def _check_carried(case: "Case", entry: str, mass: Carried) -> None:
+def _check_carried(case: "CoreCase", entry: str, mass: Carried) -> None:
     if mass.link not in case.linkage.moving:
         raise CaseError(
             f"{entry}.link: '{mass.link}' is not a moving link; choose among {', '.join(case.linkage.moving)}"
@@ -340,14 +335,14 @@ def _check_carried(case: "Case", entry: str, mass: Carried) -> None:
         raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
 
 
-def _check_no_slot(case: "Case", entry: str, link: str, point: str) -> None:
+def _check_no_slot(case: "CoreCase", entry: str, link: str, point: str) -> None:
     if point in case.links[link].slots:
         raise CaseError(
             f"{entry}: point '{point}' of link '{link}' is a slot, where the pin alone can push; name another point"
         )
 
 
-def check_slots(case: "Case", link: str) -> None:
+def check_slots(case: "CoreCase", link: str) -> None:
     """Check that a link's slots and arms are where pins are, and that every pin that slides in it has a slot."""
     record, linkage = case.links[link], case.linkage
     sliding = {linkage.point_of(name, link): name for name in linkage.joints_of(link)

@@ -254,7 +254,7 @@ def claims(
     """Re-derive published figures and say which of them hold."""
     from fea.claims.audit import check_all, check_claims
     from geometry.base.errors import CaseError
-    from loads.records.claim import read_source, sources
+    from loads.sources.claim import read_source, sources
     from reports.tables.claims import as_json, as_markdown, as_text
     from reports.words.limits import limited
 

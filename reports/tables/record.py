@@ -10,7 +10,7 @@ from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.unchecked import unchecked
 from geometry.base.version import result_stamp
 from geometry.parts.material import Material
-from loads.claims.published import StaticsAudit
+from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions
 from reports.tables.frames import UNITS as FRAME_UNITS
 from reports.tables.frames import frame_record, reaction_records

@@ -19,7 +19,7 @@ from geometry.base.errors import CaseError
 from geometry.base.units import EXAMPLES, parse
 from loads.case.case import Case
 from loads.case.case_file import built_in_cases, read_case, read_companion, validate
-from loads.records.claim import Claim, read_printed
+from loads.sources.claim import Claim, read_printed
 from loads.text.explain import sentence
 from loads.text.expression import Path as NamePath
 from loads.text.expression import Value, evaluate

@@ -8,7 +8,7 @@ import pytest
 from geometry.base.errors import CaseError
 from geometry.linkage.closure import LoopClosure
 from loads.case.case_file import read_case, read_text, validate
-from loads.records.claim import read_printed
+from loads.sources.claim import read_printed
 
 WING = "owl-wing-flight"
 

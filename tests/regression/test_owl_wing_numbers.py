@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from loads.case.case_file import read_case, read_companion
-from loads.claims.published import audit
+from loads.sources.published_statics import audit
 from loads.states.actions import actions
 from loads.statics.statics import solve_statics
 

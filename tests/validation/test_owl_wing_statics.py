@@ -16,7 +16,7 @@ import pytest
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.case_file import read_case, read_companion
-from loads.claims.published import StaticsAudit, audit, read_matrix
+from loads.sources.published_statics import StaticsAudit, audit, read_matrix
 from loads.states.actions import actions
 from loads.statics.statics import Reactions, solve_statics
 

@@ -12,7 +12,7 @@ from fea.claims.audit import Finding, _Names, check_all, check_claim, check_clai
 from geometry.base.errors import CaseError
 from geometry.mechanisms.ornithopter import motors
 from loads.case.case_file import read_case
-from loads.records.claim import (
+from loads.sources.claim import (
     CaseSystem,
     Claim,
     FlappingSystem,

@@ -8,9 +8,8 @@ from pydantic import ValidationError
 from geometry.base.errors import CaseError
 from geometry.linkage.linkage import Linkage
 from geometry.linkage.pose import Pose, solve_pose
-from loads.case.case import PublishedStatics
-from loads.claims.published import StaticsAudit, audit, read_matrix
 from loads.records.applied import PointLoad
+from loads.sources.published_statics import PublishedStatics, StaticsAudit, audit, read_matrix
 from loads.statics.statics import Drive, assemble, solve_statics
 
 NEAR = {"AE": 2.5, "CF": 3.5, "CH": 2.48, "ED": 3.5}

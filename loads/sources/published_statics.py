@@ -13,19 +13,42 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from geometry.base.errors import CaseError
+from geometry.base.model import CaseModel, Name, Text
 from geometry.linkage.pose import Pose
-from loads.case.case import PublishedStatics
 from loads.records.applied import Load
 from loads.text.explain import printable
 
 Real = NDArray[np.float64]
 _MM = 1000.0
 """Published moments are in N m, lengths in m."""
+
+
+class PublishedStatics(CaseModel):
+    """A published system of equilibrium equations, to be solved and audited."""
+
+    source: Text
+    exact: str
+    """CSV file beside the case file: the coefficients as the source's formulas give them (N, m)."""
+    printed: str
+    """CSV file beside the case file: the coefficients as printed."""
+    links: tuple[Name, ...]
+    """The link of each group of three rows."""
+    rhs: dict[str, float]
+    """Right-hand side by the number of the equation (from 1); zero where left out [N, N m]."""
+    reactions: tuple[float, ...]
+    """The published solution, in the order of the columns [N, N m]."""
+    digits: Annotated[int, Field(ge=0, le=12)] = 4
+    """Printed decimals of the solution."""
+    tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.01
+    """Largest share of a row that may lie outside the linkage's equilibrium equations, since the
+    source's angles differ from the assembled pose's."""
 
 
 @dataclass(frozen=True, kw_only=True)

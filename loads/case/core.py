@@ -1,0 +1,323 @@
+"""The core of a case: what a user states, as the case file (TOML) mirrors it; ``case_rules`` holds its rules."""
+
+from functools import cached_property
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from geometry.base.errors import CaseError
+from geometry.base.model import CaseModel, Name, Text
+from geometry.base.units import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Angle,
+    Force,
+    Length,
+)
+from geometry.linkage.linkage import Joint, Link, Linkage
+from geometry.linkage.pose import Pose, solve_pose
+from geometry.parts.material import Material, library
+from geometry.parts.part import Body, Part, Pin, PlainEnd, Tube
+from loads.case.case_rules import check_point, check_rules, check_slots
+from loads.case.revisable import Revisable
+from loads.records.aero import AirForces, air_forces
+from loads.records.carried import Carried
+from loads.records.check_spec import (
+    Check,
+    DisplacementCheck,
+    SafetyFactorCheck,
+    SustainedCheck,
+)
+from loads.records.conditions import Conditions, under
+from loads.records.load_case import LoadCase
+from loads.records.motion_spec import MotionSpec
+from loads.statics.statics import Drive
+from loads.text.accuracy import Accuracy
+
+
+class PoseSpec(CaseModel):
+    """Which position the linkage is in."""
+
+    coordinate: Name | None = None
+    """The link whose direction fixes the pose, or with a travel the slider or slot that does; leave it out for a
+    structure that cannot move."""
+    angle: Angle = 0.0
+    """Direction of that link's x axis, counter-clockwise from the global x axis."""
+    travel: Length | None = None
+    """Travel of that slider or slot, from the point of its first link to that of its second, along its direction."""
+    near: dict[Name, Angle] = {}
+    """Rough directions of the other links: they choose the assembly branch."""
+
+
+class DriveSpec(CaseModel):
+    """Where the drive torque enters, or at a slider the drive force."""
+
+    link: Name
+    """The driven link."""
+    joint: Name
+    """The joint about which it is driven, or the slider along which it is pushed; the reaction goes to the other link
+    there."""
+    transfer: Literal["eye-faces", "bore-shear"] = "eye-faces"
+    """How the torque enters the driven part: as shear on the eye's flat faces, or on its bore."""
+
+
+class CantileverCalculation(CaseModel):
+    """A hand calculation: a part as a cantilever under an evenly spread load."""
+
+    type: Literal["cantilever"]
+    part: Name
+    length: Annotated[Length, POSITIVE]
+    load: Annotated[Force, NOT_NEGATIVE]
+    """The total load [N]."""
+
+
+class WaysToHold(CaseModel):
+    """How far a point moves, by the frame, depending on which link the drive holds and on whether pins turn."""
+
+    link: Name
+    at: Name
+    published: Annotated[Length, POSITIVE] | None = None
+    """A published displacement, to stand beside them."""
+    load_case: Name | None = None
+    """The load case that it was published for; needed where the case has several."""
+    source: Text = ""
+
+
+class SolidSettings(CaseModel):
+    """The solid finite-element model."""
+
+    mesh_size: Annotated[float, Field(ge=0.1, le=4.0)] = 1.0
+    """Factor on the mesher's own element sizes: 0.5 halves them, 2 doubles them."""
+    curved: bool = True
+    """Quadratic elements with curved edges; straight edges when false."""
+    accuracy: Accuracy | None = None
+    """Largest error of the meshes that is wanted in the deciding stress and the displacement, such as "5 %"; without
+    it meshes are refined until the verdict is clear or that error is 5 %."""
+
+
+class CoreCase(Revisable):
+    """A linkage with its pose, drive, parts, loads and checks; ``Case`` adds tables that serve published sources."""
+
+    schema_version: Literal[1]
+    """Version of the case file's format."""
+    title: Text
+    description: Text = ""
+    source: Text = ""
+    assumptions: tuple[Text, ...] = ()
+    """What the case assumes beyond its source, one sentence each; the report lists them."""
+    links: Annotated[dict[Name, Link], Field(min_length=2, max_length=200)]
+    joints: Annotated[dict[Name, Joint], Field(min_length=1, max_length=400)]
+    pose: PoseSpec = PoseSpec()
+    drive: DriveSpec | None = None
+    motion: MotionSpec | None = None
+    materials: dict[Name, Material] = {}
+    """Material cards of the case's own; the library's are there by name without being listed."""
+    parts: dict[Name, Part] = {}
+    joint_model: Literal["pinned", "bonded"] = "pinned"
+    """Whether pins turn freely, or are bonded and carry moments about their own axis as well. Sliders and pins in slots
+    slide all the same."""
+    large_displacement: Literal["auto", "off"] = "auto"
+    """auto: where the linkage moves by more than 5 % of its span, or may give way below ten times its load,
+    equilibrium is sought on the deformed shape. off: never."""
+    conditions: Conditions = Conditions()
+    ways_to_hold: WaysToHold | None = None
+    carried: tuple[Carried, ...] = ()
+    """Masses that links carry besides their parts; they weigh where the parts weigh, and have inertia."""
+    massless: tuple[Name, ...] = ()
+    """Moving links without part or carried mass that are to weigh nothing where others weigh or move."""
+    load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=100)]
+    checks: dict[Name, Check] = {}
+    hand_calculations: dict[Name, CantileverCalculation] = {}
+    solid: SolidSettings = SolidSettings()
+
+    def model_post_init(self, context: object) -> None:
+        """Check that all names fit together; raises ``CaseError``."""
+        check_rules(self)
+
+    @cached_property
+    def linkage(self) -> Linkage:
+        """The links and joints as one linkage."""
+        return Linkage(self.links, self.joints)
+
+    @cached_property
+    def pinned_drive(self) -> Drive | None:
+        """The drive as statics needs it."""
+        return Drive(link=self.drive.link, joint=self.drive.joint) if self.drive else None
+
+    @cached_property
+    def all_materials(self) -> dict[str, Material]:
+        """The library's materials and the case's own, which win."""
+        return library() | self.materials
+
+    @property
+    def checked_links(self) -> tuple[str, ...]:
+        """The moving links that have a part, hence a stress."""
+        return tuple(name for name in self.linkage.moving if self.links[name].part is not None)
+
+    def material_of(self, link: str) -> Material:
+        """The material of a link that has a part, as it is under the case's conditions.
+
+        Raises ``CaseError`` where its card lacks what the conditions ask for.
+        """
+        part = self.part_of(link)
+        material = self.all_materials[part.material]
+        if isinstance(part, Tube):
+            material = material.drawn(f"parts.{self.links[link].part}.outer_diameter", part.outer_diameter)
+        return under(material, self.conditions)
+
+    @property
+    def all_checks(self) -> dict[str, Check]:
+        """The stated checks, or the safety factor of every link where none is; and, where loads stay, that they may."""
+        checks = dict(self.checks) or {"safety factor": SafetyFactorCheck(type="safety-factor")}
+        if self.conditions.duration is not None and not any(isinstance(c, SustainedCheck) for c in checks.values()):
+            checks["sustained load"] = SustainedCheck(type="sustained")
+        return checks
+
+    def displaced_point(self, name: str, check: DisplacementCheck) -> tuple[str, str]:
+        """Return link and point of a check called ``name`` that is about a point.
+
+        Raises ``CaseError`` where there is no such point, or more than one.
+        """
+        point = check.at or ""
+        if check.link is not None:
+            check_point(self, f"checks.{name}", check.link, point)
+            return check.link, point
+        owners = [link for link in self.linkage.moving if point in self.links[link].points]
+        if not owners:
+            every = dict.fromkeys(p for link in self.linkage.moving for p in self.links[link].points)
+            raise CaseError(f"checks.{name}.at: no moving link has a point '{point}'; choose among {', '.join(every)}")
+        pinned = {
+            link
+            for joint, record in self.joints.items()
+            if record.type == "revolute" and set(self.linkage.joint_points(joint)) == {point}
+            for link in record.links
+        }
+        if len(owners) > 1 and not set(owners) <= pinned:
+            raise CaseError(
+                f"checks.{name}.at: links {', '.join(owners)} have a point '{point}' each, not joined there by a pin; "
+                "add link, the one that is meant"
+            )
+        return owners[0], point
+
+    def pin_material(self, joint: str) -> Material:
+        """The material of a joint's pin; the case's conditions, which are those of the links, leave it alone."""
+        record = self.joints[joint]
+        material = self.all_materials[record.pin_material]
+        if record.pin_diameter is None:
+            return material
+        return material.drawn(f"joints.{joint}.pin_diameter", record.pin_diameter)
+
+    @property
+    def pinned_joints(self) -> tuple[str, ...]:
+        """The revolute joints whose pin sits in a link with a part."""
+        return tuple(
+            name
+            for name, joint in self.joints.items()
+            if joint.type == "revolute" and set(joint.links) & set(self.checked_links)
+        )
+
+    @property
+    def bearing_joints(self) -> tuple[str, ...]:
+        """The joints whose pin bears on a part: those of ``pinned_joints``, and pins in slots of links with a part."""
+        slotted = [
+            name
+            for name, joint in self.joints.items()
+            if joint.type == "pin-in-slot" and joint.links[0] in self.checked_links
+        ]
+        return (*self.pinned_joints, *slotted)
+
+    def part_of(self, link: str) -> Part:
+        """The part of a link; raises ``CaseError`` where it has none."""
+        name = self.links[link].part
+        if name is None:
+            raise CaseError(f"links.{link}.part: this link has no part; name one")
+        return self.parts[name]
+
+    def body(self, link: str) -> Body:
+        """Everything that shapes a link: part, pins, plain ends, holes.
+
+        Raises ``CaseError`` where a pin has no diameter, a plain end does not lie on the axis, or a slot or arm does
+        not fit its joints.
+        """
+        record = self.links[link]
+        check_slots(self, link)
+        pinned: dict[str, str] = {}
+        for joint in self.linkage.joints_of(link):
+            first = pinned.setdefault(self.linkage.point_of(joint, link), joint)
+            if self.joints[first].pin_diameter != self.joints[joint].pin_diameter:
+                raise CaseError(
+                    f"joints.{joint}.pin_diameter: it differs from that of joint '{first}', but both pins sit in one "
+                    f"hole of link '{link}'; give both the same diameter"
+                )
+        pins, ends = [], []
+        for name, (x, y) in record.points.items():
+            if name in pinned:
+                diameter = self.joints[pinned[name]].pin_diameter
+                if diameter is None:
+                    raise CaseError(
+                        f"joints.{pinned[name]}.pin_diameter: link '{link}' has a part, so this pin needs a diameter; "
+                        'state it, for example "1.5 mm"'
+                    )
+                pins.append(_pin(self, link, name, diameter))
+            elif abs(y) > 1e-9 * self.linkage.longest:
+                raise CaseError(
+                    f"links.{link}.points.{name}: a load point without pin must lie on the link's axis (y = 0), "
+                    f"but y is {y:g} mm; move it onto the axis or make it a joint"
+                )
+            else:
+                ends.append(PlainEnd(name=name, x=x, patch=record.end_patch))
+        return Body(part=self.part_of(link), pins=tuple(pins), ends=tuple(ends), holes=record.holes)
+
+    @property
+    def motion_coordinate(self) -> str:
+        """The link whose direction, or slider whose travel, the motion prescribes.
+
+        Raises ``CaseError`` where the case has no motion.
+        """
+        name = None if self.motion is None else self.motion.coordinate or self.pose.coordinate
+        if name is None:
+            raise CaseError(
+                "motion: the case does not say what moves; add [motion] with its coordinate and a range or turn = true"
+            )
+        return name
+
+    @property
+    def moves(self) -> bool:
+        """True where the stated pose moves by the rank of its Jacobian, such as a parallelogram with a further link."""
+        try:
+            return self.pose.coordinate is not None and self.solve_pose() is not None
+        except CaseError:
+            return False
+
+    @property
+    def link_points(self) -> dict[str, dict[str, tuple[float, float]]]:
+        """Link -> point -> (x, y) in the link's frame [mm]."""
+        return {name: link.points for name, link in self.links.items()}
+
+    def air_forces(self, load_case: str) -> tuple[AirForces, ...]:
+        """Lift and drag of every air load of a load case."""
+        return tuple(
+            air_forces(air, f"load_cases.{load_case}.air.{i}") for i, air in enumerate(self.load_cases[load_case].air)
+        )
+
+    def solve_pose(self) -> Pose:
+        """Assemble the linkage in the stated pose."""
+        return solve_pose(
+            self.linkage,
+            coordinate=self.pose.coordinate,
+            angle=self.pose.angle,
+            near=self.pose.near,
+            travel=self.pose.travel,
+        )
+
+
+def _pin(case: CoreCase, link: str, name: str, diameter: float) -> Pin:
+    """Return the hole or slot at a point of a link for a pin of that diameter."""
+    record = case.links[link]
+    (x, y), slot = record.points[name], record.slots.get(name)
+    if slot is not None:
+        middle, length = (slot.first + slot.last) / 2.0, slot.last - slot.first
+        width = diameter + slot.clearance
+        return Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.clearance)
+    foot = record.arms.get(name)
+    return Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot])
