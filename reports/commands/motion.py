@@ -123,7 +123,7 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
     duration = "" if motion["duration"] is None else f", {motion['duration']:.4g} s"
     print(
         f"{motion['coordinate']} from {motion['first']:.6g} to {motion['last']:.6g} {motion['unit']}: "
-        f"{motion['poses']} poses{duration}; loops closed to {motion['closure_residual']:.1g} of the longest link"
+        f"{motion['poses']} poses{duration}; largest gap of a loop {motion['closure_residual']:.1g} of the longest link"
     )
     if motion["returns_to_start"]:
         print("The linkage returns to its start.")
@@ -136,9 +136,9 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         )
     for angle in drive["dead_points"]:
         print(
-            f"\n{drive['link']} turns back at {motion['coordinate']} = {angle:.4f} {motion['unit']}: a dead point of "
-            f"the driven link. There it cannot drive the linkage; {result.effort[0]} and joint forces grow without "
-            "bound."
+            f"\nDead point of the driven link {drive['link']} at {motion['coordinate']} = {angle:.4f} "
+            f"{motion['unit']}: {drive['link']} reverses its direction there; drive {result.effort[0]} and joint "
+            "forces grow without bound."
         )
     if design := design_lines(result.case):
         print("\n" + "\n".join(design))
@@ -151,11 +151,11 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         told = _line(row[f"drive_{what}"], unit, motion["unit"])
         print(f"  drive {what} on {drive['link']} at {drive['joint']}: {told}")
         if row["joints"] is None:
-            print("  joint forces do not follow from equilibrium, since the linkage is redundant")
+            print("  the linkage is statically indeterminate, so equilibrium alone does not give the joint forces")
             continue
         if "drive_power" in row:
             power = _line(row["drive_power"], "W", motion["unit"])
-            print(f"  drive power at {at}: {power}; energy balance to {row['energy_imbalance']:.1g}")
+            print(f"  drive power at {at}: {power}; energy imbalance {row['energy_imbalance']:.1g}")
         for joint, extremes in row["joints"].items():
             print(f"  joint {joint}: {_line(extremes, 'N', motion['unit'])}")
 
@@ -167,7 +167,7 @@ def _line(row: Mapping[str, Any], unit: str, at: str) -> str:
     ends = f"{first} -> {last} {unit}"
     if row["unbounded"]:
         return ends
-    return f"{ends}, least {smallest} at {row['smallest_at']:.1f} {at}, most {largest} at {row['largest_at']:.1f} {at}"
+    return f"{ends}; min {smallest} at {row['smallest_at']:.1f} {at}, max {largest} at {row['largest_at']:.1f} {at}"
 
 
 def _text(value: float | None, scale: float) -> str:

@@ -1,4 +1,4 @@
-"""What the verdict of a report does not cover, from what ran and from what the case states."""
+"""What the verdict of a report does not cover, derived from the case and its result."""
 
 import math
 from collections.abc import Iterable
@@ -8,52 +8,50 @@ from fea.outcomes.result import CheckResult, LinkResult
 from reports.words.wording import joined
 
 STACKING = (
-    "All links lie in one plane. In a real linkage they are stacked along the pins, and the offset bends and twists "
-    "them."
+    "All links lie in one plane. In a real linkage they are stacked along the pins; the offset causes additional "
+    "bending and torsion."
 )
-IMPACT = "A blow loads a link more than the same load at rest."
+IMPACT = "A sudden load causes higher stresses than the same load applied slowly."
 
 
 def not_covered(result: CheckResult) -> tuple[tuple[str, str], ...]:
-    """Return (title, text) of everything that the models of this check leave out."""
+    """Return (title, text) of each effect that the models of this check do not cover."""
     moves = result.case.motion is not None
     return (
-        ("Other poses", "One pose was checked. Another pose of the linkage may load a link more"
-         + ("; alula envelope goes through those of its motion." if moves else ".")),
+        ("Other poses", "Only this pose was checked; another pose can give higher stresses"
+         + (". The command alula envelope checks all poses of the motion." if moves else ".")),
         ("Stacking", STACKING),
         ("Pins and contact", _pins(result)),
-        ("Fatigue", "The loads act once and stay. Loads that come and go break parts at lower stresses"
-         + ("; alula envelope counts the cycles of the motion." if moves else ".")),
+        ("Fatigue", "The loads are static. Repeated loads break parts at lower stresses"
+         + (". The command alula envelope checks fatigue over the motion." if moves else ".")),
         ("Creep, temperature, moisture, ageing", _conditions(result)),
         ("Large displacements", _large_displacement(result)),
         ("Buckling", _buckling(result)),
         ("Impact", IMPACT),
-        ("Making and scatter", _scatter(result)),
+        ("Manufacture and scatter", _scatter(result)),
         ("Bands", _bands(result)),
     )  # fmt: skip
 
 
 def _pins(result: CheckResult) -> str:
     checked = list(dict.fromkeys(joint for case in result.load_cases.values() for joint in case.pins))
-    own = (
-        f"Of the pins themselves, {joined(checked)} {_was(checked)} checked" if checked else "No pin itself was checked"
-    )
-    return f"A pin is a pressure on its hole. Clearance, friction and wear are left out. {own}."
+    own = f"Checked pins: {joined(checked)}" if checked else "No pin was checked"
+    return f"Each pin is modelled as a pressure on its hole, without clearance, friction or wear. {own}."
 
 
 def _conditions(result: CheckResult) -> str:
     stated = result.case.conditions
     if stated.duration is None and stated.temperature is None:
-        held = "the material values are short-term ones at room temperature, since the case states no conditions"
+        held = "the case states no conditions, so short-term values at room temperature are used"
     elif stated.temperature is None:
-        held = "stiffness and stress are judged after the stated time under load, at room temperature"
+        held = "stiffness and stress are those after the stated time under load, at room temperature"
     elif stated.duration is None:
-        held = "the strengths are those at the stated temperature, under short-term load; the modulus is not warmed"
+        held = "strengths are short-term values at the stated temperature; the modulus is that at room temperature"
     else:
-        held = "strengths are those at the stated temperature, stiffness that after the stated time, not warmed"
+        held = "strengths are those at the stated temperature, stiffness that after the stated time at room temperature"
     return (
-        "Plastics lose strength and stiffness under load that lasts, in warmth and with the years; "
-        f"{held}. Moisture and ageing are left out."
+        "Plastics lose strength and stiffness with time under load, temperature and age: "
+        f"{held}. Moisture and ageing are not modelled."
     )
 
 
@@ -64,17 +62,17 @@ def _large_displacement(result: CheckResult) -> str:
     small = [name for name in states if name not in followed and name not in blind]
     told = []
     if small:
-        told.append(f"{_under(result, small)}forces follow from the shape before loading, since it moves little")
+        told.append(f"{_under(result, small)}forces are those of the undeformed pose, since displacements are small")
     if blind:
-        told.append(f"{_under(result, blind)}forces follow from the shape before loading, however far it may move")
+        told.append(f"{_under(result, blind)}forces are those of the undeformed pose, without check of displacements")
     if followed:
-        told.append(f"{_under(result, followed)}the deformed shape was followed under loads that keep their direction")
+        told.append(
+            f"{_under(result, followed)}equilibrium is that of the deformed pose under loads of constant direction"
+        )
         stated = [result.case.load_cases[name] for name in followed]
         axes = {force.axes for case in stated for force in case.forces}
         if "link" in axes | {spread.axes for case in stated for spread in case.spread}:
-            told.append(
-                "a load in the axes of its link turns with it from pose to pose, but not as the linkage deforms"
-            )
+            told.append("a load in link axes turns with the pose of its link, but not with the deformation")
     text = "; ".join(told)
     return f"{text[:1].upper()}{text[1:]}."
 
@@ -92,16 +90,16 @@ def _buckling(result: CheckResult) -> str:
     }
     links = [link for link in result.case.checked_links if Subject.link(link) in judged]
     found = (
-        f"{joined(links)} {_was(links)} judged" if links else "No link is in compression; one that is would be judged"
+        f"{joined(links)} {_was(links)} checked" if links else "No link is in compression; one that is would be checked"
     )
     found += f" as {'straight elastic columns' if len(links) > 1 else 'a straight elastic column'}"
-    found += ": crookedness and thin walls that buckle by themselves are left out"
+    found += ". Initial curvature and local buckling of thin walls are not modelled"
     followed = all(case.large_displacement.followed for case in result.load_cases.values())
     unseen = [n for n, case in result.load_cases.items() if case.large_displacement.buckling is None]
     if unseen:
-        found += f". Buckling of all links together was not looked into {_under(result, unseen)}".rstrip()
+        found += f". Buckling of the whole linkage was not checked {_under(result, unseen)}".rstrip()
     elif LINKAGE in judged and not followed:
-        found += ". All links together were judged by linear theory"
+        found += ". Buckling of the whole linkage was checked by linear theory"
     return f"{found}."
 
 
@@ -117,10 +115,10 @@ def _scatter(result: CheckResult) -> str:
     missing = [
         what if len(names) == whole[what] else f"{what} ({joined(names)})" for what, names in bare.items() if names
     ]
-    text = "Voids, layers, notches and scatter of dimensions are left to the safety factor"
+    text = "The safety factor must cover voids, print layers, notches and scatter of dimensions"
     if missing:
-        text += f", and so is scatter of {joined(missing)}, for which no range is stated"
-    return f"{text}. Ranges that are stated are in the bands."
+        text += f", and scatter of {joined(missing)}, for which the case states no range"
+    return f"{text}. Stated ranges are part of the bands."
 
 
 def _bands(result: CheckResult) -> str:
@@ -131,15 +129,15 @@ def _bands(result: CheckResult) -> str:
     hand = _names(link for link in loaded if link.link not in (*alone, *solid))
     told = []
     if solid:
-        told.append(f"the error of the meshes of {joined(solid)} is in their bands as an estimate, which is no bound")
+        told.append(f"the discretisation error in the bands of {joined(solid)} is an estimate, not a bound")
     if hand:
-        told.append(f"no mesh of {joined(hand)} ran: their bands are what solid models of like parts gave")
+        told.append(f"{joined(hand)} {_was(hand)} not meshed: the bands come from solid models of similar parts")
     if alone:
         reasons = [link.safety_factor.without for link in loaded]
         why = joined(list(dict.fromkeys(filter(None, reasons))))
-        told.append(f"{joined(alone)} {'has' if len(alone) == 1 else 'have'} no band of model error ({why})")
+        told.append(f"{joined(alone)} {'has' if len(alone) == 1 else 'have'} no band for model error ({why})")
     text = "; ".join(told)
-    return f"{text[:1].upper()}{text[1:]}." if text else "Nothing acts on any link that was checked."
+    return f"{text[:1].upper()}{text[1:]}." if text else "No load acts on any checked link."
 
 
 def _was(names: list[str]) -> str:

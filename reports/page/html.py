@@ -38,12 +38,12 @@ from reports.words.wording import (
 )
 
 MEANING = {
-    Verdict.PASS: "In this pose and under these loads every checked link keeps the margin that was asked for, "
-    "wherever in its error band the truth lies. What the model leaves out is listed at the end.",
-    Verdict.FAIL: "At least one check misses its limit wherever in its error band the truth lies: "
-    "change the section, the material, the load, or how the linkage is held.",
-    Verdict.UNDECIDED: "At least one answer cannot be given with the models that ran: its error band reaches over "
-    "the limit, or the model leaves out what matters there. This is neither a pass nor a fail.",
+    Verdict.PASS: "In this pose and under these loads every check keeps its limit, even at the unfavourable end of "
+    "its error band. The last section lists what the model does not cover.",
+    Verdict.FAIL: "At least one check misses its limit, even at the favourable end of its error band. "
+    "Change the section, the material, the load or the supports.",
+    Verdict.UNDECIDED: "At least one check is open: its limit lies inside its error band, or no model that ran can "
+    "decide it. This is neither a pass nor a fail.",
 }
 MODEL = {"solid": "Solid model", "beam": "Beam theory"}
 HAND = "Hand calculation"

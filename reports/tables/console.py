@@ -1,4 +1,4 @@
-"""The result on the terminal: verdict first, then links, checks, hand calculations, warnings."""
+"""The result of a check on the terminal: verdict, links, checks, hand calculations, warnings."""
 
 from typing import TYPE_CHECKING
 
@@ -44,13 +44,11 @@ def print_result(result: CheckResult, console: "Console") -> None:
         say(
             console,
             f"Hand calculation {name}: cantilever, M {number(hand.moment)} N·mm, "
-            f"bending stress {number(hand.stress)} MPa, n {number(hand.safety_factor)}.",
+            f"bending stress {number(hand.stress)} MPa, safety factor {number(hand.safety_factor)}.",
         )
     if result.audit is not None:
         wrong = [str(row.number) for row in result.audit.rows if not row.valid]
-        found = (
-            f"equations {joined(wrong)} are no equilibrium equations" if wrong else "every equation is an equilibrium"
-        )
+        found = f"equations {joined(wrong)} are not equilibrium equations" if wrong else "all are equilibrium equations"
         say(console, f"Published statics ({result.audit.source}): {found} of this linkage.")
     if result.second_opinions:
         say_opinions(result.second_opinions, console)
@@ -80,17 +78,19 @@ def _statics(case: LoadCaseResult) -> str:
 
 
 def _air(air: AirForces) -> str:
-    lift, drag = (f" (C {number(c, 3)})" for c in air.coefficients) if air.coefficients else ("", "")
+    lift, drag = ("", "")
+    if air.coefficients:
+        lift, drag = (f" (C_{x} {number(c, 3)})" for x, c in zip("LD", air.coefficients, strict=True))
     pressure = "" if air.pressure is None else f", q {number(air.pressure * 1e6, 3)} Pa"
     return f"Air: lift {number(air.lift)} N{lift}, drag {number(air.drag)} N{drag}{pressure}"
 
 
 def _anchor(case: LoadCaseResult) -> str:
     anchor = anchor_loads(case)
-    rows = {**anchor.joints, f"all, about {anchor.about}": anchor.total}
-    undeformed = ", undeformed (no stable equilibrium beyond)" if anchor.unstable else ""
-    shape = ", deformed" if anchor.deformed else undeformed
-    lines = [f"On the ground{shape}: force x, y, z [N]; moment x, y, z [N·mm]"]
+    rows = {**anchor.joints, f"total, about {anchor.about}": anchor.total}
+    undeformed = ", undeformed pose (the deformed one has no stable equilibrium)" if anchor.unstable else ""
+    shape = ", deformed pose" if anchor.deformed else undeformed
+    lines = [f"Load on the ground{shape}: force x, y, z [N]; moment x, y, z [N·mm]"]
     for name, wrench in rows.items():
         force, moment = (", ".join(number(float(x)) for x in part) for part in (wrench[:3], wrench[3:]))
         lines.append(f"  {name}: {force}; {moment}")
@@ -106,7 +106,7 @@ def _links(case: LoadCaseResult, console: "Console") -> None:
         ("decisive stress\n[MPa]" if mixed else f"{next(iter(measures), '')}\n[MPa]", True),
         ("safety factor n\n(band)", True),
         ("displacement\n[mm]", True),
-        ("worst at x\n[mm]", True),
+        ("largest at x\n[mm]", True),
     ]
     rows = [
         (
@@ -114,7 +114,7 @@ def _links(case: LoadCaseResult, console: "Console") -> None:
             link.decided_by or link.fidelity,
             (f"{link.measure} " if mixed else "") + number(link.decisive.value, 3),
             band(link.safety_factor),
-            number(link.displacement_max.value, 3),
+            number(link.displacement_max.value, 3, 1000.0 * case.reactions.pose.linkage.longest),
             fixed(float(link.location[0]), 1),
         )
         for name, link in case.links.items()

@@ -117,7 +117,7 @@ def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:
     deformed = case.large_displacement.reactions
     if deformed is not None:
         forces = "  ".join(f"{name} {number(joint.magnitude)}" for name, joint in deformed.joints.items())
-        lines.append(f"On the deformed shape [N]: {forces}")
+        lines.append(f"Joint forces on the deformed shape [N]: {forces}")
         if deformed.drive is not None:
             pushes = deformed.drive.pushes(deformed.pose.linkage)
             what = f"force on the deformed shape: {number(deformed.drive_force)} N"
@@ -127,10 +127,10 @@ def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:
     asked = result.case.ways_to_hold
     if asked is not None:
         ways = [
-            f"{held.name} ({', '.join(fixed(float(x), 1) for x in held.displacement)}), {number(held.size, 3)} in all"
+            f"{held.name}: {', '.join(fixed(float(x), 1) for x in held.displacement)}, total {number(held.size, 3)}"
             for held in case.ways_to_hold
         ]
         if asked.published is not None and asked.load_case in (None, case.name):
-            ways.append(f"published {number(asked.published, 3)} in all")
-        lines.append(f"{asked.at} moves by x, y, z [mm, linear frame]: {'; '.join(ways)}")
+            ways.append(f"published: total {number(asked.published, 3)}")
+        lines.append(f"Displacement of {asked.at} by the linear frame, x, y, z and total [mm]:\n  " + "\n  ".join(ways))
     return lines

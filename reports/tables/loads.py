@@ -1,4 +1,4 @@
-"""The air's forces and what the anchor must hold, as data for ``result.json`` and for the page."""
+"""Air forces and loads on the ground, as data for ``result.json`` and for the page."""
 
 import math
 from typing import Any
@@ -35,9 +35,9 @@ def weight_sentence(case: Case, name: str) -> str:
     """Return in one sentence what weighs in a load case and what moves, and which links count as massless."""
     load_case = case.load_cases[name]
     if not load_case.own_weight and load_case.speed == 0.0:
-        return "The links count as massless here: what weighs stands among the stated forces"
+        return "The links are massless in this load case; weights are among the stated forces"
     kind = "weight" if load_case.speed == 0.0 else "weight and inertia" if load_case.own_weight else "inertia"
-    told = [f"Links have {kind} by their parts’ volume and density"]
+    told = [f"The links have {kind} from volume and density of their parts"]
     if case.carried and load_case.carried:
         carried = [
             f"{mass.link} carries {plain(float(f'{mass.mass * 1e6:.4g}'))} g "
@@ -46,11 +46,11 @@ def weight_sentence(case: Case, name: str) -> str:
         ]
         told.append(joined(carried))
     elif case.carried:
-        told.append("what links carry otherwise is left out")
+        told.append("carried masses are left out")
     if load_case.speed != 0.0:
         told.append(f"{case.pose.coordinate} turns at {plain(load_case.speed * 30.0 / math.pi)} rpm")
     if case.massless:
-        told.append(f"{joined(list(case.massless))} {'counts' if len(case.massless) == 1 else 'count'} as massless")
+        told.append(f"{joined(list(case.massless))} {'is' if len(case.massless) == 1 else 'are'} massless")
     return "; ".join(told)
 
 

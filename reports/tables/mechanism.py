@@ -1,4 +1,4 @@
-"""The design figures of a flapping wing, by the source's definitions and by what their names say."""
+"""Design figures of a flapping wing, by the source's definitions and by the meaning of their names."""
 
 import math
 from dataclasses import dataclass
@@ -113,8 +113,8 @@ def design_lines(case: Case) -> list[str]:
     design = design_of(case)
     if design is None:
         return []
-    lines = ["Design figures of the flapping wing [deg]", f"  {'':<24}{'as the source':>14}{'as the name':>13}"]
-    lines.append(f"  {'':<24}{'defines them':>14}{'says':>13}")
+    lines = ["Design figures of the flapping wing [deg]", f"  {'':<24}{'as the source':>14}{'as its name':>13}"]
+    lines.append(f"  {'':<24}{'defines them':>14}{'means':>13}")
     for figure in design.figures:
         published = "" if figure.published is None else f"{figure.published:.4f}"
         lines.append(f"  {figure.name:<24}{published:>14}{figure.proper:>13.4f}   {figure.proper_as}")

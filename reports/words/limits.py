@@ -1,4 +1,4 @@
-"""What a run may take of the machine, as the command line states it."""
+"""Limits of threads and memory, as the command line states them."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,9 +11,19 @@ from geometry.base.units import parse
 
 @contextmanager
 def limited(threads: int, memory: str | None = None) -> Iterator[None]:
-    """Bound the threads of all libraries, the number of child processes and the memory [text with its unit].
+    """Limit the threads of all libraries, the number of child processes, and the memory.
 
-    Raises ``CaseError`` for a memory that is none.
+    Parameters
+    ----------
+    threads : int
+        Threads per library, and child processes at a time.
+    memory : str, optional
+        Memory of this process with its unit, such as ``"4 GB"``.
+
+    Raises
+    ------
+    CaseError
+        For a text that is not a positive amount of memory.
     """
     from fea.common import memory as process_memory
     from fea.common.threads import bounded
@@ -28,5 +38,5 @@ def _bytes(memory: str) -> float:
     except PydanticCustomError as error:
         raise CaseError(f"memory: it is '{memory}', but {error.message()}") from None
     if not found > 0.0:
-        raise CaseError(f"memory: it is '{memory}', but nothing runs without memory; write for example \"4 GB\"")
+        raise CaseError(f"memory: it is '{memory}', but must be positive; write for example \"4 GB\"")
     return found

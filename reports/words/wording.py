@@ -76,31 +76,42 @@ def apart(compared: Sequence[SectionComparison]) -> list[SectionComparison]:
 def agreement(compared: Sequence[SectionComparison]) -> str:
     """Say how well hand calculation and solid model agree over some sections."""
     if apart(compared):
-        return f"more than {100.0 * AGREEMENT:g} % apart"
+        return f"they differ by more than {100.0 * AGREEMENT:g} %"
     most = max(abs(c.difference) for c in compared)
     return f"they agree within {math.ceil(1000.0 * most - 1e-9) / 10.0:.1f} %"
 
 
 def checks_of(result: CheckResult) -> tuple[CheckOutcome, ...]:
-    """All checks of all load cases."""
+    """Return all checks of all load cases."""
     return tuple(check for load_case in result.load_cases.values() for check in load_case.checks)
 
 
 def tightness(check: CheckOutcome) -> float:
-    """How far the unfavourable end of a check's band is inside its limit, as a share of the limit; −∞ if unknown."""
+    """Return the margin of the unfavourable end of a check's band, relative to the limit; −∞ if it is unknown."""
     if check.value.unknowable:
         return -math.inf
     margin = check.value.low - check.limit if check.at_least else check.limit - check.value.high
     return margin / check.limit
 
 
-def tightest(result: CheckResult) -> CheckOutcome | None:
-    """The check nearest to its limit, or furthest beyond it; None where nothing is checked."""
-    return min(checks_of(result), key=tightness, default=None)
+def tightest(checks: Sequence[CheckOutcome]) -> CheckOutcome:
+    """Return the check closest to its limit, or furthest beyond it."""
+    return min(checks, key=tightness)
 
 
 def headline(result: CheckResult) -> str:
-    """Return the verdict, what it means, and what no check looks at, in a few plain sentences."""
+    """Return the verdict, what decides it and what no check looks at.
+
+    Parameters
+    ----------
+    result : CheckResult
+        All outcomes of a check.
+
+    Returns
+    -------
+    str
+        A few sentences, such as ``Fail: the linkage gives way at 20 % of its load.``
+    """
     return " ".join(filter(None, (_headline(result), not_checked(unchecked(result.case)))))
 
 
@@ -111,47 +122,54 @@ def not_checked(what: tuple[str, ...]) -> str:
 
 def _headline(result: CheckResult) -> str:
     checks = checks_of(result)
-    worst = tightest(result)
-    if worst is None:
-        return "Undecided: the case asks for no check, so nothing was decided."
-    total = "the one check" if len(checks) == 1 else f"all {len(checks)} checks"
+    if not checks:
+        return "Undecided: the case asks for no check."
+    count = len(checks)
     if result.verdict is Verdict.PASS:
-        kept = "is" if len(checks) == 1 else "are"
-        nearest = _nearest(result, worst, "Nearest to its limit")
-        return f"Pass: {total} {kept} met over the whole of every error band. {nearest}"
-    broken = [c for c in checks if c.verdict is result.verdict]
-    names = joined(list(dict.fromkeys(_named(c) for c in broken)))
-    if result.verdict is Verdict.FAIL:
-        missed = (
-            "is missed over its whole error band" if len(broken) == 1 else "are missed over their whole error bands"
-        )
-        worst = min(broken, key=tightness)
-        return f"Fail: {len(broken)} of {len(checks)} checks {missed}: {names}. {_nearest(result, worst, 'Worst')}"
-    verb = "is" if len(broken) == 1 else "are"
-    return (
-        f"Undecided: {len(broken)} of {len(checks)} checks {verb} left open: {names}. "
-        f"{broken[0].quantity.capitalize()} of {broken[0].link}: {broken[0].reason}."
-    )
+        kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"
+        return f"Pass: {kept} over the whole error band. Closest to its limit: {_with_limit(result, tightest(checks))}."
+    decisive = [c for c in checks if c.verdict is result.verdict]
+    names = joined(list(dict.fromkeys(_named(c) for c in decisive)))
+    share = f"{len(decisive)} of {count} checks"
+    if result.verdict is Verdict.UNDECIDED:
+        first = decisive[0]
+        verb = "is" if len(decisive) == 1 else "are"
+        return f"Undecided: {share} {verb} open: {names}. {sentence(f'{_named(first)}: {first.reason}')}"
+    missed = f"{share} {'misses its limit' if len(decisive) == 1 else 'miss their limits'} over the whole error band"
+    collapses = [c for c in decisive if c.quantity is Quantity.LOAD_SHARE]
+    if collapses:
+        worst = min(collapses, key=lambda c: c.value.value)
+        return f"Fail: {_under(result, worst)}{gives_way(worst)}. {missed}: {names}."
+    return f"Fail: {missed}: {names}. Worst: {_with_limit(result, tightest(decisive))}."
 
 
-def _named(check: CheckOutcome) -> str:
-    return f"{check.quantity} {_of(check)} {check.link}"
+def gives_way(check: CheckOutcome) -> str:
+    """Return at which share of its load a linkage gives way, in words."""
+    value = check.value
+    if value.low <= 0.0:  # unstable on the way, so that the share itself is not known
+        return "the linkage becomes unstable below its full load"
+    shown, low, high = (number(min(100.0 * share, 99.0), 2) for share in (value.value, value.low, value.high))
+    return f"the linkage gives way at {shown} %{'' if low == high else f' ({low} to {high} %)'} of its load"
 
 
-def _of(check: CheckOutcome) -> str:
-    return "by" if check.quantity is Quantity.LOAD_SHARE else "of"
+def _named(check: CheckOutcome, *, long: bool = False) -> str:
+    if check.quantity is Quantity.LOAD_SHARE:
+        return "share of the load that the linkage holds"
+    return f"{check.quantity} of {check.subject.long if long else check.subject}"
+
+
+def _under(result: CheckResult, check: CheckOutcome) -> str:
+    return f"under load case {check.load_case} " if len(result.load_cases) > 1 else ""
+
+
+def _with_limit(result: CheckResult, check: CheckOutcome) -> str:
+    """Return a check's quantity, its value with the band, and its limit."""
+    unit = f" {check.quantity.unit}".rstrip()
+    under = f" {_under(result, check)}".rstrip()
+    sign = check.quantity.sense.value
+    return f"{_named(check, long=True)}{under}, {band(check.value)}{unit}; limit {sign} {plain(check.limit)}{unit}"
 
 
 def sentence(text: str) -> str:
     """Return a text that begins with a capital and ends with a full stop."""
     return f"{text[:1].upper()}{text[1:].rstrip('.')}."
-
-
-def _nearest(result: CheckResult, check: CheckOutcome, lead: str) -> str:
-    unit = f" {check.unit}" if check.unit else ""
-    asked = "at least" if check.at_least else "at most"
-    under = f" under load case {check.load_case}" if len(result.load_cases) > 1 else ""
-    return (
-        f"{lead}: the {check.quantity} {_of(check)} {check.subject.long}{under} is {band(check.value)}{unit}, "
-        f"where {asked} {plain(check.limit)}{unit} is asked for."
-    )

@@ -75,7 +75,7 @@ def test_new_writes_a_case_that_checks_and_overwrites_nothing(tmp_path: Path) ->
         (["check", "owl-wing-static", "--fidelity", "magic"], ["magic", "beam"]),
         (["statics", "owl-wing-static", "--set", 'links.ED.points.D=["300 mm", "0 mm"]'], ["stays open by", "mm"]),
         (["check", "owl-wing-static", "--memory", "4"], ["memory", "needs its unit", '"4 GB"']),
-        (["envelope", "owl-wing-static", "--memory", "-4 GB"], ["memory", "-4 GB", "nothing runs without memory"]),
+        (["envelope", "owl-wing-static", "--memory", "-4 GB"], ["memory", "-4 GB", "must be positive"]),
         (["export", "owl-wing-static"], ["--step"]),
         (["frobnicate"], ["frobnicate"]),
     ],

@@ -27,7 +27,7 @@ def test_nothing_is_wider_than_80_columns_or_shortened(result):
     [
         "A 0.9520",
         "Drive torque on AE: −130.6 N·mm (clockwise)",
-        "more than 3 % apart on GF",
+        "they differ by more than 3 % on GF",
         "(+7.1 %)",
         "M 33.75 N·mm",
         "equations 6, 9 and 13",

@@ -26,13 +26,13 @@ def wing():
 def test_the_error_of_the_mesh_is_said_of_the_links_that_have_one(result):
     """The report once said of every case that the error of the mesh is in no band."""
     text = told(result)["Bands"]
-    assert text.startswith("The error of the meshes of GF is in their bands as an estimate")
-    assert "AE, CF, CH and ED have no band of model error (nothing)" in text
+    assert text.startswith("The discretisation error in the bands of GF is an estimate")
+    assert "AE, CF, CH and ED have no band for model error (nothing)" in text
     assert "is not in the bands" not in render(result, {})
 
 
 def test_links_by_calibrated_hand_calculation_have_the_bands_of_other_solids(wing):
-    assert told(wing)["Bands"].startswith("No mesh of GF, AE, CF, CH and ED ran: their bands are what solid models")
+    assert told(wing)["Bands"].startswith("GF, AE, CF, CH and ED were not meshed: the bands come from solid models")
 
 
 def test_buckling_is_not_called_left_out_where_it_is_judged(wing, result):
@@ -40,17 +40,17 @@ def test_buckling_is_not_called_left_out_where_it_is_judged(wing, result):
         c.subject for case in wing.load_cases.values() for c in case.checks if c.quantity is Quantity.BUCKLING_FACTOR
     }
     assert {subject.name for subject in judged - {LINKAGE}} == {"GF", "AE", "CF", "CH"}
-    assert told(wing)["Buckling"].startswith("GF, AE, CF and CH were judged as straight elastic columns")
+    assert told(wing)["Buckling"].startswith("GF, AE, CF and CH were checked as straight elastic columns")
     assert told(result)["Buckling"].startswith("No link is in compression")  # its checks are of strength alone
 
 
 @pytest.mark.parametrize(
     ("ranged", "loads", "words"),
     [
-        (False, False, "scatter of strength, modulus and the loads, for which no range is stated"),
-        (True, False, "scatter of the loads, for which no range is stated"),
-        (False, True, "scatter of strength and modulus, for which no range is stated"),
-        (True, True, "left to the safety factor. Ranges that are stated are in the bands."),
+        (False, False, "scatter of strength, modulus and the loads, for which the case states no range"),
+        (True, False, "scatter of the loads, for which the case states no range"),
+        (False, True, "scatter of strength and modulus, for which the case states no range"),
+        (True, True, "notches and scatter of dimensions. Stated ranges are part of the bands."),
     ],
 )
 def test_scatter_that_is_stated_is_not_called_left_out(wing, ranged, loads, words):
@@ -64,32 +64,35 @@ def test_scatter_that_is_stated_is_not_called_left_out(wing, ranged, loads, word
             part["material"] = "ranged"
     if loads:
         tree["load_cases"]["weight"]["scatter"] = "20 %"
-    assert words in told(replace(wing, case=validate(tree)))["Making and scatter"]
+    assert words in told(replace(wing, case=validate(tree)))["Manufacture and scatter"]
 
 
 def test_a_load_that_turns_with_its_link_is_told_apart_from_the_deformation(wing):
     """The case file says that such a load turns with its link, the report that loads keep their direction."""
     assert wing.load_cases["weight"].large_displacement.followed
-    assert "axes of its link" not in told(wing)["Large displacements"]
+    assert "link axes" not in told(wing)["Large displacements"]
     tree = tomllib.loads(read_text("owl-wing-static")[0])
     tree["load_cases"]["weight"]["forces"][0]["axes"] = "link"
     turned = replace(wing, case=validate(tree))
     assert told(turned)["Large displacements"].endswith(
-        "a load in the axes of its link turns with it from pose to pose, but not as the linkage deforms."
+        "a load in link axes turns with the pose of its link, but not with the deformation."
     )
 
 
 def test_conditions_that_are_stated_are_told(wing):
-    assert "since the case states no conditions" in told(wing)["Creep, temperature, moisture, ageing"]
+    assert "the case states no conditions" in told(wing)["Creep, temperature, moisture, ageing"]
     warm = wing.case.conditions.model_copy(update={"temperature": 40.0})
     warmed = replace(wing, case=wing.case.model_copy(update={"conditions": warm}))
-    assert "strengths are those at the stated temperature" in told(warmed)["Creep, temperature, moisture, ageing"]
+    assert (
+        "strengths are short-term values at the stated temperature"
+        in told(warmed)["Creep, temperature, moisture, ageing"]
+    )
 
 
 def test_pins_that_were_checked_are_named(wing, result):
-    assert "Of the pins themselves, A, B, C, D, E, F and G were checked." in told(wing)["Pins and contact"]
+    assert "Checked pins: A, B, C, D, E, F and G." in told(wing)["Pins and contact"]
     bare = {name: replace(case, pins={}) for name, case in result.load_cases.items()}
-    assert "No pin itself was checked." in told(replace(result, load_cases=bare))["Pins and contact"]
+    assert "No pin was checked." in told(replace(result, load_cases=bare))["Pins and contact"]
 
 
 def headings(page):
@@ -116,7 +119,7 @@ def test_the_stress_that_decides_is_shown_and_named(result):
         safety_factor=Band.exact(215.9).inverse(500.0),
     )
     page = " ".join(render(replace(result, load_cases={"weight": replace(case, links={"GF": link})}), {}).split())
-    assert '<td>largest principal stress, which n is counted from</td><td class="num">215.9</td>' in page
+    assert '<td>largest principal stress (decides n)</td><td class="num">215.9</td>' in page
     assert "The largest principal stress is at x" in page
 
 

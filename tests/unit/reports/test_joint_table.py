@@ -42,7 +42,7 @@ def test_components_are_those_that_act(name, overrides, load_case, components):
 def test_the_table_of_a_plane_case_stays_plain():
     _, words = statics_section(WING)
     assert "Joint forces [N], global axes Joint pushes F x F y magnitude A AG pushes AE 0.5011 0.8095 0.9520" in words
-    assert "The links count as massless here" in words
+    assert "The links are massless in this load case" in words
 
 
 def test_the_table_out_of_the_plane_holds_the_whole_wrench():
@@ -78,8 +78,10 @@ def test_a_millionth_of_the_load_keeps_its_digits():
 def test_what_weighs_is_said():
     flapping = read_case("flapping-wing-chosen")
     assert "; crank turns at 180 rpm" in weight_sentence(flapping, "flapping")
-    assert weight_sentence(flapping, "held").startswith("Links have weight by their parts’ volume and density; ")
+    assert weight_sentence(flapping, "held").startswith(
+        "The links have weight from volume and density of their parts; "
+    )
     assert "left out" in weight_sentence(read_case("ornithopter"), "slow")
     bare = read_case("four-bar-synthesis", ["carried=[]"])
     stated = bare.model_copy(update={"massless": ("b", "c")})
-    assert weight_sentence(stated, "weight").endswith("; b and c count as massless")
+    assert weight_sentence(stated, "weight").endswith("; b and c are massless")

@@ -58,8 +58,8 @@ def test_positive_torque_is_counter_clockwise(torque, sense):
 def test_the_headline_of_a_pass_names_the_check_nearest_to_its_limit(result):
     beams = result.load_cases["weight"].links["AE"]
     assert wording.headline(result) == (
-        "Pass: all 20 checks are met over the whole of every error band. Nearest to its limit: the safety factor of "
-        f"link AE under load case weight is {beams.safety_factor.value:.2f}, where at least 3 is asked for. "
+        "Pass: all 20 checks keep their limits over the whole error band. Closest to its limit: safety factor of "
+        f"link AE under load case weight, {beams.safety_factor.value:.2f}; limit ≥ 3. "
         "Not checked: pins, no check of them."
     )
 
@@ -70,10 +70,8 @@ def test_the_headline_of_a_fail_names_what_is_missed(result, changed):
         return replace(check, value=Band.exact(12.5), verdict=Verdict.FAIL) if missed else check
 
     text = wording.headline(changed(change))
-    assert text.startswith("Fail: 1 of 20 checks is missed over its whole error band: displacement of CH.")
-    assert (
-        "Worst: the displacement of link CH under load case weight is 12.5 mm, where at most 10 mm is asked for" in text
-    )
+    assert text.startswith("Fail: 1 of 20 checks misses its limit over the whole error band: displacement of CH.")
+    assert "Worst: displacement of link CH under load case weight, 12.5 mm; limit ≤ 10 mm." in text
 
 
 def test_the_worst_of_a_fail_is_one_that_failed(result, changed):
@@ -84,7 +82,7 @@ def test_the_worst_of_a_fail_is_one_that_failed(result, changed):
         missed = check.link == "CH" and check.quantity == "displacement" and check.load_case == "weight"
         return replace(check, value=Band.exact(12.5), verdict=Verdict.FAIL) if missed else check
 
-    assert "Worst: the displacement of link CH" in wording.headline(changed(change))
+    assert "Worst: displacement of link CH" in wording.headline(changed(change))
 
 
 @pytest.mark.parametrize("at_least", [True, False])
@@ -100,7 +98,7 @@ def test_the_unfavourable_end_of_a_band_says_which_check_is_nearest_to_its_limit
         value = bands.get(check.link, Band.exact(100.0 if at_least else 0.01))
         return replace(check, quantity=quantity, value=value, limit=1.0 if at_least else 1.5)
 
-    assert wording.tightest(changed(change)).link == "CH"
+    assert wording.tightest(wording.checks_of(changed(change))).link == "CH"
 
 
 def test_percentages_and_sentences():
@@ -113,11 +111,34 @@ def test_the_headline_of_an_open_answer_gives_the_reason(result, changed):
         return replace(check, verdict=Verdict.UNDECIDED, reason="its band straddles the limit")
 
     text = wording.headline(changed(change))
-    assert text.startswith("Undecided: 20 of 20 checks are left open")
+    assert text.startswith("Undecided: 20 of 20 checks are open")
     assert "Safety factor of GF: its band straddles the limit." in text
+
+
+@pytest.mark.parametrize(
+    ("share", "low", "text"),
+    [
+        (0.203, 0.203, "gives way at 20 % of its load"),
+        (0.203, 0.18, "gives way at 20 % (18 to 20 %) of its load"),
+        (0.9996, 0.9996, "gives way at 99 % of its load"),
+        (0.8, 0.0, "becomes unstable below its full load"),
+    ],
+)
+def test_a_linkage_that_gives_way_comes_first_with_its_share_of_the_load(result, changed, share, low, text):
+    def change(check):
+        if check.link != "CH" or check.load_case != "weight":
+            return check
+        if check.quantity is Quantity.SAFETY_FACTOR:
+            return replace(check, value=Band.exact(0.1), verdict=Verdict.FAIL)
+        held = Band(value=share, low=low, high=share, holds=())
+        return replace(check, quantity=Quantity.LOAD_SHARE, value=held, limit=1.0, verdict=Verdict.FAIL)
+
+    found = wording.headline(changed(change))
+    assert found.startswith(f"Fail: under load case weight the linkage {text}. 2 of 20 checks miss their limits")
+    assert "safety factor of CH and share of the load that the linkage holds" in found
 
 
 def test_nothing_checked_is_undecided(result):
     empty = {name: replace(case, checks=()) for name, case in result.load_cases.items()}
     text = wording.headline(replace(result, load_cases=empty, verdict=Verdict.UNDECIDED))
-    assert text.startswith("Undecided: the case asks for no check, so nothing was decided.")
+    assert text.startswith("Undecided: the case asks for no check.")
