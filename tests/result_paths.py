@@ -11,7 +11,7 @@ NAMED = {"links", "load_cases", "joints", "timings_s", "motion.points", "points.
 """Keys whose own keys are names: by their last part, or by the whole."""
 SHAPES = {
     "extremes": {"first", "last", "smallest", "largest", "unbounded"},
-    "band": {"value", "low", "high", "holds"},
+    "band": {"value", "low", "high", "holds", "kinds"},
 }
 TYPES = {
     "integer": int, "number": int | float, "text": str, "list": list, "null": type(None),

@@ -13,12 +13,13 @@ from fea.beam.spots import Spot, displacement_estimate, spots
 from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
+from fea.common.source import CONTACT, Source, SourceKind
 from fea.refine.refinement import Effort, LinkTask, Progress, RefinedSolid, refine_links
 from geometry.base.errors import CannotRunError
 from geometry.meshing.mesh import MeshSettings
 from geometry.parts.body_rules import extent, eye_reach, reference_line, section_height, section_width
 from geometry.parts.part import Body
-from loads.records.bearing import CONTACT_HOLDS, CONTACT_SHORTFALL
+from loads.records.bearing import CONTACT_SHORTFALL
 
 Model = Literal["beam", "solid"]
 
@@ -142,12 +143,12 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
         nothing = Band.unknown("hand calculation is not calibrated for this link")
         return HandBands(von_mises=nothing, principal=nothing, displacement=nothing, spots=(), outside=outside)
     calibration = calibration_of(body.part)
-    holds = _holds(calibration)
+    sources = (_source(calibration),)
     rows = [
         SpotBand(
             spot=spot,
-            von_mises=_at_spot(spot, calibration.von_mises[spot.kind], holds),
-            principal=_at_spot(spot, calibration.principal[spot.kind], holds),
+            von_mises=_at_spot(spot, calibration.von_mises[spot.kind], sources),
+            principal=_at_spot(spot, calibration.principal[spot.kind], sources),
         )
         for spot in found
     ]
@@ -155,22 +156,11 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     moved = displacement_estimate(body, loads, beam, young=task.E, poisson=task.nu, line=line)
     rows.sort(key=lambda row: row.von_mises.high, reverse=True)
     return HandBands(
-        von_mises=largest([row.von_mises for row in rows]),
-        principal=largest([row.principal for row in rows]),
-        displacement=_band(moved, calibration.displacement, holds),
+        von_mises=Band.largest([row.von_mises for row in rows]),
+        principal=Band.largest([row.principal for row in rows]),
+        displacement=_band(moved, calibration.displacement, sources),
         spots=tuple(rows),
         outside="",
-    )
-
-
-def largest(bands: Sequence[Band]) -> Band:
-    """Band of the largest of several numbers, each within its band."""
-    holds = tuple(dict.fromkeys(text for band in bands for text in band.holds))
-    return Band(
-        value=max(band.value for band in bands),
-        low=max(band.low for band in bands),
-        high=max(band.high for band in bands),
-        holds=holds,
     )
 
 
@@ -212,7 +202,7 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
     why = f"by hand calculation its peak stress lies between {ends}, at most at {spot.name}"
     why += f", clear of the limit {limits} MPa" if limits else ""
     if task.displacement_limits:
-        moved = largest([hand.displacement for hand in hands])
+        moved = Band.largest([hand.displacement for hand in hands])
         why += f", and its displacement, {moved.low:.3g} to {moved.high:.3g} mm, of its limits"
     return Decision(model="beam", why=why, next_cost=_solid_cost(task.body)), ""
 
@@ -241,20 +231,20 @@ PER_WIDTH, PER_EYE, PER_HOLE = 140.0, 2400.0, 320.0
 """Fitted to the first meshes of the owl wing's links: 5,613 elements of GF, 11,648 of AE, 14,419 of CF."""
 
 
-def _holds(calibration: Calibration) -> tuple[str, ...]:
-    return (
-        f"hand calculation against solid models of {calibration.parts} parts under {calibration.cases} load cases "
-        f"(least and largest factor, widened by {calibration.margin - 1.0:.0%})",
-    )
+def _source(calibration: Calibration) -> Source:
+    models = f"solid models of {calibration.parts} parts under {calibration.cases} load cases"
+    detail = f"{models}, least and largest factor, widened by {calibration.margin - 1.0:.0%}"
+    return Source(kind=SourceKind.CALIBRATION, detail=detail)
 
 
-def _at_spot(spot: Spot, factors: Factors, holds: tuple[str, ...]) -> Band:
+def _at_spot(spot: Spot, factors: Factors, sources: tuple[Source, ...]) -> Band:
     """Band of a spot's stress; pin contact adds to what the solids of the calibration bore in their eyes."""
     if spot.kind != "eye":
-        return _band(spot.estimate, factors, holds)
+        return _band(spot.estimate, factors, sources)
     contact = replace(factors, high=factors.high / (1.0 - CONTACT_SHORTFALL))
-    return _band(spot.estimate, contact, (*holds, CONTACT_HOLDS))
+    return _band(spot.estimate, contact, (*sources, CONTACT))
 
 
-def _band(estimate: float, factors: Factors, holds: tuple[str, ...]) -> Band:
-    return Band(value=estimate * factors.typical, low=estimate * factors.low, high=estimate * factors.high, holds=holds)
+def _band(estimate: float, factors: Factors, sources: tuple[Source, ...]) -> Band:
+    low, high = estimate * factors.low, estimate * factors.high
+    return Band(value=estimate * factors.typical, low=low, high=high, sources=sources)

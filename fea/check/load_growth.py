@@ -12,6 +12,7 @@ import numpy as np
 
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from fea.common.source import Source, SourceKind
 from fea.frame.joint_forces import joint_forces
 from fea.frame.large_displacement import LargeDisplacement, examine
 from geometry.base.errors import CannotRunError, CaseError
@@ -21,7 +22,7 @@ from loads.records.applied import Load
 from loads.states.actions import PartMass
 from loads.statics.statics import Reactions
 
-HOLDS = ("growth beyond that of the load",)
+SOURCES = (Source(kind=SourceKind.GROWTH, detail="of bending under compression and of joint forces"),)
 LEAST = 1e-3
 """Growth below which it is left out."""
 
@@ -73,7 +74,7 @@ def growths(
         }
         found.append(
             {
-                name: Scatter(low=a, high=b, holds=HOLDS)
+                name: Scatter(low=a, high=b, sources=SOURCES)
                 for name, (a, b) in ends.items()
                 if a < 1.0 - LEAST or b > 1.0 + LEAST
             }

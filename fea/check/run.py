@@ -11,8 +11,6 @@ from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.check.fidelity import DecidedLink, HandBands, by_hand, decide
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.load_growth import Growths, growths
-from fea.check.solid_result import DRIVEN_HOLDS as DRIVEN_HOLDS
-from fea.check.solid_result import PINNED_HOLDS as PINNED_HOLDS
 from fea.check.solid_result import link_task, solid_result
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter

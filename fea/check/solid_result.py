@@ -8,22 +8,20 @@ import numpy as np
 from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
+from fea.common.source import CONTACT, pin_sources
 from fea.outcomes.compare import compare_sections
 from fea.outcomes.limits import displacement_limits, stress_limits
 from fea.outcomes.result import LinkResult, VariantPeak
 from fea.refine.convergence import GridConvergence
-from fea.refine.discretisation import holds, judged
+from fea.refine.discretisation import discretisation_source, judged
 from fea.refine.link_series import CasePrecision, Quantity
 from fea.refine.refinement import LinkTask, RefinedSolid
 from fea.refine.singular import LOADED
 from fea.solid.solution import SolidCase
 from fea.solid.stress import stress_field
 from loads.case.case import Case
-from loads.records.bearing import CONTACT_HOLDS
 
 NO_NUMBER = "no mesh tells what it is"
-PINNED_HOLDS = ("pin pressure over 180° and over 90°", CONTACT_HOLDS)
-DRIVEN_HOLDS = (*PINNED_HOLDS, "drive torque by eye-faces and by bore-shear")
 
 
 def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
@@ -58,7 +56,7 @@ def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: Re
     governing = max(own, key=lambda number: decisive(number).value)
     variant = solid.cases[governing]
     stress = stress_field(solid.space, variant.displacement, E=solid.E, nu=solid.nu)
-    sources = PINNED_HOLDS if variant.transfer is None else DRIVEN_HOLDS
+    sources = pin_sources(driven=variant.transfer is not None)
     # A peak without limit under one variant leaves none for the link.
     worst = max(
         solved, key=lambda number: (not judged(refined, number, brittle=material.brittle).known, number == governing)
@@ -74,9 +72,9 @@ def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: Re
             value=value,
             low=max(min(value, *(found.low(quantity) for found in every)), 0.0),
             high=max(value, *(found.high(quantity) for found in every)),
-            holds=(
-                *(text for text in sources if text != CONTACT_HOLDS or quantity != "displacement"),
-                holds(
+            sources=(
+                *(source for source in sources if source != CONTACT or quantity != "displacement"),
+                discretisation_source(
                     refined.precision[governing].series(quantity),
                     sharp_edges=0 if quantity == "displacement" else refined.sharp_edges,
                 ),

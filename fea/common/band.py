@@ -1,21 +1,30 @@
 """A number with its error band."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+
+from fea.common.source import Source, distinct
 
 
 @dataclass(frozen=True, kw_only=True)
 class Band:
-    """A value, the interval that it may lie in, and what that interval holds; all NaN where nothing is known.
+    """A value, the interval that it may lie in, and the sources of error that this interval covers.
 
-    holds    the sources of error that low and high cover, each in a few words
-    without  why the number has no band of its own, or is not known; "" where the band holds something
+    Attributes
+    ----------
+    value, low, high : float
+        The value and the ends of its interval; all NaN where no number stands for the quantity.
+    sources : tuple of Source
+        What the interval covers.
+    without : str
+        Why the interval covers no error of the model, or the value is not known; "" where it covers one.
     """
 
     value: float
     low: float
     high: float
-    holds: tuple[str, ...]
+    sources: tuple[Source, ...] = ()
     without: str = ""
 
     def __post_init__(self) -> None:
@@ -30,30 +39,69 @@ class Band:
 
     @classmethod
     def unknown(cls, without: str = "") -> "Band":
-        """Return a band of what has no value; every check of it is undecided."""
-        return cls(value=math.nan, low=math.nan, high=math.nan, holds=(), without=without)
+        """Return a band of what has no value; every check of it is undecided.
+
+        Parameters
+        ----------
+        without : str
+            Why there is no value.
+        """
+        return cls(value=math.nan, low=math.nan, high=math.nan, without=without)
 
     @classmethod
     def exact(cls, value: float, without: str = "") -> "Band":
-        """Return a band of no width."""
-        return cls(value=value, low=value, high=value, holds=(), without=without)
+        """Return a band of no width.
+
+        Parameters
+        ----------
+        value : float
+        without : str
+            Why nothing is known of the model's error.
+        """
+        return cls(value=value, low=value, high=value, without=without)
 
     @classmethod
-    def around(cls, value: float, others: tuple[float, ...], *holds: str) -> "Band":
-        """Return the band from the least to the largest of a value and its variants."""
-        return cls(value=value, low=min(value, *others), high=max(value, *others), holds=holds)
+    def around(cls, value: float, others: tuple[float, ...], *sources: Source) -> "Band":
+        """Return the band from the least to the largest of a value and its variants.
+
+        Parameters
+        ----------
+        value : float
+        others : tuple of float
+            The variants.
+        sources : Source
+            What makes the variants differ.
+        """
+        return cls(value=value, low=min(value, *others), high=max(value, *others), sources=sources)
+
+    @classmethod
+    def largest(cls, bands: Sequence["Band"]) -> "Band":
+        """Return the band of the largest of several numbers, each within its band.
+
+        Parameters
+        ----------
+        bands : sequence of Band
+            At least one.
+        """
+        return cls(
+            value=max(band.value for band in bands),
+            low=max(band.low for band in bands),
+            high=max(band.high for band in bands),
+            sources=distinct(*(band.sources for band in bands)),
+        )
 
     def inverse(self, numerator: float) -> "Band":
-        """Return ``numerator`` divided by the number: strength over stress gives a safety factor."""
+        """Return ``numerator`` divided by the number: strength over stress gives a safety factor.
+
+        Parameters
+        ----------
+        numerator : float
+            A number that is not negative.
+        """
         if self.unknowable:
             return self
-        return Band(
-            value=_ratio(numerator, self.value),
-            low=_ratio(numerator, self.high),
-            high=_ratio(numerator, self.low),
-            holds=self.holds,
-            without=self.without,
-        )
+        value, low, high = (_ratio(numerator, x) for x in (self.value, self.high, self.low))
+        return replace(self, value=value, low=low, high=high)
 
     def times(self, factor: float) -> "Band":
         """Return ``factor`` times the number.
@@ -66,9 +114,10 @@ class Band:
         return replace(self, value=factor * self.value, low=factor * self.low, high=factor * self.high)
 
     @property
-    def told(self) -> tuple[str, ...]:
-        """What the band holds, or that it holds nothing and why, for people and files."""
-        return (f"nothing: {self.without}",) if self.without else self.holds
+    def texts(self) -> tuple[str, ...]:
+        """What the band covers, and why no error of the model where that is so, for people and files."""
+        missing = f"{'no error of the model' if self.sources else 'nothing'}: {self.without}"
+        return (*(source.text for source in self.sources), *((missing,) if self.without else ()))
 
 
 def _ratio(numerator: float, denominator: float) -> float:

@@ -8,40 +8,58 @@ none.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fea.common.band import Band
+from fea.common.source import Source, SourceKind, distinct
 from geometry.parts.material import Material
 from loads.case.case import Case
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scatter:
-    """Least and largest factor on a number, and its source for people; no source where nothing scatters."""
+    """Least and largest factor on a number.
+
+    Attributes
+    ----------
+    low, high : float
+        The factors; 1 where nothing scatters.
+    sources : tuple of Source
+        What scatters; empty where nothing does.
+    """
 
     low: float = 1.0
     high: float = 1.0
-    holds: tuple[str, ...] = ()
+    sources: tuple[Source, ...] = ()
 
     def on(self, band: Band) -> Band:
-        """Return a band (of a number that is not negative) with its ends multiplied by the factors."""
-        if band.unknowable or not self.holds:
+        """Return a band with its ends multiplied by the factors.
+
+        Parameters
+        ----------
+        band : Band
+            Of a number that is not negative.
+        """
+        if band.unknowable or not self.sources:
             return band
-        return Band(
-            value=band.value,
-            low=_product(band.low, self.low),
-            high=_product(band.high, self.high),
-            holds=(*band.holds, *self.holds),
-        )
+        low, high = _product(band.low, self.low), _product(band.high, self.high)
+        return replace(band, low=low, high=high, sources=distinct(band.sources, self.sources))
 
     def times(self, other: "Scatter") -> "Scatter":
-        """Return the scatter of a product."""
-        return Scatter(low=self.low * other.low, high=self.high * other.high, holds=(*self.holds, *other.holds))
+        """Return the scatter of a product.
+
+        Parameters
+        ----------
+        other : Scatter
+            Of the other factor.
+        """
+        sources = distinct(self.sources, other.sources)
+        return Scatter(low=self.low * other.low, high=self.high * other.high, sources=sources)
 
     @property
     def inverse(self) -> "Scatter":
         """The scatter of what goes with one over the number."""
-        return Scatter(low=1.0 / self.high, high=1.0 / self.low, holds=self.holds)
+        return replace(self, low=1.0 / self.high, high=1.0 / self.low)
 
 
 def _product(end: float, factor: float) -> float:
@@ -50,25 +68,44 @@ def _product(end: float, factor: float) -> float:
 
 
 def load_scatter(case: Case, load_case: str) -> Scatter:
-    """Return what the loads of a load case may be, over what they are."""
+    """Return what the loads of a load case may be, over what they are.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    """
     low, high = case.load_cases[load_case].scatter
     if low == high:
         return Scatter()
-    return Scatter(low=low, high=high, holds=(f"stated scatter of the load, {low:.0%} to {high:.0%}",))
+    source = Source(kind=SourceKind.LOAD, detail=f"{low:.0%} to {high:.0%}")
+    return Scatter(low=low, high=high, sources=(source,))
 
 
 def strength_scatter(material: Material) -> Scatter:
-    """Return what the strength of a safety factor may be, over what it is."""
-    return _range("strength", material.allowable, material.strength_range)
+    """Return what the strength of a safety factor may be, over what it is.
+
+    Parameters
+    ----------
+    material : Material
+    """
+    return _range(SourceKind.STRENGTH, material.allowable, material.strength_range)
 
 
 def compliance_scatter(material: Material) -> Scatter:
-    """Return what 1/E may be, over what it is."""
-    return _range("modulus", material.youngs_modulus, material.youngs_modulus_range).inverse
+    """Return what 1/E may be, over what it is.
+
+    Parameters
+    ----------
+    material : Material
+    """
+    return _range(SourceKind.MODULUS, material.youngs_modulus, material.youngs_modulus_range).inverse
 
 
-def _range(what: str, value: float, stated: tuple[float, float] | None) -> Scatter:
+def _range(kind: SourceKind, value: float, stated: tuple[float, float] | None) -> Scatter:
     if stated is None:
         return Scatter()
     low, high = min(stated[0], value), max(stated[1], value)
-    return Scatter(low=low / value, high=high / value, holds=(f"stated {what}, {low:.4g} to {high:.4g} MPa",))
+    source = Source(kind=kind, detail=f"{low:.4g} to {high:.4g} MPa")
+    return Scatter(low=low / value, high=high / value, sources=(source,))

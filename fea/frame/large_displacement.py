@@ -22,6 +22,7 @@ from fea.beam.cut_free import in_slot, link_loads
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from fea.common.source import Source, SourceKind, distinct
 from fea.frame.corotational import (
     CorotationalSolution,
     NoEquilibriumError,
@@ -168,34 +169,37 @@ def examine(
         ),
     )
     materials = [compliance_scatter(case.material_of(link)) for link in case.checked_links]
-    slack = Scatter(low=min(m.low for m in materials), high=max(m.high for m in materials))
-    load = load_scatter(case, title)
-    scatter = slack.times(load)
+    slack = Scatter(
+        low=min(m.low for m in materials),
+        high=max(m.high for m in materials),
+        sources=distinct(*(m.sources for m in materials)),
+    )
+    scatter = slack.times(load_scatter(case, title))
     if scatter.high * linear <= LARGE * size and min(factor, near) >= LEAST_FACTOR * scatter.high:
         return small
     found = _deformed(case, title, frame, small, loads, masses)
-    holds = dict.fromkeys(text for one in (*materials, load) for text in one.holds)
-    return replace(found, held_band=_held_band(frame, found, scatter, tuple(holds)))
+    return replace(found, held_band=_held_band(frame, found, scatter))
 
 
-def _held_band(frame: LinkageFrame, found: LargeDisplacement, scatter: Scatter, holds: tuple[str, ...]) -> Band:
+def _held_band(frame: LinkageFrame, found: LargeDisplacement, scatter: Scatter) -> Band:
     """Band of the share of the load that is held, with what load over modulus may be by ``scatter``.
 
     A frame of linear material has the shape that load over modulus gives it, so that its limit load scales.
     """
-    holds = ("equilibrium on the deformed shape, followed from no load", *holds)
+    sources = scatter.sources
     if found.state == "no equilibrium":
-        return Band(value=found.held, low=found.held / scatter.high, high=found.held / scatter.low, holds=holds)
+        return Band(value=found.held, low=found.held / scatter.high, high=found.held / scatter.low, sources=sources)
     if found.state == "unstable":
-        # It became unstable somewhere on the way.
+        sources = (*sources, Source(kind=SourceKind.PATH, detail="it becomes unstable at an unknown share of the load"))
         high = 1.0 if scatter.low < 1.0 and _holds(frame, scatter.low) == 1.0 else math.nextafter(1.0, 0.0)
-        return Band(value=min(found.buckling or 1.0, high), low=0.0, high=high, holds=holds)
+        return Band(value=min(found.buckling or 1.0, high), low=0.0, high=high, sources=sources)
     low = _holds(frame, scatter.high) if scatter.high > 1.0 else 1.0
     faults = math.inf if found.buckling is None else found.buckling / scatter.high / LEAST_LINEAR
     if faults < low:
         # A straight linkage keeps its shape up to its buckling load, a real one is never straight.
-        low, holds = faults, (*holds, f"small faults of shape, within {LEAST_LINEAR:g} times the load of buckling")
-    return Band(value=1.0, low=low, high=1.0, holds=holds)
+        near = f"buckling at less than {LEAST_LINEAR:g} times the load"
+        low, sources = faults, (*sources, Source(kind=SourceKind.IMPERFECTION, detail=near))
+    return Band(value=1.0, low=low, high=1.0, sources=sources)
 
 
 def _holds(frame: LinkageFrame, factor: float) -> float:

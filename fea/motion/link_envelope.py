@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.check.solid_result import DRIVEN_HOLDS, PINNED_HOLDS
 from fea.common.band import Band
 from fea.common.scatter import Scatter, strength_scatter
+from fea.common.source import Source, SourceKind, distinct, pin_sources
 from fea.motion.critical import critical_nodes
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import fatigue_life, missing_data, strength_at
@@ -18,7 +18,7 @@ from fea.motion.peaks import Peaks, principal_peaks, von_mises_peaks
 from fea.motion.unit_loads import TRANSFERS, load_scale, unit_loads
 from fea.motion.unit_solutions import UnitSolutions, solve_units
 from fea.refine.convergence import ALONE
-from fea.refine.discretisation import Discretisation, holds, judged
+from fea.refine.discretisation import Discretisation, discretisation_source, judged
 from fea.refine.error_estimate import estimate_error
 from fea.refine.link_series import Quantity
 from fea.refine.refinement import RefinedSolid
@@ -34,7 +34,11 @@ from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw, 
 Real = NDArray[np.float64]
 
 LAWS = (WIDE, NARROW)
-FATIGUE_ELSEWHERE = "where fatigue is worst, for which no mesh was refined, fourfold estimate on one mesh"
+ONE_MESH = "the error of its one mesh is not estimated"
+ELSEWHERE, FATIGUE_ELSEWHERE = (
+    Source(kind=SourceKind.DISCRETISATION, detail=f"fourfold estimate on one mesh, since none was refined for {where}")
+    for where in ("this pose", "the place where fatigue is worst")
+)
 AGREEMENT = 5e-3
 """To which the peak of a pose by unit loads equals that of a direct solution."""
 
@@ -169,7 +173,8 @@ class _Series:
     def __init__(self) -> None:
         self.factors: dict[tuple[Span, Transfer | None], tuple[float, float]] = {}
         self.discretisation: Discretisation | None = None
-        self.holds: tuple[str, ...] = ("nothing of the discretisation: one mesh",)
+        self.sources: tuple[Source, ...] = ()
+        self.without = ONE_MESH
         self._refined: dict[tuple[Span, Transfer | None], float] = {}
         self._size = math.inf
 
@@ -182,7 +187,8 @@ class _Series:
         numbers = [n for n, case in enumerate(refined.solution.cases) if case.load == load_case]
         judgements = [judged(refined, number, brittle=material.brittle) for number in numbers]
         found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
-        found.holds = (f"{holds(found.discretisation.stress, sharp_edges=refined.sharp_edges)}, at the worst pose",)
+        source = discretisation_source(found.discretisation.stress, sharp_edges=refined.sharp_edges)
+        found.sources, found.without = (replace(source, detail=f"{source.detail}, at the worst pose"),), ""
         for number, judgement in zip(numbers, judgements, strict=True):
             case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
             found._refined[case.span, case.transfer] = series.value
@@ -236,7 +242,8 @@ def _load_case(
             value=max(governing.peak, 0.0),
             low=max(min(f * v.peak for v in variants for f in (*series.of_variant(v), 1.0)), 0.0),
             high=max(float(np.nanmax(high)), 0.0),
-            holds=(*_sources(governing), *series.holds),
+            sources=(*_sources(governing), *series.sources),
+            without=series.without,
         )
     else:
         peak = Band.unknown("the peak has no limit")
@@ -269,7 +276,7 @@ def _estimated(
         value=peak.value,
         low=min(peak.low, max(peak.value - error, 0.0)),
         high=max(peak.high, (peak.value + error) / contact),
-        holds=(*peak.holds, "at this pose, for which no mesh was refined, fourfold estimate on one mesh"),
+        sources=(*peak.sources, ELSEWHERE),
     )
     low, high = load_case.low.copy(), load_case.high.copy()
     low[pose], high[pose] = min(low[pose], peak.low), max(high[pose], peak.high)
@@ -298,8 +305,8 @@ def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -
     )
 
 
-def _sources(governing: VariantCurve) -> tuple[str, ...]:
-    return PINNED_HOLDS if governing.transfer is None else DRIVEN_HOLDS
+def _sources(governing: VariantCurve) -> tuple[Source, ...]:
+    return pin_sources(driven=governing.transfer is not None)
 
 
 def closed_history(history: Real, *, returns: bool) -> Real:
@@ -318,7 +325,7 @@ def _fatigue(
     load: Scatter,
 ) -> LinkFatigue:
     assert material.fatigue is not None
-    every, found, parts, meshes = [], [], [], list(series.holds)
+    every, found, parts, meshes = [], [], [], list(series.sources)
     for variant in load_case.variants:
         count = int(np.isfinite(variant.stress).sum())
         parts.append(solved.combination[:, variant.first : variant.first + count])
@@ -335,7 +342,7 @@ def _fatigue(
         if variant.transfer in (None, stated):
             found.append((life, node, history))
     life, node, history = max(found, key=lambda f: f[0].stress)
-    sources = (*_sources(load_case.governing), *dict.fromkeys(meshes), *load.holds)
+    sources = distinct(_sources(load_case.governing), tuple(meshes), load.sources)
     wanted = material.fatigue.cycles if repetitions is None else repetitions
     counts = tuple(one.repetitions for one in every if one.repetitions is not None)
     return LinkFatigue(

@@ -37,7 +37,8 @@ from fea.beam.column_factor import AxialForce, Stretch, column_factors
 from fea.beam.flanks import Flanks, flanks_of
 from fea.beam.theory import BeamCheck
 from fea.common.band import Band
-from fea.common.scatter import load_scatter
+from fea.common.scatter import compliance_scatter, load_scatter
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
 from geometry.parts.part import Section
@@ -282,10 +283,10 @@ def column_outcome(
         value=found.value,
         low=min(moduli) / material.youngs_modulus * found.least / LEAST_LINEAR,
         high=max(moduli) / material.youngs_modulus * found.most,
-        holds=(
-            "the modulus",
-            "bending that grows with compression, which linear stress leaves out",
-            "how stiffly its neighbours hold it",
+        sources=(
+            *compliance_scatter(material).sources,
+            Source(kind=SourceKind.IMPERFECTION, detail="bending that grows with compression"),
+            Source(kind=SourceKind.RESTRAINT),
         ),
     )
     band = load_scatter(case, title).inverse.on(band)

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from fea.common.band import Band
-from fea.common.scatter import Scatter, load_scatter
+from fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.large_displacement import LARGE, LargeDisplacement, displaced
@@ -176,11 +177,13 @@ def _point_band(case: Case, title: str, moved: LargeDisplacement, link: str, poi
     least, largest = point_bounds(case, frame, moved.solution, link, point)
     low, high = (least / linear, largest / linear) if linear > 0.0 else (1.0, 1.0)
     low, high = low * min((*ratios, 1.0)) * load.low, high * max((*ratios, 1.0)) * load.high
-    holds = ("eyes, bores and holes", "the modulus", *load.holds)
+    moduli = (compliance_scatter(material).sources for material in materials)
+    sources = distinct((Source(kind=SourceKind.EYES),), *moduli, load.sources)
     if moved.followed:
         ends = [displaced(frame, link, point, factor) for factor in (low, high) if factor > 0.0]
-        return Band(value=size, low=min(size, *ends) if low > 0.0 else 0.0, high=max(size, *ends), holds=holds)
+        return Band(value=size, low=min(size, *ends) if low > 0.0 else 0.0, high=max(size, *ends), sources=sources)
     near_by = 0.0 if moved.factor is None else high / moved.factor
     grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
     most = high * grown * size if size > 0.0 else 0.0
-    return Band(value=size, low=low * size, high=most, holds=(*holds, "growth towards buckling or a dead point"))
+    grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
+    return Band(value=size, low=low * size, high=most, sources=(*sources, grows))

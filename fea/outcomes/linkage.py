@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.scatter import compliance_scatter, load_scatter
+from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict
 from fea.frame.large_displacement import LEAST_FACTOR, LargeDisplacement
 from fea.frame.toggle import SNAP, growth
@@ -70,12 +71,16 @@ def by_linear_theory(
     remedy : str, optional
         What tells more, for people.
     """
-    slack = max((compliance_scatter(case.material_of(link)).high for link in case.checked_links), default=1.0)
+    compliances = [compliance_scatter(case.material_of(link)) for link in case.checked_links]
+    slack = max((compliance.high for compliance in compliances), default=1.0)
     band = Band(
         value=least,
         low=least / SNAP / slack,
         high=factor,
-        holds=("the modulus", "snap-through of a shallow toggle, which linear theory puts too high"),
+        sources=(
+            *distinct(*(compliance.sources for compliance in compliances)),
+            Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high"),
+        ),
     )
     band = load_scatter(case, title).inverse.on(band)
     found = CheckOutcome.of(BUCKLING, LINKAGE, title, Quantity.BUCKLING_FACTOR, band, 1.0, how)

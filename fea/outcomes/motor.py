@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
 from loads.states.case_motion import CaseMotion, solve_case_motion
 
 Real = NDArray[np.float64]
-HOLDS = ("from the mean over the motion (a flywheel lends and stores the rest) to the peak",)
+SOURCES = (Source(kind=SourceKind.FLYWHEEL, detail="from the mean over the motion to the peak"),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +108,7 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
                 f"at the worst place the drive asks for {most:.3g} of the motor's torque at that speed, on average for "
                 f"{mean:.3g} of its power; stall torque {check.stall_torque:.3g} N·mm, straight down to {free:.4g} rpm"
             )
-            value = Band(value=most, low=mean, high=most, holds=HOLDS)
+            value = Band(value=most, low=mean, high=most, sources=SOURCES)
             yield outcome(Quantity.TORQUE_SHARE, value, 1.0, reason)
     if check.rated_torque is not None:
         effective, mean = (
@@ -118,7 +119,7 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
             f"the drive torque is {effective:.3g} N·mm as a root mean square and {mean:.3g} N·mm on average, which a "
             f"flywheel would leave, against {check.rated_torque:.3g} N·mm rated"
         )
-        value = Band(value=effective, low=min(mean, effective), high=effective, holds=HOLDS)
+        value = Band(value=effective, low=min(mean, effective), high=effective, sources=SOURCES)
         yield outcome(Quantity.DRIVE_TORQUE, value, check.rated_torque, reason)
 
 
@@ -136,7 +137,7 @@ def _outcome(
     solved, times = laden.forces[title], _times(laden, title)
     found = demand(solved.drive_power, solved.torque, times)
     limit = check.output_power
-    value = Band(value=found.peak_power, low=found.mean_power, high=found.peak_power, holds=HOLDS)
+    value = Band(value=found.peak_power, low=found.mean_power, high=found.peak_power, sources=SOURCES)
     outcome = CheckOutcome.of(name, Subject.link(laden.drive.link), title, Quantity.DRIVE_POWER, value, limit)
     side = {
         Verdict.PASS: "the motor's output covers its peak",

@@ -25,6 +25,7 @@ import numpy as np
 
 from fea.common.band import Band
 from fea.common.scatter import Scatter, load_scatter, strength_scatter
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import CheckOutcome, Quantity, Subject
 from fea.outcomes.limits import least_safety_factor
 from geometry.base.errors import CaseError
@@ -32,7 +33,7 @@ from loads.case.case import Case
 from loads.records.check_spec import PinCheck
 from loads.statics.statics import JointReaction
 
-HOLDS = ("how the two eyes share the couple of the joint force, and bear it",)
+SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,10 +82,10 @@ def pin_stress(
     high = max(most * bent, math.sqrt(3.0) * shear_force * sheared)
     return PinStress(
         lever=lever,
-        moment=Band(value=most, low=least, high=most, holds=HOLDS),
-        bending=Band(value=most * bent, low=least * bent, high=most * bent, holds=HOLDS),
+        moment=Band(value=most, low=least, high=most, sources=SOURCES),
+        bending=Band(value=most * bent, low=least * bent, high=most * bent, sources=SOURCES),
         shear=shear_force * sheared,
-        equivalent=Band(value=high, low=low, high=high, holds=HOLDS),
+        equivalent=Band(value=high, low=low, high=high, sources=SOURCES),
     )
 
 

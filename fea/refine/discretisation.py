@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from fea.common.source import Source, SourceKind
 from fea.refine.convergence import GridConvergence
 from fea.refine.link_series import NOT_RESOLVED
 from fea.refine.refinement import SERIES, MeshRecord, RefinedSolid
@@ -89,8 +90,15 @@ class Discretisation:
         return ", ".join(f"{value:.3g}" for value in self.stress.values)
 
 
-def holds(series: GridConvergence, *, sharp_edges: int = 0) -> str:
-    """What a band of this series says that it holds; ``sharp_edges`` of the link, where the band is of a stress."""
+def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> Source:
+    """Return the source of error that a band of this series covers.
+
+    Parameters
+    ----------
+    series : GridConvergence
+    sharp_edges : int
+        Of the link, where the band is of a stress.
+    """
     if series.kind == "one mesh":
         text = "estimated on one mesh, fourfold"
     elif series.kind == "two meshes":
@@ -100,7 +108,7 @@ def holds(series: GridConvergence, *, sharp_edges: int = 0) -> str:
         text = f"grid convergence over {len(series.values)} meshes, {series.rule}"
     if sharp_edges:
         text += f"; without the stress at sharp edges ({sharp_edges}), below {LOADED:.0%} of the peak and without limit"
-    return f"discretisation ({text})"
+    return Source(kind=SourceKind.DISCRETISATION, detail=text)
 
 
 def judged(refined: RefinedSolid, number: int, *, brittle: bool) -> Discretisation:

@@ -56,7 +56,6 @@ WIDE = PressureLaw(span=180)
 NARROW = PressureLaw(span=90)
 CONTACT_SHORTFALL = 0.06
 """Share of the stress of contact by which the narrow law may fall short of it in an eye: the most that was measured."""
-CONTACT_HOLDS = f"what contact adds to the narrower pin pressure in an eye (up to {CONTACT_SHORTFALL:.0%})"
 
 
 def bearing_stress(*, force: float, diameter: float, thickness: float) -> float:

@@ -19,6 +19,7 @@ from geometry.base.version import result_stamp
 from geometry.parts.material import Material
 from loads.records.check_spec import SafetyFactorCheck
 from reports.page.output import MARK, write_folder
+from reports.tables.bands import band_record
 from reports.tables.console import COLOURS, verdict_line
 from reports.tables.meshes import solver_record
 from reports.words.terminal import KEPT, say, say_table
@@ -201,12 +202,7 @@ def _fatigue_record(fatigue: LinkFatigue, material: Material) -> dict[str, Any]:
 
 
 def _band_record(value: Band) -> dict[str, Any]:
-    return {
-        "value": _finite(value.value),
-        "low": _finite(value.low),
-        "high": _finite(value.high),
-        "holds": list(value.told),
-    }
+    return {key: _finite(item) if isinstance(item, float) else item for key, item in band_record(value).items()}
 
 
 def _finite(value: float) -> float | None:

@@ -140,7 +140,7 @@ def data_uri(picture: bytes) -> str:
 
 
 def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
-    """What the bands in the table of checks hold: name of the check -> each source of error once, without particulars.
+    """What the bands in the table of checks hold: name of the check -> each kind of source once, without particulars.
 
     A check without any width stands there only where its values say why.
     """
@@ -148,11 +148,13 @@ def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
     wide = {check.name for check in checks if check.value.low < check.value.high}
     found: dict[str, dict[str, None]] = {}
     for check in checks:
-        every = check.value.holds if check.name in wide else ()
-        held = [text.partition(" (")[0] if text.endswith(")") else text for text in every]
-        for text in [f"nothing ({check.value.without})"] if check.value.without else held:
+        band = check.value
+        texts = [str(source.kind) for source in band.sources] if check.name in wide else []
+        if band.without:
+            texts.append(f"{'no error of the model' if texts else 'nothing'} ({band.without})")
+        for text in texts:
             found.setdefault(check.name, {})[text] = None
-    return {name: tuple(held) for name, held in found.items()}
+    return {name: tuple(texts) for name, texts in found.items()}
 
 
 def _reasons(result: CheckResult) -> list[str]:

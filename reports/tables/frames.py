@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from fea.common.band import Band
 from fea.frame.joint_forces import PINNED_STATICS
 from fea.outcomes.result import CheckResult, LoadCaseResult
 from loads.statics.statics import Reactions
+from reports.tables.bands import band_record
 from reports.words.wording import fixed, number
 
 UNITS = {
@@ -92,8 +92,8 @@ def frame_record(case: LoadCaseResult) -> dict[str, Any]:
             {
                 "joint": joint,
                 "lever": pin.lever,
-                "moment": _band(pin.moment),
-                "bending": _band(pin.bending),
+                "moment": band_record(pin.moment),
+                "bending": band_record(pin.bending),
                 "shear": pin.shear,
             }
             for joint, pin in case.pins.items()
@@ -103,10 +103,6 @@ def frame_record(case: LoadCaseResult) -> dict[str, Any]:
             for held in case.ways_to_hold
         ],
     }
-
-
-def _band(band: Band) -> dict[str, Any]:
-    return {"value": band.value, "low": band.low, "high": band.high, "holds": list(band.told)}
 
 
 def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:

@@ -5,13 +5,13 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from fea.common.band import Band
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.unchecked import unchecked
 from geometry.base.version import result_stamp
 from geometry.parts.material import Material
 from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions
+from reports.tables.bands import band_record
 from reports.tables.frames import UNITS as FRAME_UNITS
 from reports.tables.frames import frame_record, reaction_records
 from reports.tables.loads import UNITS as LOAD_UNITS
@@ -111,7 +111,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
                 "load_case": check.load_case,
                 "quantity": check.quantity,
                 "unit": check.unit or "1",
-                "value": _band(check.value),
+                "value": band_record(check.value),
                 "limit": check.limit,
                 "verdict": check.verdict.value,
                 "reason": check.reason,
@@ -151,10 +151,6 @@ def as_json(result: CheckResult) -> str:
 def worst_load_case(result: CheckResult, link: str) -> LoadCaseResult:
     """The load case whose band of the safety factor reaches lowest on a link, or is unknown."""
     return min(result.load_cases.values(), key=lambda case: case.links[link].severity)
-
-
-def _band(band: Band) -> dict[str, Any]:
-    return {"value": band.value, "low": band.low, "high": band.high, "holds": list(band.told)}
 
 
 def _pose(result: CheckResult) -> dict[str, Any]:
@@ -212,10 +208,10 @@ def _link(result: LinkResult) -> dict[str, Any]:
         "decided_by": result.decided_by or None,
         "why": result.why or None,
         "next_cost": result.next_cost or None,
-        "von_mises_max": _band(result.von_mises_max),
-        "principal_max": _band(result.principal_max),
-        "safety_factor": _band(result.safety_factor),
-        "displacement_max": _band(result.displacement_max),
+        "von_mises_max": band_record(result.von_mises_max),
+        "principal_max": band_record(result.principal_max),
+        "safety_factor": band_record(result.safety_factor),
+        "displacement_max": band_record(result.displacement_max),
         "location": [float(x) for x in result.location],
         "elements": result.elements,
         "unknowns": result.unknowns,
@@ -247,7 +243,7 @@ def _worst_link(result: CheckResult, link: str) -> dict[str, Any]:
     moved = max(result.load_cases.values(), key=lambda case: case.links[link].displacement_max.high)
     return _link(worst.links[link]) | {
         "load_case": worst.name,
-        "displacement_max": _band(moved.links[link].displacement_max),
+        "displacement_max": band_record(moved.links[link].displacement_max),
         "displacement_load_case": moved.name,
     }
 

@@ -9,6 +9,7 @@ from slotted_lever import slotted_lever
 
 from benchmarks.displacement_band import FORCE, Link
 from fea.check.run import check_case
+from fea.common.source import Source, SourceKind
 from fea.frame.displacement_band import Zone, bounds, point_bounds, zones
 from fea.frame.linear import solve_frame
 from fea.frame.linkage_frame import build_frame
@@ -118,5 +119,5 @@ def test_the_check_of_a_point_has_that_band_by_linear_theory_and_on_the_deformed
     assert ("deformed shape" in outcome.reason) == (force < -10.0)
     assert band.low < 0.97 * band.value
     assert band.high > 1.03 * band.value
-    assert "eyes, bores and holes" in band.holds
+    assert Source(kind=SourceKind.EYES) in band.sources
     assert math.isfinite(band.high)

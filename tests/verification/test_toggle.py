@@ -14,6 +14,7 @@ from scipy.optimize import minimize_scalar
 from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.scatter import Scatter
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.frame.toggle import SNAP, growth
 from fea.motion.linkage_history import linkage_outcomes
@@ -227,6 +228,7 @@ def test_no_safety_factor_is_known_at_a_load_under_which_the_toggle_gives_way() 
 
 def test_what_bears_nothing_is_not_broken_by_a_load_that_nothing_holds() -> None:
     band = Band.exact(0.0)
-    found = Scatter(high=math.inf, holds=("growth",)).on(band)
+    growth = Scatter(high=math.inf, sources=(Source(kind=SourceKind.GROWTH),))
+    found = growth.on(band)
     assert (found.low, found.high) == (0.0, 0.0)
-    assert Scatter(high=math.inf, holds=("growth",)).inverse.on(band.inverse(1.0)).low == math.inf
+    assert growth.inverse.on(band.inverse(1.0)).low == math.inf

@@ -15,9 +15,9 @@ def test_what_is_unknown_decides_nothing():
 def test_an_unknown_stress_gives_no_safety_factor():
     factor = Band.unknown("no mesh tells").inverse(41.4)
     assert factor.unknowable
-    assert factor.told == ("nothing: no mesh tells",)
+    assert factor.texts == ("nothing: no mesh tells",)
 
 
 def test_half_a_band_is_refused():
     with pytest.raises(ValueError, match="does not hold"):
-        Band(value=1.0, low=math.nan, high=2.0, holds=())
+        Band(value=1.0, low=math.nan, high=2.0)

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from fea.refine.convergence import grid_convergence, observed_order, williams_exponent
-from fea.refine.discretisation import holds
+from fea.refine.discretisation import discretisation_source
 from geometry.base.errors import CannotRunError
 
 SIZES = (1.0, 0.6, 0.4)
@@ -73,10 +73,10 @@ def test_two_meshes_take_the_large_factor_and_the_elements_order():
     found = grid_convergence((1.0, 0.5), [10.0, 11.0], estimate=0.1)
     assert (found.kind, found.order) == ("two meshes", None)
     assert found.index == pytest.approx(DOUBT * 1.0 / 3.0 / 11.0)
-    assert holds(found) == "discretisation (two meshes, no observed order: factor 3)"
+    assert discretisation_source(found).text == "discretisation (two meshes, no observed order: factor 3)"
     least = grid_convergence((1.0, 0.5), [10.0, 11.0], estimate=0.5)
     assert least.high - least.value == pytest.approx(ALONE * 0.5)
-    assert holds(least) == "discretisation (two meshes, no observed order: fourfold estimate)"
+    assert discretisation_source(least).text == "discretisation (two meshes, no observed order: fourfold estimate)"
 
 
 def test_one_mesh_is_given_four_times_its_estimate():
@@ -153,8 +153,9 @@ def test_an_order_too_high_is_an_accident():
 
 def test_band_names_the_sharp_edges_that_it_leaves_out():
     found = grid_convergence([1.0], [10.0], estimate=0.4)
-    assert holds(found) == "discretisation (estimated on one mesh, fourfold)"
-    assert "without the stress at sharp edges (3), below 50% of the peak" in holds(found, sharp_edges=3)
+    assert discretisation_source(found).text == "discretisation (estimated on one mesh, fourfold)"
+    sharp = discretisation_source(found, sharp_edges=3)
+    assert "without the stress at sharp edges (3), below 50% of the peak" in sharp.text
 
 
 def test_a_constant_is_known_to_its_estimate():

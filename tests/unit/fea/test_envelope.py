@@ -17,6 +17,7 @@ from fea.beam.cut_free import beam_loads, link_loads
 from fea.beam.theory import check_beam
 from fea.check.run import solve_case_statics
 from fea.common.band import Band
+from fea.common.source import SourceKind
 from fea.common.verdict import Quantity, Verdict
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
@@ -248,7 +249,7 @@ def test_the_envelope_says_how_little_when_and_where(result):
         assert load_case.pose == int(np.argmax(load_case.value))
         assert load_case.safety_factor.value == pytest.approx(rocker.strength / load_case.value.max())
         assert load_case.safety_factor.low == pytest.approx(rocker.strength / load_case.high.max())
-        assert any("discretisation" in what for what in load_case.safety_factor.holds)
+        assert any(source.kind is SourceKind.DISCRETISATION for source in load_case.safety_factor.sources)
         assert load_case.value[0] == pytest.approx(load_case.value[-1])  # a full turn
     assert rocker.worst.name == min(rocker.load_cases.values(), key=lambda found: found.safety_factor.low).name
     assert rocker.field.peak.value == pytest.approx(rocker.worst.stress.value, rel=1e-9)

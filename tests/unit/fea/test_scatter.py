@@ -16,6 +16,7 @@ from fea.check.fidelity import decided_by_hand, hand_bands
 from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, strength_scatter
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import Verdict
 from fea.frame import large_displacement
 from fea.frame.corotational import NoEquilibriumError
@@ -70,14 +71,23 @@ def test_what_is_no_scatter(stated):
 
 
 def test_a_band_is_multiplied_at_its_ends():
-    band = Band(value=2.0, low=1.0, high=4.0, holds=("one mesh",))
-    found = Scatter(low=0.5, high=3.0, holds=("load",)).on(band)
-    assert (found.value, found.low, found.high, found.holds) == (2.0, 0.5, 12.0, ("one mesh", "load"))
+    mesh, load = Source(kind=SourceKind.DISCRETISATION), Source(kind=SourceKind.LOAD)
+    band = Band(value=2.0, low=1.0, high=4.0, sources=(mesh,))
+    found = Scatter(low=0.5, high=3.0, sources=(load,)).on(band)
+    assert (found.value, found.low, found.high, found.sources) == (2.0, 0.5, 12.0, (mesh, load))
+    assert Scatter(low=0.5, sources=(load,)).on(found).sources == (mesh, load)
     assert Scatter().on(band) is band
     assert strength_scatter(PLA).low == pytest.approx(23 / 33)
     assert strength_scatter(PLA).high == pytest.approx(65 / 33)
     young = PLA.youngs_modulus
     assert (compliance_scatter(PLA).low, compliance_scatter(PLA).high) == pytest.approx((young / 3500, young / 2000))
+
+
+def test_scatter_does_not_hide_that_a_band_covers_no_error_of_the_model():
+    load = Scatter(low=0.5, high=3.0, sources=(Source(kind=SourceKind.LOAD),))
+    bare = load.on(Band.exact(2.0, "beam theory alone"))
+    assert (bare.low, bare.high, bare.without) == (1.0, 6.0, "beam theory alone")
+    assert bare.texts == ("scatter of the load", "no error of the model: beam theory alone")
 
 
 def test_strength_and_modulus_ranges_widen_factor_and_displacement(path):
@@ -88,8 +98,8 @@ def test_strength_and_modulus_ranges_widen_factor_and_displacement(path):
     assert ours.high / ours.value == pytest.approx(
         plain.displacement_max.high / plain.displacement_max.value * PLA.youngs_modulus / 2000
     )
-    assert any("stated strength, 23 to 65 MPa" in text for text in ranged.safety_factor.holds)
-    assert any("stated modulus" in text for text in ours.holds)
+    assert Source(kind=SourceKind.STRENGTH, detail="23 to 65 MPa") in ranged.safety_factor.sources
+    assert any(source.kind is SourceKind.MODULUS for source in ours.sources)
 
 
 def test_all_effects_of_a_load_scatter_with_it(path):
@@ -108,7 +118,7 @@ def test_all_effects_of_a_load_scatter_with_it(path):
         low, high = (0.8, 1.2) if ours.quantity in rising else (1 / 1.2, 1 / 0.8)
         assert ours.value.low == pytest.approx(theirs.value.low * low), ours
         assert ours.value.high == pytest.approx(theirs.value.high * high), ours
-        assert any("scatter of the load, 80% to 120%" in text for text in ours.value.holds)
+        assert Source(kind=SourceKind.LOAD, detail="80% to 120%") in ours.value.sources
 
 
 def test_hand_calculation_decides_on_the_whole_band():
@@ -197,7 +207,7 @@ def test_the_limit_load_holds_load_over_least_modulus(monkeypatch, state, held, 
         links={},
         sentence="",
     )
-    band = large_displacement._held_band(None, found, Scatter(low=0.8, high=1.25, holds=("E",)), ("E",))
+    band = large_displacement._held_band(None, found, Scatter(low=0.8, high=1.25))
     assert (band.low, band.high) == pytest.approx(ends, abs=0.0)
     [outcome] = linkage_outcomes(None, "lift", replace(found, held_band=band), {"link": _Idle()})
     expected = Verdict.PASS if band.low == 1.0 else Verdict.FAIL if band.high < 1.0 else Verdict.UNDECIDED

@@ -1,11 +1,12 @@
 import pytest
 
 from fea.common.band import Band
+from fea.common.source import PIN_PRESSURE, Source, SourceKind
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Sense, Subject, Verdict, overall
 
 
 def band(low: float, value: float, high: float) -> Band:
-    return Band(value=value, low=low, high=high, holds=("a test",))
+    return Band(value=value, low=low, high=high, sources=(Source(kind=SourceKind.LOAD),))
 
 
 @pytest.mark.parametrize(
@@ -48,8 +49,8 @@ def test_strength_over_a_stress_band_turns_it_round() -> None:
 
 
 def test_a_band_around_variants_reaches_the_outermost() -> None:
-    found = Band.around(12.0, (11.0, 12.5), "two models")
-    assert (found.low, found.value, found.high, found.holds) == (11.0, 12.0, 12.5, ("two models",))
+    found = Band.around(12.0, (11.0, 12.5), PIN_PRESSURE)
+    assert (found.low, found.value, found.high, found.sources) == (11.0, 12.0, 12.5, (PIN_PRESSURE,))
 
 
 @pytest.mark.parametrize(

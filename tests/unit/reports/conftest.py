@@ -9,6 +9,7 @@ from solid_meshes import bar
 from fea.beam.cut_free import link_loads
 from fea.check.run import check_case
 from fea.common.band import Band
+from fea.common.source import PIN_PRESSURE
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, overall
 from fea.outcomes.result import LinkResult, SectionComparison, VariantPeak
 from fea.solid.solution import solve_solid
@@ -55,7 +56,7 @@ def solid_result(beam, material, loads):
 
     def banded(quantity):
         values = [getattr(p, quantity) for p in peaks]
-        return Band.around(values[governing], tuple(values), "pin pressure over 180° and over 90°")
+        return Band.around(values[governing], tuple(values), PIN_PRESSURE)
 
     stress = fields[governing]
     return LinkResult(

@@ -7,15 +7,18 @@ import pytest
 from matplotlib.figure import Figure
 
 from fea.common.band import Band
+from fea.common.source import Source, SourceKind
 from reports.figures.envelope_figures import _panel
 
 ANGLES = np.linspace(0.0, 360.0, 73)
 STRENGTH = 40.0
 
+MESH = (Source(kind=SourceKind.DISCRETISATION),)
+
 
 def link(stress, name="rocker"):
     pose = int(np.nanargmax(stress))
-    peak = Band(value=stress[pose], low=0.9 * stress[pose], high=1.2 * stress[pose], holds=("mesh",))
+    peak = Band(value=stress[pose], low=0.9 * stress[pose], high=1.2 * stress[pose], sources=MESH)
     found = SimpleNamespace(
         value=stress, low=0.9 * stress, high=1.2 * stress, stress=peak, safety_factor=peak.inverse(STRENGTH), pose=pose
     )

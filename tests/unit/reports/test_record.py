@@ -35,9 +35,10 @@ def test_the_published_keys_are_there(record):
 
 def test_bands_are_objects(record):
     band = record["links"]["GF"]["safety_factor"]
-    assert set(band) == {"value", "low", "high", "holds"}
+    assert set(band) == {"value", "low", "high", "holds", "kinds"}
     assert band["low"] <= band["value"] <= band["high"]
-    assert band["holds"] == ["pin pressure over 180° and over 90°"]
+    assert band["holds"] == ["pin pressure (over 180° and over 90°)"]
+    assert band["kinds"] == ["pin_pressure"]
     assert set(record["checks"][0]["value"]) == set(band)
 
 

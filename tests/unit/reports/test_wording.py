@@ -39,8 +39,8 @@ def test_a_fixed_number_has_no_negative_zero(value, text):
 
 
 def test_a_band_is_spelled_out_where_it_shows():
-    assert wording.band(Band(value=3.21, low=2.44, high=3.21, holds=())) == "3.21 (2.44 to 3.21)"
-    assert wording.band(Band(value=3.2101, low=3.2100, high=3.2102, holds=())) == "3.21"
+    assert wording.band(Band(value=3.21, low=2.44, high=3.21)) == "3.21 (2.44 to 3.21)"
+    assert wording.band(Band(value=3.2101, low=3.2100, high=3.2102)) == "3.21"
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_the_headline_of_a_fail_names_what_is_missed(result, changed):
 
 def test_the_worst_of_a_fail_is_one_that_failed(result, changed):
     def change(check):
-        unknown = Band(value=math.nan, low=math.nan, high=math.nan, holds=())
+        unknown = Band(value=math.nan, low=math.nan, high=math.nan)
         if check.link == "AE":
             return replace(check, value=unknown, verdict=Verdict.UNDECIDED, reason="its peak has no limit")
         missed = check.link == "CH" and check.quantity == "displacement" and check.load_case == "weight"
@@ -89,9 +89,9 @@ def test_the_worst_of_a_fail_is_one_that_failed(result, changed):
 def test_the_unfavourable_end_of_a_band_says_which_check_is_nearest_to_its_limit(result, changed, at_least):
     """CH has the better value and the wider band: its unfavourable end is the nearer one."""
     quantity = Quantity.SAFETY_FACTOR if at_least else Quantity.DISPLACEMENT
-    bands = {"CH": Band(value=2.0, low=1.1, high=2.9, holds=()), "CF": Band(value=1.6, low=1.5, high=1.7, holds=())}
+    bands = {"CH": Band(value=2.0, low=1.1, high=2.9), "CF": Band(value=1.6, low=1.5, high=1.7)}
     if not at_least:
-        bands = {name: Band(value=2.0 - b.value / 2, low=2.0 - b.high / 2, high=2.0 - b.low / 2, holds=())
+        bands = {name: Band(value=2.0 - b.value / 2, low=2.0 - b.high / 2, high=2.0 - b.low / 2)
                  for name, b in bands.items()}  # fmt: skip
 
     def change(check):

@@ -1,0 +1,79 @@
+"""What makes a number uncertain: the sources of error that a band covers."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from loads.records.bearing import CONTACT_SHORTFALL
+
+
+class SourceKind(StrEnum):
+    """Kind of a source of error; its value says for people what it is."""
+
+    DISCRETISATION = "discretisation"
+    PIN_PRESSURE = "pin pressure"
+    CONTACT = "contact of pin and eye"
+    TORQUE_TRANSFER = "transfer of the drive torque"
+    CALIBRATION = "calibration of the hand calculation"
+    LOAD = "scatter of the load"
+    STRENGTH = "scatter of the strength"
+    MODULUS = "scatter of the modulus"
+    GROWTH = "growth out of proportion to the load"
+    IMPERFECTION = "small faults of shape"
+    PATH = "path to the deformed shape"
+    RESTRAINT = "restraint by the neighbouring links"
+    SNAP_THROUGH = "snap-through of a shallow toggle"
+    EYES = "flexibility of eyes, bores and holes"
+    EYE_SHARING = "how the two eyes share and bear the couple of the joint force"
+    FLYWHEEL = "energy that a flywheel stores"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """A source of error.
+
+    Attributes
+    ----------
+    kind : SourceKind
+        What it is.
+    detail : str
+        Particulars such as the range that was stated; "" where there are none.
+    """
+
+    kind: SourceKind
+    detail: str = ""
+
+    @property
+    def text(self) -> str:
+        """Kind and particulars, for people and files."""
+        return f"{self.kind} ({self.detail})" if self.detail else str(self.kind)
+
+
+PIN_PRESSURE = Source(kind=SourceKind.PIN_PRESSURE, detail="over 180° and over 90°")
+CONTACT = Source(kind=SourceKind.CONTACT, detail=f"up to {CONTACT_SHORTFALL:.0%} more than the narrower pin pressure")
+TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail="by eye-faces and by bore-shear")
+
+
+def pin_sources(*, driven: bool) -> tuple[Source, ...]:
+    """Return what a solid model does not know of the stress beside a link's pins.
+
+    Parameters
+    ----------
+    driven : bool
+        True where a drive torque acts on the link.
+    """
+    return (PIN_PRESSURE, CONTACT, *((TORQUE_TRANSFER,) if driven else ()))
+
+
+def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:
+    """Join sources, each once, in the order in which they first stand.
+
+    Parameters
+    ----------
+    groups : tuple of Source
+        The sources of several bands.
+
+    Returns
+    -------
+    tuple of Source
+    """
+    return tuple(dict.fromkeys(source for group in groups for source in group))
