@@ -3,7 +3,8 @@
 A public function or method with parameters names each of them under Parameters, and has Returns or Yields unless it
 returns None. A record (dataclass) names each of its fields under Attributes. Nothing is asked of properties and of
 functions without parameters, whose summary says it all; of commands, whose docstring is their ``--help``; of names with
-two underscores; and of pydantic models, whose fields carry docstrings of their own for the JSON Schema.
+two underscores; and of pydantic models, whose fields carry docstrings of their own for the JSON Schema. What overrides
+a method may begin with "As ``Base.method``" instead of repeating its sections.
 """
 
 import ast
@@ -28,7 +29,6 @@ NOT_YET = (
     "geometry/linkage",
     "geometry/mechanisms",
     "geometry/meshing",
-    "geometry/parts",
     "loads/case",
     "loads/sources",
     "loads/records",
@@ -98,6 +98,8 @@ def function_defects(function: ast.FunctionDef, *, method: bool) -> Iterator[str
     if not names or decorators(function) & {"property", "cached_property", "command", "callback", "overload"}:
         return
     docstring = ast.get_docstring(function) or ""
+    if method and re.match(rf"As ``\w+\.{function.name}``", docstring):
+        return
     yield from wrong_names(docstring, "Parameters", names)
     silent = function.returns is None or ast.unparse(function.returns) in {"None", "NoReturn", "Never"}
     if not silent and section(docstring, "Returns") is None and section(docstring, "Yields") is None:
@@ -201,6 +203,13 @@ def version() -> str:
     """Return the version."""
 
 
+class Bar(Part):
+    """A bar."""
+
+    def cut(self, at: float) -> None:
+        """As ``Part.cut``, with a saw."""
+
+
 @app.command()
 def check(case: str) -> int:
     """Check a case."""
@@ -225,6 +234,7 @@ def test_good_docstrings_pass():
         ("    Parameters\n    ----------\n    part", "    Given\n    -----\n    part", "mass: no section Parameters"),
         ("density: float)", "rho: float)", "mass: Parameters lacks rho"),
         ("    part : Part\n", "      part : Part\n", "mass: Parameters lacks part"),
+        ("As ``Part.cut``", "As ``Part.saw``", "Bar.cut: no section Parameters"),
     ],
 )
 def test_a_defect_is_found(before, after, defect):

@@ -11,8 +11,9 @@ from functools import cache
 from importlib.resources import files
 
 from fea.beam.spots import Kind
-from geometry.parts.body_rules import eye_reach, fillet_radius, patch_span, section_height, section_width
-from geometry.parts.part import Body, Disc, Part, Tube
+from geometry.parts.body import patch_span
+from geometry.parts.eyes import eye_reach
+from geometry.parts.part import Body, Part
 
 Interval = tuple[float, float]
 
@@ -48,7 +49,7 @@ class Calibration:
 
     def outside(self, body: Body, nu: float) -> str:
         """Say which proportion of a link lies outside of what was measured; "" where none does."""
-        if fillet_radius(body.part) == 0.0:
+        if body.part.fillet_radius == 0.0:
             return "its junctions are sharp, where stress has no limit"
         if any(pin.y != 0.0 for pin in body.pins):
             return "a pin lies off its axis"
@@ -61,22 +62,22 @@ class Calibration:
 
 def proportions(body: Body, nu: float) -> dict[str, float]:
     """Return the ratios on which the factors may depend, by name; distances in section widths."""
-    part, width = body.part, section_width(body.part)
+    part, width = body.part, body.part.section.width
     found = {
         "Poisson's ratio": nu,
         "eye diameter over width": part.eye_diameter / width,
-        "fillet over width": fillet_radius(part) / width,
+        "fillet over width": part.fillet_radius / width,
     }
-    if isinstance(part, Tube):
-        found["inner over outer diameter"] = part.inner_diameter / width
+    if part.section.round:
+        found["inner over outer diameter"] = part.section.radius_ratio
         found["eye thickness over width"] = part.eye_thickness / width
     else:
-        found["thickness over width"] = part.thickness / width
-        found["eye thickness over thickness"] = part.eye_thickness / part.thickness
+        found["thickness over width"] = part.section.height / width
+        found["eye thickness over thickness"] = part.eye_thickness / part.section.height
     pins = [pin.diameter / part.eye_diameter for pin in body.pins]
     found |= {"largest pin over eye": max(pins), "smallest pin over eye": min(pins)}
     for row in body.holes:
-        across = section_width(part) if row.along == "z" else section_height(part)
+        across = part.section.across(row.along)
         name = f"hole over size across ({row.along})"
         found[name] = max(found.get(name, 0.0), row.diameter / across)
     for end in body.ends:
@@ -106,10 +107,12 @@ def calibrations() -> Mapping[str, Calibration]:
 
 def uncalibrated(body: Body, nu: float) -> str:
     """Say why hand calculation is not calibrated for a link; "" where it is."""
-    if isinstance(body.part, Disc):
+    if not body.part.is_beam:
         return "a disc is as wide as it is long, where beam theory does not hold"
     if any(pin.slot > 0.0 for pin in body.pins):
         return "it has a slot"
+    if body.part.shape not in calibrations():
+        return f"no part of shape {body.part.shape} was measured"
     return calibration_of(body.part).outside(body, nu)
 
 

@@ -10,8 +10,8 @@ from fea.beam import theory as beam
 from fea.common.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
-from geometry.parts.body_rules import extent, hand_section
-from geometry.parts.part import Body, Disc, Pin
+from geometry.parts.body import extent, hand_section
+from geometry.parts.part import Body, Pin
 from loads.records import applied
 from loads.states.actions import PartMass
 from loads.statics.statics import Reactions
@@ -137,7 +137,7 @@ def _on_beam(pin: PinLoad, foot: tuple[float, float] | None) -> beam.PointLoad:
 def _eyes(body: Body, density: float, per_length: float) -> list[tuple[float, float]]:
     """What each eye on the axis weighs more than the tube or bar that it stands for: station [mm], mass [tonne]."""
     part = body.part
-    if isinstance(part, Disc):
+    if not part.is_beam:
         return []
     first, last = extent(body)
     radius, found = part.eye_diameter / 2.0, []

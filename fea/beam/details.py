@@ -25,7 +25,7 @@ from fea.beam.flanks import flanks_of
 from fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
 from fea.beam.theory import Floats, Piecewise
 from fea.common.link_loads import LinkLoads, PinLoad
-from geometry.parts.part import Body, Disc, Pin, Section, rectangle
+from geometry.parts.part import Body, Pin, Section, rectangle
 
 _SAMPLES = 33
 SLENDER = 4.0
@@ -58,7 +58,7 @@ def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
     said = [f"by hand {d.name} bears {d.stress.equivalent:.3g} MPa at x = {d.x:.3g} mm ({d.remark})" for d in found]
     if any(pin.slot > 0.0 for pin in body.pins):
         said.append("as a solid a pin pushes on half, and for the band on a quarter of its diameter, of a slot's flank")
-    if isinstance(body.part, Disc):
+    if not body.part.is_beam:
         said.append(
             "hand calculation takes the disc for a beam of its narrowest net section between its holes: an estimate, "
             "since beam theory needs a length of several widths"

@@ -18,8 +18,9 @@ from fea.beam.holes import eye_stress, tube_hole_factors
 from fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
 from fea.beam.theory import BeamCheck, Side, deflection
 from fea.common.link_loads import LinkLoads, PinLoad
-from geometry.parts.body_rules import extent, eye_reach, fillet_radius, patch_span, section_height, section_width
-from geometry.parts.part import Body, HoleRow, Pin, Tube
+from geometry.parts.body import extent, patch_span
+from geometry.parts.eyes import eye_reach
+from geometry.parts.part import Body, HoleRow, Pin
 
 Kind = Literal["eye", "hole", "end", "section"]
 
@@ -53,7 +54,7 @@ def spots(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[Spot, ...]:
         place = next(e for e in body.ends if e.name == end.name)
         low, high = patch_span(body, place)
         force = float(np.linalg.norm(end.wrench[:3]))
-        stress = _largest(beam, low, high) + force / (place.patch * section_width(body.part))
+        stress = _largest(beam, low, high) + force / (place.patch * body.part.section.width)
         found.append(Spot(kind="end", name=f"the loaded end at {end.name}", x=end.point[0], low=low, high=high,
                           estimate=stress))  # fmt: skip
     between = max((_largest(beam, low, high) for low, high in _gaps(found, first, last)), default=0.0)
@@ -151,16 +152,16 @@ def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> Spot:
     found = [_bore(body, pin, load, torque, before, after)]
     sides: tuple[tuple[float, Side], ...] = ((pin.x - reach, "after"), (pin.x + reach, "before"))
     found += [_junction(body, forces_at(beam, x, side), beam.poisson) for x, side in sides if first < x < last]
-    far = reach + section_width(part) / 2.0
+    far = reach + part.section.width / 2.0
     return Spot(kind="eye", name=f"the eye at {pin.name}", x=pin.x, low=pin.x - far, high=pin.x + far,
                 estimate=max(found))  # fmt: skip
 
 
 def _junction(body: Body, forces: NDArray[np.float64], poisson: float) -> float:
     """Stress at the fillet between the section and an eye under the section's forces (6,)."""
-    part, width = body.part, section_width(body.part)
+    part, width = body.part, body.part.section.width
     stress = section_stress(part.section, forces, poisson)
-    tension, bending, torsion = shoulder_factors(width, (part.eye_diameter - width) / 2.0, fillet_radius(part))
+    tension, bending, torsion = shoulder_factors(width, (part.eye_diameter - width) / 2.0, part.fillet_radius)
     direct = tension * abs(stress.axial) + bending * stress.bending
     return math.hypot(direct, math.sqrt(3.0) * (torsion * stress.torsion + stress.shear))
 
@@ -204,13 +205,13 @@ def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> S
     stress = section_stress(section, forces, beam.poisson)
     opened, across = (m_z, m_y) if row.along == "y" else (m_y, m_z)
     shear = v_z if row.along == "y" else v_y
-    if isinstance(part, Tube):
-        tension, bending = tube_hole_factors(part.outer_diameter, part.inner_diameter, row.diameter)
+    if section.round:
+        tension, bending = tube_hole_factors(section.width, section.radius_ratio * section.width, row.diameter)
         at_rim, aside = section.half_y / section.i_z, section.half_y / section.i_z
         m = section.radius_ratio
         transverse = 4.0 / 3.0 * (1.0 + m + m**2) / (1.0 + m**2) * abs(shear) / section.area
     else:
-        width = section_width(part) if row.along == "z" else section_height(part)
+        width = part.section.across(row.along)
         h = row.diameter / width
         # Roark, 8th ed., table 17.1, case 7a (tension of a plate with a central hole), on the gross section.
         tension = (3.0 - 3.14 * h + 3.667 * h**2 - 1.527 * h**3) / (1.0 - h)

@@ -17,7 +17,8 @@ from fea.common.source import CONTACT, Source, SourceKind
 from fea.refine.refinement import Effort, LinkTask, Progress, RefinedSolid, refine_links
 from geometry.base.errors import CannotRunError
 from geometry.meshing.mesh import MeshSettings
-from geometry.parts.body_rules import extent, eye_reach, reference_line, section_height, section_width
+from geometry.parts.body import extent, reference_line
+from geometry.parts.eyes import eye_reach
 from geometry.parts.part import Body
 from loads.records.bearing import CONTACT_SHORTFALL
 
@@ -220,7 +221,7 @@ SECONDS = 1.0e-3
 def expected_elements(body: Body) -> int:
     """Estimate of the elements of a link's first mesh, to two digits: per width of its length, per eye and per hole."""
     first, last = extent(body)
-    width = min(section_width(body.part), section_height(body.part))
+    width = min(body.part.section.width, body.part.section.height)
     plain = last - first - sum(2.0 * eye_reach(body, pin) for pin in body.pins)
     holes = sum(row.count for row in body.holes)
     number = PER_WIDTH * max(plain, 0.0) / width + PER_EYE * len(body.pins) + PER_HOLE * holes

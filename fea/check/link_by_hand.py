@@ -12,7 +12,7 @@ from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
 from fea.frame.large_displacement import LargeDisplacement
 from fea.outcomes.unloaded import load_size, without_rounding
-from geometry.parts.body_rules import hand_section, reference_line
+from geometry.parts.body import hand_section, reference_line
 from loads.case.case import Case
 from loads.records.applied import Load
 from loads.states.actions import PartMass

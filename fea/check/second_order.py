@@ -22,7 +22,7 @@ from fea.beam.flanks import flanks_of
 from fea.beam.theory import Piecewise, Side, internal_forces
 from fea.common.link_loads import LineLoad, LinkLoads
 from fea.outcomes.buckling import columns, holding
-from geometry.parts.body_rules import hand_section
+from geometry.parts.body import hand_section
 from loads.case.case import Case
 from loads.states.actions import PartMass
 

@@ -26,8 +26,8 @@ from fea.beam.theory import flexibility
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
-from geometry.parts.body_rules import hand_section, section_height, section_width
-from geometry.parts.part import Body, Disc, HoleRow, Part, Pin, Tube
+from geometry.parts.body import hand_section
+from geometry.parts.part import Body, HoleRow, Part, Pin
 from loads.case.case import Case
 
 Real = NDArray[np.float64]
@@ -84,7 +84,7 @@ def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank
         soft.append((x - diameter / 2.0, x + diameter / 2.0, _at_bore(part, diameter)))
     edges = [x for low, high in (*rigid, *(stretch[:2] for stretch in soft)) for x in (low, high)]
     marks = sorted({start, end, *(x for x in edges if start < x < end)})
-    everywhere = _disc(body, part) if isinstance(part, Disc) else np.ones(6)
+    everywhere = _narrowest(body)
     found = []
     for a, b in itertools.pairwise(marks):
         middle, least, most = (a + b) / 2.0, np.ones(6), everywhere
@@ -222,11 +222,11 @@ def _factors(area: float, i_y: float, i_z: float) -> Real:
 
 def _net(part: Part, row: HoleRow) -> Real:
     """Factors at a cross hole: the plain section less the hole's strip through its middle, a tube's bore apart."""
-    across, depth = section_width(part), section_height(part)
+    across, depth = part.section.width, part.section.height
     if row.along == "z":
         across, depth = depth, across
-    inner = part.inner_diameter if isinstance(part, Tube) else 0.0
     d, section = row.diameter, part.section
+    inner = section.radius_ratio * section.width
     area = 1.0 - d * (across - inner) / section.area
     along, aside = d * (across**3 - inner**3) / 12.0, d**3 * (across - inner) / 12.0
     left = {"y": (aside, along), "z": (along, aside)}[row.along]
@@ -246,7 +246,7 @@ def _at_bore(part: Part, diameter: float) -> Real:
     return np.asarray(np.maximum(_factors(area, i_y, i_z), 1.0))
 
 
-def _disc(body: Body, part: Disc) -> Real:
-    """Factors of a disc: its narrowest chord between its holes instead of its diameter."""
-    chord, full = hand_section(body), part.section
+def _narrowest(body: Body) -> Real:
+    """Factors all along: 1, but of a disc those of its narrowest chord between its holes instead of its diameter."""
+    chord, full = hand_section(body), body.part.section
     return _factors(chord.area / full.area, chord.i_y / full.i_y, chord.i_z / full.i_z)

@@ -13,7 +13,7 @@ from fea.common.link_loads import BodyLoad, LinkLoads
 from fea.frame.large_displacement import LEAST_FACTOR
 from fea.motion.link_history import LineHistory, LinkHistory
 from fea.outcomes.buckling import NO_COMPRESSION, ColumnFactors, link_factors
-from geometry.parts.body_rules import hand_section
+from geometry.parts.body import hand_section
 from loads.case.case import Case
 
 Real = NDArray[np.float64]

@@ -5,8 +5,7 @@ import math
 from fea.beam.theory import BeamCheck
 from fea.outcomes.result import SectionComparison
 from fea.solid.stress import StressField
-from geometry.parts.body_rules import section_width
-from geometry.parts.part import Body, Disc, Tube
+from geometry.parts.part import Body
 
 BENDS = 0.1
 """A link counts as bending where its largest bending stress is above this share of its axial stress."""
@@ -18,8 +17,8 @@ def clear_sections(body: Body) -> tuple[float, ...]:
 
     One in the middle of every stretch that is left, the longest stretches first; none on a disc.
     """
-    part, size = body.part, _size(body)
-    if isinstance(part, Disc):
+    part, size = body.part, max(body.part.section.width, body.part.section.height)
+    if not part.is_beam:
         return ()
     eyes = [pin for pin in body.pins if pin.foot is None]
     blocked = [(pin.span[0] - part.eye_diameter / 2, pin.span[1] + part.eye_diameter / 2) for pin in eyes]
@@ -38,11 +37,6 @@ def clear_sections(body: Body) -> tuple[float, ...]:
     return tuple(sorted(x for _, x in gaps[:LARGEST_COUNT]))
 
 
-def _size(body: Body) -> float:
-    part = body.part
-    return part.outer_diameter if isinstance(part, Tube) else max(section_width(part), part.thickness)
-
-
 def compare_sections(body: Body, beam: BeamCheck, stress: StressField) -> tuple[SectionComparison, ...]:
     """Set beam theory's section stress against the solid model's.
 
@@ -53,7 +47,8 @@ def compare_sections(body: Body, beam: BeamCheck, stress: StressField) -> tuple[
     scale = float(beam.bending.max()) if bends else float(abs(beam.axial).max())
     if scale == 0.0:
         return ()
-    section, size = body.part.section, _size(body)
+    section = body.part.section
+    size = max(section.width, section.height)
     rows = []
     for x in clear_sections(body):
         hand = beam.stress_at(x)

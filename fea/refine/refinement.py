@@ -24,8 +24,7 @@ from fea.solid.solution import SolidSolution, solve_solid
 from geometry.base.errors import AlulaError, CaseError
 from geometry.meshing.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
 from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.body_rules import section_height, section_width
-from geometry.parts.part import Body, Disc
+from geometry.parts.part import Body
 
 FAR = 2.0
 """Factor that a link with one mesh keeps from every limit, beyond its band."""
@@ -87,13 +86,13 @@ class LinkTask:
     @property
     def section(self) -> float:
         """Smaller dimension of the section [mm]."""
-        return min(section_width(self.body.part), section_height(self.body.part))
+        return min(self.body.part.section.width, self.body.part.section.height)
 
     @property
     def may_be_sharp(self) -> bool:
         """True where the shape has re-entrant edges: at eyes without fillets."""
         part = self.body.part
-        return not isinstance(part, Disc) and part.fillet_radius == 0.0
+        return part.is_beam and part.fillet_radius == 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from geometry.base.errors import CannotRunError
 
-_ROOT = str(Path(__file__).resolve().parents[1])
+_ROOT = str(Path(__file__).resolve().parents[2])
 _lock = threading.RLock()
 _running: set[subprocess.Popen[bytes]] = set()
 _stopped = threading.Event()

@@ -1,4 +1,4 @@
-"""What links are made of: shapes, their rules and sections, materials.
+"""What links are made of: kinds of parts with their sections, rules and solids; materials.
 
-Hands on ``Tube``, ``Bar``, ``Disc``, ``Body``, ``Section`` and ``Material``.
+Hands on ``Tube``, ``Bar``, ``Disc``, ``Body``, ``Section`` and ``Material``. A new kind derives from ``PartKind``.
 """

@@ -85,14 +85,13 @@ class Material(CaseModel):
         if (self.yield_strength if self.strength == "yield" else self.ultimate_strength) is None:
             raise PydanticCustomError(
                 "no_strength",
-                "strength names '{which}', but {which}_strength is not given; state it or name the other",
+                "strength = '{which}' needs {which}_strength; add it, or set strength to the other one",
                 {"which": self.strength},
             )
         if self.yield_strength and self.ultimate_strength and self.yield_strength > self.ultimate_strength:
             raise PydanticCustomError(
                 "yield_above_ultimate",
-                "yield_strength {y} MPa is above ultimate_strength {u} MPa, which no material can have; "
-                "check the units and the decimal point",
+                "yield_strength {y} MPa is above ultimate_strength {u} MPa; check the units and the decimal points",
                 {"y": f"{self.yield_strength:g}", "u": f"{self.ultimate_strength:g}"},
             )
         temperatures = [temperature for temperature, _ in self.temperature_factors]
@@ -114,7 +113,7 @@ class Material(CaseModel):
         if unknown := [entry for entry in (*self.sources, *self.status) if entry not in type(self).model_fields]:
             raise PydanticCustomError(
                 "no_such_entry",
-                "sources or status speak of '{entry}', but a material has no such entry; correct its name",
+                "sources or status name '{entry}', but a material has no such entry; correct the name",
                 {"entry": unknown[0]},
             )
         for where, told in (("sources", self.sources), ("status", self.status)):
@@ -132,9 +131,24 @@ class Material(CaseModel):
         return self
 
     def drawn(self, entry: str, diameter: float) -> "Material":
-        """Return the material as round wire of a diameter [mm]; ``entry`` of the case states it.
+        """Return the material with the strength that it has as round wire.
 
-        Raises ``CaseError`` for wire that is thicker than the card knows.
+        Parameters
+        ----------
+        entry : str
+            Entry of the case that states the diameter, for the message.
+        diameter : float
+            Diameter of the wire [mm].
+
+        Returns
+        -------
+        Material
+            The same material where its card knows no strengths by diameter.
+
+        Raises
+        ------
+        CaseError
+            For wire that is thicker than the card knows.
         """
         points = self.ultimate_strength_by_diameter
         if not points:
@@ -142,8 +156,8 @@ class Material(CaseModel):
         found = next((strength for limit, strength in points if diameter <= limit * (1.0 + 1e-9)), None)
         if found is None:
             raise CaseError(
-                f"{entry}: '{self.title}' has a strength up to {points[-1][0]:g} mm, not for {diameter:g} mm; make it "
-                "thinner or use another material"
+                f"{entry}: {diameter:g} mm is thicker than the strengths of '{self.title}' are known for; set at most "
+                f"{points[-1][0]:g} mm, or choose another material"
             )
         assert self.ultimate_strength is not None
         ratio = found / self.ultimate_strength
@@ -173,7 +187,18 @@ class Material(CaseModel):
 
 
 def stress_measure(*, brittle: bool) -> str:
-    """Return the name of the stress that a strength is set against."""
+    """Return the name of the stress that a strength is set against.
+
+    Parameters
+    ----------
+    brittle : bool
+        As ``Material.brittle``.
+
+    Returns
+    -------
+    str
+        Its name in words.
+    """
     return "largest principal" if brittle else "von Mises"
 
 

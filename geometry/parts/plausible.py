@@ -17,10 +17,18 @@ Range = tuple[float, float]
 class MaterialClass:
     """Usual values of a class of materials.
 
-    words     of which one begins a word of the name or title; up to four letters, is one
-    density   [kg/m³]
-    modulus   [GPa]
-    strength  yield or ultimate [MPa]
+    Attributes
+    ----------
+    title : str
+        Name of the class, with its article.
+    words : tuple of str
+        Of which one begins a word of a material's name or title; one of up to four letters is the whole word.
+    density : tuple of float
+        Least and greatest [kg/m³].
+    modulus : tuple of float
+        Least and greatest of Young's modulus [GPa].
+    strength : tuple of float
+        Least and greatest, of yield or ultimate strength [MPa].
     """
 
     title: str
@@ -80,16 +88,42 @@ HEAVY = MaterialClass(
 
 
 def class_of(name: str, material: Material) -> MaterialClass:
-    """Return the class that name or title tell, else that of its density."""
+    """Return the class that name or title tell, else that of its density.
+
+    Parameters
+    ----------
+    name : str
+        Name of the material's card.
+    material : Material
+        The card.
+
+    Returns
+    -------
+    MaterialClass
+        The first whose word occurs.
+    """
     told = re.findall(r"[a-z]+", f"{name} {material.title}".lower())
-    for found in CLASSES:
-        if any(word == token if len(word) <= 4 else token.startswith(word) for word in found.words for token in told):
-            return found
+    for known in CLASSES:
+        if any(word == token if len(word) <= 4 else token.startswith(word) for word in known.words for token in told):
+            return known
     return LIGHT if material.density * 1e12 < LIGHT.density[1] else HEAVY
 
 
 def unusual(name: str, material: Material) -> tuple[str, ...]:
-    """Return one sentence for each value of a card that is unusual for its class; ``name`` is the card's."""
+    """Return one sentence for each value of a card that is unusual for its class.
+
+    Parameters
+    ----------
+    name : str
+        Name of the material's card.
+    material : Material
+        The card.
+
+    Returns
+    -------
+    tuple of str
+        Sentences for a warning.
+    """
     usual = class_of(name, material)
     values = (
         ("density", 1e12 * material.density, usual.density, "kg/m³"),

@@ -17,7 +17,7 @@ from geometry.base.units import (
 from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.parts.material import Material, library
-from geometry.parts.part import Body, Part, Pin, PlainEnd, Tube
+from geometry.parts.part import Body, Part, Pin, PlainEnd
 from loads.case.case_rules import check_point, check_rules, check_slots
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
@@ -161,8 +161,8 @@ class CoreCase(Revisable):
         """
         part = self.part_of(link)
         material = self.all_materials[part.material]
-        if isinstance(part, Tube):
-            material = material.drawn(f"parts.{self.links[link].part}.outer_diameter", part.outer_diameter)
+        if part.section.round:
+            material = material.drawn(f"parts.{self.links[link].part}.outer_diameter", part.section.width)
         return under(material, self.conditions)
 
     @property

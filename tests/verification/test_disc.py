@@ -11,7 +11,7 @@ from fea.common.link_loads import BodyLoad, DriveCouple, LinkLoads, PinLoad
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
-from geometry.parts.body_rules import hand_section
+from geometry.parts.body import hand_section
 from geometry.parts.part import Body, Disc, Pin
 from loads.records.bearing import NARROW
 from loads.states.actions import PartMass

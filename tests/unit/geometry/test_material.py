@@ -41,8 +41,8 @@ def test_a_brittle_card_uses_the_ultimate_strength() -> None:
     [
         ({"yield_strength": "60 MPa"}, "yield_strength 60 MPa is above ultimate_strength 52 MPa.*check the units"),
         ({"yield_strength": "414 MPa"}, "above ultimate_strength"),  # the source's slip: ten times too high
-        ({"yield_strength": None}, "yield_strength is not given; state it"),
-        ({"strength": "ultimate", "ultimate_strength": None}, "ultimate_strength is not given"),
+        ({"yield_strength": None}, "strength = .yield. needs yield_strength; add it"),
+        ({"strength": "ultimate", "ultimate_strength": None}, "strength = .ultimate. needs ultimate_strength"),
         ({"poissons_ratio": 0.5}, "less than 0.5"),
         ({"poissons_ratio": -1.0}, "greater than -1"),
         ({"poissons_ratio": float("nan")}, "finite"),

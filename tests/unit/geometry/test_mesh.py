@@ -251,7 +251,7 @@ def test_flattened_elements_are_told() -> None:
 
 def test_fillet_that_the_kernel_cannot_make_though_the_rules_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("geometry.meshing.mesh.check_body", lambda body: None)
-    with pytest.raises(CaseError, match=r"fillet_radius 20 mm does not fit .* make the fillet smaller"):
+    with pytest.raises(CaseError, match=r"fillet_radius 20 mm does not fit .* reduce it"):
         mesh_body(bar_body("20 mm"), COARSE)
 
 
@@ -259,7 +259,7 @@ def test_several_bodies_at_once_name_the_one_that_fails() -> None:
     meshes = mesh_bodies({"one": bar_body(), "two": bar_body("0 mm")}, COARSE)
     assert list(meshes) == ["one", "two"]
     assert meshes["one"].volume > meshes["two"].volume
-    with pytest.raises(CaseError, match=r"^odd: the eyes at A and B overlap"):
+    with pytest.raises(CaseError, match=r"^odd: the eyes at A and B, or their fillets, overlap"):
         mesh_bodies({"good": bar_body(), "odd": bar_body("20 mm")}, COARSE)
 
 

@@ -1,11 +1,14 @@
 """What a body must obey before the geometry kernel sees it."""
 
 import math
+import re
 
 import pytest
 
 from geometry.base.errors import CaseError
-from geometry.parts.body_rules import check_body, extent, eye_reach, patch_span
+from geometry.parts.body import extent, patch_span
+from geometry.parts.body_rules import check_body
+from geometry.parts.eyes import eye_reach
 from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 TUBE = Tube(
@@ -65,50 +68,69 @@ H = PlainEnd(name="H", x=60.0, patch=5.0)
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        (body(pins=(), ends=(H,)), "0 pins, but a part needs at least 1"),
-        (body(pins=(pin("A", 3.0),)), "all lie at x = 3 mm"),
-        (body(pins=(pin("A", 0.0), pin("B", 1e14))), r"reaches 1e\+14 mm from .* 1e\+06 times .* 5e\+06 mm; shorten"),
+        (body(pins=(), ends=(H,)), "no pin on its axis, but a part needs at least 1; add a joint"),
+        (body(pins=(pin("A", 3.0),)), "all pins and load points lie at x = 3 mm"),
+        (
+            body(pins=(pin("A", 0.0), pin("B", 1e14))),
+            r"reaches 1e\+14 mm .*; shorten it to 5e\+06 mm, or .* 1e\+08 mm",
+        ),
         (body(pins=(pin("A", 1e9), pin("B", 1e9 + 40.0))), r"reaches 1e\+09 mm from the origin of its frame"),
-        (body(part=huge(1e150)), r"section is 5e\+150 mm across, but the geometry kernel needs 1e-12 to 1e\+15 mm"),
+        (body(part=huge(1e16)), r"section is 5e\+16 mm across, but must be 1e-12 to 1e\+15 mm"),
         (body(part=huge(1e-14)), r"section is 5e-14 mm across"),
         (
             body(pins=(pin("A", 0.0, diameter=1e-7), pin("B", 40.0))),
-            "hole at A has a diameter of 1e-07 mm, but the geometry kernel sees none below 4e-06 mm .* larger",
+            "hole at A has a diameter of 1e-07 mm, but must have at least 4e-06 mm",
         ),
         (
             body(pins=(pin("A", 0.0, diameter=8.0), pin("B", 40.0))),
             "hole at A has a diameter of 8 mm.*eye_diameter 8 mm",
         ),
-        (body(pins=(pin("A", 0.0, y=1.5), pin("B", 40.0))), "pin A lies 1.5 mm off.*less than 1.5 mm"),
-        (body(pins=(pin("A", 0.0), pin("B", 20.0, y=-4.0), pin("C", 40.0))), "pin B lies -4 mm off.*less than 4 mm"),
-        (body(pins=(pin("A", 0.0), pin("C", 40.0), pin("B", 1.5))), "pin holes at A and B run into each other"),
+        (
+            body(pins=(pin("A", 0.0, y=1.5), pin("B", 40.0))),
+            "A is 1.5 mm .* than 1.5 mm .* above 8 mm",
+        ),
+        (
+            body(pins=(pin("A", 0.0), pin("B", 20.0, y=-4.0), pin("C", 40.0))),
+            "B is 4 mm .* than 4 mm .* above 8 mm",
+        ),
+        (
+            body(pins=(pin("A", 0.0), pin("C", 40.0), pin("B", 1.5))),
+            "holes at A and B overlap: .* than 1.5 mm",
+        ),
         (
             body(pins=(pin("A", 0.0), pin("B", 9.6), pin("C", 40.0))),
-            "eyes at A and B overlap.*9.6 mm apart.*than 9.6 mm",
+            "eyes at A and B, or .*overlap: move .* more than 9.6 mm apart",
         ),
         (
             body(pins=(pin("A", 0.0), pin("B", 8.9), pin("C", 40.0)), part=BAR),
-            "eyes at A and B overlap.*than 9 mm; move",
+            r"eyes at A and B, or .*more than 9 mm apart \(now 8.9 mm\)",
         ),
         (
             body(
                 pins=(pin("A", 0.0), pin("B", 10.9), pin("C", 40.0)), part=BAR.model_copy(update={"eye_thickness": 6.0})
             ),
-            "eyes at A and B overlap.*than 11 mm; move",
+            "eyes at A and B, or .*more than 11 mm apart",
         ),
         (
             body(pins=(pin("A", 0.0), Pin(name="S", x=15.0, y=0.0, diameter=1.5, slot=13.0), pin("C", 40.0)), part=BAR),
-            "eyes at A and S overlap.*15 mm apart.*than 15.5 mm",
+            r"eyes at A and S, or .*more than 15.5 mm apart \(now 15 mm\)",
         ),
-        (body(ends=(PlainEnd(name="H", x=60.0, patch=20.0),)), "patch of H, x = 40 to 60 mm, runs into the eye at B"),
-        (body(ends=(PlainEnd(name="H", x=60.0, patch=80.0),)), "patch of H is 80 mm long.*x = -20 to 60"),
+        (
+            body(ends=(PlainEnd(name="H", x=60.0, patch=20.0),)),
+            "patch of H .* eye at B .* below 15.2 mm",
+        ),
         (body(ends=(H, PlainEnd(name="I", x=54.0, patch=4.0))), "patches of H and I overlap"),
+        (body(ends=(PlainEnd(name="M", x=20.0, patch=31.0),)), "patch of M .* below 30.4 mm"),
+        (
+            body(ends=(PlainEnd(name="M", x=38.0, patch=1.0),)),
+            "M is no pin, but lies in the eye at B and its fillet",
+        ),
         (body(holes=(row(4.0, 20.0),)), r"holes\[1\].*at x = 4 mm that runs into the eye or fillet at A"),
         (body(holes=(row(10.0, 38.0),)), "at x = 38 mm that runs into the eye or fillet at B"),
-        (body(holes=(row(10.0, 20.0, count=11),)), "are 1 mm apart and overlap"),
-        (body(holes=(row(10.0, 20.0, diameter=5.0, along="z"),)), "cut the link through, because its section is 5 mm"),
-        (body(holes=(row(10.0, 20.0, diameter=3.0),), part=BAR), "section is 3 mm across"),
-        (body(ends=(H,), holes=(row(50.0, 59.8),)), "at x = 59.8 mm, but holes must lie within the link"),
+        (body(holes=(row(10.0, 20.0, count=11),)), "overlap: set diameter below 1 mm"),
+        (body(holes=(row(10.0, 20.0, diameter=5.0, along="z"),)), "cut the link through: set diameter below 5 mm"),
+        (body(holes=(row(10.0, 20.0, diameter=3.0),), part=BAR), "set diameter below 3 mm"),
+        (body(ends=(H,), holes=(row(50.0, 59.8),)), "at x = 59.8 mm, but holes must lie between x = 0.5 and 59.5 mm"),
         (body(holes=(row(10.0, 20.0), row(15.0, 20.5, along="z"))), r"at x = 20 mm that runs into one of holes\[2\]"),
     ],
 )
@@ -139,6 +161,16 @@ def test_what_is_wrong_is_named(wrong: Body, message: str) -> None:
 )
 def test_what_is_right_passes(right: Body) -> None:
     check_body(right)
+
+
+@pytest.mark.parametrize("x", [60.0, 20.0, -9.0])
+def test_the_longest_patch_that_an_error_names_is_the_longest(x: float) -> None:
+    with pytest.raises(CaseError) as refused:
+        check_body(body(ends=(PlainEnd(name="H", x=x, patch=1000.0),)))
+    limit = float(re.search(r"below ([\d.]+) mm", str(refused.value))[1])
+    check_body(body(ends=(PlainEnd(name="H", x=x, patch=0.999 * limit),)))
+    with pytest.raises(CaseError):
+        check_body(body(ends=(PlainEnd(name="H", x=x, patch=1.001 * limit),)))
 
 
 def test_places_along_the_link() -> None:

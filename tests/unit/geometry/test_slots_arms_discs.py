@@ -7,16 +7,9 @@ from pydantic import ValidationError
 
 from geometry.base.errors import CaseError
 from geometry.mechanisms.ornithopter import OrnithopterRules, variants
-from geometry.parts.body_rules import (
-    apart,
-    check_body,
-    extent,
-    eye_reach,
-    hand_section,
-    reference_line,
-    section_height,
-    section_width,
-)
+from geometry.parts.body import apart, extent, hand_section, reference_line
+from geometry.parts.body_rules import check_body
+from geometry.parts.eyes import eye_reach
 from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Slot, Tube
 
 BAR = Bar(
@@ -79,28 +72,28 @@ def test_what_fits_passes(right: Body) -> None:
     [
         (body(A, moved(SLOT, y=0.5), B), "slot at S lies 0.5 mm off the link's axis"),
         (body(A, moved(SLOT, diameter=12.0), B), "pin hole at S has a diameter of 12 mm"),
-        (body(A, moved(SLOT, x=7.0), B), "pin holes at A and S run into each other"),
-        (body(A, moved(SLOT, diameter=2.0), B, part=TUBE), "slot at S needs a part of shape bar, not tube"),
-        (body(SHAFT, moved(SLOT, x=3.0, diameter=1.0, slot=0.4), part=DISC), "slot at S needs a part of shape bar"),
+        (body(A, moved(SLOT, x=7.0), B), "pin holes at A and S overlap"),
+        (body(A, moved(SLOT, diameter=2.0), B, part=TUBE), "S: a part of shape tube takes no slots; choose"),
+        (body(SHAFT, moved(SLOT, x=3.0, diameter=1.0, slot=0.4), part=DISC), "S: a part of shape disc takes no slots"),
         (
             body(A, SLOT, B, holes=(hole(33.0),)),
             "runs into the eye or fillet at S",
         ),
-        (body(A, moved(SLOT, x=50.0, slot=6.0), ends=(end(62.0, 3.0),)), "runs into the eye at S"),
+        (body(A, moved(SLOT, x=50.0, slot=6.0), ends=(end(62.0, 3.0),)), "would run into the eye at S.* below 1 mm"),
         (body(A, B, moved(ARM, foot=(5.0, 0.0))), "arm to Q must start at a pin hole on the link's axis"),
         (body(A, SLOT, B, moved(ARM, foot=(20.0, 0.0))), "arm to Q must start at a pin hole"),
-        (body(A, B, moved(ARM, x=70.0)), "arm to Q stands at 29.7 degrees.*at least 30"),
-        (body(A, B, moved(ARM, x=5.0, y=13.0)), r"eye at Q, at the end of an arm, is 3 mm.*2 fillet_radius = 4 mm"),
-        (body(A, B, ARM, part=TUBE), "arm to Q needs a part of shape bar, not tube"),
-        (body(ARM), "0 pins, but a part needs at least 1 on its axis"),
-        (body(SHAFT, moved(CRANK_PIN, x=3.3), part=DISC), r"ring about the hole at A reaches 4.6 mm.*ends at 4.5 mm"),
-        (body(SHAFT, moved(CRANK_PIN, x=2.5), part=DISC), "rings about the holes at O and A run into each other"),
-        (body(SHAFT, CRANK_PIN, part=DISC, ends=(end(4.0, 1.0),)), "E is no pin.*disc"),
+        (body(A, B, moved(ARM, x=70.0)), "arm to Q stands at 29.7 degrees.*at least 30: .* at most 69.28 mm"),
+        (body(A, B, moved(ARM, x=5.0, y=13.0)), "Q is too close to the bar: move it more than 14 mm off"),
+        (body(A, B, ARM, part=TUBE), "Q: a part of shape tube takes no arms"),
+        (body(ARM), "no pin on its axis, but a part needs at least 1"),
+        (body(SHAFT, moved(CRANK_PIN, x=3.3), part=DISC), "ring about the hole at A .* diameter above 9.2 mm"),
+        (body(SHAFT, moved(CRANK_PIN, x=2.5), part=DISC), "holes at O and A overlap: .* below 2.5 mm"),
+        (body(SHAFT, CRANK_PIN, part=DISC, ends=(end(4.0, 1.0),)), "E: a part of shape disc takes no load points"),
         (
             body(SHAFT, CRANK_PIN, part=DISC, holes=(hole(1.0),)),
-            "a disc has no rows of holes",
+            "holes: a part of shape disc takes no rows of holes",
         ),
-        (body(SHAFT, moved(CRANK_PIN, x=0.0, y=3.0), part=DISC), "all lie at x = 0 mm"),
+        (body(SHAFT, moved(CRANK_PIN, x=0.0, y=3.0), part=DISC), "all pins and load points lie at x = 0 mm"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_named_with_its_remedy(wrong: Body, message: str) -> None:
@@ -132,7 +125,7 @@ def test_a_corner_at_an_arm_must_hold_the_fillets(
 ) -> None:
     with pytest.raises(CaseError, match=rf"fillet_radius .* too large for the corner of {angle:g} degrees") as refused:
         check_body(cornered(angle, fillet, eye, thickness))
-    assert f"less than {most:g} mm fits" in str(refused.value)
+    assert f"set it below {most:g} mm" in str(refused.value)
     check_body(cornered(angle, 0.99 * most, eye, thickness))
 
 
@@ -143,16 +136,19 @@ def test_an_eye_as_thick_as_its_bar_hides_in_a_corner_with_any_fillet() -> None:
 @pytest.mark.parametrize(
     ("arms", "message"),
     [
-        ((ARM, moved(ARM, name="R", x=30.0)), "arm to R and the arm to Q stand at 22.8 degrees.*at least 30; turn"),
+        ((ARM, moved(ARM, name="R", x=30.0)), "arm to R and the arm to Q stand at 22.8 degrees.*at least 30; move"),
         (
             (moved(ARM, x=40.0), moved(ARM, name="R", x=10.0, y=60.0, foot=(60.0, 0.0))),
-            "arm to Q is 0 mm from the arm to R",
+            "arm to Q and the arm to R are too close: 0 mm apart",
         ),
-        ((ARM, moved(ARM, name="R", x=24.0, foot=(60.0, 0.0))), "eye at Q is 2 mm from the eye at R.*radius = 4 mm"),
+        (
+            (ARM, moved(ARM, name="R", x=24.0, foot=(60.0, 0.0))),
+            "Q and the eye at R .*: 2 mm apart.* 2 mm further",
+        ),
         (
             # From (40.15, 40) to the line of (60, 0) and (50, 60) are 13 mm, and the eye and half the arm take 10 mm.
             (moved(ARM, x=40.15), moved(ARM, name="R", x=50.0, y=60.0, foot=(60.0, 0.0))),
-            r"arm to R is 3\.00\d* mm from the eye at Q",
+            r"arm to R and the eye at Q are too close: 3\.00\d* mm apart",
         ),
     ],
 )
@@ -162,7 +158,7 @@ def test_arms_must_stay_clear_of_each_other(arms: tuple[Pin, ...], message: str)
 
 
 def test_slot_and_disc_sizes_are_checked_as_they_are_read() -> None:
-    with pytest.raises(ValidationError, match="has no length; state first < last"):
+    with pytest.raises(ValidationError, match="must be less than last = 2 mm; swap"):
         Slot(first="2 mm", last="2 mm")
     with pytest.raises(ValidationError, match="must be less than diameter 9 mm"):
         Disc(shape="disc", material="resin", diameter="9 mm", thickness="2 mm", eye_diameter="9 mm")
@@ -196,7 +192,7 @@ def test_a_disc_counts_by_its_narrowest_net_chord() -> None:
     section = hand_section(body(SHAFT, CRANK_PIN, part=DISC))
     assert 2.0 * section.half_y == pytest.approx(2.0 * math.sqrt(4.5**2 - 9.0) - 2.0, rel=1e-3)
     assert 2.0 * section.half_z == 2.0
-    assert (section_width(DISC), section_height(DISC)) == (9.0, 2.0)
+    assert (DISC.section.width, DISC.section.height) == (9.0, 2.0)
     assert hand_section(body(A, SLOT, B)) == BAR.section
 
 

@@ -1,0 +1,233 @@
+"""The operations of gmsh's OpenCASCADE kernel that kinds of parts are built with.
+
+gmsh itself is loaded in a child process alone (``geometry.meshing``), which hands it to ``Kernel``.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base.errors import CannotRunError
+from geometry.parts.body import Pin
+
+Entity = tuple[int, int]
+"""Dimension and tag of something in the kernel."""
+Vector = tuple[float, float, float]
+ON_SURFACE = 1e-5
+"""Distance within which a point counts as lying on a surface, in the unit of ``geometry.meshing.solid_model``."""
+
+
+class FilletError(Exception):
+    """The kernel cannot round the edges with the radius that is asked for."""
+
+
+class Kernel:
+    """The geometry kernel with one model.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, initialised.
+    """
+
+    def __init__(self, gmsh: Any) -> None:
+        self.gmsh = gmsh
+        self.model = gmsh.model
+        self.occ = gmsh.model.occ
+
+    def cylinder(self, start: Vector, axis: Vector, radius: float) -> Entity:
+        """Make a cylinder.
+
+        Parameters
+        ----------
+        start : tuple of float
+            Middle of one end.
+        axis : tuple of float
+            Vector from there to the middle of the other end.
+        radius : float
+            Its radius.
+
+        Returns
+        -------
+        Entity
+            The solid.
+        """
+        return 3, self.occ.addCylinder(*start, *axis, radius)
+
+    def box(self, corner: Vector, sides: Vector, turn: float = 0.0, about: tuple[float, float] = (0.0, 0.0)) -> Entity:
+        """Make a box, and turn it in the plane.
+
+        Parameters
+        ----------
+        corner : tuple of float
+            The corner of least coordinates.
+        sides : tuple of float
+            Lengths along x, y and z.
+        turn : float
+            Angle about z [rad].
+        about : tuple of float
+            (x, y) of the axis about which it turns.
+
+        Returns
+        -------
+        Entity
+            The solid.
+        """
+        solid = 3, self.occ.addBox(*corner, *sides)
+        self.occ.rotate([solid], *about, 0, 0, 0, 1, turn)
+        return solid
+
+    def upright(self, pin: Pin, diameter: float, height: float) -> list[Entity]:
+        """Make a cylinder along a pin; about a slot, the pieces of one drawn out along x.
+
+        Parameters
+        ----------
+        pin : Pin
+            Hole or slot.
+        diameter, height : float
+            Sizes; half of the height lies on either side of the mid-plane.
+
+        Returns
+        -------
+        list of Entity
+            Solids that overlap.
+        """
+        low = -height / 2.0
+        pieces = [self.cylinder((x, pin.y, low), (0, 0, height), diameter / 2.0) for x in sorted(set(pin.span))]
+        if pin.slot > 0.0:
+            pieces.append((3, self.occ.addBox(pin.span[0], pin.y - diameter / 2.0, low, pin.slot, diameter, height)))
+        return pieces
+
+    def fuse(self, pieces: list[Entity], *, unify: bool = False) -> Entity:
+        """Unite solids that touch or overlap.
+
+        Parameters
+        ----------
+        pieces : list of Entity
+            Solids.
+        unify : bool
+            Whether faces that lie in one surface become one.
+
+        Returns
+        -------
+        Entity
+            The solid.
+        """
+        if len(pieces) == 1:
+            return pieces[0]
+        self.gmsh.option.setNumber("Geometry.OCCUnionUnify", int(unify))
+        solids, _ = self.occ.fuse(pieces[:1], pieces[1:])
+        self.gmsh.option.setNumber("Geometry.OCCUnionUnify", 0)
+        return self.only(solids)
+
+    def cut(self, solid: Entity, tools: list[Entity]) -> Entity:
+        """Cut solids out of another.
+
+        Parameters
+        ----------
+        solid : Entity
+            What is cut.
+        tools : list of Entity
+            What is taken away; it may be empty.
+
+        Returns
+        -------
+        Entity
+            What is left.
+        """
+        if not tools:
+            return solid
+        solids, _ = self.occ.cut([solid], tools)
+        return self.only(solids)
+
+    def fillet(self, solid: Entity, curves: list[int], radius: float) -> Entity:
+        """Round edges of a solid.
+
+        Parameters
+        ----------
+        solid : Entity
+            The solid.
+        curves : list of int
+            Tags of its edges.
+        radius : float
+            Radius of the fillets.
+
+        Returns
+        -------
+        Entity
+            The rounded solid.
+
+        Raises
+        ------
+        FilletError
+            Where the kernel finds no such fillets.
+        """
+        try:
+            solids = self.occ.fillet([solid[1]], curves, [radius])
+        except Exception as error:
+            raise FilletError(str(error)) from error
+        return self.only(solids)
+
+    def only(self, solids: list[Entity]) -> Entity:
+        """Return the single solid of a result.
+
+        Parameters
+        ----------
+        solids : list of Entity
+            What an operation left.
+
+        Returns
+        -------
+        Entity
+            Its single member.
+
+        Raises
+        ------
+        CannotRunError
+            Where there are several, or none.
+        """
+        if len(solids) != 1:
+            raise CannotRunError(
+                f"the part came out as {len(solids)} solids instead of one; change its dimensions a little"
+            )
+        return solids[0]
+
+    def curves(self, holds: Callable[[NDArray[np.float64]], bool]) -> list[int]:
+        """Return the curves of the model on which a condition holds.
+
+        Parameters
+        ----------
+        holds : callable
+            Takes a point (3,); asked at three points of every curve.
+
+        Returns
+        -------
+        list of int
+            Tags.
+        """
+        self.occ.synchronize()
+        return [
+            tag
+            for _, tag in self.model.getEntities(1)
+            if all(holds(self.point_on_curve(tag, at)) for at in (0.13, 0.5, 0.77))
+        ]
+
+    def point_on_curve(self, tag: int, at: float) -> NDArray[np.float64]:
+        """Return a point of a curve.
+
+        Parameters
+        ----------
+        tag : int
+            The curve.
+        at : float
+            Share of its range of parameters, 0 to 1.
+
+        Returns
+        -------
+        ndarray
+            The point (3,).
+        """
+        low, high = self.model.getParametrizationBounds(1, tag)
+        return np.asarray(self.model.getValue(1, tag, [low[0] + at * (high[0] - low[0])]))

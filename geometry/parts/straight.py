@@ -1,0 +1,154 @@
+"""What tubes and bars have in common: straight pieces (the axis, and arms) with an eye at every pin.
+
+Fillets round the edges between pieces and eyes, and between an arm and the piece that it starts from.
+"""
+
+import math
+from abc import abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.parts.arms import check_arms
+from geometry.parts.body import Body, Pin, extent
+from geometry.parts.eyes import check_eyes, flush, plain_eye
+from geometry.parts.kernel import ON_SURFACE, Entity, Kernel
+from geometry.parts.kind import PartKind
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """A straight piece of the part's section.
+
+    Attributes
+    ----------
+    start : tuple of float
+        (x, y) where its axis begins [mm].
+    angle : float
+        Direction of its axis [rad].
+    length : float
+        Its length [mm].
+    """
+
+    start: tuple[float, float]
+    angle: float
+    length: float
+
+
+def pieces_of(body: Body) -> list[Piece]:
+    """Return the straight pieces of a body: the one along the axis, then its arms.
+
+    Parameters
+    ----------
+    body : Body
+        A body whose part is a tube or bar.
+
+    Returns
+    -------
+    list of Piece
+        The pieces.
+    """
+    first, last = extent(body)
+    pieces = [Piece(start=(first, 0.0), angle=0.0, length=last - first)]
+    for pin in body.pins:
+        if pin.foot is not None:
+            x, y = pin.x - pin.foot[0], pin.y - pin.foot[1]
+            pieces.append(Piece(start=pin.foot, angle=math.atan2(y, x), length=math.hypot(x, y)))
+    return pieces
+
+
+class Straight(PartKind):
+    """A part of straight pieces with eyes: a kind of it states its sizes and builds one piece."""
+
+    @abstractmethod
+    def prism(self, kernel: Kernel, body: Body, piece: Piece) -> list[Entity]:
+        """Build one straight piece.
+
+        Parameters
+        ----------
+        kernel : Kernel
+            The geometry kernel.
+        body : Body
+            The body, in the kernel's unit.
+        piece : Piece
+            Where it lies.
+
+        Returns
+        -------
+        list of Entity
+            Solids that touch.
+        """
+
+    def check(self, body: Body) -> None:
+        """As ``PartKind.check``: eyes and arms fit."""
+        check_arms(body)
+        check_eyes(body)
+
+    def solid(self, kernel: Kernel, body: Body) -> Entity:
+        """As ``PartKind.solid``: pieces and eyes, and the fillets between them."""
+        part, pieces = body.part, pieces_of(body)
+        solids = [entity for piece in pieces for entity in self.prism(kernel, body, piece)]
+        raised = [pin for pin in body.pins if not plain_eye(body, pin)]
+        for pin in body.pins:
+            if pin in raised or pin.foot is not None or {*pin.span} & {*extent(body)}:  # else within the bar
+                diameter = part.eye_diameter if pin in raised else part.section.width
+                solids += kernel.upright(pin, diameter, part.eye_thickness)
+        # Eye and bar of one thickness must share one flat face while the corners between them are filleted.
+        solid = kernel.fuse(solids, unify=not part.section.round)
+
+        def to_fillet(p: NDArray[np.float64]) -> bool:
+            """Return whether a point lies where a piece meets an eye, or an arm's side the bar's."""
+            places = [_on_piece(body, piece, p) for piece in pieces]
+            sides = sum(on_side for on_side, _ in places)
+            at_eye = sides > 0 or (not flush(body) and any(on_top for _, on_top in places))
+            on_eye = any(abs(pin.distance(p[0], p[1]) - part.eye_diameter / 2.0) < ON_SURFACE for pin in raised)
+            return sides > 1 or (at_eye and on_eye)
+
+        curves = kernel.curves(to_fillet)
+        if part.fillet_radius == 0.0 or not (raised or len(pieces) > 1):
+            return solid
+        return kernel.fillet(solid, curves, part.fillet_radius)
+
+    def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
+        """As ``PartKind.fine_places``: along fillets, or sharp junctions."""
+        part, half = body.part, body.part.section.width / 2.0
+        edge = min((part.fillet_radius or size) * share, size)
+
+        def to_eye(pin: Pin) -> str:
+            return f"({pin.distance_formula}-{part.eye_diameter / 2.0:.12g})"
+
+        to_bar = f"(Sqrt(y^2+z^2)-{half:.12g})" if part.section.round else f"(Fabs(y)-{half:.12g})"
+        places = []
+        for pin in body.pins:
+            pairs = [] if plain_eye(body, pin) else [(to_eye(pin), to_bar)]
+            if pin.foot is not None:
+                arm = f"(Fabs({_across(pin)})-{half:.12g})"
+                foot = Pin(name="", x=pin.foot[0], y=0.0, diameter=0.0)
+                at_eyes = [(to_eye(pin), arm), (to_eye(foot), arm)]
+                pairs = [*(at_eyes if pairs else []), (arm, to_bar)]
+            places += [(edge, f"Max(Sqrt({a}^2+{b}^2)-{part.fillet_radius:.12g},0)") for a, b in pairs]
+        return places
+
+
+def _on_piece(body: Body, piece: Piece, p: NDArray[np.float64]) -> tuple[bool, bool]:
+    """Return whether a point lies on a side of a straight piece, and on its top or bottom."""
+    section = body.part.section
+    x, y = p[0] - piece.start[0], p[1] - piece.start[1]
+    cosine, sine = math.cos(piece.angle), math.sin(piece.angle)
+    u, v = x * cosine + y * sine, y * cosine - x * sine
+    if not -ON_SURFACE < u < piece.length + ON_SURFACE:
+        return False, False
+    if section.round:
+        return abs(math.hypot(v, p[2]) - section.half_y) < ON_SURFACE, False
+    on_side = abs(abs(v) - section.half_y) < ON_SURFACE and abs(p[2]) < section.half_z + ON_SURFACE
+    on_top = abs(abs(p[2]) - section.half_z) < ON_SURFACE and abs(v) < section.half_y + ON_SURFACE
+    return on_side, on_top
+
+
+def _across(pin: Pin) -> str:
+    """Return the distance from an arm's axis, to its left, as a formula."""
+    assert pin.foot is not None
+    dx, dy = pin.x - pin.foot[0], pin.y - pin.foot[1]
+    length = math.hypot(dx, dy)
+    return f"(y-({pin.foot[1]:.12g}))*({dx / length:.12g})-(x-({pin.foot[0]:.12g}))*({dy / length:.12g})"
