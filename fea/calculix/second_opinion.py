@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fea.calculix import program as calculix
 from fea.outcomes.opinion import Answer, SecondOpinion
-from fea.outcomes.result import CheckResult
+from fea.outcomes.result import CheckResult, SolidResult
 from fea.solid.elasticity import assemble_stiffness, reference_basis
 from fea.solid.solution import SolidCase, SolidSolution
 from fea.solid.space import DisplacementSpace
@@ -38,15 +38,15 @@ def second_opinions(
     for link in next(iter(result.load_cases.values())).links:
         worst = min(result.load_cases.values(), key=lambda case: case.links[link].severity)
         ours = worst.links[link]
-        if ours.solid is None or ours.solid_case is None or ours.stress is None or ours.governing is None:
+        if not isinstance(ours, SolidResult):
             continue
         progress(f"Asking CalculiX about {link}: {ours.elements} elements ...")
         answer, reason = None, ""
         deck = folder / f"{link}.inp"
         title = f"{link}, load case {worst.name}, {ours.governing.title.replace('°', ' degrees')}; mm, N, MPa"
-        write_model(deck, ours.solid, ours.solid_case, title)
+        write_model(deck, ours.solution, ours.governing_case, title)
         try:
-            answer = ask(deck, ours.solid_case.displacement, ours.stress, threads=threads, time_limit=time_limit)
+            answer = ask(deck, ours.governing_case.displacement, ours.stress, threads=threads, time_limit=time_limit)
         except CannotRunError as error:
             reason = str(error)
         found.append(
@@ -57,7 +57,7 @@ def second_opinions(
                 deck=deck.name,
                 von_mises=ours.stress.peak_at_points.value,
                 von_mises_nodal=ours.stress.peak.value,
-                displacement=ours.solid_case.displacement_max,
+                displacement=ours.governing_case.displacement_max,
                 known=not ours.safety_factor.unknowable,
                 answer=answer,
                 reason=reason,

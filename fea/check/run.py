@@ -1,19 +1,19 @@
 """The whole check of a case: pose, statics, beams, solids, bands, verdict."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from pydantic_core import PydanticCustomError
 
 from fea.beam.theory import CantileverCheck, uniform_cantilever
-from fea.check.fidelity import DecidedLink, HandBands, by_hand, decide
+from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
+from fea.check.link_result import link_result
 from fea.check.load_growth import Growths, growths
-from fea.check.solid_result import link_task, solid_result
-from fea.common.band import Band
-from fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
+from fea.check.solid_result import link_task
+from fea.common.link_loads import LinkLoads
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.frame.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
@@ -21,16 +21,15 @@ from fea.frame.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.buckling import buckling_outcomes
 from fea.outcomes.judge import outcomes
-from fea.outcomes.motor import limit_outcomes, motor_outcomes
+from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.pins import PinStress, stress_at
-from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
+from fea.outcomes.result import CheckResult, LoadCaseResult
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import NEAR_DEAD_POINT, Pose
-from geometry.parts.material import Material
 from loads.case.case import Case
 from loads.case.case_file import read_companion
 from loads.records.applied import Load
@@ -44,7 +43,7 @@ from loads.text.accuracy import parse_accuracy
 
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
-BEAM_ALONE = "beam theory without stress concentration"
+BY_HAND = ("beam", "frame")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +120,72 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     return CaseStatics(case=case, pose=pose, loads=loads, forces=forces, masses=masses, audit=found)
 
 
+@dataclass(frozen=True, kw_only=True)
+class _LoadCase:
+    """One load case by hand: what acts on every link cut free, its hand calculation, and what is out of proportion."""
+
+    statics: CaseStatics
+    title: str
+    moved: LargeDisplacement
+    cut: Mapping[str, LinkLoads]
+    hands: Mapping[str, LinkByHand]
+    uneven: Growths
+    size: float
+
+    @classmethod
+    def of(cls, statics: CaseStatics, title: str, moved: LargeDisplacement) -> "_LoadCase":
+        case, masses, loads = statics.case, statics.masses, statics.loads[title]
+        reactions = statics.reactions[title]
+        cut = {link: cut_link(case, link, title, moved, reactions, loads, masses) for link in case.checked_links}
+        hands = {link: link_by_hand(case, link, acting, masses) for link, acting in cut.items()}
+        return cls(
+            statics=statics,
+            title=title,
+            moved=moved,
+            cut=cut,
+            hands=hands,
+            uneven=growths(case, title, statics.pose, loads, masses, moved, reactions, hands),
+            size=load_size(loads, case.linkage.longest),
+        )
+
+    def acts_on(self, link: str) -> bool:
+        """Return True if anything acts on a link."""
+        return acts(self.cut[link], self.size, self.statics.case.linkage.longest)
+
+    @property
+    def idle(self) -> bool:
+        """True where nothing acts on any link."""
+        return bool(self.cut) and not any(map(self.acts_on, self.cut))
+
+    def judged(self, decided: Mapping[str, DecidedLink], motors: Sequence[CheckOutcome]) -> LoadCaseResult:
+        """Return the result, with the outcomes of ``motors`` after those of links, joints and linkage."""
+        case, title, moved = self.statics.case, self.title, self.moved
+        reactions = moved.reactions or self.statics.reactions[title]
+        links = {
+            link: link_result(case, link, title, hand, decided.get(link), self.uneven)
+            for link, hand in self.hands.items()
+        }
+        pins = _pins(case, reactions)
+        checks: Iterable[CheckOutcome] = (
+            *outcomes(case, title, links, pins, moved, self.uneven.joints),
+            *_bearing(case, title, reactions, self.uneven),
+            *buckling_outcomes(case, title, {link: hand.check for link, hand in self.hands.items()}, moved),
+            *motors,
+        )
+        if self.idle:
+            joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
+            checks = undecided(checks, title, self.size, joints)
+        return LoadCaseResult(
+            name=title,
+            forces=self.statics.forces[title],
+            large_displacement=moved,
+            links=links,
+            pins=pins,
+            ways_to_hold=ways_to_hold(case, self.statics.pose, self.statics.loads[title]),
+            checks=tuple(checks),
+        )
+
+
 @bounded_run
 def check_case(
     case: Case,
@@ -133,14 +198,27 @@ def check_case(
 ) -> CheckResult:
     """Check a case: every link under every load case, against every check.
 
-    name       path or built-in name of the case, for companion files and the report
-    fidelity   "auto" for the cheapest model that decides each link (``fea.check.fidelity``), or one for all of them:
-               "solid", "beam" for hand calculation alone, in calibrated bands where there are any and else without
-               verdict; "frame" is another name of "beam", since a frame gives joint forces where they need one
-    effort     accuracy of solid models and what it may cost, by default what the case says
-    progress   called with a sentence before every stage that may take long
+    Parameters
+    ----------
+    case : Case
+    name : str, optional
+        Path or built-in name of the case, for companion files and the report.
+    fidelity : {"auto", "beam", "frame", "solid"}
+        "auto" takes the cheapest model that decides each link (``fea.check.fidelity``), the others one model for all:
+        "beam" is hand calculation alone, in calibrated bands where there are any and else without verdict. "frame" is
+        another name of "beam", since a frame gives joint forces where they need one.
+    threads : int
+    effort : Effort, optional
+        Accuracy of solid models and what it may cost; by default what the case says.
+    progress : callable
+        Called with a sentence before every stage that may take long.
 
-    Raises ``CaseError`` for a wrong case and ``CannotRunError`` where a stage fails.
+    Raises
+    ------
+    CaseError
+        For a wrong case.
+    CannotRunError
+        Where a stage fails.
     """
     if fidelity not in FIDELITIES:
         raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
@@ -152,85 +230,17 @@ def check_case(
         for title, forces in statics.forces.items()
     }
     clock("frames")
-    sizes = {title: load_size(loads, case.linkage.longest) for title, loads in statics.loads.items()}
-    cut = {
-        link: tuple(
-            cut_link(case, link, title, what, statics.reactions[title], statics.loads[title], statics.masses)
-            for title, what in moved.items()
-        )
-        for link in case.checked_links
-    }
-    beams = {link: tuple(link_by_hand(case, link, loads, statics.masses) for loads in cut[link]) for link in cut}
-    uneven = {
-        title: growths(
-            case,
-            title,
-            statics.pose,
-            statics.loads[title],
-            statics.masses,
-            moved[title],
-            statics.reactions[title],
-            {link: beams[link][i] for link in cut},
-        )
-        for i, title in enumerate(moved)
-    }
+    by_title = {title: _LoadCase.of(statics, title, what) for title, what in moved.items()}
     clock("hand calculations")
-    decided: dict[str, DecidedLink] = {}
-    loaded = {link: [x for x in loads if acts(x, sizes[x.name], case.linkage.longest)] for link, loads in cut.items()}
-    idle = set(sizes) - {loads.name for acting in loaded.values() for loads in acting} if cut else set()
-    tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
-    checked = {
-        link: {loads.name: beam.check for loads, beam in zip(cut[link], beams[link], strict=True)} for link in cut
-    }
-    if fidelity in ("beam", "frame"):
-        decided = {link: by_hand(task, checked[link]) for link, task in tasks.items()}
-    else:
-        if fidelity == "solid":
-            for task in tasks.values():
-                require_compressible(task.nu)  # before the first mesh
-        start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
-        decided = decide(
-            tasks,
-            checked,
-            start,
-            effort or effort_of(case),
-            fidelity=fidelity,
-            threads=threads,
-            progress=progress,
-        )
+    decided = _decided(case, list(by_title.values()), fidelity, effort, threads, progress)
+    if fidelity not in BY_HAND:
         clock("solid models")
-    motors = [(n, check) for n, check in case.checks.items() if isinstance(check, MotorCheck)]
-    powers = [motor_outcomes(case, n, check) for n, check in motors]
-    limits = [limit_outcomes(case, n, check) for n, check in motors]
-    load_cases = {}
-    for i, (title, forces) in enumerate(statics.forces.items()):
-        links = {
-            link: _scattered(
-                case, title, _link_result(case, link, title, beams[link][i], decided.get(link)), uneven[title]
-            )
-            for link in cut
-        }
-        reactions = moved[title].reactions or forces.reactions
-        pins = _pins(case, reactions)
-        checks: Iterable[CheckOutcome] = (
-            *outcomes(case, title, links, pins, moved[title], uneven[title].joints),
-            *_bearing(case, title, reactions, uneven[title]),
-            *buckling_outcomes(case, title, {link: beams[link][i].check for link in cut}, moved[title]),
-            *(found[title] for found in powers if title in found),
-            *(outcome for found in limits for outcome in found.get(title, ())),
-        )
-        if title in idle:
-            joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
-            checks = undecided(checks, title, sizes[title], joints)
-        load_cases[title] = LoadCaseResult(
-            name=title,
-            forces=forces,
-            large_displacement=moved[title],
-            links=links,
-            pins=pins,
-            ways_to_hold=ways_to_hold(case, statics.pose, statics.loads[title]),
-            checks=tuple(checks),
-        )
+    motors: dict[str, list[CheckOutcome]] = {title: [] for title in by_title}
+    for asked, check in case.checks.items():
+        if isinstance(check, MotorCheck):
+            for title, found in motor_outcomes(case, asked, check).items():
+                motors[title] += found
+    load_cases = {title: one.judged(decided, motors[title]) for title, one in by_title.items()}
     clock("stress")
     return CheckResult(
         name=name,
@@ -242,83 +252,32 @@ def check_case(
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
         warnings=(
-            *(nothing_acts(title, sizes[title]) for title in load_cases if title in idle),
+            *(nothing_acts(title, one.size) for title, one in by_title.items() if one.idle),
             *_warnings(case, statics, moved),
         ),
     )
 
 
-def _link_result(case: Case, link: str, title: str, beam: LinkByHand, decided: DecidedLink | None) -> LinkResult:
-    material = case.material_of(link)
-    result = _beam_result(link, material, beam)
-    if decided is None:
-        return replace(result, decided_by="beam", why="nothing acts on it")
-    decision = decided.decision
-    found = None if decided.solid is None else solid_result(case, link, title, beam.check, decided.solid)
-    if found is not None:
-        result = replace(found, notes=(*found.notes, *beam.remarks))
-    elif decided.solid is None and title in decided.hands and not decided.hands[title].outside:
-        result = _calibrated(result, material, decided.hands[title])
-    return replace(result, decided_by=decision.model, why=decision.why, next_cost=decision.next_cost)
-
-
-def _scattered(case: Case, title: str, result: LinkResult, uneven: Growths) -> LinkResult:
-    """Return a result with the stated scatter of load, strength and modulus in its bands."""
-    material = case.material_of(result.link)
-    load = load_scatter(case, title).times(uneven.stress.get(result.link, Scatter()))
-    bent = load_scatter(case, title).times(uneven.displacement.get(result.link, Scatter()))
-    return replace(
-        result,
-        von_mises_max=load.on(result.von_mises_max),
-        principal_max=load.on(result.principal_max),
-        safety_factor=strength_scatter(material).times(load.inverse).on(result.safety_factor),
-        displacement_max=compliance_scatter(material).times(bent).on(result.displacement_max),
-    )
-
-
-def _calibrated(result: LinkResult, material: Material, hand: HandBands) -> LinkResult:
-    """Return a result by beam theory with the bands that solid models gave it."""
-    worst = max(hand.spots, key=lambda row: (row.principal if material.brittle else row.von_mises).high)
-    return replace(
-        result,
-        von_mises_max=hand.von_mises,
-        principal_max=hand.principal,
-        safety_factor=hand.deciding(brittle=material.brittle).inverse(material.allowable),
-        displacement_max=hand.displacement,
-        location=np.array([worst.spot.x, 0.0, 0.0]),
-        notes=(),
-    )
-
-
-def _beam_result(link: str, material: Material, beam: LinkByHand) -> LinkResult:
-    x, worst = beam.worst
-    stress = Band.exact(worst.equivalent, BEAM_ALONE)
-    principal = Band.exact(max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0), BEAM_ALONE)
-    return LinkResult(
-        link=link,
-        fidelity="beam",
-        von_mises_max=stress,
-        principal_max=principal,
-        safety_factor=(principal if material.brittle else stress).inverse(material.allowable),
-        displacement_max=Band.exact(beam.displacement, BEAM_ALONE),
-        location=np.array([x, 0.0, 0.0]),
-        elements=None,
-        unknowns=None,
-        beam=beam.check,
-        solid=None,
-        variants=(),
-        governing=None,
-        solid_case=None,
-        stress=None,
-        comparisons=(),
-        notes=(
-            "nothing acts on this link in this load case"
-            if worst.equivalent == 0.0
-            else "beam theory alone: stress concentration at eyes and holes is not in these numbers",
-            *beam.remarks,
-        ),
-        brittle=material.brittle,
-    )
+def _decided(
+    case: Case,
+    load_cases: Sequence[_LoadCase],
+    fidelity: str,
+    effort: Effort | None,
+    threads: int,
+    progress: Progress,
+) -> dict[str, DecidedLink]:
+    """Decide every link on which something acts, by the model that was asked for."""
+    loaded = {link: [one.cut[link] for one in load_cases if one.acts_on(link)] for link in case.checked_links}
+    tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
+    beams = {link: {one.title: one.hands[link].check for one in load_cases} for link in tasks}
+    if fidelity in BY_HAND:
+        return {link: by_hand(task, beams[link]) for link, task in tasks.items()}
+    if fidelity == "solid":
+        for task in tasks.values():
+            require_compressible(task.nu)  # before the first mesh
+    start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
+    effort = effort or effort_of(case)
+    return decide(tasks, beams, start, effort, fidelity=fidelity, threads=threads, progress=progress)
 
 
 def _pins(case: Case, reactions: Reactions) -> dict[str, PinStress]:

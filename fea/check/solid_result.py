@@ -11,7 +11,7 @@ from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, pin_sources
 from fea.outcomes.compare import compare_sections
 from fea.outcomes.limits import displacement_limits, stress_limits
-from fea.outcomes.result import LinkResult, VariantPeak
+from fea.outcomes.result import SolidResult, VariantPeak
 from fea.refine.convergence import GridConvergence
 from fea.refine.discretisation import discretisation_source, judged
 from fea.refine.link_series import CasePrecision, Quantity
@@ -40,12 +40,28 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
     )
 
 
-def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: RefinedSolid) -> LinkResult | None:
-    """Return the result of a link under the load case ``title``; None where that load case was not solved."""
+def solid_result(
+    case: Case, link: str, title: str, beam: BeamCheck, refined: RefinedSolid, *, why: str, remarks: Sequence[str]
+) -> SolidResult:
+    """Return the result of a link under a load case that was solved.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    title : str
+        The load case.
+    beam : BeamCheck
+        The hand calculation.
+    refined : RefinedSolid
+        The series of meshes, solved under all load cases of the link.
+    why : str
+        Why a solid decides the link, for people.
+    remarks : sequence of str
+        What the reader must know, besides what model and meshes have to say.
+    """
     material, solid = case.material_of(link), refined.solution
     solved = [number for number, found in enumerate(solid.cases) if found.load == title]
-    if not solved:
-        return None
     stated = case.drive.transfer if case.drive else None
     own = [number for number in solved if solid.cases[number].transfer in (None, stated)]
 
@@ -82,24 +98,23 @@ def solid_result(case: Case, link: str, title: str, beam: BeamCheck, refined: Re
         )
 
     deciding = band("principal" if material.brittle else "von_mises")
-    return LinkResult(
+    return SolidResult(
         link=link,
-        fidelity="solid",
         von_mises_max=band("von_mises"),
         principal_max=band("principal"),
         safety_factor=deciding.inverse(material.allowable),
         displacement_max=band("displacement"),
         location=solid.space.nodes[int(np.argmax(stress.decisive(brittle=material.brittle)))].copy(),
-        elements=len(solid.space.cells),
-        unknowns=solid.space.unknowns,
         beam=beam,
-        solid=solid,
+        solution=solid,
         variants=tuple(_peak(solid.cases[number], refined.precision[number]) for number in solved),
         governing=_peak(variant, refined.precision[governing]),
-        solid_case=variant,
+        governing_case=variant,
         stress=stress,
         comparisons=compare_sections(case.body(link), beam, stress),
-        notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved)),
+        notes=(*solid.notes, precision.sentence, *_edge_notes(refined, solved), *remarks),
+        decided_by="solid",
+        why=why,
         brittle=material.brittle,
         discretisation=precision,
     )

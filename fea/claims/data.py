@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from fea.check.run import CaseStatics, check_case, effort_of, solve_case_statics
-from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
+from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.mechanisms.flapping import FlappingWing
 from geometry.mechanisms.fourbar import FourBar
@@ -178,11 +178,11 @@ def _check(result: CheckResult) -> Mapping[str, Any]:
 
 
 def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, Any]:
-    meshes = {name: link.discretisation for name, link in load_case.links.items()}
-    for name, state in meshes.items():
-        if state is not None and state.status != "converged":
+    for name, link in load_case.links.items():
+        if isinstance(link, SolidResult) and link.discretisation.status != "converged":
             raise CannotRunError(
-                f"no claim on stress can be judged, since that of {name} has not converged: {state.sentence}"
+                f"no claim on stress can be judged, since that of {name} has not converged: "
+                f"{link.discretisation.sentence}"
             )
     worst = max(load_case.links.values(), key=_von_mises)
     points = result.case.links[worst.link].points
@@ -208,11 +208,11 @@ def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, A
 
 def _von_mises(link: LinkResult) -> float:
     """Largest stress [MPa] of the solid, else by beam theory alone, as the hand calculations of sources are."""
-    return link.von_mises_max.value if link.solid is not None else float(link.beam.equivalent.max())
+    return link.von_mises_max.value if isinstance(link, SolidResult) else float(link.beam.equivalent.max())
 
 
 def _safety_factor(link: LinkResult) -> float:
-    return link.safety_factor.value if link.solid is not None else link.beam.safety_factor
+    return link.safety_factor.value if isinstance(link, SolidResult) else link.beam.safety_factor
 
 
 def _material(case: Case, link: str) -> Mapping[str, Any]:

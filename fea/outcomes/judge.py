@@ -14,7 +14,7 @@ from fea.frame.toggle import SNAP, growth
 from fea.outcomes.limits import least_safety_factor
 from fea.outcomes.linkage import linkage_outcomes
 from fea.outcomes.pins import PinStress, pin_outcome
-from fea.outcomes.result import LinkResult
+from fea.outcomes.result import LinkResult, SolidResult
 from fea.refine.discretisation import Discretisation
 from loads.case.case import Case
 from loads.records.check_spec import (
@@ -74,7 +74,7 @@ def outcomes(
 def _link(
     case: Case, name: str, check: SafetyFactorCheck | DisplacementCheck | SustainedCheck, title: str, result: LinkResult
 ) -> CheckOutcome:
-    material, meshes = case.material_of(result.link), result.discretisation
+    material, meshes = case.material_of(result.link), result.discretisation if isinstance(result, SolidResult) else None
     if isinstance(check, SafetyFactorCheck):
         outcome = safety_factor_outcome(case, name, check, title, result.link, result.safety_factor, meshes)
     else:
@@ -86,8 +86,7 @@ def _link(
             limit = check.maximum
         outcome = CheckOutcome.of(name, Subject.link(result.link), title, quantity, value, limit)
         outcome = _with_meshes(outcome, meshes)
-    forced = result.fidelity == "beam" and not result.decided_by
-    if forced and outcome.verdict is not Verdict.UNDECIDED and result.beam.worst.equivalent > 0.0:
+    if not result.decided_by and outcome.verdict is not Verdict.UNDECIDED and result.beam.worst.equivalent > 0.0:
         return outcome.left_open(result.why)
     return outcome
 

@@ -68,26 +68,31 @@ def _mean(values: Real, times: Real) -> float:
     return float(np.trapezoid(values, times)) / float(times[-1] - times[0])
 
 
-def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, CheckOutcome]:
-    """Judge every load case with a speed of its own; by load case.
+def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[CheckOutcome, ...]]:
+    """Return the outcomes of every load case with a speed of its own: power, and what else the motor states.
 
     The drive power of the laden linkage is that of the empty one and a part proportional to what it carries,
     so that the largest load of that distribution which the motor drives follows as well.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Of the check.
+    check : MotorCheck
+
+    Returns
+    -------
+    dict of str to tuple of CheckOutcome
+        Load case -> power first, then speed and torque as far as the motor states them.
     """
     moving = {title: load_case for title, load_case in case.load_cases.items() if load_case.speed != 0.0}
     empty_cases = {title: load_case.model_copy(update={"carried": False}) for title, load_case in moving.items()}
     laden = solve_case_motion(case.model_copy(update={"load_cases": moving}))
     empty = solve_case_motion(case.model_copy(update={"load_cases": empty_cases})) if case.carried else laden
-    return {title: _outcome(case, name, check, title, laden, empty) for title in moving}
-
-
-def limit_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[CheckOutcome, ...]]:
-    """Judge speed and torque of every load case with a speed of its own, as far as the motor states them."""
-    if check.no_load_speed is None and check.rated_torque is None:
-        return {}
-    moving = {title: load_case for title, load_case in case.load_cases.items() if load_case.speed != 0.0}
-    moved = solve_case_motion(case.model_copy(update={"load_cases": moving}))
-    return {title: tuple(_limits(name, check, title, moved)) for title in moving}
+    return {
+        title: (_power(case, name, check, title, laden, empty), *_limits(name, check, title, laden)) for title in moving
+    }
 
 
 def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iterator[CheckOutcome]:
@@ -131,9 +136,7 @@ def _times(moved: CaseMotion, title: str) -> Real:
     return times
 
 
-def _outcome(
-    case: Case, name: str, check: MotorCheck, title: str, laden: CaseMotion, empty: CaseMotion
-) -> CheckOutcome:
+def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMotion, empty: CaseMotion) -> CheckOutcome:
     solved, times = laden.forces[title], _times(laden, title)
     found = demand(solved.drive_power, solved.torque, times)
     limit = check.output_power

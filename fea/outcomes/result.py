@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,12 +27,18 @@ from loads.statics.statics import Reactions
 
 @dataclass(frozen=True, kw_only=True)
 class VariantPeak:
-    """Peaks of the solid model under one way to model what is not known.
+    """Peaks of the solid model under one way to model what is not known; NaN where a peak has no limit.
 
-    span       loaded angle of the pin holes [degrees]
-    transfer   "eye-faces" or "bore-shear"; None on a link without drive torque
-    von_mises, principal   largest von Mises and largest principal stress [MPa]
-    displacement           largest displacement [mm]
+    Attributes
+    ----------
+    span : int
+        Loaded angle of the pin holes [degrees].
+    transfer : str or None
+        "eye-faces" or "bore-shear"; None on a link without drive torque.
+    von_mises, principal : float
+        Largest von Mises and largest principal stress [MPa].
+    displacement : float
+        The largest [mm].
     """
 
     span: int
@@ -50,10 +57,16 @@ class VariantPeak:
 class SectionComparison:
     """Hand calculation against the solid model at one section.
 
-    x           station in the link's frame [mm]
-    kind        "bending" (extreme-fibre bending stress) or "axial" (N/A)
-    hand, solid [MPa]
-    difference  (solid - hand) over the link's largest hand stress of that kind
+    Attributes
+    ----------
+    x : float
+        Station in the link's frame [mm].
+    kind : {"bending", "axial"}
+        Extreme-fibre bending stress, or N/A.
+    hand, solid : float
+        [MPa]
+    difference : float
+        (solid - hand) over the link's largest hand stress of that kind.
     """
 
     x: float
@@ -65,50 +78,44 @@ class SectionComparison:
 
 @dataclass(frozen=True, kw_only=True)
 class LinkResult:
-    """What one load case does to one link.
+    """What one load case does to one link, whichever model the numbers come from.
 
-    fidelity           "solid" or "beam": the model that the numbers come from
-    von_mises_max      [MPa]; ``principal_max`` the largest principal stress [MPa]
-    safety_factor      strength over the stress that the material names
-    displacement_max   relative to the line through the link's first and last pin, or that turns with its only bore [mm]
-    location           (3,) place of the largest decisive stress in the link's frame [mm]
-    elements, unknowns size of the solid model; None when no solid ran
-    beam               the hand calculation
-    solid              the solid solutions of all load cases; None when no solid ran
-    variants           the peaks of every variant of this load case; empty when no solid ran
-    governing          the variant that ``value`` comes from; with its displacement field
-                       (``solid_case``) and recovered stress (``stress``) for pictures and files
-    comparisons        hand against solid, section by section
-    notes              what the reader must know about this link's numbers
-    brittle            True where the largest principal stress decides, False where von Mises stress does
-    discretisation     the error that the meshes leave; None when no solid ran
-    decided_by         model that decided: "beam" or "solid"; "" where a model was forced that may not decide;
-                       ``why`` for people
-    next_cost          what a solid would have cost; "" where one ran
+    Attributes
+    ----------
+    link : str
+    von_mises_max, principal_max : Band
+        Largest von Mises and largest principal stress [MPa].
+    safety_factor : Band
+        Strength over the stress that the material names.
+    displacement_max : Band
+        Relative to the line through the link's first and last pin, or that turns with its only bore [mm].
+    location : ndarray, shape (3,)
+        Place of the largest decisive stress in the link's frame [mm].
+    beam : BeamCheck
+        The hand calculation by beam theory.
+    brittle : bool
+        True where the largest principal stress decides, False where von Mises stress does.
+    notes : tuple of str
+        What the reader must know about these numbers.
+    decided_by : {"beam", "solid", ""}
+        Model that decided the link under all load cases; "" where a model was forced that may not decide.
+    why : str
+        Why that model, for people.
     """
 
+    fidelity: ClassVar[str]
+    """The model that the numbers come from."""
     link: str
-    fidelity: str
     von_mises_max: Band
     principal_max: Band
     safety_factor: Band
     displacement_max: Band
     location: NDArray[np.float64]
-    elements: int | None
-    unknowns: int | None
     beam: BeamCheck
-    solid: SolidSolution | None
-    variants: tuple[VariantPeak, ...]
-    governing: VariantPeak | None
-    solid_case: SolidCase | None
-    stress: StressField | None
-    comparisons: tuple[SectionComparison, ...]
-    notes: tuple[str, ...]
     brittle: bool
-    discretisation: Discretisation | None = None
-    decided_by: str = ""
-    why: str = ""
-    next_cost: str = ""
+    notes: tuple[str, ...]
+    decided_by: str
+    why: str
 
     @property
     def decisive(self) -> Band:
@@ -121,19 +128,90 @@ class LinkResult:
         return stress_measure(brittle=self.brittle)
 
     @property
+    def model(self) -> str:
+        """The model that decided, else the one that the numbers come from."""
+        return self.decided_by or self.fidelity
+
+    @property
     def severity(self) -> float:
         """By which the worst load case is found: the least lower end of the safety factor; one without comes first."""
         return -math.inf if self.safety_factor.unknowable else self.safety_factor.low
 
 
 @dataclass(frozen=True, kw_only=True)
+class HandResult(LinkResult):
+    """A link by hand calculation.
+
+    Attributes
+    ----------
+    next_cost : str
+        What a solid model would have cost; "" where it was not weighed.
+    """
+
+    fidelity = "beam"
+    next_cost: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolidResult(LinkResult):
+    """A link by its solid model.
+
+    Attributes
+    ----------
+    solution : SolidSolution
+        Of all load cases of the link.
+    governing_case : SolidCase
+        The variant of this load case that the values come from: its displacement field.
+    stress : StressField
+        Recovered from that field.
+    variants : tuple of VariantPeak
+        Peaks of every variant of this load case.
+    governing : VariantPeak
+        Of the variant that the values come from.
+    comparisons : tuple of SectionComparison
+        Hand calculation against this model, section by section.
+    discretisation : Discretisation
+        The error that the meshes leave.
+    """
+
+    fidelity = "solid"
+    solution: SolidSolution
+    governing_case: SolidCase
+    stress: StressField
+    variants: tuple[VariantPeak, ...]
+    governing: VariantPeak
+    comparisons: tuple[SectionComparison, ...]
+    discretisation: Discretisation
+
+    @property
+    def elements(self) -> int:
+        """Number of tetrahedra."""
+        return len(self.solution.space.cells)
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknown displacements."""
+        return self.solution.space.unknowns
+
+
+@dataclass(frozen=True, kw_only=True)
 class LoadCaseResult:
     """One load case.
 
-    forces              joint forces in the undeformed pose, and which model gave them
-    large_displacement  whether the undeformed pose is good enough, and what holds on the deformed shape if not
-    pins                joint -> stresses of its pin, where a check asks for them
-    ways_to_hold        displacement of the point that the case names, for every way to hold the linkage
+    Attributes
+    ----------
+    name : str
+    forces : JointForces
+        In the undeformed pose, with the model that gave them.
+    large_displacement : LargeDisplacement
+        Whether the undeformed pose is good enough, and what holds on the deformed shape if not.
+    links : mapping of str to LinkResult
+        Each a ``HandResult`` or a ``SolidResult``.
+    pins : mapping of str to PinStress
+        Of every joint whose pin a check asks for.
+    ways_to_hold : tuple of Held
+        Displacement of the point that the case names, for every way to hold the linkage.
+    checks : tuple of CheckOutcome
     """
 
     name: str
@@ -154,12 +232,25 @@ class LoadCaseResult:
 class CheckResult:
     """Everything that ``alula check`` found out.
 
-    name            what the case was called on the command line
-    hand            the case's own hand calculations
-    audit           of the published statics, where the case has one
-    timings         stage -> seconds
-    warnings        one sentence each
-    second_opinions CalculiX beside our solid models, where it was asked for
+    Attributes
+    ----------
+    name : str
+        What the case was called on the command line.
+    case : Case
+    pose : Pose
+    load_cases : mapping of str to LoadCaseResult
+    hand : mapping of str to CantileverCheck
+        The case's own hand calculations.
+    audit : StaticsAudit or None
+        Of the published statics, where the case has one.
+    verdict : Verdict
+        Over all checks.
+    timings : mapping of str to float
+        Stage -> seconds.
+    warnings : tuple of str
+        One sentence each.
+    second_opinions : tuple of SecondOpinion
+        CalculiX beside our solid models, where it was asked for.
     """
 
     name: str

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.outcomes.result import LinkResult
+from fea.outcomes.result import LinkResult, SolidResult
 from fea.refine.discretisation import Discretisation, Status
 from fea.solid.stress import StressField
 from geometry.base import child
@@ -122,7 +122,7 @@ def stress_plots(
 
     No picture is worth failing for: where rendering fails there are fewer pictures and one warning.
     """
-    scenes = {name: scene_of(link) for name, link in links.items() if link.stress is not None}
+    scenes = {name: scene_of(link) for name, link in links.items() if isinstance(link, SolidResult)}
     return plots_of(scenes, points, time_limit=time_limit)
 
 
@@ -144,13 +144,10 @@ def plots_of(
     return found, (f"no stress plot of {', '.join(missing)}: {trouble}",) if missing else ()
 
 
-def scene_of(link: LinkResult) -> Scene:
+def scene_of(link: SolidResult) -> Scene:
     """Prepare the plot of a link that ran as a solid."""
-    assert link.stress is not None
-    assert link.solid_case is not None
-    return scene_from(
-        link.stress, link.solid_case.displacement, link.discretisation, link.beam.section, brittle=link.brittle
-    )
+    displacement, section = link.governing_case.displacement, link.beam.section
+    return scene_from(link.stress, displacement, link.discretisation, section, brittle=link.brittle)
 
 
 def scene_from(

@@ -7,7 +7,7 @@ from typing import Literal
 
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Verdict
-from fea.outcomes.result import CheckResult, LoadCaseResult
+from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from geometry.base.errors import CannotRunError, CaseError
 from reports.notebook.shown import Picture, Row, Table, pick, summary
 from reports.tables.record import worst_load_case
@@ -133,11 +133,8 @@ class CheckReport:
 
         pick({name: name for name in self._links}, link, "link")
         found = self._case(link, load_case).links[link]
-        if found.stress is None:
-            raise CaseError(
-                f"link {link} has no stress field, since {found.why or 'no solid model ran'}; check the case with "
-                'fidelity="solid"'
-            )
+        if not isinstance(found, SolidResult):
+            raise CaseError(f'link {link} has no stress field, since {found.why}; check the case with fidelity="solid"')
         stations = {name: x for name, (x, _) in self.result.case.links[link].points.items()}
         plots, warnings = stress_plots({link: found}, {link: stations})
         if link not in plots:
@@ -184,7 +181,7 @@ class CheckReport:
             {
                 "load case": case.name,
                 "link": name,
-                "model": link.decided_by or link.fidelity,
+                "model": link.model,
                 "stress": link.measure,
                 "stress [MPa]": link.decisive.value,
                 "safety factor": link.safety_factor.value,

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 from fea.common.verdict import LINKAGE, Quantity, Subject
-from fea.outcomes.result import CheckResult, LinkResult
+from fea.outcomes.result import CheckResult, LinkResult, SolidResult
 from reports.words.wording import joined
 
 STACKING = (
@@ -125,7 +125,7 @@ def _bands(result: CheckResult) -> str:
     every = [link for case in result.load_cases.values() for link in case.links.values()]
     loaded = [link for link in every if not math.isinf(link.safety_factor.value)]
     alone = _names(link for link in loaded if link.safety_factor.without)
-    solid = _names(link for link in loaded if link.link not in alone and link.fidelity != "beam")
+    solid = _names(link for link in loaded if link.link not in alone and isinstance(link, SolidResult))
     hand = _names(link for link in loaded if link.link not in (*alone, *solid))
     told = []
     if solid:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from fea.outcomes.result import CheckResult
+from fea.outcomes.result import CheckResult, SolidResult
 from loads.case.case import Case
 from reports.page.output import MARK, write_folder
 from reports.page.pictures import diagram_name, linkage_name, stress_name
@@ -61,9 +61,9 @@ def write_report(
         progress("Writing the VTU files ...")
         for link in next(iter(result.load_cases.values())).links:
             found = worst_load_case(result, link).links[link]
-            if found.stress is not None and found.solid_case is not None:
+            if isinstance(found, SolidResult):
                 (folder / FIELDS).mkdir(exist_ok=True)
-                write_vtu(folder / FIELDS / f"{link}.vtu", found.solid_case.displacement, found.stress)
+                write_vtu(folder / FIELDS / f"{link}.vtu", found.governing_case.displacement, found.stress)
         if decks is not None and result.second_opinions:
             shutil.copytree(decks, folder / DECKS)
 

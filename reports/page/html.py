@@ -9,7 +9,7 @@ from typing import Any
 from fea.claims.audit import ClaimResult, check_claims
 from fea.common.verdict import Quantity, Subject, Verdict, reason_for
 from fea.frame.joint_forces import PINNED_STATICS
-from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
+from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from geometry.base.version import alula_version
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.parts.material import Material
@@ -45,9 +45,6 @@ MEANING = {
     Verdict.UNDECIDED: "At least one check is open: its limit lies inside its error band, or no model that ran can "
     "decide it. This is neither a pass nor a fail.",
 }
-MODEL = {"solid": "Solid model", "beam": "Beam theory"}
-HAND = "Hand calculation"
-"""What gave the numbers of a link: ``HAND`` where beam theory has calibrated bands, so that it decides."""
 _PROPERTIES = (
     ("density", "density", "kg/m³", 1e12),
     ("youngs_modulus", "Young's modulus E", "GPa", 1e-3),
@@ -192,11 +189,19 @@ def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[
         "part": result.case.part_of(name),
         "plot": figures.get(stress_name(name)),
         "diagram": figures.get(diagram_name(name)),
-        "apart": apart(found.comparisons),
-        "model": HAND if found.fidelity == "beam" and found.decided_by else MODEL[found.fidelity],
+        "solid": found if isinstance(found, SolidResult) else None,
+        "apart": apart(found.comparisons) if isinstance(found, SolidResult) else [],
+        "model": _model(found),
         "checks": [c for c in worst.checks if c.subject == Subject.link(name)],
         "others": [(case.name, case.links[name]) for case in result.load_cases.values() if case is not worst],
     }
+
+
+def _model(found: LinkResult) -> str:
+    """What gave the numbers of a link; beam theory has calibrated bands where it decides."""
+    if isinstance(found, SolidResult):
+        return "Solid model"
+    return "Hand calculation" if found.decided_by else "Beam theory"
 
 
 def _materials(result: CheckResult) -> list[dict[str, Any]]:

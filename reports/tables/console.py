@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from fea.check.anchor import anchor_loads
 from fea.common.verdict import Quantity, Verdict
-from fea.outcomes.result import CheckResult, LoadCaseResult
+from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from loads.records.aero import AirForces
 from reports.tables.frames import frame_lines
 from reports.tables.second_opinion import say_opinions
@@ -111,7 +111,7 @@ def _links(case: LoadCaseResult, console: "Console") -> None:
     rows = [
         (
             name,
-            link.decided_by or link.fidelity,
+            link.model,
             (f"{link.measure} " if mixed else "") + number(link.decisive.value, 3),
             band(link.safety_factor),
             number(link.displacement_max.value, 3, 1000.0 * case.reactions.pose.linkage.longest),
@@ -144,7 +144,8 @@ def _checks(case: LoadCaseResult, console: "Console") -> None:
 
 def _hand(case: LoadCaseResult) -> list[str]:
     """Where hand calculation and solid model agree, and by how much they differ where they do not."""
-    compared = {name: link.comparisons for name, link in case.links.items() if link.comparisons}
+    solids = {name: link for name, link in case.links.items() if isinstance(link, SolidResult)}
+    compared = {name: link.comparisons for name, link in solids.items() if link.comparisons}
     if not compared:
         return []
     far = {name: max(found, key=lambda c: abs(c.difference)) for name, found in compared.items() if apart(found)}

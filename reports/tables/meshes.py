@@ -10,6 +10,10 @@ from fea.solid.solution import SolidSolution
 LEAST_TOLD = 1e-9
 """Error of a solver below which its size says nothing to anybody."""
 UNITS = {
+    "links.*.discretisation.accuracy": "1",
+    "links.*.discretisation.stress": "1",
+    "links.*.discretisation.displacement": "1",
+    "links.*.discretisation.meshes": "1",
     "links.*.discretisation.stress.sizes": "mm",
     "links.*.discretisation.stress.values": "MPa",
     "links.*.discretisation.displacement.sizes": "mm",
@@ -22,10 +26,8 @@ UNITS = {
 }
 
 
-def discretisation_record(found: Discretisation | None) -> dict[str, Any] | None:
-    """Return the state of convergence of a link; None where no solid ran."""
-    if found is None:
-        return None
+def discretisation_record(found: Discretisation) -> dict[str, Any]:
+    """Return the state of convergence of a link."""
     sharp = found.sharp
     return {
         "status": found.status,
@@ -49,10 +51,8 @@ def discretisation_record(found: Discretisation | None) -> dict[str, Any] | None
     }
 
 
-def solver_record(answer: SolidSolution | LinkEnvelope | None) -> dict[str, Any]:
-    """Return which solver gave a link's displacements, why it was chosen and the error it left; None where none ran."""
-    if answer is None:
-        return dict.fromkeys(("solver", "solver_reason", "solver_error"))
+def solver_record(answer: SolidSolution | LinkEnvelope) -> dict[str, Any]:
+    """Return which solver gave a link's displacements, why it was chosen and the error it left."""
     return {"solver": answer.solver, "solver_reason": answer.solver_reason, "solver_error": answer.solver_error}
 
 

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
+from fea.outcomes.result import CheckResult, HandResult, LinkResult, LoadCaseResult, SolidResult
 from fea.outcomes.unchecked import unchecked
 from geometry.base.version import result_stamp
 from geometry.parts.material import Material
@@ -207,34 +207,45 @@ def _link(result: LinkResult) -> dict[str, Any]:
         "fidelity": result.fidelity,
         "decided_by": result.decided_by or None,
         "why": result.why or None,
-        "next_cost": result.next_cost or None,
         "von_mises_max": band_record(result.von_mises_max),
         "principal_max": band_record(result.principal_max),
         "safety_factor": band_record(result.safety_factor),
         "displacement_max": band_record(result.displacement_max),
         "location": [float(x) for x in result.location],
-        "elements": result.elements,
-        "unknowns": result.unknowns,
-        "governing": None if result.governing is None else result.governing.title,
-        "variants": [
-            {
-                "span": variant.span,
-                "transfer": variant.transfer,
-                "von_mises": variant.von_mises,
-                "principal": variant.principal,
-                "displacement": variant.displacement,
-            }
-            for variant in result.variants
-        ],
         "beam": {
             "equivalent_max": result.beam.worst.equivalent,
             "x": result.beam.worst_x,
             "safety_factor": result.beam.safety_factor,
         },
         "notes": list(result.notes),
-        "discretisation": discretisation_record(result.discretisation),
-        **solver_record(result.solid),
+        **_by_model(result),
     }
+
+
+def _by_model(result: LinkResult) -> dict[str, Any]:
+    """What one model alone gives; what the other would give is null."""
+    solid = ("elements", "unknowns", "governing", "discretisation", "solver", "solver_reason", "solver_error")
+    if isinstance(result, SolidResult):
+        return {
+            "next_cost": None,
+            "elements": result.elements,
+            "unknowns": result.unknowns,
+            "governing": result.governing.title,
+            "variants": [
+                {
+                    "span": variant.span,
+                    "transfer": variant.transfer,
+                    "von_mises": variant.von_mises,
+                    "principal": variant.principal,
+                    "displacement": variant.displacement,
+                }
+                for variant in result.variants
+            ],
+            "discretisation": discretisation_record(result.discretisation),
+            **solver_record(result.solution),
+        }
+    assert isinstance(result, HandResult)
+    return {"next_cost": result.next_cost or None, "variants": [], **dict.fromkeys(solid)}
 
 
 def _worst_link(result: CheckResult, link: str) -> dict[str, Any]:
@@ -299,6 +310,7 @@ def _comparisons(cases: Iterable[LoadCaseResult]) -> list[dict[str, Any]]:
         }
         for case in cases
         for link, found in case.links.items()
+        if isinstance(found, SolidResult)
         for comparison in found.comparisons
     ]
 

@@ -7,7 +7,7 @@ import pytest
 from edited_cases import edited
 
 from fea.common.verdict import Verdict
-from fea.outcomes.motor import demand, largest_factor, limit_outcomes, line_share
+from fea.outcomes.motor import demand, largest_factor, line_share, motor_outcomes
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case
 from loads.states.case_motion import solve_case_motion
@@ -60,7 +60,7 @@ MOTOR = ['checks.motor.no_load_speed="3500 rpm"']
 
 def limits(*more: str, load_case: str = "wings-12"):
     case = edited("ornithopter", [*MOTOR, *more])
-    return {o.quantity: o for o in limit_outcomes(case, "motor", case.checks["motor"])[load_case]}
+    return {o.quantity: o for o in motor_outcomes(case, "motor", case.checks["motor"])[load_case]}
 
 
 def test_the_drive_must_not_be_faster_than_the_motor_without_load() -> None:

@@ -4,6 +4,7 @@ import tomllib
 from dataclasses import replace
 
 import pytest
+from mesh_states import state
 from solid_meshes import bar
 
 from fea.beam.cut_free import link_loads
@@ -11,7 +12,7 @@ from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.source import PIN_PRESSURE
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, overall
-from fea.outcomes.result import LinkResult, SectionComparison, VariantPeak
+from fea.outcomes.result import SectionComparison, SolidResult, VariantPeak
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from loads.case.case_file import read_case, validate
@@ -59,21 +60,18 @@ def solid_result(beam, material, loads):
         return Band.around(values[governing], tuple(values), PIN_PRESSURE)
 
     stress = fields[governing]
-    return LinkResult(
+    return SolidResult(
         link=SOLID_LINK,
-        fidelity="solid",
         von_mises_max=banded("von_mises"),
         principal_max=Band.exact(peaks[governing].principal, "nothing"),
         safety_factor=banded("von_mises").inverse(material.allowable),
         displacement_max=Band.exact(peaks[governing].displacement, "nothing"),
         location=stress.peak.location,
-        elements=len(solution.space.cells),
-        unknowns=solution.space.unknowns,
         beam=beam,
-        solid=solution,
+        solution=solution,
         variants=peaks,
         governing=peaks[governing],
-        solid_case=solution.cases[governing],
+        governing_case=solution.cases[governing],
         stress=stress,
         comparisons=(
             SectionComparison(x=15.0, kind="axial", hand=-0.051, solid=-0.0505, difference=0.0098),
@@ -81,6 +79,9 @@ def solid_result(beam, material, loads):
         ),
         notes=("2 elements were straightened",),
         brittle=material.brittle,
+        decided_by="solid",
+        why="a solid was asked for",
+        discretisation=state("far"),
     )
 
 

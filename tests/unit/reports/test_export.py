@@ -15,7 +15,7 @@ def link(result):
 @pytest.fixture(scope="module")
 def path(link, tmp_path_factory):
     path = tmp_path_factory.mktemp("vtu") / "GF.vtu"
-    write_vtu(path, link.solid_case.displacement, link.stress)
+    write_vtu(path, link.governing_case.displacement, link.stress)
     return path
 
 
@@ -31,7 +31,7 @@ def test_values_come_back(path, link):
     read = meshio.read(path)
     assert np.array_equal(read.points, link.stress.space.nodes)
     wanted = {
-        "displacement [mm]": link.solid_case.displacement,
+        "displacement [mm]": link.governing_case.displacement,
         "von Mises stress [MPa]": link.stress.von_mises,
         "first principal stress [MPa]": link.stress.principal.max(axis=1),
         "third principal stress [MPa]": link.stress.principal.min(axis=1),
@@ -59,4 +59,4 @@ def test_vtk_reads_quadratic_tetrahedra_in_its_own_node_order(path, link):
 
 def test_a_place_that_cannot_be_written_is_named(link, tmp_path):
     with pytest.raises(CannotRunError, match="cannot be written"):
-        write_vtu(tmp_path / "missing" / "GF.vtu", link.solid_case.displacement, link.stress)
+        write_vtu(tmp_path / "missing" / "GF.vtu", link.governing_case.displacement, link.stress)

@@ -101,8 +101,8 @@ def test_the_stress_that_decides_is_plotted(solid):
 
 def test_a_body_that_does_not_move_is_drawn_as_it_is(solid):
     link = solid["GF"]
-    still = replace(link.solid_case, displacement=np.zeros_like(link.solid_case.displacement))
-    assert figures.scene_of(replace(link, solid_case=still)).scale == 1.0
+    still = replace(link.governing_case, displacement=np.zeros_like(link.governing_case.displacement))
+    assert figures.scene_of(replace(link, governing_case=still)).scale == 1.0
 
 
 def test_quadratic_cells_are_split_without_gaps(solid):

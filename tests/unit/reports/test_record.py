@@ -65,7 +65,7 @@ def test_solid_sizes_are_null_where_no_solid_ran(record, result):
     assert record["links"]["AE"]["unknowns"] is None
     solid = result.load_cases["weight"].links["GF"]
     assert record["links"]["GF"]["elements"] == solid.elements > 0
-    assert record["links"]["GF"]["solver"] == solid.solid.solver
+    assert record["links"]["GF"]["solver"] == solid.solution.solver
     assert "unknowns" in record["links"]["GF"]["solver_reason"]
     assert 0.0 <= record["links"]["GF"]["solver_error"] < 1e-8
     assert [record["links"]["AE"][key] for key in ("solver", "solver_reason", "solver_error")] == [None] * 3

@@ -2,35 +2,17 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
+from mesh_states import state
 from rich.console import Console
 
 import fea.claims.data
 from fea.claims.data import case_tree
 from fea.outcomes.opinion import SecondOpinion
-from fea.refine.convergence import grid_convergence
-from fea.refine.discretisation import Discretisation
-from fea.refine.refinement import MeshRecord
-from fea.refine.singular import SharpPeak
 from geometry.base.errors import CannotRunError
 from loads.case.case_file import read_case
 from reports.figures import figures
 from reports.tables.second_opinion import opinion_records, say_opinions
-
-SERIES = grid_convergence([1.0], [5.0], estimate=0.1)
-
-
-def state(status, screening=None):
-    sharp = None
-    if screening is not None:
-        sharp = SharpPeak(
-            place=np.zeros(3), angle=4.7, growth=0.4, theory=0.46, distance=1.0, screening=screening, resolved=True
-        )
-    return Discretisation(
-        status=status, accuracy=0.05, stress=SERIES, displacement=SERIES, sharp=sharp, stopped="it may not go on",
-        meshes=(MeshRecord(elements=100, unknowns=300, error=0.53, seconds=1.0),),
-    )  # fmt: skip
 
 
 @pytest.fixture
@@ -61,7 +43,7 @@ def test_other_peaks_that_are_no_results_have_no_number_in_the_legend(link, stat
     assert "MPa" not in first
 
 
-@pytest.mark.parametrize("meshes", [None, state("converged"), state("far")])
+@pytest.mark.parametrize("meshes", [state("converged"), state("far")])
 def test_a_peak_with_a_band_has_its_number(link, meshes):
     scene = figures.scene_of(replace(link, discretisation=meshes))
     assert "MPa (circles)" in figures.peak_lines(scene)[0]

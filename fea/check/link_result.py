@@ -1,0 +1,86 @@
+"""The result of a link under one load case, from the model that decided it, with all stated scatter in its bands."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from fea.check.fidelity import DecidedLink, Decision, HandBands
+from fea.check.link_by_hand import LinkByHand
+from fea.check.load_growth import Growths
+from fea.check.solid_result import solid_result
+from fea.common.band import Band
+from fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
+from fea.outcomes.result import HandResult, LinkResult
+from geometry.parts.material import Material
+from loads.case.case import Case
+
+BEAM_ALONE = "beam theory without stress concentration"
+IDLE = DecidedLink(decision=Decision(model="beam", why="nothing acts on it", next_cost=""))
+
+
+def link_result(
+    case: Case, link: str, title: str, hand: LinkByHand, decided: DecidedLink | None, uneven: Growths
+) -> LinkResult:
+    """Return what a load case does to a link.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    title : str
+        The load case.
+    hand : LinkByHand
+    decided : DecidedLink or None
+        None where nothing acts on the link under any load case.
+    uneven : Growths
+        What grows out of proportion to the scattered load.
+    """
+    decided, material = decided or IDLE, case.material_of(link)
+    result: LinkResult
+    if decided.solid is not None and any(one.load == title for one in decided.solid.solution.cases):
+        why, solid = decided.decision.why, decided.solid
+        result = solid_result(case, link, title, hand.check, solid, why=why, remarks=hand.remarks)
+    else:
+        bands = None if decided.solid is not None else decided.hands.get(title)
+        result = _hand_result(link, material, hand, bands, decided.decision)
+    load = load_scatter(case, title).times(uneven.stress.get(link, Scatter()))
+    bent = load_scatter(case, title).times(uneven.displacement.get(link, Scatter()))
+    return replace(
+        result,
+        von_mises_max=load.on(result.von_mises_max),
+        principal_max=load.on(result.principal_max),
+        safety_factor=strength_scatter(material).times(load.inverse).on(result.safety_factor),
+        displacement_max=compliance_scatter(material).times(bent).on(result.displacement_max),
+    )
+
+
+def _hand_result(
+    link: str, material: Material, hand: LinkByHand, bands: HandBands | None, decision: Decision
+) -> HandResult:
+    """Return the hand calculation in its calibrated bands, or beam theory alone where there are none."""
+    x, worst = hand.worst
+    if bands is not None and not bands.outside:
+        von_mises, principal, moved = bands.von_mises, bands.principal, bands.displacement
+        x = max(bands.spots, key=lambda row: (row.principal if material.brittle else row.von_mises).high).spot.x
+        notes: tuple[str, ...] = ()
+    else:
+        tension = max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0)
+        von_mises, principal, moved = (
+            Band.exact(value, BEAM_ALONE) for value in (worst.equivalent, tension, hand.displacement)
+        )
+        alone = "beam theory alone: stress concentration at eyes and holes is not in these numbers"
+        notes = ("nothing acts on this link in this load case" if worst.equivalent == 0.0 else alone, *hand.remarks)
+    return HandResult(
+        link=link,
+        von_mises_max=von_mises,
+        principal_max=principal,
+        safety_factor=(principal if material.brittle else von_mises).inverse(material.allowable),
+        displacement_max=moved,
+        location=np.array([x, 0.0, 0.0]),
+        beam=hand.check,
+        brittle=material.brittle,
+        notes=notes,
+        decided_by=decision.model,
+        why=decision.why,
+        next_cost=decision.next_cost,
+    )
