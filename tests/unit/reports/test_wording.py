@@ -130,7 +130,7 @@ def test_a_linkage_that_gives_way_comes_first_with_its_share_of_the_load(result,
             return check
         if check.quantity is Quantity.SAFETY_FACTOR:
             return replace(check, value=Band.exact(0.1), verdict=Verdict.FAIL)
-        held = Band(value=share, low=low, high=share, holds=())
+        held = Band(value=share, low=low, high=share)
         return replace(check, quantity=Quantity.LOAD_SHARE, value=held, limit=1.0, verdict=Verdict.FAIL)
 
     found = wording.headline(changed(change))
