@@ -134,8 +134,8 @@ def defects(folder: str) -> list[str]:
 
 def folders() -> list[str]:
     """Return the sub-packages of the product."""
-    rooms = ("geometry", "loads", "fea", "reports")
-    return sorted({str(file.parent.relative_to(ROOT)) for room in rooms for file in (ROOT / room).rglob("*.py")})
+    files = [file for top in ("geometry", "loads", "fea", "reports") for file in (ROOT / top).rglob("*.py")]
+    return sorted({str(file.parent.relative_to(ROOT)) for file in files})
 
 
 @pytest.mark.parametrize("folder", [folder for folder in folders() if folder not in NOT_YET])

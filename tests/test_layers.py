@@ -1,4 +1,4 @@
-"""Imports go one way through the rooms and their sub-packages, and each foreign library stays where it belongs."""
+"""Imports go one way through the packages and their sub-packages, and each foreign library stays where it belongs."""
 
 import ast
 from collections.abc import Iterator
@@ -8,16 +8,16 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-HOUSE = {
+LAYERS = {
     "geometry": ("base", "parts", "linkage", "mechanisms", "meshing"),
     "loads": ("text", "records", "statics", "sources", "case", "states"),
     "fea": ("common", "solid", "beam", "frame", "refine", "outcomes", "check", "motion", "calculix", "claims"),
     "reports": ("words", "tables", "figures", "page", "commands", "notebook"),
 }
-"""Each room with its sub-packages, in the order in which they may import from one another: the first is the lowest."""
-ROOMS = tuple(HOUSE)
+"""Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""
+PACKAGES = tuple(LAYERS)
 OUTSIDE = ("alula", "tests", "benchmarks")
-"""What stands above or beside the rooms: ``alula.py`` is their public face."""
+"""What stands above or beside the packages: ``alula.py`` is their public face."""
 OWNERS = {
     "gmsh": ("geometry/meshing/*.py",),
     "skfem": ("fea/*.py",),
@@ -49,32 +49,32 @@ def imported(source: str) -> Iterator[tuple[int, str]]:
 def violations(root: Path) -> list[str]:
     """Return one line per import that the house forbids, over all Python files of the four rooms below `root`."""
     found = {}
-    for level, (room, floors) in enumerate(HOUSE.items()):
-        forbidden = {*ROOMS[level + 1 :], *OUTSIDE}
-        for file in sorted((root / room).rglob("*.py")):
+    for level, (package, layers) in enumerate(LAYERS.items()):
+        forbidden = {*PACKAGES[level + 1 :], *OUTSIDE}
+        for file in sorted((root / package).rglob("*.py")):
             name = file.relative_to(root).as_posix()
             own = name.split("/")[1]
-            above = floors[floors.index(own) + 1 :] if own in floors else ()
+            above = layers[layers.index(own) + 1 :] if own in layers else ()
             for line, module in imported(file.read_text(encoding="utf-8")):
-                package, _, rest = module.partition(".")
+                other, _, rest = module.partition(".")
                 where = f"{name}:{line} imports"
-                if package in forbidden:
-                    found[f"{where} {package}, a higher room or none"] = True
-                if package == room and rest.partition(".")[0] in above:
-                    found[f"{where} {room}/{rest.partition('.')[0]}, which stands above {room}/{own}"] = True
-                if package in OWNERS and not any(fnmatch(name, owner) for owner in OWNERS[package]):
-                    found[f"{where} {package}, which belongs to {' and '.join(OWNERS[package])}"] = True
+                if other in forbidden:
+                    found[f"{where} {other}, a higher package or none"] = True
+                if other == package and rest.partition(".")[0] in above:
+                    found[f"{where} {package}/{rest.partition('.')[0]}, which stands above {package}/{own}"] = True
+                if other in OWNERS and not any(fnmatch(name, owner) for owner in OWNERS[other]):
+                    found[f"{where} {other}, which belongs to {' and '.join(OWNERS[other])}"] = True
     return list(found)
 
 
 def test_the_house_is_as_planned():
     """Every sub-package is there, says what it answers, and holds at most sixteen files."""
-    for room, floors in HOUSE.items():
-        folders = {path.parent.name for path in (ROOT / room).glob("*/*.py")} - {"cases", "templates"}
-        assert folders == set(floors)
-        for floor in floors:
-            assert ast.get_docstring(ast.parse((ROOT / room / floor / "__init__.py").read_text(encoding="utf-8")))
-            assert len(list((ROOT / room / floor).glob("*.py"))) <= 16
+    for package, layers in LAYERS.items():
+        folders = {path.parent.name for path in (ROOT / package).glob("*/*.py")} - {"cases", "templates"}
+        assert folders == set(layers)
+        for layer in layers:
+            assert ast.get_docstring(ast.parse((ROOT / package / layer / "__init__.py").read_text(encoding="utf-8")))
+            assert len(list((ROOT / package / layer).glob("*.py"))) <= 16
 
 
 def test_imports_go_one_way_and_libraries_stay_at_home():

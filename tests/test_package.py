@@ -1,4 +1,4 @@
-"""The wheel holds ``alula.py`` and the four rooms with their data alone, and its command runs from any folder."""
+"""The wheel holds ``alula.py`` and the four packages with their data alone, and its command runs from any folder."""
 
 import os
 import shutil
@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-ROOMS = ("geometry", "loads", "fea", "reports")
+PACKAGES = ("geometry", "loads", "fea", "reports")
 
 
 def run(*command: str | Path, cwd: Path) -> str:
@@ -29,7 +29,7 @@ def run(*command: str | Path, cwd: Path) -> str:
 def wheel(tmp_path_factory) -> Path:
     """Build the wheel from a copy, so that nothing is left in the checkout and nothing in it is left out."""
     source = tmp_path_factory.mktemp("source")
-    for folder in (*ROOMS, "tests", "benchmarks"):
+    for folder in (*PACKAGES, "tests", "benchmarks"):
         if (ROOT / folder).is_dir():
             shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))
     for file in ROOT.iterdir():
@@ -61,8 +61,8 @@ def test_the_wheel_holds_the_rooms_with_their_data_and_no_tests(wheel):
         shipped = {name for name in archive.namelist() if ".dist-info/" not in name}
     tracked = {
         file.relative_to(ROOT).as_posix()
-        for room in ROOMS
-        for file in (ROOT / room).rglob("*")
+        for package in PACKAGES
+        for file in (ROOT / package).rglob("*")
         if file.is_file() and "__pycache__" not in file.parts
     }
     assert shipped == tracked | {"alula.py"}
@@ -85,7 +85,7 @@ def test_the_installed_packages_are_those_of_the_wheel(installed, tmp_path):
         cwd=tmp_path,
     ).splitlines()
     assert Path(files[0]).name == "alula.py"
-    assert [Path(file).parent.name for file in files[1:]] == list(ROOMS)
+    assert [Path(file).parent.name for file in files[1:]] == list(PACKAGES)
     assert all(Path(file).is_relative_to(installed) for file in files)
 
 

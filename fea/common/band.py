@@ -45,6 +45,10 @@ class Band:
         ----------
         without : str
             Why there is no value.
+
+        Returns
+        -------
+        Band
         """
         return cls(value=math.nan, low=math.nan, high=math.nan, without=without)
 
@@ -57,6 +61,10 @@ class Band:
         value : float
         without : str
             Why nothing is known of the model's error.
+
+        Returns
+        -------
+        Band
         """
         return cls(value=value, low=value, high=value, without=without)
 
@@ -71,6 +79,10 @@ class Band:
             The variants.
         sources : Source
             What makes the variants differ.
+
+        Returns
+        -------
+        Band
         """
         return cls(value=value, low=min(value, *others), high=max(value, *others), sources=sources)
 
@@ -82,6 +94,10 @@ class Band:
         ----------
         bands : sequence of Band
             At least one.
+
+        Returns
+        -------
+        Band
         """
         return cls(
             value=max(band.value for band in bands),
@@ -97,6 +113,10 @@ class Band:
         ----------
         numerator : float
             A number that is not negative.
+
+        Returns
+        -------
+        Band
         """
         if self.unknowable:
             return self
@@ -110,6 +130,10 @@ class Band:
         ----------
         factor : float
             A number that is not negative.
+
+        Returns
+        -------
+        Band
         """
         return replace(self, value=factor * self.value, low=factor * self.low, high=factor * self.high)
 

@@ -16,7 +16,17 @@ _limit: ContextVar[float | None] = ContextVar("memory limit", default=None)
 
 @contextmanager
 def limited(limit: float | None) -> Iterator[None]:
-    """Let this process hold at most so many bytes [B] in what follows; None leaves what stands."""
+    """Limit the memory that this process may hold in what follows.
+
+    Parameters
+    ----------
+    limit : float or None
+        [bytes]; None leaves the limit that holds already.
+
+    Yields
+    ------
+    None
+    """
     if limit is None:
         yield
         return
@@ -73,7 +83,17 @@ def _allowances() -> Iterator[float]:
 
 
 def room(limit: float | None) -> float:
-    """Memory that may still be taken [bytes], if the whole process may hold ``limit`` bytes, or what is ``limited``."""
+    """Return the memory that may still be taken [bytes].
+
+    Parameters
+    ----------
+    limit : float or None
+        What the whole process may hold [bytes], beside the limit of ``limited``.
+
+    Returns
+    -------
+    float
+    """
     limit = _stated(limit)
     return available() if limit is None else max(min(limit - resident(), available()), 0.0)
 
@@ -83,7 +103,22 @@ def _stated(limit: float | None) -> float | None:
 
 
 def require(needed: float, task: str, limit: float | None) -> None:
-    """Raise ``CannotRunError`` if ``needed`` bytes for ``task`` exceed the room; says estimate, room and remedy."""
+    """Refuse a task for which the memory does not suffice.
+
+    Parameters
+    ----------
+    needed : float
+        Estimate of what the task takes [bytes].
+    task : str
+        What is to be done, for people.
+    limit : float or None
+        What the whole process may hold [bytes].
+
+    Raises
+    ------
+    CannotRunError
+        Where more is needed than is left.
+    """
     left, limit = room(limit), _stated(limit)
     if needed > left:
         raise CannotRunError(

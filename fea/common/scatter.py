@@ -39,6 +39,10 @@ class Scatter:
         ----------
         band : Band
             Of a number that is not negative.
+
+        Returns
+        -------
+        Band
         """
         if band.unknowable or not self.sources:
             return band
@@ -52,6 +56,10 @@ class Scatter:
         ----------
         other : Scatter
             Of the other factor.
+
+        Returns
+        -------
+        Scatter
         """
         sources = distinct(self.sources, other.sources)
         return Scatter(low=self.low * other.low, high=self.high * other.high, sources=sources)
@@ -75,6 +83,10 @@ def load_scatter(case: Case, load_case: str) -> Scatter:
     case : Case
     load_case : str
         Its name.
+
+    Returns
+    -------
+    Scatter
     """
     low, high = case.load_cases[load_case].scatter
     if low == high:
@@ -89,6 +101,10 @@ def strength_scatter(material: Material) -> Scatter:
     Parameters
     ----------
     material : Material
+
+    Returns
+    -------
+    Scatter
     """
     return _range(SourceKind.STRENGTH, material.allowable, material.strength_range)
 
@@ -99,6 +115,10 @@ def compliance_scatter(material: Material) -> Scatter:
     Parameters
     ----------
     material : Material
+
+    Returns
+    -------
+    Scatter
     """
     return _range(SourceKind.MODULUS, material.youngs_modulus, material.youngs_modulus_range).inverse
 

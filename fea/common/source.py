@@ -60,6 +60,10 @@ def pin_sources(*, driven: bool) -> tuple[Source, ...]:
     ----------
     driven : bool
         True where a drive torque acts on the link.
+
+    Returns
+    -------
+    tuple of Source
     """
     return (PIN_PRESSURE, CONTACT, *((TORQUE_TRANSFER,) if driven else ()))
 

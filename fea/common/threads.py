@@ -21,7 +21,17 @@ VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 @contextmanager
 def bounded(threads: int | None) -> Iterator[None]:
-    """Let each library use at most that many threads; None leaves what it would use. It is never raised."""
+    """Limit the threads of every library in what follows; their number is never raised.
+
+    Parameters
+    ----------
+    threads : int or None
+        Of each library at most; None leaves what it would use.
+
+    Yields
+    ------
+    None
+    """
     if threads is None:
         yield
         return
@@ -51,7 +61,18 @@ def _least(threads: int, stated: str | None) -> int:
 
 
 def bounded_run(run: Callable[P, R]) -> Callable[P, R]:
-    """Bound a whole function by its keyword ``threads``."""
+    """Limit the threads of a whole function by its keyword ``threads``.
+
+    Parameters
+    ----------
+    run : callable
+        With a keyword ``threads``.
+
+    Returns
+    -------
+    callable
+        With the same signature.
+    """
     default = inspect.signature(run).parameters["threads"].default
 
     @functools.wraps(run)

@@ -11,21 +11,10 @@ from fea.common.scatter import Scatter, load_scatter, strength_scatter
 from fea.common.verdict import CheckOutcome, Quantity, Subject
 from geometry.base.errors import CaseError
 from loads.case.case import Case
+from loads.records.bearing import bearing_stress
 from loads.records.check_spec import BearingCheck
 
 WITHOUT = "the joint force of statics, evenly over the pin's projected area"
-
-
-def bearing_stress(force: float, diameter: float, thickness: float) -> float:
-    """Nominal bearing stress F/(d t) [MPa] of a force [N] on a pin and an eye [mm].
-
-    Raises ``CaseError`` for a pin or an eye without size.
-    """
-    if not (diameter > 0.0 and thickness > 0.0):
-        raise CaseError(
-            f"bearing needs a pin and an eye above zero, not {diameter:g} mm by {thickness:g} mm; state both"
-        )
-    return force / (diameter * thickness)
 
 
 def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) -> tuple[str, Band]:
@@ -46,7 +35,9 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
         if link in case.checked_links:
             material = case.material_of(link)
             strength = material.ultimate_strength or material.allowable
-            stress = bearing_stress(force, record.pin_diameter, case.part_of(link).eye_thickness)
+            stress = bearing_stress(
+                force=force, diameter=record.pin_diameter, thickness=case.part_of(link).eye_thickness
+            )
             own = strength_scatter(material) if strength == material.allowable else Scatter()
             factors[link] = own.on(load.on(Band.exact(stress, WITHOUT)).inverse(strength))
     weakest = min(factors, key=lambda link: factors[link].low)

@@ -7,6 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geometry.base.errors import CaseError
+
 Span = Literal[180, 90]
 
 
@@ -59,5 +61,33 @@ CONTACT_SHORTFALL = 0.06
 
 
 def bearing_stress(*, force: float, diameter: float, thickness: float) -> float:
-    """Nominal bearing stress F/(d t) [MPa] (Shigley's Mechanical Engineering Design, 10th ed., chapter 8)."""
+    """Return the nominal bearing stress F/(d t) of a pin on an eye.
+
+    Parameters
+    ----------
+    force : float
+        Across the pin [N].
+    diameter : float
+        Of the pin [mm].
+    thickness : float
+        Of the eye [mm].
+
+    Returns
+    -------
+    float
+        [MPa]
+
+    Raises
+    ------
+    CaseError
+        For a pin or an eye without size.
+
+    References
+    ----------
+    Budynas & Nisbett, Shigley's Mechanical Engineering Design, 10th ed., chapter 8.
+    """
+    if not (diameter > 0.0 and thickness > 0.0):
+        raise CaseError(
+            f"bearing needs a pin and an eye above zero, not {diameter:g} mm by {thickness:g} mm; state both"
+        )
     return force / (diameter * thickness)

@@ -20,7 +20,7 @@ from geometry.parts.material import Material
 from loads.records.check_spec import SafetyFactorCheck
 from reports.page.output import MARK, write_folder
 from reports.tables.bands import band_record
-from reports.tables.console import COLOURS, verdict_line
+from reports.tables.console import VERDICT_COLOURS, verdict_line
 from reports.tables.meshes import solver_record
 from reports.words.terminal import KEPT, say, say_table
 from reports.words.wording import band, fixed, not_checked, number, plain
@@ -326,7 +326,7 @@ def _checks(result: EnvelopeResult, console: "Console") -> None:
             check.load_case,
             band(check.value),
             f"{check.quantity.sense.value}{KEPT}{plain(check.limit)}",
-            Text(check.verdict.value, style=COLOURS[check.verdict]),
+            Text(check.verdict.value, style=VERDICT_COLOURS[check.verdict]),
         )
         for check in result.checks
     ]

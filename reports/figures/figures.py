@@ -33,8 +33,8 @@ Int = NDArray[np.int64]
 
 TIME_LIMIT = 180.0
 """Seconds for the renderings of one check."""
-COLOURS = "YlOrRd"
-DOUBTS: dict[Status, str] = {
+COLOUR_MAP = "YlOrRd"
+STATUS_NOTES: dict[Status, str] = {
     "singular": "singular at a sharp edge",
     "edge": "a sharp edge may be singular",
     "growing": "still growing with every mesh",
@@ -160,7 +160,7 @@ def scene_from(
     meshes   what is known of its error. A singular peak does not set the colours: their upper end is the largest
              stress at a distance from sharp edges.
     """
-    doubt = "" if meshes is None else DOUBTS.get(meshes.status, "")
+    doubt = "" if meshes is None else STATUS_NOTES.get(meshes.status, "")
     space, values = stress.space, stress.decisive(brittle=brittle)
     faces = space.boundary
     triangles = faces if faces.shape[1] == 3 else faces[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
@@ -304,7 +304,7 @@ def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str,
                     "up": view.up.tolist(),
                     "half_height": view.half_height,
                     "limits": _limits(scene),
-                    "colours": COLOURS,
+                    "colours": COLOUR_MAP,
                     "cut": view.cut,
                 }
         # Software rendering first: it gives the same picture with and without a display.
@@ -396,7 +396,7 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
         bar = figure.add_axes(((margin + side + 0.55) / WIDTH, (below + side - 0.45) / height,
                                (WIDTH - margin - side - 1.0) / WIDTH, 0.17 / height))  # fmt: skip
         legend = figure.colorbar(
-            ScalarMappable(norm=Normalize(low, high), cmap=COLOURS),
+            ScalarMappable(norm=Normalize(low, high), cmap=COLOUR_MAP),
             cax=bar,
             orientation="horizontal",
             extend="max" if scene.top < scene.values.max() else "neither",

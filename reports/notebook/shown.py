@@ -15,7 +15,7 @@ Cell = str | float | int | None
 Row = dict[str, Cell]
 T = TypeVar("T")
 
-COLOURS = {Verdict.PASS: "#1a7f37", Verdict.FAIL: "#b42318", Verdict.UNDECIDED: "#8a6100"}
+VERDICT_COLOURS = {Verdict.PASS: "#1a7f37", Verdict.FAIL: "#b42318", Verdict.UNDECIDED: "#8a6100"}
 
 
 @dataclass(frozen=True)
@@ -134,5 +134,5 @@ def _text(cell: Cell) -> str:
 def _marked(cell: Cell, shown: str = "") -> str:
     text = escape(shown or _text(cell))
     if cell in tuple(Verdict):
-        return f'<b style="color: {COLOURS[Verdict(str(cell))]}">{text}</b>'
+        return f'<b style="color: {VERDICT_COLOURS[Verdict(str(cell))]}">{text}</b>'
     return text

@@ -14,7 +14,7 @@ from reports.words.wording import agreement, apart, band, fixed, headline, joine
 if TYPE_CHECKING:
     from rich.console import Console
 
-COLOURS = {Verdict.PASS: "green", Verdict.FAIL: "red", Verdict.UNDECIDED: "yellow"}
+VERDICT_COLOURS = {Verdict.PASS: "green", Verdict.FAIL: "red", Verdict.UNDECIDED: "yellow"}
 
 
 def print_result(result: CheckResult, console: "Console") -> None:
@@ -60,7 +60,7 @@ def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
     """Print the verdict, in its colour, and the title of the case."""
     from rich.text import Text
 
-    badge = (f" {verdict.value.upper()} ", f"bold reverse {COLOURS[verdict]}")
+    badge = (f" {verdict.value.upper()} ", f"bold reverse {VERDICT_COLOURS[verdict]}")
     say(console, Text.assemble(badge, f" {title}"))
 
 
@@ -136,7 +136,7 @@ def _checks(case: LoadCaseResult, console: "Console") -> None:
                 check.link,
                 band(check.value) + unit,
                 f"{sign}{KEPT}{plain(check.limit)}{unit}",
-                Text(check.verdict.value, style=COLOURS[check.verdict]),
+                Text(check.verdict.value, style=VERDICT_COLOURS[check.verdict]),
             )
         )
     say_table(console, columns, rows)

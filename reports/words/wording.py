@@ -10,7 +10,7 @@ from fea.outcomes.unchecked import unchecked
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _ROUNDING = 1e-12
-AGREEMENT = 0.03
+HAND_AGREEMENT = 0.03
 """Largest difference between hand calculation and solid model that needs no explanation."""
 
 
@@ -69,14 +69,14 @@ def turning(torque: float) -> str:
 
 
 def apart(compared: Sequence[SectionComparison]) -> list[SectionComparison]:
-    """Return the sections at which hand calculation and solid model differ by more than ``AGREEMENT``."""
-    return [c for c in compared if abs(c.difference) > AGREEMENT]
+    """Return the sections at which hand calculation and solid model differ by more than ``HAND_AGREEMENT``."""
+    return [c for c in compared if abs(c.difference) > HAND_AGREEMENT]
 
 
 def agreement(compared: Sequence[SectionComparison]) -> str:
     """Say how well hand calculation and solid model agree over some sections."""
     if apart(compared):
-        return f"they differ by more than {100.0 * AGREEMENT:g} %"
+        return f"they differ by more than {100.0 * HAND_AGREEMENT:g} %"
     most = max(abs(c.difference) for c in compared)
     return f"they agree within {math.ceil(1000.0 * most - 1e-9) / 10.0:.1f} %"
 

@@ -15,7 +15,7 @@ from typing import Any
 TIME_LIMIT = 1.0
 """Seconds of processor time for one input: another program's load does not count."""
 _ROOT = Path(__file__).resolve().parents[2]
-_READ_ONLY = tuple(str(_ROOT / room) for room in ("geometry", "loads", "fea", "reports"))
+_READ_ONLY = tuple(str(_ROOT / package) for package in ("geometry", "loads", "fea", "reports"))
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _FORBIDDEN = (
     "compile",

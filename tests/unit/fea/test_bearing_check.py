@@ -6,7 +6,6 @@ from edited_cases import edited
 
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
-from fea.outcomes.bearing import bearing_stress
 from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 
@@ -16,16 +15,6 @@ def bearing(lines, force=-2.0):
     case = validate(tomllib.loads(f'{text}[checks.bearing]\ntype = "bearing"\n{lines}\n'))
     result = check_case(case, fidelity="beam")
     return {check.link: check for check in result.load_cases["tip"].checks if check.name == "bearing"}
-
-
-def test_stress_is_force_over_projected_area():
-    assert bearing_stress(12.0, 1.5, 4.0) == pytest.approx(2.0)
-
-
-@pytest.mark.parametrize(("diameter", "thickness"), [(0.0, 3.0), (1.0, 0.0)])
-def test_no_area_is_refused(diameter, thickness):
-    with pytest.raises(CaseError, match="above zero"):
-        bearing_stress(1.0, diameter, thickness)
 
 
 def test_arm_by_hand():

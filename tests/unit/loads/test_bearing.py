@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 
+from geometry.base.errors import CaseError
 from loads.records.bearing import NARROW, WIDE, bearing_stress
 
 
@@ -36,3 +37,9 @@ def test_angle_may_be_given_in_any_turn():
 
 def test_bearing_stress():
     assert bearing_stress(force=0.751, diameter=1.5, thickness=6.0) == pytest.approx(0.751 / 9.0)
+
+
+@pytest.mark.parametrize(("diameter", "thickness"), [(0.0, 3.0), (1.0, 0.0)])
+def test_bearing_on_no_area_is_refused(diameter, thickness):
+    with pytest.raises(CaseError, match="above zero"):
+        bearing_stress(force=1.0, diameter=diameter, thickness=thickness)
