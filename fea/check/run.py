@@ -39,7 +39,7 @@ from loads.states.actions import PartMass, needs_masses
 from loads.states.inertia import acting_loads
 from loads.states.masses import part_mass
 from loads.statics.statics import Reactions
-from loads.text.accuracy import parse_accuracy
+from loads.text.shares import parse_accuracy
 
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")

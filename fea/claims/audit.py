@@ -26,8 +26,8 @@ from geometry.base.errors import CaseError
 from geometry.mechanisms.flapping import FlappingWing
 from loads.case.case_file import built_in_cases, read_case, read_companion
 from loads.sources.claim import Claim, Printed, Source, System, TableSystem, read_printed, read_source, sources
+from loads.sources.expression import ANGLE, Path, Value, evaluate
 from loads.text.explain import printable
-from loads.text.expression import ANGLE, Path, Value, evaluate
 
 FIDELITIES = ("solid", "beam")
 SOLID_LEFT_OUT = "the solid model, which runs with --fidelity solid"

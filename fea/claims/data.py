@@ -38,9 +38,9 @@ from loads.sources.claim import (
     SynthesisSystem,
     System,
 )
+from loads.sources.expression import Path, Value
 from loads.sources.published_statics import read_matrix
 from loads.text.explain import printable
-from loads.text.expression import Path, Value
 
 
 class Tree(Mapping[str, Any]):

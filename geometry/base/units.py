@@ -63,8 +63,8 @@ computed from sizes between them stays finite (measured: statics, motion and han
 quantities at either end)."""
 _LONGEST_TEXT = 64
 _UNIT_NAME = r"[A-Za-zµμ°Ω]+(?:(?:\^|\*\*)-?[1-4])?"
-_TYPOGRAPHY = str.maketrans(
-    {"·": "*", "⋅": "*", "²": "^2", "³": "^3", "⁴": "^4", "−": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " "}
+TYPOGRAPHY = str.maketrans(
+    {"·": "*", "⋅": "*", "×": "*", "²": "^2", "³": "^3", "⁴": "^4", "−": "-"} | dict.fromkeys("\u00a0\u2009\u202f", " ")
 )
 """Signs that people paste from books and word processors, as pint writes them."""
 
@@ -114,8 +114,8 @@ def parse(text: object, dimension: str) -> float:
     if number is None or not math.isfinite(number):
         raise PydanticCustomError(
             "not_a_quantity",
-            'the {dimension} must be one finite number and its unit; write for example "{example}"',
-            {"dimension": dimension, "example": example},
+            "the {dimension} must be one finite number and its unit; {remedy}",
+            {"dimension": dimension, "remedy": _comma_remedy(text) or f'write for example "{example}"'},
         )
     if not unit:
         raise PydanticCustomError(
@@ -142,13 +142,22 @@ def parse(text: object, dimension: str) -> float:
     return value
 
 
+def _comma_remedy(text: str) -> str:
+    """Return how a number with commas is to be written; empty where commas are not what is wrong."""
+    import re
+
+    decimal, plain = text.replace(",", "."), re.sub(r"(?<=\d),(?=\d{3}(?!\d))", "", text, flags=re.ASCII)
+    ways = {f'use a decimal point: "{decimal}"': decimal, f'leave out the separator: "{plain}"': plain}
+    return ", or ".join(way for way, changed in ways.items() if changed != text and _split(changed)[0] is not None)
+
+
 def _split(text: str) -> tuple[float | None, str]:
     """Split ``"2.4 GPa"`` into its number and its unit, without evaluating anything."""
     import re
 
     if len(text) > _LONGEST_TEXT:
         return None, ""
-    plain = text.translate(_TYPOGRAPHY)
+    plain = text.translate(TYPOGRAPHY)
     match = re.fullmatch(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", plain, re.ASCII)
     if not match or (match[2] and not match[2][0].isalpha() and match[2][0] not in "°/"):
         return None, ""

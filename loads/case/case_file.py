@@ -86,7 +86,7 @@ def read_text(name_or_path: str) -> tuple[str, str]:
         raise CaseError(f"case '{shown}': {what}; give a path to a case file or one of {choice}")
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise CaseError(f"case '{shown}': the file is larger than 1 MiB; a case file is some kilobytes")
+            raise CaseError(f"case '{shown}': the file is larger than 1 MiB, the limit; check that it is a case file")
         text = path.read_bytes().decode("utf-8-sig")  # Windows editors put a byte order mark
     except OSError as error:
         raise CaseError(f"case '{shown}': it cannot be read ({error.strerror}); check its permissions") from None
@@ -176,7 +176,7 @@ def _override(data: dict[str, Any], change: Change) -> None:
             if not (key.isascii() and key.isdigit() and len(key) < 6 and int(key) < len(here)):
                 raise CaseError(
                     f"{who} {printable(path)}: '{printable(key)}' does not name one of the {len(here)} entries of this "
-                    "list; count them from 0"
+                    "list; the first one is 0"
                 )
             index: Any = int(key)
         elif isinstance(here, dict):

@@ -8,11 +8,13 @@ import numpy as np
 from geometry.base.errors import CaseError
 from geometry.base.model import check_file_names
 from geometry.parts.body_rules import check_body
+from geometry.parts.material import Material
 from geometry.parts.part import Body
-from loads.records.aero import check_air
-from loads.records.carried import Carried, CarriedSpread
+from loads.records.aero import AirPatch, check_air
+from loads.records.carried import CarriedBody, CarriedSpread
 from loads.records.check_spec import (
     BearingCheck,
+    Check,
     DisplacementCheck,
     MotorCheck,
     PinCheck,
@@ -20,13 +22,15 @@ from loads.records.check_spec import (
     SustainedCheck,
 )
 from loads.records.conditions import Conditions
-from loads.records.load_case import LoadCase, PointMoment
-from loads.records.mass_rules import check_masses, check_weighed
+from loads.records.load_case import LoadCase, PointForce, PointMoment, SpreadForce
+from loads.records.motion_spec import MotionSpec
 from loads.statics.statics import Drive, check_drive
+from loads.text.explain import require
 
 if TYPE_CHECKING:
     from loads.case.core import CoreCase, WaysToHold
 
+Place = PointForce | PointMoment | SpreadForce | CarriedBody | CarriedSpread | AirPatch
 MOST_RESULTS = 2_000
 """Load cases times links with a part: each pair is solved, drawn and told of."""
 MOST_MOTION = 40_000_000
@@ -34,91 +38,70 @@ MOST_MOTION = 40_000_000
 
 
 def check_rules(case: "CoreCase") -> None:
-    """Check that all of a case fits together; raises ``CaseError``."""
+    """Check that all of a case fits together.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case, whose records are valid each by itself.
+
+    Raises
+    ------
+    CaseError
+        For the first rule that is broken.
+    """
     check_file_names("links", case.links)
     check_file_names("load_cases", case.load_cases)
-    check_drive(case.linkage, case.pinned_drive)
-    if case.linkage.mobility > 0 and case.drive is None and case.joint_model == "pinned":
-        raise CaseError(
-            f"drive: the linkage has mobility {case.linkage.mobility}, but nothing drives it; "
-            "add a [drive] with its link and joint"
-        )
-    drives = 1 if case.drive else 0
-    fits = case.linkage.mobility == drives or (case.linkage.mobility < drives and case.moves)
-    if not fits and case.joint_model == "pinned":
-        raise CaseError(
-            f"drive: the linkage has mobility {case.linkage.mobility} (Gruebler) but {1 if case.drive else 0} "
-            "drive; they must be equal, so add or remove joints or links"
-        )
+    _check_drive(case)
     _check_pose(case)
     for name, part in case.parts.items():
-        if part.material not in case.all_materials:
-            raise CaseError(
-                f"parts.{name}.material: '{part.material}' is unknown; choose one of "
-                f"{', '.join(case.all_materials)} or add a card under [materials]"
-            )
+        _check_material(case, f"parts.{name}.material", part.material)
     for name, joint in case.joints.items():
-        if joint.pin_material not in case.all_materials:
-            raise CaseError(
-                f"joints.{name}.pin_material: '{joint.pin_material}' is unknown; choose one of "
-                f"{', '.join(case.all_materials)} or add a card under [materials]"
-            )
+        _check_material(case, f"joints.{name}.pin_material", joint.pin_material)
     for name, link in case.links.items():
-        if link.part is not None and link.part not in case.parts:
-            raise CaseError(
-                f"links.{name}.part: '{link.part}' is unknown; the parts are {', '.join(case.parts) or 'none'}"
-            )
         if link.part is not None:
+            require(f"links.{name}.part", link.part, case.parts, "is unknown")
             _check_body(f"links.{name}", case.body(name))
         elif link.slots or link.arms:
-            raise CaseError(f"links.{name}: it has slots or arms, but no part that they shape; name its part")
+            raise CaseError(f"links.{name}.part: it is missing, but slots and arms are shapes of a part; name one")
     for i, mass in enumerate(case.carried):
-        _check_carried(case, f"carried.{i}", mass)
+        _check_place(case, f"carried.{i}", mass)
     for name, load_case in case.load_cases.items():
         _check_loads(case, f"load_cases.{name}", load_case)
     _check_masses(case)
     for name, check in case.checks.items():
-        if isinstance(check, PinCheck | BearingCheck):
-            _check_pins(case, name, check)
-            continue
-        if isinstance(check, MotorCheck):
-            _check_motor(case, name)
-            continue
-        if isinstance(check, DisplacementCheck) and (check.at, check.link) != (None, None):
-            _check_displaced(case, name, check)
-            continue
-        if isinstance(check, SustainedCheck) and case.conditions.duration is None:
-            raise CaseError(
-                f"checks.{name}: a sustained load needs to be known for how long; "
-                'add [conditions] with its duration, for example "10 year"'
-            )
-        for checked in check.links:
-            if checked not in case.checked_links:
-                raise CaseError(
-                    f"checks.{name}.links: '{checked}' is no moving link with a part; "
-                    f"choose among {', '.join(case.checked_links) or 'none'}"
-                )
-        for checked in check.links or case.checked_links:
-            stated = not isinstance(check, SafetyFactorCheck) or check.minimum is not None
-            if not stated and case.material_of(checked).minimum_safety_factor is None:
-                raise CaseError(
-                    f"checks.{name}.minimum: it is missing, and '{case.part_of(checked).material}', the material "
-                    f"of link '{checked}', states no minimum_safety_factor; add one of the two"
-                )
+        _check_check(case, name, check)
     if case.conditions != Conditions():
         for checked in case.checked_links:
             case.material_of(checked)
     if case.ways_to_hold is not None:
-        check_point(case, "ways_to_hold", case.ways_to_hold.link, case.ways_to_hold.at)
-        _check_published(case, case.ways_to_hold)
+        _check_ways_to_hold(case, case.ways_to_hold)
     _check_size(case)
     for name, hand in case.hand_calculations.items():
-        if hand.part not in case.parts:
-            raise CaseError(
-                f"hand_calculations.{name}.part: '{hand.part}' is unknown; the parts are {', '.join(case.parts)}"
-            )
+        require(f"hand_calculations.{name}.part", hand.part, case.parts, "is unknown")
     if case.motion is not None:
-        _check_motion(case)
+        _check_motion(case, case.motion)
+
+
+def _check_drive(case: "CoreCase") -> None:
+    check_drive(case.linkage, case.pinned_drive)
+    mobility = case.linkage.mobility
+    if case.joint_model == "bonded":
+        return
+    if mobility > 0 and case.drive is None:
+        raise CaseError(
+            f"drive: the linkage has mobility {mobility}, but nothing drives it; add a [drive] with its link and joint"
+        )
+    drives = 1 if case.drive else 0
+    if mobility != drives and not (mobility < drives and case.moves):
+        raise CaseError(
+            f"drive: the linkage has mobility {mobility} (Gruebler) but {drives} drive; they must be equal, so add or "
+            "remove joints or links"
+        )
+
+
+def _check_material(case: "CoreCase", entry: str, name: str) -> None:
+    require(entry, name, case.all_materials, "is unknown", "or add a card under [materials]")
 
 
 def _check_size(case: "CoreCase") -> None:
@@ -141,44 +124,39 @@ def _check_size(case: "CoreCase") -> None:
 
 
 def _check_pose(case: "CoreCase") -> None:
-    moving, slides = case.linkage.moving, case.pose.travel is not None
-    for entry, names in (("pose.coordinate", [case.pose.coordinate]), ("pose.near", [*case.pose.near])):
-        for name in names:
-            if entry == "pose.coordinate" and slides:
-                _check_slides(case, entry, "pose.travel", name)
-            elif name is not None and name not in moving:
-                raise CaseError(f"{entry}: '{name}' is not a moving link; choose among {', '.join(moving)}")
-    if slides and "angle" in case.pose.model_fields_set:
-        raise CaseError("pose.angle: a travel fixes the pose already; leave one of the two out")
-    if case.linkage.mobility == 1 and case.pose.coordinate is None:
+    linkage, pose = case.linkage, case.pose
+    if pose.travel is not None:
+        _check_slides(case, "pose.coordinate", pose.coordinate)
+        if "angle" in pose.model_fields_set:
+            raise CaseError("pose.angle: the travel fixes the pose already; remove one of the two")
+    elif pose.coordinate is not None:
+        check_moving(case, "pose.coordinate", pose.coordinate)
+    for name in pose.near:
+        check_moving(case, "pose.near", name)
+    if linkage.mobility == 1 and pose.coordinate is None:
         raise CaseError("pose.coordinate: the linkage can move, but no link fixes its pose; name one and its angle")
-    if case.drive is None and case.linkage.mobility == 0 and case.pose.coordinate is not None:
+    if case.drive is None and linkage.mobility == 0 and pose.coordinate is not None:
         raise CaseError(
-            f"pose.coordinate: it is '{case.pose.coordinate}', but the linkage cannot move (mobility 0); remove it"
+            f"pose.coordinate: it is '{pose.coordinate}', but the linkage cannot move (mobility 0); remove it"
         )
 
 
-def _check_slides(case: "CoreCase", entry: str, stated: str, name: str | None) -> None:
+def _check_slides(case: "CoreCase", entry: str, name: str | None) -> None:
     slots = [joint for joint, record in case.joints.items() if record.type != "revolute"]
-    if name not in slots:
-        raise CaseError(
-            f"{entry}: {stated} is the travel of a slider or slot, but '{name}' is none; "
-            f"choose among {', '.join(slots) or 'none'}"
-        )
+    require(entry, name, slots, "is no slider or slot, but a travel is stated")
 
 
-def _check_motion(case: "CoreCase") -> None:
-    spec, name = case.motion, case.motion_coordinate
-    assert spec is not None
+def _check_motion(case: "CoreCase", spec: MotionSpec) -> None:
+    name = case.motion_coordinate
     if spec.travel is not None:
-        _check_slides(case, "motion.coordinate", "motion.travel", name)
+        _check_slides(case, "motion.coordinate", name)
     elif spec.coordinate is None and case.pose.travel is not None:
         raise CaseError(
             f"motion: the pose's coordinate '{name}' is a slider, so the motion needs its travel, for example "
             'travel = ["0 mm", "10 mm"], or a coordinate of its own'
         )
-    elif name not in case.linkage.moving:
-        raise CaseError(f"motion: '{name}' is not a moving link; choose among {', '.join(case.linkage.moving)}")
+    else:
+        check_moving(case, "motion.coordinate", name)
 
 
 def _check_body(entry: str, body: Body) -> None:
@@ -191,28 +169,13 @@ def _check_body(entry: str, body: Body) -> None:
 def _check_loads(case: "CoreCase", where: str, load_case: LoadCase) -> None:
     for kind in ("forces", "moments", "spread"):
         for i, load in enumerate(getattr(load_case, kind)):
-            entry = f"{where}.{kind}.{i}"
-            if load.link not in case.links:
-                raise CaseError(f"{entry}.link: '{load.link}' does not exist; the links are {', '.join(case.links)}")
-            _check_moves(case, entry, load.link)
-            points = case.links[load.link].points
-            for point in (load.start, load.end) if kind == "spread" else (load.at,):
-                if point not in points:
-                    raise CaseError(
-                        f"{entry}: link '{load.link}' has no point '{point}'; its points are {', '.join(points)}"
-                    )
-            if kind != "spread":
-                _check_no_slot(case, entry, load.link, load.at)
-            if kind == "spread" and np.isclose(points[load.start][0], points[load.end][0]):
-                raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
+            _check_place(case, f"{where}.{kind}.{i}", load)
             if kind == "moments" and load.moment[2] != 0.0:
-                _check_torque(case, entry, load)
+                _check_torque(case, f"{where}.{kind}.{i}", load)
     for i, air in enumerate(load_case.air):
-        check_air(air, f"{where}.air.{i}", case.link_points)
-        for patch in air.spread:
-            _check_moves(case, f"{where}.air.{i}.spread", patch.link)
-            if patch.at is not None:
-                _check_no_slot(case, f"{where}.air.{i}", patch.link, patch.at)
+        check_air(air, f"{where}.air.{i}")
+        for j, patch in enumerate(air.spread):
+            _check_place(case, f"{where}.air.{i}.spread.{j}", patch)
     if load_case.speed != 0.0 and case.pose.coordinate is None:
         raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
     if load_case.speed != 0.0 and case.pose.travel is not None:
@@ -222,12 +185,21 @@ def _check_loads(case: "CoreCase", where: str, load_case: LoadCase) -> None:
         )
 
 
-def _check_moves(case: "CoreCase", entry: str, link: str) -> None:
-    if link == case.linkage.ground:
+def _check_place(case: "CoreCase", entry: str, place: Place) -> None:
+    """Check where a load or a mass acts: at a point of a moving link, or between two points along it."""
+    at = getattr(place, "at", None)
+    ends = () if at is not None else (place.start, place.end)
+    for point in (at, *ends):
+        if point is not None:
+            check_point(case, entry, place.link, point)
+    if at in case.links[place.link].slots:
         raise CaseError(
-            f"{entry}.link: '{link}' is the ground, where a load does nothing; name a moving link: "
-            f"{', '.join(case.linkage.moving)}"
+            f"{entry}: point '{at}' of link '{place.link}' is a slot, where the pin alone can push; name another point"
         )
+    if ends:
+        start, end = (case.links[place.link].points[point][0] for point in ends)
+        if np.isclose(start, end):
+            raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
 
 
 def _check_torque(case: "CoreCase", entry: str, load: PointMoment) -> None:
@@ -245,64 +217,128 @@ def _check_torque(case: "CoreCase", entry: str, load: PointMoment) -> None:
 
 
 def _check_masses(case: "CoreCase") -> None:
-    known = {
-        "moving": case.linkage.moving,
-        "with_part": case.checked_links,
-        "carrying": [mass.link for mass in case.carried],
-        "massless": case.massless,
-    }
-    check_masses(**known)
-    for name, load_case in case.load_cases.items():
-        if load_case.own_weight or load_case.speed != 0.0:
-            check_weighed(f"load_cases.{name}.{'own_weight' if load_case.own_weight else 'speed'}", **known)
+    """Where weight or inertia acts, the case says of every moving link where its mass comes from."""
+    carrying = {mass.link for mass in case.carried}
+    for link in case.massless:
+        check_moving(case, "massless", link)
+        if link in case.checked_links or link in carrying:
+            what = "has a part" if link in case.checked_links else "carries a mass"
+            raise CaseError(f"massless: link '{link}' {what}, so it weighs something; remove one of the two statements")
+    asking = [
+        f"load_cases.{name}.{'own_weight' if load_case.own_weight else 'speed'}"
+        for name, load_case in case.load_cases.items()
+        if load_case.own_weight or load_case.speed != 0.0
+    ]
     if case.motion is not None and case.motion.inertia:
-        check_weighed("motion.inertia", **known)
+        asking.append("motion.inertia")
+    unknown = [link for link in case.linkage.moving if link not in {*case.checked_links, *carrying, *case.massless}]
+    if asking and unknown:
+        raise CaseError(
+            f"{asking[0]}: link '{unknown[0]}' has neither a part nor a mass, so its weight is unknown; give it a "
+            f'part, a mass under [[carried]], or state massless = ["{unknown[0]}"]'
+        )
+
+
+def _check_check(case: "CoreCase", name: str, check: Check) -> None:
+    """Check what a check refers to."""
+    if isinstance(check, PinCheck | BearingCheck):
+        _check_pins(case, name, check)
+    elif isinstance(check, MotorCheck):
+        _check_motor(case, name)
+    elif isinstance(check, DisplacementCheck) and (check.at, check.link) != (None, None):
+        _check_displaced(case, name, check)
+    else:
+        if isinstance(check, SustainedCheck) and case.conditions.duration is None:
+            raise CaseError(
+                f"checks.{name}: a check of sustained load needs the duration of the load; "
+                'add [conditions] with its duration, for example "10 year"'
+            )
+        for link in check.links:
+            require(f"checks.{name}.links", link, case.checked_links, "is no moving link with a part")
+        if isinstance(check, SafetyFactorCheck) and check.minimum is None:
+            for link in check.links or case.checked_links:
+                _check_minimum(name, case.part_of(link).material, case.material_of(link), f"link '{link}'")
+
+
+def _check_minimum(name: str, title: str, material: Material, of: str) -> None:
+    if material.minimum_safety_factor is None:
+        raise CaseError(
+            f"checks.{name}.minimum: it is missing, and '{title}', the material of {of}, states no "
+            "minimum_safety_factor; add one of the two"
+        )
 
 
 def _check_pins(case: "CoreCase", name: str, check: PinCheck | BearingCheck) -> None:
     bearing = isinstance(check, BearingCheck)
     known = case.bearing_joints if bearing else case.pinned_joints
     for joint in check.joints:
-        if joint not in known:
-            raise CaseError(
-                f"checks.{name}.joints: '{joint}' is no revolute joint{' or slot' if bearing else ''} of a link with a "
-                f"part; choose among {', '.join(known) or 'none'}"
-            )
-    if isinstance(check, BearingCheck):
-        return
-    for joint in check.joints or case.pinned_joints:
-        if check.minimum is None and case.pin_material(joint).minimum_safety_factor is None:
-            raise CaseError(
-                f"checks.{name}.minimum: it is missing, and '{case.joints[joint].pin_material}', the material of the "
-                f"pin at joint '{joint}', states no minimum_safety_factor; add one of the two"
-            )
+        rule = f"is no revolute joint{' or slot' if bearing else ''} of a link with a part"
+        require(f"checks.{name}.joints", joint, known, rule)
+    if not bearing and check.minimum is None:
+        for joint in check.joints or known:
+            of = f"the pin at joint '{joint}'"
+            _check_minimum(name, case.joints[joint].pin_material, case.pin_material(joint), of)
+
+
+def check_moving(case: "CoreCase", entry: str, link: str) -> None:
+    """Check that a link moves.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    entry : str
+        Entry of the case file that names the link, for the message.
+    link : str
+        Name of the link.
+
+    Raises
+    ------
+    CaseError
+        Where it is the ground or unknown.
+    """
+    require(entry, link, case.linkage.moving, "is not a moving link")
 
 
 def check_point(case: "CoreCase", entry: str, link: str, point: str) -> None:
-    """Raise ``CaseError`` where ``link`` does not move or has no such point."""
-    if link not in case.linkage.moving:
-        raise CaseError(f"{entry}.link: '{link}' is not a moving link; choose among {', '.join(case.linkage.moving)}")
-    if point not in case.links[link].points:
-        raise CaseError(
-            f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(case.links[link].points)}"
-        )
+    """Check that a link moves and has a point.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    entry : str
+        Table of the case file that names both, for the message.
+    link, point : str
+        Their names.
+
+    Raises
+    ------
+    CaseError
+        Where it is the ground or unknown, or has no such point.
+    """
+    check_moving(case, f"{entry}.link", link)
+    points = case.links[link].points
+    if point not in points:
+        raise CaseError(f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(points)}")
 
 
-def _check_published(case: "CoreCase", asked: "WaysToHold") -> None:
+def _check_ways_to_hold(case: "CoreCase", asked: "WaysToHold") -> None:
     """A published displacement stands beside that of the loads that it was published for, and of no others."""
-    known = ", ".join(case.load_cases)
-    if asked.load_case is not None and asked.load_case not in case.load_cases:
-        raise CaseError(f"ways_to_hold.load_case: '{asked.load_case}' does not exist; the load cases are {known}")
-    if asked.published is not None and asked.load_case is None and len(case.load_cases) > 1:
+    check_point(case, "ways_to_hold", asked.link, asked.at)
+    if asked.load_case is not None:
+        require("ways_to_hold.load_case", asked.load_case, case.load_cases, "does not exist")
+    elif asked.published is not None and len(case.load_cases) > 1:
+        known = ", ".join(case.load_cases)
         raise CaseError(f"ways_to_hold.load_case: it is missing; name the one that was published for, among {known}")
 
 
 def _check_displaced(case: "CoreCase", name: str, check: DisplacementCheck) -> None:
     if check.at is None:
-        raise CaseError(f"checks.{name}.link: it says whose point is meant, but none is named; add at, or use links")
+        raise CaseError(f"checks.{name}.at: it is missing; add the point of link '{check.link}', or use links")
     if check.links:
         raise CaseError(
-            f"checks.{name}.at: it is about one point of the linkage, but links are about each by itself; remove one"
+            f"checks.{name}: at is about one point of the linkage, links about each link by itself; remove one"
         )
     case.displaced_point(name, check)
 
@@ -316,29 +352,6 @@ def _check_motor(case: "CoreCase", name: str) -> None:
         raise CaseError(
             f"checks.{name}: no load case states the speed at which the motor runs; "
             'add one, for example speed = "150 rpm"'
-        )
-
-
-def _check_carried(case: "CoreCase", entry: str, mass: Carried) -> None:
-    if mass.link not in case.linkage.moving:
-        raise CaseError(
-            f"{entry}.link: '{mass.link}' is not a moving link; choose among {', '.join(case.linkage.moving)}"
-        )
-    points = case.links[mass.link].points
-    named = (mass.start, mass.end) if isinstance(mass, CarriedSpread) else (mass.at,)
-    for point in named:
-        if point not in points:
-            raise CaseError(f"{entry}: link '{mass.link}' has no point '{point}'; its points are {', '.join(points)}")
-    if not isinstance(mass, CarriedSpread):
-        _check_no_slot(case, entry, mass.link, mass.at)
-    if isinstance(mass, CarriedSpread) and np.isclose(points[mass.start][0], points[mass.end][0]):
-        raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
-
-
-def _check_no_slot(case: "CoreCase", entry: str, link: str, point: str) -> None:
-    if point in case.links[link].slots:
-        raise CaseError(
-            f"{entry}: point '{point}' of link '{link}' is a slot, where the pin alone can push; name another point"
         )
 
 

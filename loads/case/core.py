@@ -32,7 +32,7 @@ from loads.records.conditions import Conditions, under
 from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
 from loads.statics.statics import Drive
-from loads.text.accuracy import Accuracy
+from loads.text.shares import Accuracy
 
 
 class PoseSpec(CaseModel):
@@ -185,7 +185,7 @@ class CoreCase(Revisable):
         owners = [link for link in self.linkage.moving if point in self.links[link].points]
         if not owners:
             every = dict.fromkeys(p for link in self.linkage.moving for p in self.links[link].points)
-            raise CaseError(f"checks.{name}.at: no moving link has a point '{point}'; choose among {', '.join(every)}")
+            raise CaseError(f"checks.{name}.at: no moving link has a point '{point}'; choose one of {', '.join(every)}")
         pinned = {
             link
             for joint, record in self.joints.items()
@@ -194,8 +194,8 @@ class CoreCase(Revisable):
         }
         if len(owners) > 1 and not set(owners) <= pinned:
             raise CaseError(
-                f"checks.{name}.at: links {', '.join(owners)} have a point '{point}' each, not joined there by a pin; "
-                "add link, the one that is meant"
+                f"checks.{name}.at: links {', '.join(owners)} have a point '{point}' each, which no pin joins; "
+                "state link as well"
             )
         return owners[0], point
 
@@ -277,7 +277,7 @@ class CoreCase(Revisable):
         name = None if self.motion is None else self.motion.coordinate or self.pose.coordinate
         if name is None:
             raise CaseError(
-                "motion: the case does not say what moves; add [motion] with its coordinate and a range or turn = true"
+                "motion: the case states no motion; add [motion] with a coordinate and a range or turn = true"
             )
         return name
 

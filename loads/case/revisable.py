@@ -68,8 +68,8 @@ class Revisable(CaseModel):
         """
         if self._origin.revise is None:
             raise CaseError(
-                "with_values: this case was put together or changed in Python, so it has no file to read once more; "
-                "start from one that read_case returned"
+                "with_values: this case was built or changed in Python, so there is no file from which it could be read anew; "
+                "start from a case that read_case returned"
             )
         revised: Self = self._origin.revise(values)
         return revised

@@ -15,7 +15,8 @@ from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Name, Text
@@ -53,6 +54,12 @@ class AirPatch(CaseModel):
     share: Annotated[float, Field(gt=0, le=1)] | None = None
     """Share of the load; when left out by all: uniform loads by length, elliptic ones by the area under the one ellipse
     over their spans."""
+
+    @model_validator(mode="after")
+    def _place(self) -> "AirPatch":
+        if (self.at is None) == (self.start is None) or (self.start is None) != (self.end is None):
+            raise PydanticCustomError("no_place", "state either the point 'at' or both 'start' and 'end'")
+        return self
 
 
 class AirLoad(CaseModel):
@@ -138,14 +145,14 @@ def air_forces(air: AirLoad, entry: str) -> AirForces:
     if coefficients[0] is not None and abs(coefficients[0]) > LARGEST_LIFT_COEFFICIENT:
         how = "it is" if air.lift_coefficient is not None else f"lift {lift:g} N over q S implies"
         raise CaseError(
-            f"{entry}.lift_coefficient: {how} {coefficients[0]:.4g}, but above {LARGEST_LIFT_COEFFICIENT:g} in size no "
-            "wing without power reaches (birds: 0.8 to 1.6); correct the coefficient, or speed, density and area"
+            f"{entry}.lift_coefficient: {how} {coefficients[0]:.4g}, but the largest plausible one is {LARGEST_LIFT_COEFFICIENT:g} in size "
+            "(birds: 0.8 to 1.6); correct the coefficient, or speed, density and area"
         )
     if coefficients[1] is not None and coefficients[1] > LARGEST_DRAG_COEFFICIENT:
         how = "it is" if air.drag_coefficient is not None else f"drag {drag:g} N over q S implies"
         raise CaseError(
-            f"{entry}.drag_coefficient: {how} {coefficients[1]:.4g}, but above {LARGEST_DRAG_COEFFICIENT:g} no plain "
-            "shape reaches (a wing across the stream: 1.2 to 2); correct the coefficient, or speed, density and area"
+            f"{entry}.drag_coefficient: {how} {coefficients[1]:.4g}, but the largest plausible one is {LARGEST_DRAG_COEFFICIENT:g} "
+            "(a wing across the stream: 1.2 to 2); correct the coefficient, or speed, density and area"
         )
     return AirForces(
         pressure=q,
@@ -178,7 +185,7 @@ def _unit(stated: Direction, entry: str) -> Real:
     vector = np.array(stated)
     largest = float(np.abs(vector).max())
     if largest == 0.0:
-        raise CaseError(f"{entry}: it has no direction; write for example [0.0, 0.0, 1.0]")
+        raise CaseError(f"{entry}: it is zero and has no direction; write for example [0.0, 0.0, 1.0]")
     vector /= largest  # so that the squares of huge numbers do not overflow, nor those of tiny ones vanish
     return np.asarray(vector / np.linalg.norm(vector))
 
@@ -198,15 +205,30 @@ def _lift_direction(air: AirLoad, along: Real, lift: float, entry: str) -> Real:
         side = _unit(air.lift_towards, f"{entry}.lift_towards")
         across = side - (side @ along) * along
         if np.linalg.norm(across) <= _NORMAL:
-            raise CaseError(f"{entry}.lift_towards: it lies along the stream, so it names no side; turn it")
+            raise CaseError(
+                f"{entry}.lift_towards: it is parallel to the stream, so the side of the lift is open; choose another direction"
+            )
         return np.asarray(across / np.linalg.norm(across))
     if lift != 0.0:
         raise CaseError(f"{entry}.lift_direction: it is missing; add it, for example [0.0, 1.0, 0.0]")
     return np.zeros(3)
 
 
-def check_air(air: AirLoad, entry: str, points: Points) -> None:
-    """Raise ``CaseError`` where an air load does not fit the links (link -> point -> (x, y) [mm])."""
+def check_air(air: AirLoad, entry: str) -> None:
+    """Check an air load and how it is spread.
+
+    Parameters
+    ----------
+    air : AirLoad
+        The load.
+    entry : str
+        Path of the load in the case file, for the message.
+
+    Raises
+    ------
+    CaseError
+        For whatever ``air_forces`` refuses, and for shares that are missing or do not sum to 1.
+    """
     air_forces(air, entry)
     stated = [patch.share is not None for patch in air.spread]
     if any(stated) and not all(stated):
@@ -215,26 +237,12 @@ def check_air(air: AirLoad, entry: str, points: Points) -> None:
     if all(stated) and abs(total - 1.0) > _NORMAL:
         raise CaseError(f"{entry}.spread: the shares sum to {total:.6g}, not to 1; correct them")
     for i, patch in enumerate(air.spread):
-        where = f"{entry}.spread.{i}"
-        if patch.link not in points:
-            raise CaseError(f"{where}.link: '{patch.link}' does not exist; the links are {', '.join(points)}")
-        ends = (patch.start, patch.end)
-        if (patch.at is None) == (ends == (None, None)) or (patch.at is None and None in ends):
-            raise CaseError(f"{where}: state either the point 'at' or both 'start' and 'end'")
-        own = points[patch.link]
-        for point in (patch.at, *ends):
-            if point is not None and point not in own:
-                raise CaseError(f"{where}: link '{patch.link}' has no point '{point}'; its points are {', '.join(own)}")
-        if patch.at is not None:
-            if patch.share is None:
-                raise CaseError(f"{where}.share: a load at a point has no length to share by; state every share")
-            continue
-        assert patch.start is not None
-        assert patch.end is not None
-        if np.isclose(own[patch.start][0], own[patch.end][0]):
-            raise CaseError(f"{where}: start and end lie at the same station; name two different points")
-        if patch.shape == "elliptic" and patch.span[0] == patch.span[1]:
-            raise CaseError(f"{where}.span: start and end stand at one place of the span; name two different places")
+        if patch.at is not None and patch.share is None:
+            raise CaseError(f"{entry}.spread.{i}.share: it is missing, and a point has no length; state every share")
+        if patch.at is None and patch.shape == "elliptic" and patch.span[0] == patch.span[1]:
+            raise CaseError(
+                f"{entry}.spread.{i}.span: start and end stand at one place of the span; name two different places"
+            )
     if not any(stated):
         _check_sharing(air.spread, f"{entry}.spread")
 
@@ -242,7 +250,7 @@ def check_air(air: AirLoad, entry: str, points: Points) -> None:
 def _check_sharing(spread: Sequence[AirPatch], entry: str) -> None:
     """Refuse patches without shares that are not of one shape, or that claim one part of the span twice."""
     if len({patch.shape for patch in spread}) > 1:
-        raise CaseError(f"{entry}: uniform and elliptic patches have no common measure to share by; state every share")
+        raise CaseError(f"{entry}: uniform and elliptic patches do not share a load by themselves; state every share")
     if spread[0].shape == "uniform":
         return
     inner_first = sorted((sorted(patch.span), i) for i, patch in enumerate(spread))

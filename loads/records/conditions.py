@@ -60,8 +60,8 @@ def under(material: Material, conditions: Conditions) -> Material:
         for entry in ("sustained_stress", "sustained_modulus"):
             if getattr(material, entry) is None:
                 raise CaseError(
-                    f"conditions.duration: '{material.title}' states no {entry}, so nothing is known of it under a "
-                    "load that stays; add it to its card or leave the duration out"
+                    f"conditions.duration: '{material.title}' states no {entry}, which a load that lasts needs; "
+                    "add it to its card or leave the duration out"
                 )
         changed["youngs_modulus"] = material.sustained_modulus
         changed["youngs_modulus_range"] = None

@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 from geometry.base.model import CaseModel, Name, Text
 from geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, parse
 from loads.records.aero import AirLoad
-from loads.text.scatter import LoadScatter
+from loads.text.shares import LoadScatter
 
 Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
 Axes = Literal["global", "link"]

@@ -58,7 +58,7 @@ class MotionSpec(CaseModel):
         if self.turn and self.poses < 3:
             raise PydanticCustomError(
                 "poses_of_a_turn",
-                "a full turn of 2 poses is one pose twice, since it ends where it began; ask for 3",
+                "a full turn needs at least 3 poses, since its last pose is its first; write poses = 3 or more",
             )
         if (self.speed, self.acceleration) != (0.0, 0.0) and self.travel is not None:
             raise PydanticCustomError(
@@ -67,18 +67,19 @@ class MotionSpec(CaseModel):
             )
         if (self.travel_speed, self.travel_acceleration) != (0.0, 0.0) and self.travel is None:
             raise PydanticCustomError(
-                "speed_without_travel", "travel_speed and travel_acceleration are of a slider; state its travel as well"
+                "speed_without_travel",
+                "travel_speed and travel_acceleration belong to the travel of a slider; state travel as well",
             )
         if self.ends is not None and math.isclose(*self.ends, abs_tol=1e-12):
             what = "angle" if self.travel is None else "travel"
             raise PydanticCustomError(
-                "empty_range", "range begins and ends at the same {what}; state two different ones", {"what": what}
+                "empty_range", "it begins and ends at the same {what}; state two different ones", {"what": what}
             )
         speed, acceleration = self.rate
         if self.ends is not None and speed < 0.0:
             raise PydanticCustomError(
                 "speed_sign",
-                "the order of the range gives the direction, so speed must not be negative; swap the ends of the range",
+                "the order of the ends gives the direction, so the speed must not be negative; swap the ends of the range",
             )
         if self.inertia and speed == 0.0 and acceleration == 0.0:
             raise PydanticCustomError(
@@ -86,6 +87,6 @@ class MotionSpec(CaseModel):
             )
         if speed == 0.0 and acceleration < 0.0:
             raise PydanticCustomError(
-                "no_start", "from rest the acceleration must be positive; state a speed or turn it"
+                "no_start", "without a speed the acceleration must be positive; state a speed, or change the sign"
             )
         return self

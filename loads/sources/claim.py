@@ -14,8 +14,8 @@ from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Name, Text
 from geometry.base.units import POSITIVE, Angle, AngularSpeed, Length
 from geometry.mechanisms.ornithopter import OrnithopterRules
+from loads.sources.expression import Value, evaluate_number
 from loads.text.explain import printable, sentence
-from loads.text.expression import Value, evaluate_number
 
 _FIGURE = re.compile(r"\s*([+-]?)((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-zµμ°Ω%]\S*)?\s*", re.ASCII)
 _EXACT = 1e-9

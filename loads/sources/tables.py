@@ -13,7 +13,7 @@ from loads.sources.claim import Claim
 from loads.sources.flapping_wing import FlappingWingSpec
 from loads.sources.ornithopter import ornithopter_entries
 from loads.sources.published_statics import PublishedStatics
-from loads.text.explain import sentence
+from loads.text.explain import require, sentence
 
 
 class SourceTables(CaseModel):
@@ -41,10 +41,7 @@ class SourceTables(CaseModel):
             For the first name that is not.
         """
         for link in self.published_statics.links if self.published_statics else ():
-            if link not in linkage.moving:
-                raise CaseError(
-                    f"published_statics.links: '{link}' is not a moving link; choose among {', '.join(linkage.moving)}"
-                )
+            require("published_statics.links", link, linkage.moving, "is not a moving link")
         if self.flapping_wing is not None:
             self.flapping_wing.wing(linkage)
 

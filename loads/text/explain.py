@@ -1,9 +1,11 @@
 """What is wrong with a case file, in one sentence: entry, value, rule, remedy."""
 
+from collections.abc import Collection
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from geometry.base.errors import CaseError
 from loads.text.entries import alike, known_keys
 
 _TABLE = "it must be a table of entries; write it as [{entry}] with one entry per line below"
@@ -38,6 +40,32 @@ def printable(text: str) -> str:
     """Return text without control characters, shortened, for a message."""
     clean = _clean(text)
     return clean if len(clean) <= 80 else clean[:77] + "..."
+
+
+def require(entry: str, name: str | None, known: Collection[str], rule: str, remedy: str = "") -> None:
+    """Check that a name is among those that may stand there.
+
+    Parameters
+    ----------
+    entry : str
+        Path of the entry, for the message.
+    name : str or None
+        What stands there.
+    known : collection of str
+        The names that may.
+    rule : str
+        What is wrong with any other, such as ``"is not a moving link"``.
+    remedy : str, optional
+        What may be done besides choosing one of them.
+
+    Raises
+    ------
+    CaseError
+        With the entry, the name, the rule and the names that are known.
+    """
+    if name not in known:
+        choice = f"choose one of {', '.join(known) or 'none'}"
+        raise CaseError(f"{entry}: '{name}' {rule}; {choice}{' ' if remedy else ''}{remedy}")
 
 
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:

@@ -20,9 +20,9 @@ from geometry.base.units import EXAMPLES, parse
 from loads.case.case import Case
 from loads.case.case_file import built_in_cases, read_case, read_companion, validate
 from loads.sources.claim import Claim, read_printed
+from loads.sources.expression import Path as NamePath
+from loads.sources.expression import Value, evaluate
 from loads.text.explain import sentence
-from loads.text.expression import Path as NamePath
-from loads.text.expression import Value, evaluate
 
 LONGEST_SENTENCE = 6000
 """Characters: a sentence may list names, but never the file."""

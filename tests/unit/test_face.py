@@ -101,7 +101,7 @@ def test_only_what_was_read_can_be_read_once_more():
     assert built == read  # where a case comes from makes no difference to what it states
     assert built.origin == ""
     for case in (built, read.model_copy(update={"title": "other"})):
-        with pytest.raises(CaseError, match="start from one that read_case returned"):
+        with pytest.raises(CaseError, match="start from a case that read_case returned"):
             case.with_values({TUBE: "6 mm"})
 
 

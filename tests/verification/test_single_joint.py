@@ -98,7 +98,7 @@ def test_its_motion_between_two_poses() -> None:
 
 
 def test_a_full_turn_of_two_poses_is_refused() -> None:
-    with pytest.raises(CaseError, match=r"motion: a full turn of 2 poses is one pose twice.*ask for 3"):
+    with pytest.raises(CaseError, match=r"motion: a full turn needs at least 3 poses"):
         validate(tables(motion={"turn": True, "poses": 2}))
 
 

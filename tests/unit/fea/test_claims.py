@@ -23,7 +23,7 @@ from loads.sources.claim import (
     read_source,
     sources,
 )
-from loads.text.expression import Value, evaluate
+from loads.sources.expression import Value, evaluate
 from reports.tables.claims import as_json, as_markdown, as_text
 
 TREE = {

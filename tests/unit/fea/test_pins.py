@@ -162,7 +162,7 @@ def test_the_wings_pins_pass_and_thin_ones_fail():
     ("overrides", "sentence"),
     [
         (['joints.B.pin_material="tin"'], r"joints\.B\.pin_material: 'tin' is unknown; choose one of .*steel-wire"),
-        (['checks.pins.joints=["Z"]'], r"checks\.pins\.joints: 'Z' is no revolute joint .*choose among A, B"),
+        (['checks.pins.joints=["Z"]'], r"checks\.pins\.joints: 'Z' is no revolute joint .*choose one of A, B"),
         (['joints.B.pin_gap="-1 mm"'], r"joints\.B\.pin_gap .*must not be negative"),
         (["checks.pins.minimum=0.0"], r"checks\.pins.*minimum"),
         (

@@ -27,7 +27,7 @@ from fea.refine.refinement import Effort
 from geometry.base.errors import CaseError
 from geometry.parts.material import library
 from loads.states.case_motion import solve_case_motion
-from loads.text.scatter import parse_scatter
+from loads.text.shares import parse_scatter
 
 STARTER = files("loads") / "cases" / "starter.toml.txt"
 PLA = library()["pla-fdm-xy"]
@@ -66,7 +66,7 @@ def test_scatter_as_people_state_it(stated, ends):
     "stated", ["100 %", "20 N", -0.1, True, {"low": 0.9}, {"low": 1.1, "high": 1.2}, [0, 2], [1, 11], math.nan]
 )
 def test_what_is_no_scatter(stated):
-    with pytest.raises(PydanticCustomError, match="the scatter must be a share below 100 %"):
+    with pytest.raises(PydanticCustomError, match="the scatter must be one share below 100 %"):
         parse_scatter(stated)
 
 

@@ -1,7 +1,7 @@
 import pytest
 from pydantic_core import PydanticCustomError
 
-from loads.text.accuracy import parse_accuracy
+from loads.text.shares import parse_accuracy
 
 
 @pytest.mark.parametrize(

@@ -166,7 +166,10 @@ def test_actions_of_every_kind(owl: Case) -> None:
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ('load_cases.weight.moments=[{link="XX", at="E", moment="2 N*m"}]', "moments.0.link: 'XX' does not exist"),
+        (
+            'load_cases.weight.moments=[{link="XX", at="E", moment="2 N*m"}]',
+            "moments.0.link: 'XX' is not a moving link",
+        ),
         ('load_cases.weight.moments=[{link="AE", at="C", moment="2 N*m"}]', "moments.0: link 'AE' has no point 'C'"),
         (
             'load_cases.weight.spread=[{link="CH", start="D", end="D", total=["1 N", "0 N"]}]',

@@ -43,7 +43,7 @@ def test_an_arm_starts_at_its_foot() -> None:
         (['links.rod.slots.C={first="9 mm", last="11 mm"}'], r"rod.slots.C: a slot belongs to.*slot-left"),
         (["links.lever-right.slots={}"], r"lever-right.slots: the pin of joint 'slot-right' slides.*add slots.slot"),
         (['joints.slot-right.direction="5 deg"'], r"slots.slot: a part's slot runs along.*5 deg"),
-        (['links.base.slots.guide={first="0 mm", last="1 mm"}'], r"links.base: it has slots or arms, but no part"),
+        (['links.base.slots.guide={first="0 mm", last="1 mm"}'], r"links.base.part: it is missing, but slots"),
         (['links.lever-right.slots.slot.first="-6 mm"'], "must be less than last = -6.86756 mm; swap"),
         (
             ['load_cases.slow.forces=[{link="lever-right", at="slot", force=["1 N", "0 N"]}]'],

@@ -6,7 +6,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from geometry.base.errors import CaseError
-from loads.text.expression import LONGEST, Value, evaluate, evaluate_number
+from loads.sources.expression import LONGEST, Value, evaluate, evaluate_number
 
 LENGTHS = {("a",): Value.of(3, "mm"), ("link", "whole-wing"): Value.of(4, "cm"), ("kind",): "open"}
 
@@ -102,8 +102,8 @@ def test_words():
         ("(1 mm^4)**16", "a unit gets too high a power"),
         ("3 furlongs_per_moon", "is not understood here"),
         ("2 N*x", "is no unit"),
-        ("20 degC", "does not begin at zero"),
-        ("3 dB", "does not begin at zero"),
+        ("20 degC", "has a zero of its own"),
+        ("3 dB", "has a zero of its own"),
         ("x + 1", "only numbers may stand here"),
         ("__import__('os')", "'__import__' is no function"),
         ("().__class__", "a number is missing before"),

@@ -193,7 +193,7 @@ def test_a_case_without_motion(path):
     head, _, rest = text.partition("[motion]")
     with open(path, "w", encoding="utf-8") as stream:
         stream.write(head + rest[rest.index("[load_cases.hung]") :])
-    with pytest.raises(CaseError, match=r"does not say what moves; add \[motion\]"):
+    with pytest.raises(CaseError, match=r"the case states no motion; add \[motion\]"):
         solved(path)
 
 

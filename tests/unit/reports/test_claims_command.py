@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from geometry.base.errors import CaseError
-from loads.text.expression import _FUNCTIONS
+from loads.sources.expression import _FUNCTIONS
 from reports.commands.cli import app
 
 

@@ -55,7 +55,7 @@ def test_a_case_without_motion_is_bad_input(path: str) -> None:
     still.write_text(TOML.replace('motion = { range = ["40 deg", "80 deg"], poses = 7 }', ""), encoding="utf-8")
     done = envelope(str(still))
     assert done.returncode == 2
-    assert done.stderr.startswith("alula: motion: the case does not say what moves")
+    assert done.stderr.startswith("alula: motion: the case states no motion")
 
 
 def test_too_little_memory_is_refused_before_solving_with_estimate_and_remedy(path: str) -> None:

@@ -13,6 +13,7 @@ bounded. Angles are a dimension of their own: the functions of an angle ask for 
 """
 
 import math
+import operator
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ from functools import lru_cache
 from typing import NoReturn
 
 from geometry.base.errors import CaseError
-from geometry.base.units import registry
+from geometry.base.units import TYPOGRAPHY, registry
 from loads.text.explain import printable
 
 LONGEST = 500
@@ -31,20 +32,6 @@ LARGEST_EXPONENT = 16
 Dimensions = tuple[tuple[str, Fraction], ...]
 Path = tuple[str, ...]
 
-_TYPOGRAPHY = str.maketrans(
-    {
-        "·": "*",
-        "⋅": "*",
-        "×": "*",
-        "²": "^2",
-        "³": "^3",
-        "⁴": "^4",
-        "−": "-",
-        "\u00a0": " ",
-        "\u2009": " ",
-        "\u202f": " ",
-    }
-)
 _UNIT_NAME = r"[A-Za-zµμ°Ω%]+(?![\w.(])(?:(?:\^|\*\*)-?[1-4](?![\d.]))?"
 _UNIT = re.compile(rf"{_UNIT_NAME}(?:[*/]{_UNIT_NAME})*")
 _NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
@@ -94,7 +81,7 @@ def _unit(text: str) -> tuple[float, Dimensions]:
     """Return a unit's factor to root units and its dimensions."""
     if not text:
         return 1.0, ()
-    plain = text.translate(_TYPOGRAPHY).replace("%", "percent")
+    plain = text.translate(TYPOGRAPHY).replace("%", "percent")
     try:
         if not _UNIT.fullmatch(plain) or len(plain) > 64:
             raise ValueError
@@ -108,7 +95,7 @@ def _unit(text: str) -> tuple[float, Dimensions]:
             f"'{printable(text)}' is no unit; write units without spaces (N/mm^2) and operators between spaces"
         ) from None
     if not proportional:
-        raise CaseError(f"'{printable(text)}' does not begin at zero, so it cannot be calculated with; use kelvin")
+        raise CaseError(f"'{printable(text)}' has a zero of its own and cannot be calculated with; use kelvin")
     return float(factor), dimensions
 
 
@@ -123,7 +110,7 @@ def evaluate(text: str, names: Names | None = None) -> Value | str:
         raise CaseError(
             f"expression '{printable(text)}': it has {len(text)} characters, at most {LONGEST} are read; split it up"
         )
-    return _Parser(text.translate(_TYPOGRAPHY), names).run()
+    return _Parser(text.translate(TYPOGRAPHY), names).run()
 
 
 def evaluate_number(text: str, names: Names | None = None) -> Value:
@@ -278,7 +265,7 @@ class _Parser:
 
     def _call(self, name: str) -> Value | str:
         if name not in _FUNCTIONS:
-            self._refuse(f"'{printable(name)}' is no function", f"choose among {', '.join(sorted(_FUNCTIONS))}")
+            self._refuse(f"'{printable(name)}' is no function", f"choose one of {', '.join(sorted(_FUNCTIONS))}")
         least, most, function = _FUNCTIONS[name]
         self.at += 1
         arguments = [self._number(self._sum())]
@@ -346,18 +333,6 @@ def _same(function: Callable[..., float]) -> Callable[[list[Value]], Value]:
     return apply
 
 
-def _least(*values: float) -> float:
-    return min(values)
-
-
-def _most(*values: float) -> float:
-    return max(values)
-
-
-def _modulo(value: float, base: float) -> float:
-    return value % base
-
-
 def _sqrt(values: list[Value]) -> Value:
     [value] = values
     return Value(magnitude=math.sqrt(value.magnitude), dimensions=tuple((n, e / 2) for n, e in value.dimensions))
@@ -371,10 +346,10 @@ def _below(values: list[Value]) -> str:
 _FUNCTIONS: dict[str, tuple[int, int, Callable[[list[Value]], Value | str]]] = {
     "sqrt": (1, 1, _sqrt),
     "abs": (1, 1, _same(abs)),
-    "min": (1, 50, _same(_least)),
-    "max": (1, 50, _same(_most)),
+    "min": (1, 50, _same(lambda *values: min(values))),
+    "max": (1, 50, _same(lambda *values: max(values))),
     "hypot": (1, 3, _same(math.hypot)),
-    "mod": (2, 2, _same(_modulo)),
+    "mod": (2, 2, _same(operator.mod)),
     "below": (2, 2, _below),
     "sin": (1, 1, _of_angle(math.sin)),
     "cos": (1, 1, _of_angle(math.cos)),
