@@ -26,7 +26,8 @@ from geometry.base.errors import CaseError
 from geometry.mechanisms.flapping import FlappingWing
 from loads.case.case_file import built_in_cases, read_case, read_companion
 from loads.sources.claim import Claim, Printed, Source, System, TableSystem, read_printed, read_source, sources
-from loads.sources.expression import ANGLE, Path, Value, evaluate
+from loads.sources.expression import Path, evaluate
+from loads.sources.quantity import ANGLE, Value
 from loads.text.explain import printable
 
 FIDELITIES = ("solid", "beam")

@@ -38,8 +38,9 @@ from loads.sources.claim import (
     SynthesisSystem,
     System,
 )
-from loads.sources.expression import Path, Value
+from loads.sources.expression import Path
 from loads.sources.published_statics import read_matrix
+from loads.sources.quantity import Value
 from loads.text.explain import printable
 
 

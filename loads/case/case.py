@@ -8,6 +8,17 @@ class Case(SourceTables, CoreCase):
     """A linkage with its pose, drive, parts, loads and checks."""
 
     def model_post_init(self, context: object) -> None:
-        """Check that all names fit together; raises ``CaseError``."""
+        """Check that all names fit together.
+
+        Parameters
+        ----------
+        context : object
+            Of pydantic; not used.
+
+        Raises
+        ------
+        CaseError
+            For the first rule that is broken.
+        """
         super().model_post_init(context)
         self.check_tables(self.linkage)

@@ -37,9 +37,24 @@ def built_in_cases() -> tuple[str, ...]:
 
 
 def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
-    """Read and validate a case by its built-in name or its path, with ``path=value`` overrides.
+    """Read and validate a case.
 
-    Raises ``CaseError`` with one sentence for whatever is wrong.
+    Parameters
+    ----------
+    name_or_path : str
+        Name of a built-in case, or path of a case file.
+    overrides : sequence of str
+        Other values for some entries, each as ``path=value``.
+
+    Returns
+    -------
+    Case
+        The case; it can be read once more with other values.
+
+    Raises
+    ------
+    CaseError
+        With one sentence for whatever is wrong.
     """
     text, where = read_text(name_or_path)
     try:
@@ -70,7 +85,23 @@ def _revised(tables: dict[str, Any], changes: Sequence[Change], name: str, value
 
 
 def read_text(name_or_path: str) -> tuple[str, str]:
-    """Return the text of a case and what to call it in messages."""
+    """Read the text of a case.
+
+    Parameters
+    ----------
+    name_or_path : str
+        Name of a built-in case, or path of a case file.
+
+    Returns
+    -------
+    tuple of str
+        The text, and what messages call the file.
+
+    Raises
+    ------
+    CaseError
+        For a file that is missing, too large, unreadable, empty or no text.
+    """
     if name_or_path in built_in_cases():
         return files("loads.cases").joinpath(f"{name_or_path}.toml").read_text(encoding="utf-8"), name_or_path
     path, shown = Path(name_or_path), printable(name_or_path)
@@ -98,7 +129,25 @@ def read_text(name_or_path: str) -> tuple[str, str]:
 
 
 def read_companion(case_path: str, name: str) -> str:
-    """Read a text file that stands beside a case file (or ships with a built-in case)."""
+    """Read a text file that stands beside a case file, or ships with a built-in case.
+
+    Parameters
+    ----------
+    case_path : str
+        Name of a built-in case, or path of a case file.
+    name : str
+        Plain name of the file beside it.
+
+    Returns
+    -------
+    str
+        Its text.
+
+    Raises
+    ------
+    CaseError
+        For a path instead of a name, and for a file that cannot be read.
+    """
     if Path(name).name != name or name.startswith("."):
         raise CaseError(f"'{printable(name)}' must be the plain name of a file beside the case file")
     built_in = case_path in built_in_cases()
@@ -112,7 +161,23 @@ def read_companion(case_path: str, name: str) -> str:
 
 
 def validate(data: dict[str, Any]) -> Case:
-    """Validate a case given as nested tables; raises ``CaseError``."""
+    """Validate a case.
+
+    Parameters
+    ----------
+    data : dict of str to object
+        The case as nested tables, as ``tomllib`` reads them.
+
+    Returns
+    -------
+    Case
+        The case.
+
+    Raises
+    ------
+    CaseError
+        With one sentence for the first problem.
+    """
     _check_version(data)
     try:
         return Case.model_validate(data)

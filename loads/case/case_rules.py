@@ -3,15 +3,12 @@
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from geometry.base.errors import CaseError
 from geometry.base.model import check_file_names
 from geometry.parts.body_rules import check_body
 from geometry.parts.material import Material
 from geometry.parts.part import Body
-from loads.records.aero import AirPatch, check_air
-from loads.records.carried import CarriedBody, CarriedSpread
+from loads.case.load_rules import check_loads, check_masses, check_moving, check_place, check_point
 from loads.records.check_spec import (
     BearingCheck,
     Check,
@@ -22,15 +19,14 @@ from loads.records.check_spec import (
     SustainedCheck,
 )
 from loads.records.conditions import Conditions
-from loads.records.load_case import LoadCase, PointForce, PointMoment, SpreadForce
 from loads.records.motion_spec import MotionSpec
+from loads.records.settings import WaysToHold
 from loads.statics.statics import Drive, check_drive
 from loads.text.explain import require
 
 if TYPE_CHECKING:
-    from loads.case.core import CoreCase, WaysToHold
+    from loads.case.core import CoreCase
 
-Place = PointForce | PointMoment | SpreadForce | CarriedBody | CarriedSpread | AirPatch
 MOST_RESULTS = 2_000
 """Load cases times links with a part: each pair is solved, drawn and told of."""
 MOST_MOTION = 40_000_000
@@ -65,10 +61,10 @@ def check_rules(case: "CoreCase") -> None:
         elif link.slots or link.arms:
             raise CaseError(f"links.{name}.part: it is missing, but slots and arms are shapes of a part; name one")
     for i, mass in enumerate(case.carried):
-        _check_place(case, f"carried.{i}", mass)
+        check_place(case, f"carried.{i}", mass)
     for name, load_case in case.load_cases.items():
-        _check_loads(case, f"load_cases.{name}", load_case)
-    _check_masses(case)
+        check_loads(case, f"load_cases.{name}", load_case)
+    check_masses(case)
     for name, check in case.checks.items():
         _check_check(case, name, check)
     if case.conditions != Conditions():
@@ -166,79 +162,6 @@ def _check_body(entry: str, body: Body) -> None:
         raise CaseError(f"{entry}: {error}") from None
 
 
-def _check_loads(case: "CoreCase", where: str, load_case: LoadCase) -> None:
-    for kind in ("forces", "moments", "spread"):
-        for i, load in enumerate(getattr(load_case, kind)):
-            _check_place(case, f"{where}.{kind}.{i}", load)
-            if kind == "moments" and load.moment[2] != 0.0:
-                _check_torque(case, f"{where}.{kind}.{i}", load)
-    for i, air in enumerate(load_case.air):
-        check_air(air, f"{where}.air.{i}")
-        for j, patch in enumerate(air.spread):
-            _check_place(case, f"{where}.air.{i}.spread.{j}", patch)
-    if load_case.speed != 0.0 and case.pose.coordinate is None:
-        raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
-    if load_case.speed != 0.0 and case.pose.travel is not None:
-        raise CaseError(
-            f"{where}.speed: it is the angular speed of the pose's coordinate, but '{case.pose.coordinate}' is a "
-            "slider; leave it out and state motion.travel_speed"
-        )
-
-
-def _check_place(case: "CoreCase", entry: str, place: Place) -> None:
-    """Check where a load or a mass acts: at a point of a moving link, or between two points along it."""
-    at = getattr(place, "at", None)
-    ends = () if at is not None else (place.start, place.end)
-    for point in (at, *ends):
-        if point is not None:
-            check_point(case, entry, place.link, point)
-    if at in case.links[place.link].slots:
-        raise CaseError(
-            f"{entry}: point '{at}' of link '{place.link}' is a slot, where the pin alone can push; name another point"
-        )
-    if ends:
-        start, end = (case.links[place.link].points[point][0] for point in ends)
-        if np.isclose(start, end):
-            raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
-
-
-def _check_torque(case: "CoreCase", entry: str, load: PointMoment) -> None:
-    """A pin that turns freely passes no torque about its own axis; only the drive's does."""
-    linkage = case.linkage
-    pins = [name for name in linkage.joints_of(load.link)
-            if linkage.point_of(name, load.link) == load.at and linkage.joints[name].type == "revolute"]  # fmt: skip
-    driven = case.drive is not None and case.drive.joint in pins
-    if pins and not driven and case.joint_model == "pinned":
-        raise CaseError(
-            f"{entry}: the pin at '{load.at}' turns freely and nothing drives it, so no torque about z enters link "
-            f"'{load.link}' there; name a point of the link without pin, drive that joint, or write "
-            'joint_model = "bonded"'
-        )
-
-
-def _check_masses(case: "CoreCase") -> None:
-    """Where weight or inertia acts, the case says of every moving link where its mass comes from."""
-    carrying = {mass.link for mass in case.carried}
-    for link in case.massless:
-        check_moving(case, "massless", link)
-        if link in case.checked_links or link in carrying:
-            what = "has a part" if link in case.checked_links else "carries a mass"
-            raise CaseError(f"massless: link '{link}' {what}, so it weighs something; remove one of the two statements")
-    asking = [
-        f"load_cases.{name}.{'own_weight' if load_case.own_weight else 'speed'}"
-        for name, load_case in case.load_cases.items()
-        if load_case.own_weight or load_case.speed != 0.0
-    ]
-    if case.motion is not None and case.motion.inertia:
-        asking.append("motion.inertia")
-    unknown = [link for link in case.linkage.moving if link not in {*case.checked_links, *carrying, *case.massless}]
-    if asking and unknown:
-        raise CaseError(
-            f"{asking[0]}: link '{unknown[0]}' has neither a part nor a mass, so its weight is unknown; give it a "
-            f'part, a mass under [[carried]], or state massless = ["{unknown[0]}"]'
-        )
-
-
 def _check_check(case: "CoreCase", name: str, check: Check) -> None:
     """Check what a check refers to."""
     if isinstance(check, PinCheck | BearingCheck):
@@ -280,50 +203,7 @@ def _check_pins(case: "CoreCase", name: str, check: PinCheck | BearingCheck) -> 
             _check_minimum(name, case.joints[joint].pin_material, case.pin_material(joint), of)
 
 
-def check_moving(case: "CoreCase", entry: str, link: str) -> None:
-    """Check that a link moves.
-
-    Parameters
-    ----------
-    case : CoreCase
-        The case.
-    entry : str
-        Entry of the case file that names the link, for the message.
-    link : str
-        Name of the link.
-
-    Raises
-    ------
-    CaseError
-        Where it is the ground or unknown.
-    """
-    require(entry, link, case.linkage.moving, "is not a moving link")
-
-
-def check_point(case: "CoreCase", entry: str, link: str, point: str) -> None:
-    """Check that a link moves and has a point.
-
-    Parameters
-    ----------
-    case : CoreCase
-        The case.
-    entry : str
-        Table of the case file that names both, for the message.
-    link, point : str
-        Their names.
-
-    Raises
-    ------
-    CaseError
-        Where it is the ground or unknown, or has no such point.
-    """
-    check_moving(case, f"{entry}.link", link)
-    points = case.links[link].points
-    if point not in points:
-        raise CaseError(f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(points)}")
-
-
-def _check_ways_to_hold(case: "CoreCase", asked: "WaysToHold") -> None:
+def _check_ways_to_hold(case: "CoreCase", asked: WaysToHold) -> None:
     """A published displacement stands beside that of the loads that it was published for, and of no others."""
     check_point(case, "ways_to_hold", asked.link, asked.at)
     if asked.load_case is not None:
@@ -356,7 +236,20 @@ def _check_motor(case: "CoreCase", name: str) -> None:
 
 
 def check_slots(case: "CoreCase", link: str) -> None:
-    """Check that a link's slots and arms are where pins are, and that every pin that slides in it has a slot."""
+    """Check that a link's slots and arms are where pins are, and that every pin that slides in it has a slot.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    link : str
+        Name of a link with a part.
+
+    Raises
+    ------
+    CaseError
+        For the first slot, pin or arm that does not fit.
+    """
     record, linkage = case.links[link], case.linkage
     sliding = {linkage.point_of(name, link): name for name in linkage.joints_of(link)
                if linkage.joints[name].type == "pin-in-slot" and linkage.joints[name].links[0] == link}  # fmt: skip

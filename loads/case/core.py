@@ -6,19 +6,13 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name, Text
-from geometry.base.units import (
-    NOT_NEGATIVE,
-    POSITIVE,
-    Angle,
-    Force,
-    Length,
-)
+from geometry.base.model import Name, Text
 from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.parts.material import Material, library
 from geometry.parts.part import Body, Part, Pin, PlainEnd
-from loads.case.case_rules import check_point, check_rules, check_slots
+from loads.case.case_rules import check_rules, check_slots
+from loads.case.load_rules import check_point
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
 from loads.records.carried import Carried
@@ -31,68 +25,8 @@ from loads.records.check_spec import (
 from loads.records.conditions import Conditions, under
 from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
+from loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
 from loads.statics.statics import Drive
-from loads.text.shares import Accuracy
-
-
-class PoseSpec(CaseModel):
-    """Which position the linkage is in."""
-
-    coordinate: Name | None = None
-    """The link whose direction fixes the pose, or with a travel the slider or slot that does; leave it out for a
-    structure that cannot move."""
-    angle: Angle = 0.0
-    """Direction of that link's x axis, counter-clockwise from the global x axis."""
-    travel: Length | None = None
-    """Travel of that slider or slot, from the point of its first link to that of its second, along its direction."""
-    near: dict[Name, Angle] = {}
-    """Rough directions of the other links: they choose the assembly branch."""
-
-
-class DriveSpec(CaseModel):
-    """Where the drive torque enters, or at a slider the drive force."""
-
-    link: Name
-    """The driven link."""
-    joint: Name
-    """The joint about which it is driven, or the slider along which it is pushed; the reaction goes to the other link
-    there."""
-    transfer: Literal["eye-faces", "bore-shear"] = "eye-faces"
-    """How the torque enters the driven part: as shear on the eye's flat faces, or on its bore."""
-
-
-class CantileverCalculation(CaseModel):
-    """A hand calculation: a part as a cantilever under an evenly spread load."""
-
-    type: Literal["cantilever"]
-    part: Name
-    length: Annotated[Length, POSITIVE]
-    load: Annotated[Force, NOT_NEGATIVE]
-    """The total load [N]."""
-
-
-class WaysToHold(CaseModel):
-    """How far a point moves, by the frame, depending on which link the drive holds and on whether pins turn."""
-
-    link: Name
-    at: Name
-    published: Annotated[Length, POSITIVE] | None = None
-    """A published displacement, to stand beside them."""
-    load_case: Name | None = None
-    """The load case that it was published for; needed where the case has several."""
-    source: Text = ""
-
-
-class SolidSettings(CaseModel):
-    """The solid finite-element model."""
-
-    mesh_size: Annotated[float, Field(ge=0.1, le=4.0)] = 1.0
-    """Factor on the mesher's own element sizes: 0.5 halves them, 2 doubles them."""
-    curved: bool = True
-    """Quadratic elements with curved edges; straight edges when false."""
-    accuracy: Accuracy | None = None
-    """Largest error of the meshes that is wanted in the deciding stress and the displacement, such as "5 %"; without
-    it meshes are refined until the verdict is clear or that error is 5 %."""
 
 
 class CoreCase(Revisable):
@@ -131,7 +65,18 @@ class CoreCase(Revisable):
     solid: SolidSettings = SolidSettings()
 
     def model_post_init(self, context: object) -> None:
-        """Check that all names fit together; raises ``CaseError``."""
+        """Check that all names fit together.
+
+        Parameters
+        ----------
+        context : object
+            Of pydantic; not used.
+
+        Raises
+        ------
+        CaseError
+            For the first rule that is broken.
+        """
         check_rules(self)
 
     @cached_property
@@ -155,9 +100,22 @@ class CoreCase(Revisable):
         return tuple(name for name in self.linkage.moving if self.links[name].part is not None)
 
     def material_of(self, link: str) -> Material:
-        """The material of a link that has a part, as it is under the case's conditions.
+        """Return the material of a link that has a part, as it is under the case's conditions.
 
-        Raises ``CaseError`` where its card lacks what the conditions ask for.
+        Parameters
+        ----------
+        link : str
+            Name of the link.
+
+        Returns
+        -------
+        Material
+            Its card, with strength and modulus warm and after creep where conditions are stated.
+
+        Raises
+        ------
+        CaseError
+            Where the card lacks what the conditions ask for.
         """
         part = self.part_of(link)
         material = self.all_materials[part.material]
@@ -174,9 +132,24 @@ class CoreCase(Revisable):
         return checks
 
     def displaced_point(self, name: str, check: DisplacementCheck) -> tuple[str, str]:
-        """Return link and point of a check called ``name`` that is about a point.
+        """Find the point that a check of displacement is about.
 
-        Raises ``CaseError`` where there is no such point, or more than one.
+        Parameters
+        ----------
+        name : str
+            Name of the check, for messages.
+        check : DisplacementCheck
+            A check that names a point.
+
+        Returns
+        -------
+        tuple of str
+            Link and point.
+
+        Raises
+        ------
+        CaseError
+            Where there is no such point, or more than one.
         """
         point = check.at or ""
         if check.link is not None:
@@ -200,7 +173,18 @@ class CoreCase(Revisable):
         return owners[0], point
 
     def pin_material(self, joint: str) -> Material:
-        """The material of a joint's pin; the case's conditions, which are those of the links, leave it alone."""
+        """Return the material of a joint's pin; the case's conditions, which are those of the links, leave it alone.
+
+        Parameters
+        ----------
+        joint : str
+            Name of the joint.
+
+        Returns
+        -------
+        Material
+            Its card, with the strength of a wire of that diameter where the card has one.
+        """
         record = self.joints[joint]
         material = self.all_materials[record.pin_material]
         if record.pin_diameter is None:
@@ -227,17 +211,45 @@ class CoreCase(Revisable):
         return (*self.pinned_joints, *slotted)
 
     def part_of(self, link: str) -> Part:
-        """The part of a link; raises ``CaseError`` where it has none."""
+        """Return the part of a link.
+
+        Parameters
+        ----------
+        link : str
+            Name of the link.
+
+        Returns
+        -------
+        Part
+            Its part.
+
+        Raises
+        ------
+        CaseError
+            Where it has none.
+        """
         name = self.links[link].part
         if name is None:
             raise CaseError(f"links.{link}.part: this link has no part; name one")
         return self.parts[name]
 
     def body(self, link: str) -> Body:
-        """Everything that shapes a link: part, pins, plain ends, holes.
+        """Put together everything that shapes a link: part, pins, plain ends, holes.
 
-        Raises ``CaseError`` where a pin has no diameter, a plain end does not lie on the axis, or a slot or arm does
-        not fit its joints.
+        Parameters
+        ----------
+        link : str
+            Name of a link with a part.
+
+        Returns
+        -------
+        Body
+            The link's body in the link's frame [mm].
+
+        Raises
+        ------
+        CaseError
+            Where a pin has no diameter, a plain end does not lie on the axis, or a slot or arm does not fit its joints.
         """
         record = self.links[link]
         check_slots(self, link)
@@ -295,7 +307,18 @@ class CoreCase(Revisable):
         return {name: link.points for name, link in self.links.items()}
 
     def air_forces(self, load_case: str) -> tuple[AirForces, ...]:
-        """Lift and drag of every air load of a load case."""
+        """Return lift and drag of every air load of a load case.
+
+        Parameters
+        ----------
+        load_case : str
+            Name of the load case.
+
+        Returns
+        -------
+        tuple of AirForces
+            In the order of the case file.
+        """
         return tuple(
             air_forces(air, f"load_cases.{load_case}.air.{i}") for i, air in enumerate(self.load_cases[load_case].air)
         )

@@ -14,8 +14,12 @@ from geometry.base.model import CaseModel
 class Origin:
     """Where a case was read from; no part of what makes two cases equal.
 
-    name    path or built-in name; "" for a case that was not read
-    revise  reads it once more, with other values for some entries; None where that cannot be
+    Attributes
+    ----------
+    name : str
+        Path or built-in name; "" for a case that was not read.
+    revise : callable or None
+        Reads it once more, with other values for some entries; None where that cannot be.
     """
 
     name: str = field(default="", compare=False)
@@ -33,7 +37,18 @@ class Revisable(CaseModel):
         return self._origin.name
 
     def read_from(self, origin: Origin) -> Self:
-        """Return a copy with an origin."""
+        """Return a copy with an origin.
+
+        Parameters
+        ----------
+        origin : Origin
+            Where it was read from.
+
+        Returns
+        -------
+        Revisable
+            The copy.
+        """
         copied = self.model_copy()
         copied._origin = origin
         return copied
@@ -68,14 +83,27 @@ class Revisable(CaseModel):
         """
         if self._origin.revise is None:
             raise CaseError(
-                "with_values: this case was built or changed in Python, so there is no file from which it could be read anew; "
+                "with_values: this case was built or changed in Python, so it has no file to be read from anew; "
                 "start from a case that read_case returned"
             )
         revised: Self = self._origin.revise(values)
         return revised
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy with other fields, and without what was worked out from the fields before."""
+        """Return a copy with other fields, and without what was worked out from the fields before.
+
+        Parameters
+        ----------
+        update : mapping of str to object, optional
+            New values of fields; they are not validated.
+        deep : bool
+            Copy the values of the fields as well.
+
+        Returns
+        -------
+        Revisable
+            The copy.
+        """
         copied = super().model_copy(update=update, deep=deep)
         if update:
             for name in copied.__dict__.keys() - type(self).model_fields.keys() - update.keys():

@@ -35,6 +35,10 @@ LARGEST_DRAG_COEFFICIENT = 2.3
 plates across it have 1.98, square ones 1.17 (Matthews, Aeronautical Engineer's Data Book, fig. 5.13b)."""
 LARGEST_LIFT_TO_DRAG = 20.0
 """Above this ratio the run warns; bird wings reach 3 to 17 (Withers 1981)."""
+_LARGEST = (
+    (LARGEST_LIFT_COEFFICIENT, "birds: 0.8 to 1.6"),
+    (LARGEST_DRAG_COEFFICIENT, "a wing across the stream: 1.2 to 2"),
+)
 PIECES = 6
 """Linear pieces by which an elliptic spread is represented."""
 _NORMAL = 1e-6
@@ -89,11 +93,18 @@ class AirLoad(CaseModel):
 class AirForces:
     """What a stream does to the wing.
 
-    pressure          dynamic pressure q [MPa]; None without speed and density
-    lift, drag        [N]
-    coefficients      C_L and C_D, stated or implied by the forces; None without speed, density and area
-    given             True where the forces were given and the coefficients follow from them
-    lift_direction, drag_direction  (3,) unit vectors in global axes; the first is zero without lift
+    Attributes
+    ----------
+    pressure : float or None
+        Dynamic pressure q [MPa]; None without speed and density.
+    lift, drag : float
+        Forces [N].
+    coefficients : tuple of float or None
+        C_L and C_D, stated or implied by the forces; None without speed, density and area.
+    given : bool
+        True where the forces were given and the coefficients follow from them.
+    lift_direction, drag_direction : array (3,)
+        Unit vectors in global axes; the first is zero without lift.
     """
 
     pressure: float | None
@@ -125,9 +136,28 @@ class AirForces:
 
 
 def air_forces(air: AirLoad, entry: str) -> AirForces:
-    """Return lift and drag with their directions; ``entry`` is the path of the load in the case file.
+    """Work out lift and drag with their directions.
 
-    Raises ``CaseError`` for what is missing or stated twice, a lift not normal to the stream, |C_L| > 2, C_D > 2.3.
+    Parameters
+    ----------
+    air : AirLoad
+        The load as stated.
+    entry : str
+        Path of the load in the case file, for messages.
+
+    Returns
+    -------
+    AirForces
+        Forces, coefficients and directions.
+
+    Raises
+    ------
+    CaseError
+        For what is missing or stated twice, a lift that is not normal to the stream, |C_L| > 2 and C_D > 2.3.
+
+    References
+    ----------
+    Anderson, Fundamentals of Aerodynamics, 5th ed., chapter 1: L = q S C_L, D = q S C_D, q = rho V^2 / 2.
     """
     along = _unit(air.stream, f"{entry}.stream")
     q = None if air.speed is None or air.density is None else air.density * air.speed**2 / 2.0
@@ -142,18 +172,16 @@ def air_forces(air: AirLoad, entry: str) -> AirForces:
         forces.append(0.0 if force is None else force)
         coefficients.append(None if q is None or air.area is None else forces[-1] / (q * air.area))
     lift, drag = forces
-    if coefficients[0] is not None and abs(coefficients[0]) > LARGEST_LIFT_COEFFICIENT:
-        how = "it is" if air.lift_coefficient is not None else f"lift {lift:g} N over q S implies"
-        raise CaseError(
-            f"{entry}.lift_coefficient: {how} {coefficients[0]:.4g}, but the largest plausible one is {LARGEST_LIFT_COEFFICIENT:g} in size "
-            "(birds: 0.8 to 1.6); correct the coefficient, or speed, density and area"
-        )
-    if coefficients[1] is not None and coefficients[1] > LARGEST_DRAG_COEFFICIENT:
-        how = "it is" if air.drag_coefficient is not None else f"drag {drag:g} N over q S implies"
-        raise CaseError(
-            f"{entry}.drag_coefficient: {how} {coefficients[1]:.4g}, but the largest plausible one is {LARGEST_DRAG_COEFFICIENT:g} "
-            "(a wing across the stream: 1.2 to 2); correct the coefficient, or speed, density and area"
-        )
+    for name, force, coefficient, (largest, usual) in zip(
+        ("lift", "drag"), forces, coefficients, _LARGEST, strict=True
+    ):
+        if coefficient is not None and abs(coefficient) > largest:
+            stated = getattr(air, f"{name}_coefficient") is not None
+            how = "it is" if stated else f"{name} {force:g} N over q S implies"
+            raise CaseError(
+                f"{entry}.{name}_coefficient: {how} {coefficient:.4g}, but the largest plausible one is {largest:g} "
+                f"({usual}); correct the coefficient, or speed, density and area"
+            )
     return AirForces(
         pressure=q,
         lift=lift,
@@ -206,7 +234,7 @@ def _lift_direction(air: AirLoad, along: Real, lift: float, entry: str) -> Real:
         across = side - (side @ along) * along
         if np.linalg.norm(across) <= _NORMAL:
             raise CaseError(
-                f"{entry}.lift_towards: it is parallel to the stream, so the side of the lift is open; choose another direction"
+                f"{entry}.lift_towards: it is parallel to the stream, so it tells no side; choose another direction"
             )
         return np.asarray(across / np.linalg.norm(across))
     if lift != 0.0:
@@ -263,7 +291,22 @@ def _check_sharing(spread: Sequence[AirPatch], entry: str) -> None:
 
 
 def air_loads(air: AirLoad, entry: str, points: Points) -> tuple[LineLoad | PointLoad, ...]:
-    """Return the loads on the links in global axes; together they are ``air_forces(air).total``."""
+    """Spread an air load over the links; together the loads are ``air_forces(air).total``.
+
+    Parameters
+    ----------
+    air : AirLoad
+        The load as stated.
+    entry : str
+        Path of the load in the case file, for messages.
+    points : mapping
+        Link -> point -> (x, y) in the link's frame [mm].
+
+    Returns
+    -------
+    tuple of LineLoad or PointLoad
+        Loads in global axes.
+    """
     total = air_forces(air, entry).total
     found: list[LineLoad | PointLoad] = []
     for patch, share in zip(air.spread, shares(air, points), strict=True):
@@ -276,7 +319,20 @@ def air_loads(air: AirLoad, entry: str, points: Points) -> tuple[LineLoad | Poin
 
 
 def shares(air: AirLoad, points: Points) -> tuple[float, ...]:
-    """Return the share of the load that each patch takes; they sum to 1."""
+    """Return the share of the load that each patch takes.
+
+    Parameters
+    ----------
+    air : AirLoad
+        The load as stated.
+    points : mapping
+        Link -> point -> (x, y) in the link's frame [mm].
+
+    Returns
+    -------
+    tuple of float
+        Shares in the order of the patches; they sum to 1.
+    """
     if all(patch.share is not None for patch in air.spread):
         return tuple(patch.share or 0.0 for patch in air.spread)
     sizes = []

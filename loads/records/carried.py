@@ -30,7 +30,18 @@ class CarriedBody(CaseModel):
     """About the centroid; a thin rod's is its length over the root of 12."""
 
     def place(self, points: Mapping[str, tuple[float, float]]) -> tuple[float, float]:
-        """Return the centroid in the link's frame [mm], given the link's points."""
+        """Return where the body's centroid is.
+
+        Parameters
+        ----------
+        points : mapping of str to tuple of float
+            The link's points in its frame [mm].
+
+        Returns
+        -------
+        tuple of float
+            Centroid in the link's frame [mm].
+        """
         return points[self.at] if self.centroid is None else self.centroid
 
 

@@ -20,9 +20,24 @@ class Conditions(CaseModel):
 
 
 def temperature_factor(material: Material, temperature: float) -> float:
-    """Factor on the strength at a temperature [°C], linear between the material's own; 1 below the first of them.
+    """Return the factor on a material's strength, linear between those of its card; 1 below the first of them.
 
-    Raises ``CaseError`` for a material without factors and above the last of them.
+    Parameters
+    ----------
+    material : Material
+        The card.
+    temperature : float
+        Temperature [°C].
+
+    Returns
+    -------
+    float
+        Factor on the strength.
+
+    Raises
+    ------
+    CaseError
+        For a material without factors, and above the last of them.
     """
     points = material.temperature_factors
     if not points:
@@ -44,9 +59,24 @@ def temperature_factor(material: Material, temperature: float) -> float:
 
 
 def under(material: Material, conditions: Conditions) -> Material:
-    """Return the material as it is under the conditions: its strengths warm, its modulus after creep.
+    """Return a material as it is under the conditions: its strengths warm, its modulus after creep.
 
-    Raises ``CaseError`` where its card lacks what is needed.
+    Parameters
+    ----------
+    material : Material
+        The card.
+    conditions : Conditions
+        How long and how warm.
+
+    Returns
+    -------
+    Material
+        The card with other values.
+
+    Raises
+    ------
+    CaseError
+        Where the card lacks what is needed.
     """
     changed: dict[str, object] = {}
     if conditions.temperature is not None:

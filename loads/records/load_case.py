@@ -97,11 +97,33 @@ class LoadCase(CaseModel):
 
 
 def gravity(load_case: LoadCase) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Return the weight per mass of a load case (3,) [mm/s²]."""
+    """Return the weight per mass of a load case.
+
+    Parameters
+    ----------
+    load_case : LoadCase
+        The load case.
+
+    Returns
+    -------
+    array (3,)
+        In global axes [mm/s²].
+    """
     direction = load_case.gravity_direction
     return load_case.gravity * np.array([math.cos(direction), math.sin(direction), 0.0])
 
 
 def vector3(components: tuple[float, ...]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Return a stated vector of two or three components as (3,)."""
+    """Return a stated vector with all components.
+
+    Parameters
+    ----------
+    components : tuple of float
+        Two or three components, in any unit.
+
+    Returns
+    -------
+    array (3,)
+        The same, with zero for what is missing.
+    """
     return np.array([*components, 0.0][:3])

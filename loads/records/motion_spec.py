@@ -79,7 +79,7 @@ class MotionSpec(CaseModel):
         if self.ends is not None and speed < 0.0:
             raise PydanticCustomError(
                 "speed_sign",
-                "the order of the ends gives the direction, so the speed must not be negative; swap the ends of the range",
+                "the order of the ends gives the direction, so speed must not be negative; swap the ends",
             )
         if self.inertia and speed == 0.0 and acceleration == 0.0:
             raise PydanticCustomError(

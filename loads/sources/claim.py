@@ -14,7 +14,8 @@ from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Name, Text
 from geometry.base.units import POSITIVE, Angle, AngularSpeed, Length
 from geometry.mechanisms.ornithopter import OrnithopterRules
-from loads.sources.expression import Value, evaluate_number
+from loads.sources.expression import evaluate_number
+from loads.sources.quantity import Value
 from loads.text.explain import printable, sentence
 
 _FIGURE = re.compile(r"\s*([+-]?)((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-zµμ°Ω%]\S*)?\s*", re.ASCII)
@@ -26,8 +27,14 @@ _EXACT = 1e-9
 class Printed:
     """A published number as printed.
 
-    number, unit   such as 0.952 and "N"
-    half           half a unit of the last printed digit, in that unit
+    Attributes
+    ----------
+    number : float
+        Such as 0.952.
+    unit : str
+        Such as "N".
+    half : float
+        Half a unit of the last printed digit, in that unit.
     """
 
     number: float
@@ -41,9 +48,22 @@ class Printed:
 
 
 def read_printed(text: str) -> Printed | None:
-    """Read ``"0.9520 N"`` or ``"5.027e-5 N"``; None for words, such as ``"open"``.
+    """Read a published figure.
 
-    Raises ``CaseError`` where a number is followed by what is no unit.
+    Parameters
+    ----------
+    text : str
+        Such as ``"0.9520 N"`` or ``"5.027e-5 N"``.
+
+    Returns
+    -------
+    Printed or None
+        The number; None for words, such as ``"open"``.
+
+    Raises
+    ------
+    CaseError
+        Where a number is followed by what is no unit.
     """
     match = _FIGURE.fullmatch(text.replace("−", "-"))
     if match is None:
@@ -104,14 +124,41 @@ class Claim(CaseModel):
     """A sentence for the reader, beyond what the finding says."""
 
     def model_post_init(self, context: object) -> None:
-        """Check that something can be derived and that the tolerance means something; raises ``CaseError``."""
+        """Check that something can be derived and that the tolerance means something.
+
+        Parameters
+        ----------
+        context : object
+            Of pydantic; not used.
+
+        Raises
+        ------
+        CaseError
+            Where it cannot or does not.
+        """
         if not (self.quantity or self.stated):
             raise CaseError(f"claims.{self.name}: it has neither quantity nor stated; add one of the two")
         if self.tolerance:
             self.allowed(read_printed(self.published))
 
     def allowed(self, printed: Printed | None) -> float:
-        """Return by how much our value may differ, in the unit of the published figure; raises ``CaseError``."""
+        """Return by how much our value may differ.
+
+        Parameters
+        ----------
+        printed : Printed or None
+            The published figure.
+
+        Returns
+        -------
+        float
+            Difference in the unit of the published figure; 0 for words.
+
+        Raises
+        ------
+        CaseError
+            For a tolerance that is none.
+        """
         if printed is None:
             if self.tolerance:
                 raise CaseError(f"claims.{self.name}.tolerance: '{self.published}' is no number; remove the tolerance")
@@ -197,7 +244,23 @@ def sources() -> tuple[str, ...]:
 
 
 def read_source(name: str) -> Source:
-    """Read the claims of a source by its name; raises ``CaseError``."""
+    """Read the claims of a source document that alula ships.
+
+    Parameters
+    ----------
+    name : str
+        One of ``sources()``.
+
+    Returns
+    -------
+    Source
+        Its claims and what is needed to re-derive them.
+
+    Raises
+    ------
+    CaseError
+        For an unknown name, and for what is wrong in the file.
+    """
     if name not in sources():
         raise CaseError(f"source '{printable(name)}' is unknown; choose one of {', '.join(sources())}")
     text = files("loads.sources").joinpath(f"{name}.toml").read_text(encoding="utf-8")

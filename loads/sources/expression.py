@@ -16,95 +16,49 @@ import math
 import operator
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
 from typing import NoReturn
 
 from geometry.base.errors import CaseError
-from geometry.base.units import TYPOGRAPHY, registry
+from geometry.base.units import TYPOGRAPHY
+from loads.sources.quantity import ANGLE, UNIT, Dimensions, Value, describe, unit_of
 from loads.text.explain import printable
 
 LONGEST = 500
 DEEPEST = 60
 """Levels of brackets and signs, two per bracket."""
 LARGEST_EXPONENT = 16
-Dimensions = tuple[tuple[str, Fraction], ...]
 Path = tuple[str, ...]
 
-_UNIT_NAME = r"[A-Za-zµμ°Ω%]+(?![\w.(])(?:(?:\^|\*\*)-?[1-4](?![\d.]))?"
-_UNIT = re.compile(rf"{_UNIT_NAME}(?:[*/]{_UNIT_NAME})*")
 _NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _PATH = re.compile(r"[^\W\d]\w*(?:\.(?:\w+|\"[^\"\n]*\"))*")
 _SEGMENT = re.compile(r"\"([^\"\n]*)\"|(\w+)")
 _SPACE = re.compile(r"\s*")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Value:
-    """A number with its dimensions, in pint's root units (m, g, s, rad, K, A ...).
-
-    dimensions   (root unit, exponent) in alphabetical order; empty for a pure number
-    """
-
-    magnitude: float
-    dimensions: Dimensions = ()
-
-    @staticmethod
-    def of(number: float, unit: str = "") -> "Value":
-        """Return so many of a unit; raises ``CaseError`` for text that is no unit."""
-        factor, dimensions = _unit(unit)
-        return Value(magnitude=float(number) * factor, dimensions=dimensions)
-
-    def to(self, unit: str) -> float:
-        """Return the number of the given units; raises ``CaseError`` where the unit measures something else."""
-        factor, dimensions = _unit(unit)
-        if dimensions != self.dimensions:
-            raise CaseError(
-                f"a quantity in {describe(self.dimensions)} cannot be given in {printable(unit) or 'pure numbers'}; "
-                "correct the unit or the expression"
-            )
-        return self.magnitude / factor
-
-
 Names = Callable[[Path], Value | str]
 """Finds what a path stands for; raises ``CaseError`` where it stands for nothing."""
 
 
-def describe(dimensions: Dimensions) -> str:
-    """Return the root units in words, such as ``gram meter second^-2``."""
-    return " ".join(n if e == 1 else f"{n}^{e}" for n, e in dimensions) or "pure numbers"
-
-
-@lru_cache(maxsize=512)
-def _unit(text: str) -> tuple[float, Dimensions]:
-    """Return a unit's factor to root units and its dimensions."""
-    if not text:
-        return 1.0, ()
-    plain = text.translate(TYPOGRAPHY).replace("%", "percent")
-    try:
-        if not _UNIT.fullmatch(plain) or len(plain) > 64:
-            raise ValueError
-        units = registry()
-        factor, root = units.get_root_units(plain)
-        dimensions = tuple(sorted((name, Fraction(e).limit_denominator(12)) for name, e in root._units.items()))
-        # Temperatures with a zero of their own and decibels do not follow from a factor.
-        proportional = units.Quantity(0.0, plain).to_root_units().magnitude == 0.0
-    except Exception:  # pint raises a dozen unrelated types for bad unit text
-        raise CaseError(
-            f"'{printable(text)}' is no unit; write units without spaces (N/mm^2) and operators between spaces"
-        ) from None
-    if not proportional:
-        raise CaseError(f"'{printable(text)}' has a zero of its own and cannot be calculated with; use kelvin")
-    return float(factor), dimensions
-
-
 def evaluate(text: str, names: Names | None = None) -> Value | str:
-    """Return the value of an expression; text where it is nothing but a path to text.
+    """Evaluate an expression.
 
-    names   finds what a path stands for; without it paths are refused
+    Parameters
+    ----------
+    text : str
+        The expression.
+    names : callable, optional
+        Finds what a path stands for; without it paths are refused.
 
-    Raises ``CaseError`` with one sentence for whatever is wrong.
+    Returns
+    -------
+    Value or str
+        Its value; text where it is nothing but a path to text.
+
+    Raises
+    ------
+    CaseError
+        With one sentence for whatever is wrong.
     """
     if len(text) > LONGEST:
         raise CaseError(
@@ -114,7 +68,25 @@ def evaluate(text: str, names: Names | None = None) -> Value | str:
 
 
 def evaluate_number(text: str, names: Names | None = None) -> Value:
-    """Return the value of an expression that must be a number; raises ``CaseError`` where it is text."""
+    """Evaluate an expression that must be a number.
+
+    Parameters
+    ----------
+    text : str
+        The expression.
+    names : callable, optional
+        Finds what a path stands for; without it paths are refused.
+
+    Returns
+    -------
+    Value
+        Its value.
+
+    Raises
+    ------
+    CaseError
+        With one sentence for whatever is wrong, also where it is text.
+    """
     value = evaluate(text, names)
     if isinstance(value, str):
         raise CaseError(f"expression '{printable(text)}': it is the text '{printable(value)}', not a number")
@@ -233,7 +205,7 @@ class _Parser:
         if number := _NUMBER.match(self.text, self.at):
             self.at = number.end()
             self._peek()
-            unit = _UNIT.match(self.text, self.at)
+            unit = UNIT.match(self.text, self.at)
             if unit:
                 self.at = unit.end()
             factor, dimensions = self._unit(unit[0] if unit else "")
@@ -247,7 +219,7 @@ class _Parser:
 
     def _unit(self, text: str) -> tuple[float, Dimensions]:
         try:
-            return _unit(text)
+            return unit_of(text)
         except CaseError as error:
             raise CaseError(f"expression '{printable(self.text)}': {error}") from None
 
@@ -285,9 +257,6 @@ class _Parser:
 
 class _WrongDimensionError(Exception):
     pass
-
-
-ANGLE: Dimensions = (("radian", Fraction(1)),)
 
 
 def _combine(left: Dimensions, right: Dimensions, sign: int) -> Dimensions:

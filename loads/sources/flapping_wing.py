@@ -22,8 +22,20 @@ class FlappingWingSpec(CaseModel):
     def wing(self, linkage: Linkage) -> FlappingWing:
         """Return the flapping wing whose lengths are the distances between these joints on their links.
 
-        Raises ``CaseError`` for a joint that is unknown, for joints that share no link, and for a crank pivot
-        off the origin.
+        Parameters
+        ----------
+        linkage : Linkage
+            The linkage of the case.
+
+        Returns
+        -------
+        FlappingWing
+            Its lengths [mm].
+
+        Raises
+        ------
+        CaseError
+            For a joint that is unknown, for joints that share no link, and for a crank pivot off the origin.
         """
         crank, coupler, rocker = (
             _distance(linkage, *pair)

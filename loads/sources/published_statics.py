@@ -53,10 +53,18 @@ class PublishedStatics(CaseModel):
 
 @dataclass(frozen=True, kw_only=True)
 class RowFinding:
-    """One published equation: its number from 1, its link, and how much of it is no equilibrium.
+    """How much of one published equation is no equilibrium.
 
-    defect   share of the row (0 to 1) outside the link's equilibrium equations
-    valid    True where the defect is within the stated tolerance
+    Attributes
+    ----------
+    number : int
+        Of the equation, from 1.
+    link : str
+        Its link.
+    defect : float
+        Share of the row (0 to 1) outside the link's equilibrium equations.
+    valid : bool
+        True where the defect is within the stated tolerance.
     """
 
     number: int
@@ -69,8 +77,14 @@ class RowFinding:
 class Imbalance:
     """What the published reactions leave unbalanced on a link.
 
-    force    (2,) N
-    moment   N mm about the origin of the link's frame
+    Attributes
+    ----------
+    link : str
+        Name of the link.
+    force : array (2,)
+        Force [N].
+    moment : float
+        Moment about the origin of the link's frame [N mm].
     """
 
     link: str
@@ -82,10 +96,24 @@ class Imbalance:
 class StaticsAudit:
     """The published matrix solved by alula, and what is wrong with it.
 
-    exact, printed      solutions of the two coefficient sets [N, N m]
-    reproduced          True where ``exact`` gives every printed digit of the published solution
-    printed_error       largest difference of ``printed`` from the published solution
-    rounding_bound      what rounding the coefficients to their printed decimals allows for it
+    Attributes
+    ----------
+    source : str
+        Where it is published.
+    columns : tuple of str
+        Names of the unknowns.
+    published, exact, printed : array (n,)
+        The published solution, and those of the two coefficient sets [N, N m].
+    reproduced : bool
+        True where ``exact`` gives every printed digit of the published solution.
+    printed_error : float
+        Largest difference of ``printed`` from the published solution [N, N m].
+    rounding_bound : float
+        What rounding the coefficients to their printed decimals allows for it.
+    rows : tuple of RowFinding
+        One for each equation.
+    imbalances : tuple of Imbalance
+        One for each link.
     """
 
     source: str
@@ -101,7 +129,25 @@ class StaticsAudit:
 
 
 def read_matrix(text: str) -> tuple[tuple[str, ...], Real]:
-    """Read a coefficient matrix from CSV text whose first line names the columns."""
+    """Read a coefficient matrix.
+
+    Parameters
+    ----------
+    text : str
+        CSV whose first line names the columns.
+
+    Returns
+    -------
+    columns : tuple of str
+        Names of the unknowns.
+    matrix : array (n, n)
+        Coefficients, one row for each equation.
+
+    Raises
+    ------
+    CaseError
+        For what is no number, and for a matrix that is not square.
+    """
     try:
         rows = list(csv.reader(io.StringIO(text)))
         columns = tuple(name.strip() for name in rows[0])
@@ -124,7 +170,26 @@ def audit(
 ) -> StaticsAudit:
     """Solve a published system and hold each of its rows and its solution against the linkage.
 
-    Raises ``CaseError`` if the files, names or counts do not fit together.
+    Parameters
+    ----------
+    published : PublishedStatics
+        The table of the case.
+    exact_text, printed_text : str
+        Text of the two coefficient files.
+    pose : Pose
+        The assembled pose.
+    loads : sequence of Load
+        All loads of the load case.
+
+    Returns
+    -------
+    StaticsAudit
+        The solutions and what is wrong.
+
+    Raises
+    ------
+    CaseError
+        If the files, names or counts do not fit together.
     """
     columns, exact = read_matrix(exact_text)
     same, printed = read_matrix(printed_text)

@@ -11,21 +11,59 @@ Schema = Mapping[str, Any]
 
 
 def alike(name: str, known: Iterable[str]) -> str:
-    """Return ``; did you mean 'width'?`` with the known name that is most like ``name``, else an empty text."""
+    """Find the known name that a mistyped one may have meant.
+
+    Parameters
+    ----------
+    name : str
+        What stands there.
+    known : iterable of str
+        The names that may.
+
+    Returns
+    -------
+    str
+        ``; did you mean 'width'?`` with the name most like it, or an empty text.
+    """
     folded = {other.casefold(): other for other in known}
     found = difflib.get_close_matches(name[:80].casefold(), folded, n=1)
     return f"; did you mean '{folded[found[0]]}'?" if found else ""
 
 
 def known_keys(model: type[BaseModel], path: Sequence[object]) -> tuple[str, ...]:
-    """Return the keys that a model's tables at a path have; in ``path`` the kind of a union stands behind its entry."""
+    """Return the keys of a model's tables at a path.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        What the file is validated against.
+    path : sequence
+        Keys and indices; the kind of a union stands behind its entry.
+
+    Returns
+    -------
+    tuple of str
+        The keys of all tables that a union leaves open there.
+    """
     return tuple(dict.fromkeys(key for node in _at(model, path) for key in node.get("properties", ())))
 
 
 def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
-    """Return True where the user names the tables or lists at a path himself, such as ``links`` or ``links.X.points``.
+    """Say whether the user names the tables or lists at a path himself, such as ``links`` or ``links.X.points``.
 
     Free names of plain values (``pose.near``) refer to what is named elsewhere, and are held against that.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        What the file is validated against.
+    path : sequence
+        Keys and indices.
+
+    Returns
+    -------
+    bool
+        True where he does.
     """
     root = _schema(model)
     free = [node["additionalProperties"] for node in _at(model, path) if node.get("additionalProperties")]

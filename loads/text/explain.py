@@ -37,7 +37,18 @@ _RULES = {
 
 
 def printable(text: str) -> str:
-    """Return text without control characters, shortened, for a message."""
+    """Make text fit for a message.
+
+    Parameters
+    ----------
+    text : str
+        What a user wrote.
+
+    Returns
+    -------
+    str
+        At most 80 characters, with a question mark for each that does not print.
+    """
     clean = _clean(text)
     return clean if len(clean) <= 80 else clean[:77] + "..."
 
@@ -69,9 +80,21 @@ def require(entry: str, name: str | None, known: Collection[str], rule: str, rem
 
 
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:
-    """One sentence for the first problem: entry, value, rule, remedy; ``model`` is what was validated.
+    """Put the first problem of a validation into one sentence: entry, value, rule, remedy.
 
     A mistyped key comes before the entry that it leaves missing.
+
+    Parameters
+    ----------
+    error : ValidationError
+        What pydantic found.
+    model : type of BaseModel
+        What was validated.
+
+    Returns
+    -------
+    str
+        The sentence.
     """
     try:
         problems = error.errors(include_url=False)

@@ -21,7 +21,8 @@ from loads.case.case import Case
 from loads.case.case_file import built_in_cases, read_case, read_companion, validate
 from loads.sources.claim import Claim, read_printed
 from loads.sources.expression import Path as NamePath
-from loads.sources.expression import Value, evaluate
+from loads.sources.expression import evaluate
+from loads.sources.quantity import Value
 from loads.text.explain import sentence
 
 LONGEST_SENTENCE = 6000

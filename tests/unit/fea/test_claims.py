@@ -23,7 +23,8 @@ from loads.sources.claim import (
     read_source,
     sources,
 )
-from loads.sources.expression import Value, evaluate
+from loads.sources.expression import evaluate
+from loads.sources.quantity import Value
 from reports.tables.claims import as_json, as_markdown, as_text
 
 TREE = {

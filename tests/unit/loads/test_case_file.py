@@ -260,7 +260,7 @@ def test_overrides_that_are_none(override: str) -> None:
     ("override", "words"),
     [
         ("title.x=1", ["--set title.x", "'title' is a value", "correct the path"]),
-        ("links.CF.holes.7.count=1", ["--set links.CF.holes.7.count", "'7'", "2 entries", "from 0"]),
+        ("links.CF.holes.7.count=1", ["--set links.CF.holes.7.count", "'7'", "2 entries", "the first one is 0"]),
         ("links.CF.holes.-1.count=1", ["'-1'", "2 entries"]),
         ("links.CF.holes.x.count=1", ["'x'", "2 entries"]),
         ("links.CF.holes.²=1", ["2 entries"]),

@@ -6,7 +6,8 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from geometry.base.errors import CaseError
-from loads.sources.expression import LONGEST, Value, evaluate, evaluate_number
+from loads.sources.expression import LONGEST, evaluate, evaluate_number
+from loads.sources.quantity import Value
 
 LENGTHS = {("a",): Value.of(3, "mm"), ("link", "whole-wing"): Value.of(4, "cm"), ("kind",): "open"}
 

@@ -1,0 +1,172 @@
+"""What must fit together between a case's links and what acts on them: places of loads and masses, weight."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geometry.base.errors import CaseError
+from loads.records.aero import AirPatch, check_air
+from loads.records.carried import CarriedBody, CarriedSpread
+from loads.records.load_case import LoadCase, PointForce, PointMoment, SpreadForce
+from loads.text.explain import require
+
+if TYPE_CHECKING:
+    from loads.case.core import CoreCase
+
+Place = PointForce | PointMoment | SpreadForce | CarriedBody | CarriedSpread | AirPatch
+
+
+def check_moving(case: "CoreCase", entry: str, link: str) -> None:
+    """Check that a link moves.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    entry : str
+        Entry of the case file that names the link, for the message.
+    link : str
+        Name of the link.
+
+    Raises
+    ------
+    CaseError
+        Where it is the ground or unknown.
+    """
+    require(entry, link, case.linkage.moving, "is not a moving link")
+
+
+def check_point(case: "CoreCase", entry: str, link: str, point: str) -> None:
+    """Check that a link moves and has a point.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    entry : str
+        Table of the case file that names both, for the message.
+    link, point : str
+        Their names.
+
+    Raises
+    ------
+    CaseError
+        Where it is the ground or unknown, or has no such point.
+    """
+    check_moving(case, f"{entry}.link", link)
+    points = case.links[link].points
+    if point not in points:
+        raise CaseError(f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(points)}")
+
+
+def check_loads(case: "CoreCase", where: str, load_case: LoadCase) -> None:
+    """Check where the loads of a load case act, and that its speed means something.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    where : str
+        Path of the load case in the case file, for messages.
+    load_case : LoadCase
+        The load case.
+
+    Raises
+    ------
+    CaseError
+        For the first load that does not fit.
+    """
+    for kind in ("forces", "moments", "spread"):
+        for i, load in enumerate(getattr(load_case, kind)):
+            check_place(case, f"{where}.{kind}.{i}", load)
+            if kind == "moments" and load.moment[2] != 0.0:
+                _check_torque(case, f"{where}.{kind}.{i}", load)
+    for i, air in enumerate(load_case.air):
+        check_air(air, f"{where}.air.{i}")
+        for j, patch in enumerate(air.spread):
+            check_place(case, f"{where}.air.{i}.spread.{j}", patch)
+    if load_case.speed != 0.0 and case.pose.coordinate is None:
+        raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
+    if load_case.speed != 0.0 and case.pose.travel is not None:
+        raise CaseError(
+            f"{where}.speed: it is the angular speed of the pose's coordinate, but '{case.pose.coordinate}' is a "
+            "slider; leave it out and state motion.travel_speed"
+        )
+
+
+def check_place(case: "CoreCase", entry: str, place: Place) -> None:
+    """Check where a load or a mass acts: at a point of a moving link, or between two points along it.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    entry : str
+        Path of the load or mass in the case file, for messages.
+    place : record with a link and a point, or two points
+        The load or mass.
+
+    Raises
+    ------
+    CaseError
+        Where the link does not move or lacks a point, at a slot, and between points at one station.
+    """
+    at, start, end = (getattr(place, name, None) for name in ("at", "start", "end"))
+    for point in (at, start, end):
+        if point is not None:
+            check_point(case, entry, place.link, point)
+    if at in case.links[place.link].slots:
+        raise CaseError(
+            f"{entry}: point '{at}' of link '{place.link}' is a slot, where the pin alone can push; name another point"
+        )
+    points = case.links[place.link].points
+    if start is not None and end is not None and np.isclose(points[start][0], points[end][0]):
+        raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
+
+
+def _check_torque(case: "CoreCase", entry: str, load: PointMoment) -> None:
+    """A pin that turns freely passes no torque about its own axis; only the drive's does."""
+    linkage = case.linkage
+    pins = [name for name in linkage.joints_of(load.link)
+            if linkage.point_of(name, load.link) == load.at and linkage.joints[name].type == "revolute"]  # fmt: skip
+    driven = case.drive is not None and case.drive.joint in pins
+    if pins and not driven and case.joint_model == "pinned":
+        raise CaseError(
+            f"{entry}: the pin at '{load.at}' turns freely and nothing drives it, so no torque about z enters link "
+            f"'{load.link}' there; name a point of the link without pin, drive that joint, or write "
+            'joint_model = "bonded"'
+        )
+
+
+def check_masses(case: "CoreCase") -> None:
+    """Check that where weight or inertia acts, the case says of every moving link where its mass comes from.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+
+    Raises
+    ------
+    CaseError
+        For a link whose mass is unknown, and for a massless one that has a mass.
+    """
+    carrying = {mass.link for mass in case.carried}
+    for link in case.massless:
+        check_moving(case, "massless", link)
+        if link in case.checked_links or link in carrying:
+            what = "has a part" if link in case.checked_links else "carries a mass"
+            raise CaseError(f"massless: link '{link}' {what}, so it weighs something; remove one of the two statements")
+    asking = [
+        f"load_cases.{name}.{'own_weight' if load_case.own_weight else 'speed'}"
+        for name, load_case in case.load_cases.items()
+        if load_case.own_weight or load_case.speed != 0.0
+    ]
+    if case.motion is not None and case.motion.inertia:
+        asking.append("motion.inertia")
+    unknown = [link for link in case.linkage.moving if link not in {*case.checked_links, *carrying, *case.massless}]
+    if asking and unknown:
+        raise CaseError(
+            f"{asking[0]}: link '{unknown[0]}' has neither a part nor a mass, so its weight is unknown; give it a "
+            f'part, a mass under [[carried]], or state massless = ["{unknown[0]}"]'
+        )

@@ -1,0 +1,69 @@
+"""The smaller tables of a case file: pose, drive, solid models, hand calculations, ways to hold."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from geometry.base.model import CaseModel, Name, Text
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Force, Length
+from loads.text.shares import Accuracy
+
+
+class PoseSpec(CaseModel):
+    """Which position the linkage is in."""
+
+    coordinate: Name | None = None
+    """The link whose direction fixes the pose, or with a travel the slider or slot that does; leave it out for a
+    structure that cannot move."""
+    angle: Angle = 0.0
+    """Direction of that link's x axis, counter-clockwise from the global x axis."""
+    travel: Length | None = None
+    """Travel of that slider or slot, from the point of its first link to that of its second, along its direction."""
+    near: dict[Name, Angle] = {}
+    """Rough directions of the other links: they choose the assembly branch."""
+
+
+class DriveSpec(CaseModel):
+    """Where the drive torque enters, or at a slider the drive force."""
+
+    link: Name
+    """The driven link."""
+    joint: Name
+    """The joint about which it is driven, or the slider along which it is pushed; the reaction goes to the other link
+    there."""
+    transfer: Literal["eye-faces", "bore-shear"] = "eye-faces"
+    """How the torque enters the driven part: as shear on the eye's flat faces, or on its bore."""
+
+
+class CantileverCalculation(CaseModel):
+    """A hand calculation: a part as a cantilever under an evenly spread load."""
+
+    type: Literal["cantilever"]
+    part: Name
+    length: Annotated[Length, POSITIVE]
+    load: Annotated[Force, NOT_NEGATIVE]
+    """The total load [N]."""
+
+
+class WaysToHold(CaseModel):
+    """How far a point moves, by the frame, depending on which link the drive holds and on whether pins turn."""
+
+    link: Name
+    at: Name
+    published: Annotated[Length, POSITIVE] | None = None
+    """A published displacement, to stand beside them."""
+    load_case: Name | None = None
+    """The load case that it was published for; needed where the case has several."""
+    source: Text = ""
+
+
+class SolidSettings(CaseModel):
+    """The solid finite-element model."""
+
+    mesh_size: Annotated[float, Field(ge=0.1, le=4.0)] = 1.0
+    """Factor on the mesher's own element sizes: 0.5 halves them, 2 doubles them."""
+    curved: bool = True
+    """Quadratic elements with curved edges; straight edges when false."""
+    accuracy: Accuracy | None = None
+    """Largest error of the meshes that is wanted in the deciding stress and the displacement, such as "5 %"; without
+    it meshes are refined until the verdict is clear or that error is 5 %."""
