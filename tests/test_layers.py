@@ -1,6 +1,8 @@
 """Imports go one way through the packages and their sub-packages, and each foreign library stays where it belongs."""
 
 import ast
+import re
+from collections import Counter
 from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
@@ -127,3 +129,28 @@ def test_allowed_imports_pass(tmp_path):
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(source, encoding="utf-8")
     assert violations(tmp_path) == []
+
+
+SHARED = {"LineLoad", "PointLoad", "SectionStress", "Source"}
+"""Names of records that still stand for several things; the list may only shrink."""
+
+
+def classes() -> list[str]:
+    """Return the name of every public class of the four packages, as often as there is one of that name."""
+    files = [file for package in PACKAGES for file in (ROOT / package).rglob("*.py")]
+    nodes = [node for file in files for node in ast.parse(file.read_text(encoding="utf-8")).body]
+    return [node.name for node in nodes if isinstance(node, ast.ClassDef) and not node.name.startswith("_")]
+
+
+def test_a_class_name_stands_for_one_thing() -> None:
+    assert {name for name, count in Counter(classes()).items() if count > 1} == SHARED
+
+
+def test_the_glossary_names_what_there_is() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    glossary = text.split("\n## Glossary\n")[1].split("\n## ")[0]
+    names = re.findall(r"`([A-Z]\w+)`", glossary)
+    assert len(names) > 20
+    assert set(names) <= {*classes(), "Part"}
+    terms = re.findall(r"^\| ([^|]+) \|", glossary, flags=re.MULTILINE)
+    assert len(set(terms)) == len(terms)

@@ -188,7 +188,7 @@ def _conversion(unit: str, dimension: str) -> tuple[float, float] | None:
     return (one - zero, zero) if dimension == "temperature" else (one, 0.0)
 
 
-class Quantity:
+class Dimensioned:
     """Tells pydantic to read a field as text with a number and a unit of the given dimension."""
 
     def __init__(self, dimension: str) -> None:
@@ -222,21 +222,21 @@ def _not_negative(value: float) -> float:
 POSITIVE = AfterValidator(_positive)
 NOT_NEGATIVE = AfterValidator(_not_negative)
 
-Length = Annotated[float, Quantity("length")]
-Area = Annotated[float, Quantity("area")]
-Angle = Annotated[float, Quantity("angle")]
-Force = Annotated[float, Quantity("force")]
-Moment = Annotated[float, Quantity("moment")]
-LineLoad = Annotated[float, Quantity("line load")]
-Stress = Annotated[float, Quantity("stress")]
-Mass = Annotated[float, Quantity("mass")]
-Density = Annotated[float, Quantity("density")]
-Time = Annotated[float, Quantity("time")]
-Speed = Annotated[float, Quantity("speed")]
-Acceleration = Annotated[float, Quantity("acceleration")]
-AngularSpeed = Annotated[float, Quantity("angular speed")]
-AngularAcceleration = Annotated[float, Quantity("angular acceleration")]
-Power = Annotated[float, Quantity("power")]
-Temperature = Annotated[float, Quantity("temperature")]
-Voltage = Annotated[float, Quantity("voltage")]
-Current = Annotated[float, Quantity("current")]
+Length = Annotated[float, Dimensioned("length")]
+Area = Annotated[float, Dimensioned("area")]
+Angle = Annotated[float, Dimensioned("angle")]
+Force = Annotated[float, Dimensioned("force")]
+Moment = Annotated[float, Dimensioned("moment")]
+LineLoad = Annotated[float, Dimensioned("line load")]
+Stress = Annotated[float, Dimensioned("stress")]
+Mass = Annotated[float, Dimensioned("mass")]
+Density = Annotated[float, Dimensioned("density")]
+Time = Annotated[float, Dimensioned("time")]
+Speed = Annotated[float, Dimensioned("speed")]
+Acceleration = Annotated[float, Dimensioned("acceleration")]
+AngularSpeed = Annotated[float, Dimensioned("angular speed")]
+AngularAcceleration = Annotated[float, Dimensioned("angular acceleration")]
+Power = Annotated[float, Dimensioned("power")]
+Temperature = Annotated[float, Dimensioned("temperature")]
+Voltage = Annotated[float, Dimensioned("voltage")]
+Current = Annotated[float, Dimensioned("current")]

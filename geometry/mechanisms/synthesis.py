@@ -31,7 +31,7 @@ _ILL_CONDITION = 1e6
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class SynthesisFinding:
     """A property of the synthesised linkage that its user must know, in one plain sentence."""
 
     kind: str
@@ -79,9 +79,9 @@ class Synthesis:
     """K2 < 0: the length c came out negative, so its link stands at ψ + 180°."""
     points: tuple[PrecisionPoint, PrecisionPoint, PrecisionPoint]
     lock_ups: tuple[LockUp, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[SynthesisFinding, ...]
 
-    def findings_for(self, drive: Drive) -> tuple[Finding, ...]:
+    def findings_for(self, drive: Drive) -> tuple[SynthesisFinding, ...]:
         """Return the findings that hold when this link is driven, those of any drive included."""
         return tuple(finding for finding in self.findings if finding.drive in (None, drive))
 
@@ -219,20 +219,20 @@ def _lock_ups(four_bar: FourBar, drive: Drive, b_turned: bool, c_turned: bool) -
     return found
 
 
-def _general(condition: float, K1: float, K2: float, four_bar: FourBar) -> list[Finding]:
+def _general(condition: float, K1: float, K2: float, four_bar: FourBar) -> list[SynthesisFinding]:
     found = []
     if condition > _ILL_CONDITION:
         digits = max(0, round(15.65 - math.log10(condition)))
         text = f"The system's condition number is {condition:.2g}: the lengths hold some {digits} digits at best."
-        found.append(Finding(kind="conditioning", drive=None, sentence=text))
+        found.append(SynthesisFinding(kind="conditioning", drive=None, sentence=text))
     for name, link, angle, value in (("K1", "b", "θ", K1), ("K2", "c", "ψ", K2)):
         if value < 0:
             text = (
                 f"{name} is negative, so the length of link {link} came out negative: build it with its positive "
                 f"length, turned by 180° against {angle}."
             )
-            found.append(Finding(kind="sign", drive=None, sentence=text))
-    found.append(Finding(kind="grashof", drive=None, sentence=four_bar.grashof.sentence))
+            found.append(SynthesisFinding(kind="sign", drive=None, sentence=text))
+    found.append(SynthesisFinding(kind="grashof", drive=None, sentence=four_bar.grashof.sentence))
     return found
 
 
@@ -247,7 +247,7 @@ def _driven_angle(point: PrecisionPoint, drive: Drive, b_turned: bool, c_turned:
 
 def _defects(
     four_bar: FourBar, drive: Drive, points: Sequence[PrecisionPoint], b_turned: bool, c_turned: bool
-) -> list[Finding]:
+) -> list[SynthesisFinding]:
     """Return circuit, branch and order defect of one drive (Norton, Design of Machinery, 5th ed., chapter 4)."""
     found = []
     name = f"link {drive} (angle {_ANGLE[drive]})"
@@ -259,7 +259,7 @@ def _defects(
             f"Driven by {name}, the points do not share a branch (open: {opened}; crossed: {crossed}): the drive "
             "alone cannot take the linkage from one branch to the other."
         )
-        found.append(Finding(kind="branch-defect", drive=drive, sentence=text))
+        found.append(SynthesisFinding(kind="branch-defect", drive=drive, sentence=text))
         return found
     reach = driven(four_bar, drive).input_range()
     angles = [_driven_angle(point, drive, b_turned, c_turned) for point in points]
@@ -269,7 +269,7 @@ def _defects(
             f"Driven by {name}, the three points lie in separate ranges of its angle: the linkage must be taken "
             "apart and assembled anew to pass from one to the other."
         )
-        found.append(Finding(kind="circuit-defect", drive=drive, sentence=text))
+        found.append(SynthesisFinding(kind="circuit-defect", drive=drive, sentence=text))
     elif not reach.full_turn and intervals[0] is not None:
         low = reach.intervals[intervals[0]][0]
         travel = [(angle - low) % (2 * math.pi) for angle in angles]
@@ -279,11 +279,11 @@ def _defects(
                 f"Driven by {name} one way, the points come in the order "
                 f"{', '.join(str(i + 1) for i in order)}, not 1, 2, 3: the drive must turn back on its way."
             )
-            found.append(Finding(kind="order-defect", drive=drive, sentence=text))
+            found.append(SynthesisFinding(kind="order-defect", drive=drive, sentence=text))
     return found
 
 
-def _lock_up_finding(drive: Drive, lock_ups: Sequence[LockUp]) -> list[Finding]:
+def _lock_up_finding(drive: Drive, lock_ups: Sequence[LockUp]) -> list[SynthesisFinding]:
     if not lock_ups:
         return []
     places = "; ".join(
@@ -291,4 +291,4 @@ def _lock_up_finding(drive: Drive, lock_ups: Sequence[LockUp]) -> list[Finding]:
         for lock in lock_ups
     )
     text = f"Driven by link {drive} (angle {_ANGLE[drive]}) the linkage locks in {len(lock_ups)} poses: {places}."
-    return [Finding(kind="lock-up", drive=drive, sentence=text)]
+    return [SynthesisFinding(kind="lock-up", drive=drive, sentence=text)]
