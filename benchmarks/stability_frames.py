@@ -8,8 +8,9 @@ from scipy.sparse.linalg import splu
 from benchmarks.stability_report import Row, figure, table, timed
 from benchmarks.stability_solids import box
 from fea.beam.column_factor import AxialForce, column_factors
-from fea.frame.corotational import buckling_factor
-from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, FrameSolution, NodeLoad, Support, solve_frame
+from fea.frame.linear import FrameSolution, solve_frame
+from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
+from fea.frame.stability import buckling_factor
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.space import displacement_space
 from fea.solid.supports import isostatic_supports

@@ -9,8 +9,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.stability_report import Row, figure, table, timed
-from fea.beam.theory import BeamLoads, PointLoad, deflection, internal_forces
-from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from fea.beam.deflection import deflection
+from fea.beam.loads import BeamLoads, PointLoad
+from fea.beam.theory import internal_forces
+from fea.frame.linear import solve_frame
+from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
 from fea.refine.error_estimate import ErrorEstimate, energy_density, estimate_error
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.quadrature import surface_quadrature, volume_quadrature

@@ -16,6 +16,12 @@ from geometry.parts.eyes import eye_reach
 from geometry.parts.part import Body, Part
 
 Interval = tuple[float, float]
+_GAPS = {
+    "gap between eyes over width": "its eyes",
+    "gap at holes over width": "a hole and its neighbour",
+    "gap at a loaded end over width": "a loaded end and the nearest eye or hole",
+}
+"""Proportions that are distances between neighbours, with who they are."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +62,9 @@ class Calibration:
         for name, value in proportions(body, nu).items():
             low, high = self.ranges.get(name, (1.0, 0.0))
             if not low * (1.0 - 1e-6) <= value <= high * (1.0 + 1e-6):
-                return f"its {name} {value:.3g} is outside of the calibrated {low:.3g} to {high:.3g}"
+                if name in _GAPS:
+                    return f"{_GAPS[name]} are too close for the hand formula (gap {value:.3g} widths, needs {low:.3g})"
+                return f"its {name} {value:.3g} is outside the calibrated range {low:.3g} to {high:.3g}"
         return ""
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam import theory as beam
+from fea.beam import loads as beam
 from fea.common.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose

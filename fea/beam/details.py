@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.flanks import flanks_of
+from fea.beam.piecewise import Piecewise
 from fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
-from fea.beam.theory import Floats, Piecewise
+from fea.beam.theory import Floats
 from fea.common.link_loads import LinkLoads, PinLoad
 from geometry.parts.part import Body, Pin, Section, rectangle
 
@@ -118,7 +119,7 @@ def _slot(body: Body, pin: Pin, load: PinLoad, forces: Piecewise, poisson: float
     slender = length / height
     remark = f"net section of two flanks {height:.3g} mm high, and their own bending"
     if slender < SLENDER:
-        remark += f"; an estimate, since they are but {slender:.2g} times as long as high"
+        remark += f"; an estimate, since they are only {slender:.2g} times as long as high"
     return Detail(name=f"the slot at {pin.name}", x=worst_x, stress=stress, remark=remark)
 
 

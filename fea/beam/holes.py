@@ -3,25 +3,11 @@
 Loads in N and N·mm, lengths in mm, stresses in MPa.
 """
 
-from dataclasses import dataclass
-
 from geometry.base.errors import CannotRunError
 
 
-@dataclass(frozen=True, kw_only=True)
-class EyeStress:
-    """Mean stresses of an eye pulled by its pin [MPa].
-
-    net_tension  F/((D - d) t) in the section through the hole
-    bearing      F/(d t) on the projected area of the pin
-    """
-
-    net_tension: float
-    bearing: float
-
-
-def eye_stress(force: float, eye_diameter: float, hole_diameter: float, thickness: float) -> EyeStress:
-    """Net-section tension and bearing of an eye of width D and thickness t under a pin in a hole of diameter d.
+def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickness: float) -> float:
+    """Mean tension F/((D - d) t) [MPa] in the section through the hole of an eye that its pin pulls.
 
     Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., chapter 8. Raises ``CannotRunError``
     where the hole leaves no section.
@@ -30,10 +16,7 @@ def eye_stress(force: float, eye_diameter: float, hole_diameter: float, thicknes
         raise CannotRunError(
             f"a hole of {hole_diameter:g} mm leaves no section in an eye of {eye_diameter:g} x {thickness:g} mm"
         )
-    return EyeStress(
-        net_tension=abs(force) / ((eye_diameter - hole_diameter) * thickness),
-        bearing=abs(force) / (hole_diameter * thickness),
-    )
+    return abs(force) / ((eye_diameter - hole_diameter) * thickness)
 
 
 def tube_hole_factors(outer_diameter: float, inner_diameter: float, hole_diameter: float) -> tuple[float, float]:

@@ -14,9 +14,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.holes import eye_stress, tube_hole_factors
+from fea.beam.deflection import deflection
+from fea.beam.holes import net_tension, tube_hole_factors
+from fea.beam.piecewise import Side
 from fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
-from fea.beam.theory import BeamCheck, Side, deflection
+from fea.beam.theory import BeamCheck
 from fea.common.link_loads import LinkLoads, PinLoad
 from geometry.parts.body import extent, patch_span
 from geometry.parts.eyes import eye_reach
@@ -182,7 +184,7 @@ def _bore(
     h = min(max(hole / wide, 0.15), 0.75)
     factor = 12.882 - 52.714 * h + 89.762 * h**2 - 51.667 * h**3
     push = float(np.linalg.norm(load.wrench[:3]) + 6.0 * np.linalg.norm(load.wrench[3:5]) / thick)
-    pushed = factor * eye_stress(push, wide, hole, thick).net_tension
+    pushed = factor * net_tension(push, wide, hole, thick)
     through = min(abs(before[0]), abs(after[0])) if before[0] * after[0] > 0.0 else 0.0
     n, m_z = 3.0 * through / ((wide - hole) * thick), max(abs(before[5]), abs(after[5]))
     in_plane = 2.0 * 6.0 * m_z * hole / (thick * (wide**3 - hole**3))

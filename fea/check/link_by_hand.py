@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from fea.beam.cut_free import beam_loads, link_loads
+from fea.beam.deflection import deflection
 from fea.beam.details import Detail, details, remarks
 from fea.beam.flanks import flanks_of
 from fea.beam.section_stress import SectionStress
-from fea.beam.theory import BeamCheck, check_beam, deflection
+from fea.beam.theory import BeamCheck, check_beam
 from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
 from fea.frame.large_displacement import LargeDisplacement

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from fea.beam.column_factor import GAUSS, Stretch, slopes, stiffness_matrices
 from fea.beam.cut_free import beam_loads
 from fea.beam.flanks import flanks_of
-from fea.beam.theory import Piecewise, Side, internal_forces
+from fea.beam.piecewise import Piecewise, Side
+from fea.beam.theory import internal_forces
 from fea.common.link_loads import LineLoad, LinkLoads
 from fea.outcomes.buckling import columns, holding
 from geometry.parts.body import hand_section

@@ -18,9 +18,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.corotational_element import CorotationalElements, ElementResponse
+from fea.frame.corotational_element import CorotationalElements, ElementResponse, guide_gap
 from fea.frame.kinematic_chain import KinematicChain, Step, present_axes, turned
-from fea.frame.linear import solve_frame
 from fea.frame.model import FrameModel, Guide
 from fea.frame.system import FrameSystem, refuse_mechanism
 from geometry.base.errors import CannotRunError
@@ -48,46 +47,32 @@ class CorotationalSolution:
     """A frame in equilibrium on its deformed shape.
 
     model           the divided frame: the given nodes first, the new ones after them
-    origin          (m,) number of the given element that each element is a part of, in order from its first end
     displacements   (n, 3) [mm], global axes
     rotations       (n, 3, 3) rotation matrices of the nodes
-    axes            (m, 3, 3) columns: each element's x, y, z on the deformed shape, in global axes
-    end_forces      (m, 2, 6) what acts on both ends of each element, in those axes [N, N·mm]
+    end_forces      (m, 2, 6) what the nodes do to each element, global axes, moments about the nodes [N, N·mm]
     joint_wrenches  (n, 6) what ties, guides and supports together do to the part of the frame at each node, global axes
     reactions       (n, 6) what supports and guides on the ground do to the frame; of tied nodes the one with most
                     supports has it
     guide_forces    (g,) what each guide's carrier takes along its turned normal [N], or about axis x normal [N·mm]
     residual        largest force left over, over the sum of the loads (moments over the frame's size)
-    steps, iterations  load steps taken and Newton iterations over all of them
     stable          True where every small motion stores energy (on the symmetric part of the tangent): otherwise the
                     frame has buckled on its way here, and this shape will not be seen
     """
 
     model: FrameModel
-    origin: NDArray[np.int64]
     displacements: Floats
     rotations: Floats
-    axes: Floats
     end_forces: Floats
     joint_wrenches: Floats
     reactions: Floats
     guide_forces: Floats
     residual: float
-    steps: int
-    iterations: int
     stable: bool
 
-    def section_forces(self, i: int) -> Floats:
-        """(2, 6) N, V_y, V_z, T, M_y, M_z at both ends of element i of the divided frame.
 
-        Signs as in ``fea.beam.theory``.
-        """
-        return np.vstack([-self.end_forces[i, 0], self.end_forces[i, 1]])
-
-
-def subdivide(model: FrameModel, parts: int) -> tuple[FrameModel, NDArray[np.int64]]:
-    """Divide every element into equal parts; return the frame and, per new element, the number of the old one."""
-    nodes, elements, origin = list(model.nodes), [], []
+def subdivide(model: FrameModel, parts: int) -> FrameModel:
+    """Return the frame with every element divided into equal parts, in order; new nodes stand after the old ones."""
+    nodes, elements = list(model.nodes), []
     names = [model.name(i) for i in range(len(model.nodes))]
     for i, e in enumerate(model.elements):
         start, end = model.ends(i)
@@ -103,14 +88,11 @@ def subdivide(model: FrameModel, parts: int) -> tuple[FrameModel, NDArray[np.int
                     e,
                     nodes=(chain[k], chain[k + 1]),
                     offsets=np.array([e.offsets[0] * first, e.offsets[1] * last]),
-                    releases=(e.releases[0] if first else frozenset(), e.releases[1] if last else frozenset()),
                     load_first=load[0],
                     load_last=load[1],
                 )
             )
-            origin.append(i)
-    divided = replace(model, nodes=np.array(nodes), elements=tuple(elements), names=tuple(names))
-    return divided, np.array(origin)
+    return replace(model, nodes=np.array(nodes), elements=tuple(elements), names=tuple(names))
 
 
 class NoEquilibriumError(CannotRunError):
@@ -118,8 +100,8 @@ class NoEquilibriumError(CannotRunError):
 
     def __init__(self, reached: float) -> None:
         super().__init__(
-            f"the frame finds no equilibrium in large displacement beyond {reached:.3g} of its load "
-            f"(a limit load or a snap-through); reduce the load or stiffen the frame"
+            f"the frame gives way at {100.0 * reached:.3g} % of its load (a limit load or a snap-through); reduce the "
+            "load or stiffen the frame"
         )
         self.reached = reached
 
@@ -138,37 +120,35 @@ def solve_large_displacement(
     the load: a limit load, a snap-through or a divergent shape (naming the share of the load that was reached); no
     unconverged shape is ever returned.
     """
-    divided, origin = subdivide(model, subdivisions)
+    divided = subdivide(model, subdivisions)
     system = FrameSystem(divided)
     refuse_mechanism(system, system.equations()[0])
-    path = _Path(divided)
+    path = EquilibriumPath(divided)
     path.follow(least_step, most_iterations)
-    return path.record(origin)
+    return path.record()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _State:
-    """Displacements (n, 3), rotations of nodes (n, 3, 3) and of attachments (m, 2, 3, 3), forces of guides (g,)."""
+class State:
+    """Displacements (n, 3) and rotations (n, 3, 3) of nodes, forces of guides (g,)."""
 
     displacements: Floats
     rotations: Floats
-    attachments: Floats
     guide_forces: Floats
 
 
-class _Path:
+class EquilibriumPath:
     """The equilibrium path of a frame from load factor 0 to 1."""
 
-    def __init__(self, model: FrameModel, *, finite: bool = True) -> None:
-        n, m = len(model.nodes), len(model.elements)
+    def __init__(self, model: FrameModel) -> None:
+        n = len(model.nodes)
         self.model = model
-        self.chain = KinematicChain(model, finite=finite)
+        self.chain = KinematicChain(model)
         self.elements = CorotationalElements(model)
         self.pairs = np.array([e.nodes for e in model.elements])
-        self.state = _State(
+        self.state = State(
             displacements=np.zeros((n, 3)),
             rotations=np.tile(np.eye(3), (n, 1, 1)),
-            attachments=np.tile(np.eye(3), (m, 2, 1, 1)),
             guide_forces=np.zeros(len(model.guides)),
         )
         self.scale = model.load_scale or 1.0
@@ -177,12 +157,13 @@ class _Path:
         self.gap_unit = np.array([1.0 / model.size if guide.axis is None else 1.0 for guide in model.guides])
         self.unit = np.concatenate([moving, stiffness * model.size * self.gap_unit])
         self.reached = 0.0
-        self.steps = self.iterations = 0
 
-    def respond(self, state: _State, factor: float) -> ElementResponse:
-        return self.elements.respond(state.displacements[self.pairs], state.attachments, factor)
+    def respond(self, state: State, factor: float) -> ElementResponse:
+        """What the elements answer in a state under a share of the line loads."""
+        return self.elements.respond(state.displacements[self.pairs], state.rotations[self.pairs], factor)
 
     def follow(self, least_step: float, most_iterations: int) -> None:
+        """Go on to the whole load, halving the step where Newton's method fails."""
         step = 0.25
         while self.reached < 1.0:
             target = min(1.0, self.reached + step)
@@ -194,24 +175,22 @@ class _Path:
                 continue
             self.state, iterations = found
             self.reached = target
-            self.steps += 1
             if iterations <= 6:
                 step *= 2.0
 
-    def _newton(self, factor: float, most_iterations: int) -> tuple[_State, int] | None:
+    def _newton(self, factor: float, most_iterations: int) -> tuple[State, int] | None:
         """Equilibrium at a load factor from the present state, with the iterations it took; None where it fails."""
         state, predicted = self.state, 0.0
         for iteration in range(most_iterations):
             try:
                 residual, tangent = self.balance(state, factor)
-                if self.measure(residual) <= max(_TOLERANCE * factor, self.rounding(state)) and iteration > 0:
+                if self._measure(residual) <= max(_TOLERANCE * factor, self._rounding(state)) and iteration > 0:
                     predicted = min(predicted, self._size(self._solve(tangent, self.balance(state, self.reached)[0])))
                     moved = float(np.linalg.norm(state.displacements - self.state.displacements))
                     return (state, iteration) if moved <= _JUMP * predicted else None
                 change = -self._solve(tangent, residual)
             except CannotRunError:
                 return None
-            self.iterations += 1
             if iteration == 0:
                 predicted = self._size(change)
             turn = float(np.abs(change[: self.chain.count][self.chain.is_turn]).max(initial=0.0))
@@ -220,10 +199,10 @@ class _Path:
             state = self._moved(state, change * min(1.0, _LARGEST_TURN / turn if turn > 0.0 else 1.0))
         return None
 
-    def balance(self, state: _State, factor: float) -> tuple[Floats, Floats]:
+    def balance(self, state: State, factor: float) -> tuple[Floats, Floats]:
         """Out-of-balance forces (k,) and gaps of the guides (g,), with their derivative (k + g, k + g)."""
         answer = self.respond(state, factor)
-        return self.assemble(answer.forces, answer.tangent, state, factor)
+        return self.assemble(answer, state, factor)
 
     def _solve(self, tangent: Floats, right: Floats) -> Floats:
         # A sparse factorisation, single-threaded: threads that wait for each other cost more than matrices this small.
@@ -241,62 +220,55 @@ class _Path:
         places = self.chain.translations
         return float(np.linalg.norm(np.where(places >= 0, change[places], 0.0)))
 
-    def rounding(self, state: _State) -> float:
+    def _rounding(self, state: State) -> float:
         """What rounding of displacements and rotations leaves of forces in the stiffest element, over the loads."""
         k = self.elements.stiffness
         stretched = k[:, 0, 0].max() * np.abs(state.displacements).max()
         bent = (k[:, [1, 3], [1, 3]].max(axis=1) / self.elements.lengths).max()
         return min(8.0 * float(np.finfo(float).eps * (stretched + bent)) / self.scale, _MOST_ROUNDING)
 
-    def measure(self, residual: Floats) -> float:
+    def _measure(self, residual: Floats) -> float:
         """Largest force left over, over the sum of the loads; or gap of a guide, over the frame's size or in rad."""
         count = self.chain.count
         forces = float(np.abs(residual[:count] * self.unit[:count]).max(initial=0.0)) / self.scale
         return max(forces, float(np.abs(residual[count:] * self.gap_unit).max(initial=0.0)))
 
-    def _moved(self, state: _State, change: Floats) -> _State:
+    def _moved(self, state: State, change: Floats) -> State:
         places = self.chain.translations
         displacements = state.displacements + np.where(places >= 0, change[places], 0.0)
-        rotations, attachments = state.rotations.copy(), state.attachments.copy()
+        rotations = state.rotations.copy()
         for node, steps in enumerate(self.chain.nodes):
             axes = present_axes(steps, state.rotations)
             rotations[node] = turned(steps, axes, change, state.rotations[node])
-        for i, ends in enumerate(self.chain.ends):
-            for end, steps in enumerate(ends):
-                axes = present_axes(steps, state.rotations)
-                attachments[i, end] = turned(steps, axes, change, state.attachments[i, end])
-        return _State(
+        return State(
             displacements=displacements,
             rotations=rotations,
-            attachments=attachments,
             guide_forces=state.guide_forces + change[self.chain.count :],
         )
 
-    def assemble(self, forces: Floats, tangents: Floats, state: _State, factor: float) -> tuple[Floats, Floats]:
+    def assemble(self, answer: ElementResponse, state: State, factor: float) -> tuple[Floats, Floats]:
         """Out-of-balance forces and gaps (k + g,) and their derivative (k + g, k + g) from what the elements answer."""
         count, size = self.chain.count, self.chain.count + len(self.model.guides)
         residual, tangent = np.zeros(size), np.zeros((size, size))
-        for i, pair in enumerate(self.pairs):
-            numbers, T = self._place(pair, self.chain.ends[i], state)
-            np.add.at(residual, numbers, T @ forces[i])
-            np.add.at(tangent, (numbers[:, None], numbers), T @ tangents[i] @ T.T)
-            for end, steps in enumerate(self.chain.ends[i]):
-                _carry(tangent, steps, present_axes(steps, state.rotations), forces[i, 6 * end + 3 : 6 * end + 6])
-        for j, guide in enumerate(self.model.guides):
-            force, gap, gradient, curvature = state.guide_forces[j], *_gap(guide, state)
-            nodes = [guide.carrier, guide.pin]
-            steps_of = [[] if node is None else self.chain.nodes[node] for node in nodes]
-            numbers, T = self._place(nodes, steps_of, state)
-            residual[count + j] = gap
-            np.add.at(residual, numbers, force * (T @ gradient))
-            np.add.at(tangent, (numbers[:, None], numbers), force * (T @ curvature @ T.T))
+
+        def add(nodes: Sequence[int | None], forces: Floats, stiffness: Floats) -> tuple[NDArray[np.int64], Floats]:
+            numbers, T = self._place(nodes, state)
+            np.add.at(residual, numbers, T @ forces)
+            np.add.at(tangent, (numbers[:, None], numbers), T @ stiffness @ T.T)
+            for end, node in enumerate(nodes):
+                steps = [] if node is None else self.chain.nodes[node]
+                _carry(tangent, steps, present_axes(steps, state.rotations), forces[6 * end + 3 : 6 * end + 6])
+            return numbers, T
+
+        for pair, forces, stiffness in zip(self.pairs, answer.forces, answer.tangent, strict=True):
+            add(pair, forces, stiffness)
+        for j, (guide, force) in enumerate(zip(self.model.guides, state.guide_forces, strict=True), start=count):
+            residual[j], unit = self._gap(guide, state)
+            numbers, T = add((guide.carrier, guide.pin), force * unit.forces[0], force * unit.tangent[0])
             column = np.zeros(size)
-            np.add.at(column, numbers, T @ gradient)
-            tangent[:, count + j] += column
-            tangent[count + j] += column
-            for end, steps in enumerate(steps_of):
-                moment = force * gradient[6 * end + 3 : 6 * end + 6]
-                _carry(tangent, steps, present_axes(steps, state.rotations), moment)
+            np.add.at(column, numbers, T @ unit.forces[0])
+            tangent[:, j] += column
+            tangent[j] += column
         for load in self.model.loads:
             places = self.chain.translations[load.node]
             np.add.at(residual, places[places >= 0], -factor * load.wrench[:3][places >= 0])
@@ -306,15 +278,21 @@ class _Path:
             _carry(tangent, steps, axes, -factor * load.wrench[3:])
         return residual, tangent
 
-    def _place(
-        self, nodes: Sequence[int | None], chains: Sequence[list[Step]], state: _State
-    ) -> tuple[NDArray[np.int64], Floats]:
-        """Numbers (c,) of the unknowns that move two attachments, and (c, 12) how each moves them; None: the ground."""
+    def _gap(self, guide: Guide, state: State) -> tuple[float, ElementResponse]:
+        """Gap of a guide, and what a unit of its force does; what the latter does to the ground stands for nothing."""
+        nodes = [guide.carrier, guide.pin]
+        displacements = np.array([np.zeros(3) if node is None else state.displacements[node] for node in nodes])
+        rotations = np.array([np.eye(3) if node is None else state.rotations[node] for node in nodes])
+        return guide_gap(guide, displacements, rotations)
+
+    def _place(self, nodes: Sequence[int | None], state: State) -> tuple[NDArray[np.int64], Floats]:
+        """Numbers (c,) of the unknowns that move two nodes, and (c, 12) how each moves them; None: the ground."""
         numbers: list[int] = []
         columns: list[Floats] = []
-        for end, (node, steps) in enumerate(zip(nodes, chains, strict=True)):
+        for end, node in enumerate(nodes):
             if node is None:
                 continue
+            steps = self.chain.nodes[node]
             for k, number in enumerate(self.chain.translations[node]):
                 if number >= 0:
                     numbers.append(int(number))
@@ -337,46 +315,39 @@ class _Path:
         Z = null_space(bordered[count:, :count] * self.unit[:count])
         return np.asarray(Z.T @ scaled[:count, :count] @ Z)
 
-    def record(self, origin: NDArray[np.int64]) -> CorotationalSolution:
+    def record(self) -> CorotationalSolution:
+        """Return the present state as the frame's solution."""
         model, state = self.model, self.state
         answer = self.respond(state, 1.0)
-        residual, tangent = self.assemble(answer.forces, answer.tangent, state, 1.0)
-        wrenches = answer.forces.reshape(-1, 2, 6)
+        residual, tangent = self.assemble(answer, state, 1.0)
         joints = np.zeros((len(model.nodes), 6))
-        np.add.at(joints, self.pairs, wrenches)
+        ends = answer.forces.reshape(-1, 2, 6)
+        np.add.at(joints, self.pairs, ends)
         for load in model.loads:
             joints[load.node] -= load.wrench
         tied, grounded = joints.copy(), np.zeros_like(joints)
         for guide, force in zip(model.guides, state.guide_forces, strict=True):
-            wrenches_of = force * _gap(guide, state)[1].reshape(2, 6)
-            for end, node in enumerate((guide.carrier, guide.pin)):
+            wrenches = force * self._gap(guide, state)[1].forces.reshape(2, 6)
+            for wrench, node in zip(wrenches, (guide.carrier, guide.pin), strict=True):
                 if node is not None:
-                    tied[node] += wrenches_of[end]
+                    tied[node] += wrench
                     if len(guide.nodes) == 1:
-                        grounded[node] -= wrenches_of[end]
+                        grounded[node] -= wrench
         reactions = np.zeros_like(joints)
         np.add.at(reactions, self.chain.groups, tied)
         supported = {int(self.chain.groups[s.node]) for s in model.supports}
         reactions[[i for i in range(len(model.nodes)) if i not in supported]] = 0.0
         reactions += grounded
-        ends = wrenches.copy()
-        arms = np.einsum("mkij,mkj->mki", state.attachments, self.elements.arms)
-        ends[:, :, 3:] -= np.cross(arms, wrenches[:, :, :3])
-        local = np.einsum("mji,mkcj->mkci", answer.axes, ends.reshape(-1, 2, 2, 3)).reshape(-1, 2, 6)
         scaled = self.free(tangent)
         return CorotationalSolution(
             model=model,
-            origin=origin,
             displacements=state.displacements,
             rotations=state.rotations,
-            axes=answer.axes,
-            end_forces=local,
+            end_forces=ends,
             joint_wrenches=joints,
             reactions=reactions,
             guide_forces=state.guide_forces,
-            residual=self.measure(residual),
-            steps=self.steps,
-            iterations=self.iterations,
+            residual=self._measure(residual),
             stable=bool(np.linalg.eigvalsh((scaled + scaled.T) / 2.0).min(initial=1.0) > 0.0),
         )
 
@@ -387,56 +358,3 @@ def _carry(tangent: Floats, steps: list[Step], axes: Floats, moment: Floats) -> 
         if step.carrier is not None:
             for i in range(j):
                 tangent[step.number, steps[i].number] += np.cross(axes[i], axes[j]) @ moment
-
-
-def _gap(guide: Guide, state: _State) -> tuple[float, Floats, Floats]:
-    """Gap d · n or a · n of a guide, its gradient (12,) by displacement and spin of carrier and pin, and its curvature.
-
-    With the carrier's spin w the normal changes by w × n. Rows and columns of what is ground stand for nothing.
-    """
-    n, d = guide.normal, np.zeros(3)
-    gradient, curvature = np.zeros(12), np.zeros((12, 12))
-    if guide.carrier is not None:
-        n = state.rotations[guide.carrier] @ n
-    if guide.axis is not None:
-        a = guide.axis if guide.pin is None else state.rotations[guide.pin] @ guide.axis
-        gradient[3:6], gradient[9:] = np.cross(n, a), np.cross(a, n)
-        own = (a @ n) * np.eye(3)
-        curvature[3:6, 3:6], curvature[3:6, 9:] = np.outer(n, a) - own, own - np.outer(a, n)
-        curvature[9:, 3:6], curvature[9:, 9:] = own - np.outer(n, a), np.outer(a, n) - own
-        return float(a @ n), gradient, curvature
-    for node, sign in guide.nodes:
-        d = d + sign * state.displacements[node]
-    if guide.carrier is not None:
-        gradient[3:6] = np.cross(n, d)
-        across = np.array([[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]])
-        curvature[3:6, 3:6] = np.outer(n, d) - (n @ d) * np.eye(3)
-        for k, sign in ((0, -1.0), (6, 1.0)):
-            curvature[3:6, k : k + 3] = sign * across
-            curvature[k : k + 3, 3:6] = -sign * across
-    gradient[:3], gradient[6:9] = -n, n
-    return float(d @ n), gradient, curvature
-
-
-def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> float:
-    """Factor on all loads at which the frame, as it stands, becomes unstable; infinite where no factor does.
-
-    Linear stability: (K + λ K_g) φ = 0 with the geometric stiffness K_g of the linear solution's forces
-    (Przemieniecki, Theory of Matrix Structural Analysis, 1968, chapter 15). Pinned column, eight elements: π² E I/L²
-    within 0.01 %, less what shear takes. Bending before buckling is left out, which is right for small deflections.
-    """
-    from scipy.linalg import eigh
-
-    divided, _ = subdivide(model, subdivisions)
-    linear = solve_frame(divided)
-    path = _Path(divided, finite=False)
-    start = path.state
-    f = linear.end_forces
-    natural = np.column_stack(
-        [(f[:, 1, 0] - f[:, 0, 0]) / 2.0, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]]
-    )
-    K = path.free(path.assemble(np.zeros((len(f), 12)), path.respond(start, 0.0).tangent, start, 0.0)[1])
-    loaded = replace(start, guide_forces=linear.guide_forces)
-    G = path.free(path.assemble(*path.elements.geometric(natural), loaded, 1.0)[1])
-    largest = float(eigh(-(G + G.T) / 2.0, (K + K.T) / 2.0, eigvals_only=True)[-1])
-    return 1.0 / largest if largest > 1e-12 else np.inf

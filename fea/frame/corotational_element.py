@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from fea.frame.element import line_load_effect, natural_flexibility
 from fea.frame.jet import Jet, cross, dot, stack, unit
-from fea.frame.model import FrameModel
+from fea.frame.model import FrameModel, Guide
 from geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
@@ -32,20 +32,14 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ElementResponse:
-    """What m elements answer to their end displacements; 12 variables: displacement and spin at both attachments.
+    """What m elements answer to their end displacements; 12 variables: displacement and spin of both nodes.
 
     forces    (m, 12) what the nodes do to the elements, global axes, moments about the nodes [N, N·mm]
     tangent   (m, 12, 12) derivative of the forces by the spins (forces taken in global axes)
-    axes      (m, 3, 3) columns: the element's x, y, z in global axes
-    natural   (m, 6) natural forces
-    largest_rotation  of an end relative to its element's axes [rad]
     """
 
     forces: Floats
     tangent: Floats
-    axes: Floats
-    natural: Floats
-    largest_rotation: float
 
 
 class CorotationalElements:
@@ -74,23 +68,21 @@ class CorotationalElements:
             self.loads[i] = np.array([first, last]) @ model.axes(i)
 
     def respond(self, displacements: Floats, rotations: Floats, factor: float) -> ElementResponse:
-        """Evaluate at attachment displacements (m, 2, 3) and rotations (m, 2, 3, 3), line loads times ``factor``.
+        """Evaluate at nodal displacements (m, 2, 3) and rotations (m, 2, 3, 3), line loads times ``factor``.
 
         Raises ``CannotRunError`` where an end turns by more than a right angle relative to its element.
         """
-        potential, axes, natural, largest = self._potential(displacements, rotations, factor)
-        forces, tangent = _forces_and_tangent(potential)
-        return ElementResponse(forces=forces, tangent=tangent, axes=axes, natural=natural, largest_rotation=largest)
+        return _response(self.potential(displacements, rotations, factor))
 
-    def geometric(self, natural: Floats) -> tuple[Floats, Floats]:
-        """Forces (m, 12) and geometric stiffness (m, 12, 12) of the undeformed elements under natural forces (m, 6)."""
+    def geometric(self, natural: Floats) -> ElementResponse:
+        """Forces and geometric stiffness of the undeformed elements under natural forces (m, 6)."""
         m = len(self.lengths)
         displacements, rotations = np.zeros((m, 2, 3)), np.tile(np.eye(3), (m, 2, 1, 1))
-        v, _ = self._natural(displacements, rotations)
+        v, _ = self.natural(displacements, rotations)
         potential = v.map(natural[:, None, :]) - self._work_on_chord(displacements, rotations, self.loads)
-        return _forces_and_tangent(potential)
+        return _response(potential)
 
-    def _natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, tuple[Jet, Jet, Jet]]:
+    def natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, tuple[Jet, Jet, Jet]]:
         """Natural deformations (m, 6) and the element's axes."""
         chord = self._point(1, displacements, rotations) - self._point(0, displacements, rotations)
         length2 = dot(chord, chord)
@@ -131,25 +123,37 @@ class CorotationalElements:
         start, end = (self._point(k, displacements, rotations) for k in range(2))
         return dot(start, _constant((2.0 * first + last) * third)) + dot(end, _constant((first + 2.0 * last) * third))
 
-    def _potential(self, displacements: Floats, rotations: Floats, factor: float) -> tuple[Jet, Floats, Floats, float]:
-        """Potential (m, 1), axes (m, 3, 3), natural forces (m, 6) and the largest rotation relative to the axes."""
+    def potential(self, displacements: Floats, rotations: Floats, factor: float) -> Jet:
+        """Strain energy (m, 1) less the work of the line loads times ``factor`` [N·mm]."""
         loads = factor * self.loads
-        v, axes = self._natural(displacements, rotations)
+        v, axes = self.natural(displacements, rotations)
         local = stack(*(dot(e, _constant(loads[:, k])) for k in range(2) for e in axes))
         strained = v - local.map(self.load_bends)
-        resisted = strained.map(self.stiffness)
-        potential = (dot(strained, resisted) - dot(local, local.map(self.load_sags))).times(0.5)
-        potential = potential - self._work_on_chord(displacements, rotations, loads)
-        largest = float(np.abs(v.value[:, 1:]).max())
-        return potential, np.stack([e.value for e in axes], axis=2), resisted.value, largest
+        stored = dot(strained, strained.map(self.stiffness)) - dot(local, local.map(self.load_sags))
+        return stored.times(0.5) - self._work_on_chord(displacements, rotations, loads)
 
 
-def _forces_and_tangent(potential: Jet) -> tuple[Floats, Floats]:
-    """Gradient (m, 12), and its derivative by the spins: the Hessian in rotation vectors less half of [moment]."""
+def guide_gap(guide: Guide, displacements: Floats, rotations: Floats) -> tuple[float, ElementResponse]:
+    """Gap d · n or a · n of a guide at displacements (2, 3) and rotations (2, 3, 3) of its carrier and its pin.
+
+    With the gap [mm, rad] comes what a unit of the guide's force does to both nodes.
+    """
+    normal = _turned(rotations[None, 0], guide.normal[None], 3)
+    if guide.axis is not None:
+        gap = dot(_turned(rotations[None, 1], guide.axis[None], 9), normal)
+    else:
+        apart = _constant(displacements[None, 1] - displacements[None, 0])
+        apart.gradient[0, :, :3], apart.gradient[0, :, 6:9] = -np.eye(3), np.eye(3)
+        gap = dot(apart, normal)
+    return float(gap.value[0, 0]), _response(gap)
+
+
+def _response(potential: Jet) -> ElementResponse:
+    """Gradient of a potential, and its derivative by the spins: the Hessian in rotation vectors less [moment]/2."""
     forces, tangent = potential.gradient[:, 0], potential.hessian[:, 0].copy()
     for k in (3, 9):
         tangent[:, k : k + 3, k : k + 3] -= 0.5 * _skew(forces[:, k : k + 3])
-    return forces, tangent
+    return ElementResponse(forces=forces, tangent=tangent)
 
 
 def _bowing(a: Jet, b: Jet) -> Jet:

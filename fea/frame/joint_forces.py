@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.frame.build import build_frame
 from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame, build_frame, out_of_plane
+from fea.frame.linkage_frame import LinkageFrame, out_of_plane
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import Load

@@ -1,7 +1,7 @@
 """Finite rotations of the nodes of a frame: who turns with whom, and about which axes.
 
 Tied nodes form trees. The rotation of a tied node is that of its parent, followed by a turn about the pin's axis,
-which the parent carries along; a released end likewise follows its node. Virtual spins of a node are so the sum of
+which the parent carries along. Virtual spins of a node are so the sum of
 the spins of its chain of steps, each about its present axis. Displacements are shared or are not, apart from that: a
 slider turns with what carries it and moves by itself.
 """
@@ -35,15 +35,14 @@ class KinematicChain:
     is_turn       (count,) True where the unknown is a turn
     groups        (n,) the root of each node's tree
     translations  (n, 3) numbers of each node's displacements, -1 where held
-    nodes, ends   steps of each node, and of the beam's attachment per element and end
+    nodes         steps of each node
 
-    Raises ``CannotRunError`` for supports, ties and releases that make no sense for finite turns (``finite``), such
-    as a rotation held about one axis alone.
+    Raises ``CannotRunError`` for supports and ties that make no sense for finite turns, such as a
+    rotation held about one axis alone.
     """
 
-    def __init__(self, model: FrameModel, *, finite: bool = True) -> None:
+    def __init__(self, model: FrameModel) -> None:
         self.model = model
-        self._finite = finite
         self._linear = FrameSystem(model).number
         self._held = {(s.node, DOFS.index(d)) for s in model.supports for d in s.dofs}
         self.turns: list[bool] = []
@@ -55,7 +54,6 @@ class KinematicChain:
         for root in sorted(range(n), key=lambda i: (-supports[i], i)):
             if self.groups[root] < 0:
                 self._grow(root)
-        self.ends = [[self._attachment(i, end) for end in range(2)] for i in range(len(model.elements))]
         self.count = len(self.turns)
         self.is_turn = np.array(self.turns, dtype=bool)
 
@@ -70,7 +68,7 @@ class KinematicChain:
 
     def _own_turns(self, node: int) -> list[Step]:
         held = [k for k in range(3) if (node, 3 + k) in self._held]
-        if len(held) == 1 and self._finite:
+        if len(held) == 1:
             raise CannotRunError(
                 f"in large displacement a node turns freely, about one axis or not at all; the supports of node "
                 f"{self.model.name(node)} hold its rotation about {'xyz'[held[0]]} alone: hold one more or none"
@@ -115,21 +113,6 @@ class KinematicChain:
                 turn = Step(number=self._unknown(turn=True), axis=np.eye(3)[k], carrier=parent)
                 steps = [*steps, turn]
         return steps
-
-    def _attachment(self, i: int, end: int) -> list[Step]:
-        released = sorted(DOFS.index(d) for d in self.model.elements[i].releases[end])
-        node = self.model.elements[i].nodes[end]
-        if not released:
-            return self.nodes[node]
-        if released == [3, 4, 5]:
-            return [Step(number=self._unknown(turn=True), axis=axis, carrier=None) for axis in np.eye(3)]
-        if len(released) > 1 or released[0] < 3:
-            raise CannotRunError(
-                f"in large displacement an end is released about one local axis or about all three; element {i} "
-                f"releases {', '.join(DOFS[d] for d in released)}"
-            )
-        turn = Step(number=self._unknown(turn=True), axis=self.model.axes(i)[released[0] - 3], carrier=node)
-        return [*self.nodes[node], turn]
 
 
 def present_axes(steps: list[Step], rotations: Floats) -> Floats:

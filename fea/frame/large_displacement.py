@@ -5,11 +5,10 @@ a good answer: joint forces then come from the co-rotational frame (``fea.frame.
 by what acts on it on the deformed shape, along the chord through its first and last station. So it is where the frame
 is within ten times its load of buckling by linear theory, below which EN 1993-1-1:2005, 5.2.1(3), asks for second-order
 analysis, or of a dead point by its linear displacements: a shallow toggle snaps through at 5.2 of either
-(``fea.frame.toggle``). Stated scatter of load and modulus counts at its worst, and what holds is undecided where the
+(``fea.frame.stability``). Stated scatter of load and modulus counts at its worst, and what holds is undecided where the
 linear factor is below 3: a frame without faults of shape stands straight up to its buckling load.
 """
 
-import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,26 +17,25 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.cut_free import in_slot, link_loads
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind, distinct
+from fea.frame.build import build_frame
 from fea.frame.corotational import (
     CorotationalSolution,
     NoEquilibriumError,
-    buckling_factor,
     solve_large_displacement,
 )
+from fea.frame.deformed_links import balanced, on_deformed_shape
 from fea.frame.joint_forces import JointForces
 from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame, build_frame
-from fea.frame.toggle import dead_point_factor
+from fea.frame.linkage_frame import LinkageFrame
+from fea.frame.stability import dead_point_factor, linkage_factor
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
-from geometry.parts.part import Body
 from loads.case.case import Case
-from loads.records.applied import Load, shifted
+from loads.records.applied import Load
 from loads.states.actions import PartMass
 from loads.statics.statics import Reactions
 
@@ -50,15 +48,9 @@ LEAST_FACTOR = 10.0
 LEAST_LINEAR = 3.0
 """Buckling factor below which small faults of shape, which no frame knows, grow too much to be relied on."""
 SUBDIVISIONS = 2
-COARSE, FINE, NEAR = 2, 8, 30.0
-"""Elements per beam for the buckling factor, and the factor by the coarse ones below which the fine ones are used."""
 LEAST_STEP = 1.0 / 512.0
 MOST_ITERATIONS = 15
 _ALONG = (0.25, 0.5, 0.75)
-NOTHING = 1e-7
-"""Share of the whole load below which what acts on a link is taken for the iteration's rest."""
-LARGEST_SHIFT = 0.05
-"""Moment or force that bending of a link under spread loads may leave unbalanced, as a share of the load."""
 
 State = Literal["small", "deformed", "unstable", "no equilibrium", "off", "unknown"]
 
@@ -134,11 +126,11 @@ def examine(
     size = span(pose)
 
     def left(state: State, why: str) -> LargeDisplacement:
-        sentence = f"large displacement was not looked into{why}"
+        sentence = f"large displacement was not checked{why}"
         return LargeDisplacement(state=state, span=size, points={}, links={}, sentence=sentence)
 
     off = case.large_displacement == "off"
-    as_said = ", as the case says (large_displacement = off)"
+    as_said = ", because the case says large_displacement = off"
     frame, solution = forces.frame, forces.solution
     try:
         if frame is None or solution is None:
@@ -164,8 +156,8 @@ def examine(
         frame=frame,
         solution=solution,
         sentence=(
-            f"the linear frame moves by at most {linear:.3g} mm ({where}), {100.0 * linear / size:.3g} % of the span "
-            f"of {size:.4g} mm: the undeformed pose is good enough (limit {100.0 * LARGE:g} %)"
+            f"the linkage moves by at most {linear:.3g} mm ({where}), {100.0 * linear / size:.3g} % of its span of "
+            f"{size:.4g} mm (limit {100.0 * LARGE:g} %): equilibrium in the undeformed pose is accurate enough"
         ),
     )
     materials = [compliance_scatter(case.material_of(link)) for link in case.checked_links]
@@ -231,12 +223,6 @@ def _followed(frame: LinkageFrame, factor: float) -> CorotationalSolution:
     )
 
 
-def linkage_factor(frame: LinkageFrame) -> float:
-    """Return the factor on all loads at which the linear frame becomes unstable; infinite where it never does."""
-    factor = buckling_factor(frame.model, COARSE)
-    return buckling_factor(frame.model, FINE) if factor < NEAR else factor
-
-
 def _deformed(
     case: Case,
     title: str,
@@ -248,30 +234,33 @@ def _deformed(
     assert small.buckling is not None
     if small.share > LARGE:
         lead = (
-            f"the linear frame moves by {small.linear:.3g} mm ({small.where}), {100.0 * small.share:.3g} % of the span "
-            f"of {small.span:.4g} mm, above {100.0 * LARGE:g} %"
+            f"by linear theory the linkage moves by {small.linear:.3g} mm ({small.where}), {100.0 * small.share:.3g} % "
+            f"of its span of {small.span:.4g} mm, too far for linear theory (limit {100.0 * LARGE:g} %)"
         )
     elif small.buckling <= small.dead_point:
-        lead = f"the linear frame buckles at {small.buckling:.3g} times the load, too near (limit {LEAST_FACTOR:g})"
-    else:
         lead = (
-            f"{small.dead_point:.3g} times the linear frame's displacements take the linkage to a dead point, too near "
+            f"by linear theory the linkage buckles at {small.buckling:.3g} times its load, too near for linear theory "
             f"(limit {LEAST_FACTOR:g})"
         )
-    lead = f"{lead}: the linear answer is not valid; in large displacement "
+    else:
+        lead = (
+            f"{small.dead_point:.3g} times its displacements by linear theory take the linkage to a dead point, too "
+            f"near for linear theory (limit {LEAST_FACTOR:g})"
+        )
+    lead = f"{lead}; on its deformed shape "
     try:
         found = solve_large_displacement(
             frame.model, SUBDIVISIONS, least_step=LEAST_STEP, most_iterations=MOST_ITERATIONS
         )
     except NoEquilibriumError as error:
         sentence = (
-            f"{lead}the linkage does not hold the load: its equilibrium ends at {error.reached:.3g} of it, where it "
-            "gives way (a limit load or a snap-through)"
+            f"{lead}it does not hold the load: it gives way at {100.0 * error.reached:.3g} % of it (a limit load or a "
+            "snap-through)"
         )
         return replace(small, state="no equilibrium", held=error.reached, points={}, sentence=sentence)
     points = frame.at_points(found.displacements)
     if not found.stable:
-        sentence = f"{lead}the linkage has buckled before the whole load acts, so it does not hold it"
+        sentence = f"{lead}it does not hold the load: it buckles before the whole load acts"
         return replace(small, state="unstable", points=points, sentence=sentence)
     count = len(frame.model.nodes)
     reactions = frame.reactions(found.joint_wrenches[:count], found.residual, found.displacements[:count])
@@ -283,13 +272,13 @@ def _deformed(
         reactions=reactions,
         links={
             link: balanced(
-                _on_deformed_shape(frame, found, reactions, link, title, case.body(link), loads),
+                on_deformed_shape(frame, found, reactions, link, title, case.body(link), loads),
                 masses.get(link),
                 frame.model.load_scale,
             )
             for link in case.checked_links
         },
-        sentence=f"{lead}its points move by up to {moved:.3g} mm, and joint forces and verdict come from there",
+        sentence=f"{lead}its points move by up to {moved:.3g} mm; joint forces and verdict come from that shape",
     )
 
 
@@ -305,139 +294,3 @@ def _largest(frame: LinkageFrame, solution: FrameSolution) -> tuple[float, str]:
             a, b = frame.model.elements[i].nodes
             largest, where = float(between), f"between {frame.model.name(a)} and {frame.model.name(b)}"
     return largest, where
-
-
-def _on_deformed_shape(
-    frame: LinkageFrame,
-    found: CorotationalSolution,
-    reactions: Reactions,
-    link: str,
-    title: str,
-    body: Body,
-    loads: Sequence[Load],
-) -> LinkLoads:
-    """What acts on a link on the deformed shape, for its straight shape along the chord.
-
-    The chord runs from the first to the last station; z is that of the first node, turned normal to it.
-    """
-    nodes, stations = frame.model.nodes + found.displacements[: len(frame.model.nodes)], frame.stations[link]
-    (x, first), (_, last) = stations[0], stations[-1]
-    start, end = (nodes[n] + found.rotations[n] @ frame.arms.get(n, np.zeros(3)) for n in (first, last))
-    along = (end - start) / np.linalg.norm(end - start)
-    across = np.cross(found.rotations[first][:, 2], along)
-    across /= np.linalg.norm(across)
-    axes = np.column_stack([along, across, np.cross(along, across)])
-    moved = {
-        point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
-        for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
-    }
-    return in_slots(bent(_driven(link_loads(title, link, body, reactions, loads, axes), axes), moved), body, link)
-
-
-def _driven(loads: LinkLoads, axes: Real) -> LinkLoads:
-    """Return the loads with what the drive torque, about the global z, has off the link's own z, at the pin driven."""
-    pins = {pin.name: pin for pin in loads.pins}
-    for couple in loads.couples:
-        wrench = pins[couple.pin].wrench.copy()
-        wrench[3:] += couple.torque * (axes[2] - np.array([0.0, 0.0, 1.0]))
-        pins[couple.pin] = replace(pins[couple.pin], wrench=wrench)
-    return replace(loads, pins=tuple(pins.values()))
-
-
-def in_slots(loads: LinkLoads, body: Body, link: str) -> LinkLoads:
-    """Return the loads with every pin in a slot at the place to which it has slid, pushing across the slot alone.
-
-    On a bent link a slot is not parallel to the chord; what the pin's force has along it is left to ``balanced``.
-    Raises ``CaseError`` where a pin has slid out of its slot.
-    """
-    pins = []
-    for pin in loads.pins:
-        if pin.slotted:
-            across, moment = pin.wrench[1], pin.wrench[5]
-            slid = moment / across if abs(across) > NOTHING * float(np.linalg.norm(pin.wrench[:3])) else 0.0
-            own = next(p for p in body.pins if p.name == pin.name)
-            x = in_slot(own, np.array([pin.centre[0] + slid]), link)[0]
-            wrench = np.array([0.0, across, 0.0, pin.wrench[3], 0.0, 0.0])
-            pin = replace(pin, centre=np.array([x, *pin.centre[1:]]), wrench=wrench)
-        pins.append(pin)
-    return replace(loads, pins=tuple(pins))
-
-
-def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
-    """Return the loads of a straight link with pairs of transverse forces that stand for its being bent.
-
-    Between two loaded stations that have left the chord by d1 and d2, a normal force N (tension positive) has the
-    moment of the transverse forces N (d2 - d1)/L, one at each station: bending moments at the stations so are those of
-    the bent link (the fictitious lateral loads of the P-Δ method: Wilson & Habibullah, Engineering Journal AISC 24
-    (1987) 172-175). Transverse forces take the moment of having left their places along.
-
-    moved   point -> (3,) by which it has left its place in the straight link [mm]
-    """
-    stations = [(float(pin.centre[0]), pin.name, pin.wrench) for pin in loads.pins]
-    stations += [(float(end.point[0]), end.name, end.wrench) for end in loads.ends]
-    stations.sort(key=lambda station: station[0])
-    normal, extra = 0.0, {name: np.zeros(6) for _, name, _ in stations}
-    for _, name, wrench in stations:
-        extra[name][3:] += np.cross(moved[name], [0.0, wrench[1], wrench[2]])
-    for (x0, first, wrench), (x1, last, _) in itertools.pairwise(stations):
-        normal -= float(wrench[0])
-        if x1 - x0 > 0.0:
-            shear = normal * (moved[last] - moved[first]) / (x1 - x0)
-            extra[first][1:3] += shear[1:]
-            extra[last][1:3] -= shear[1:]
-    return replace(
-        loads,
-        pins=tuple(replace(pin, wrench=pin.wrench + extra[pin.name]) for pin in loads.pins),
-        ends=tuple(replace(end, wrench=end.wrench + extra[end.name]) for end in loads.ends),
-    )
-
-
-def balanced(loads: LinkLoads, mass: PartMass | None, whole: float = 0.0) -> LinkLoads:
-    """Return the loads of a link with what they leave unbalanced taken by the pin (in no slot) with the largest force.
-
-    Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Where all on the link
-    is but ``NOTHING`` of the ``whole`` load [N], it is what the iteration left, and nothing acts. Raises
-    ``CannotRunError`` where more than ``LARGEST_SHIFT`` of the link's load is unbalanced.
-    """
-    total = np.zeros(6)
-    acting = [(p.centre, p.wrench) for p in loads.pins] + [(e.point, e.wrench) for e in loads.ends]
-    reach = max(float(np.linalg.norm(place - acting[0][0])) for place, _ in acting)
-    size = 0.0
-    for place, wrench in acting:
-        total += shifted(wrench, place)
-        size += float(np.linalg.norm(wrench[:3]))
-    for couple in loads.couples:
-        total[5] += couple.torque
-    for line in loads.lines:
-        length = line.last - line.first
-        force = line.intensity.mean(axis=0) * length
-        first, last = line.intensity
-        moment = length * (line.first * (first + last) / 2.0 + length * (first + 2.0 * last) / 6.0)
-        total[:3] += force
-        total[3:] += np.cross([1.0, 0.0, 0.0], moment)
-        size += float(np.linalg.norm(force))
-    for body in loads.bodies:
-        if mass is not None:
-            force = np.concatenate([mass.mass * body.specific_force, np.zeros(3)])
-            force[5] = -mass.inertia * body.angular_acceleration
-            total += shifted(force, body.about)
-            size += float(np.linalg.norm(force[:3]))
-    if size <= NOTHING * whole:
-        return replace(
-            loads,
-            pins=tuple(replace(pin, wrench=np.zeros(6)) for pin in loads.pins),
-            ends=tuple(replace(end, wrench=np.zeros(6)) for end in loads.ends),
-        )
-    left = max(float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:])) / reach if reach else 0.0)
-    if left > LARGEST_SHIFT * size:
-        raise CannotRunError(
-            f"on the deformed shape the loads of a link in case '{loads.name}' leave {left / size:.1%} of them "
-            f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
-            "stiffen the link"
-        )
-    takes = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
-    strongest = max(takes, key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
-    pins = list(loads.pins)
-    taken = shifted(-total, -pins[strongest].centre)
-    pins[strongest] = replace(pins[strongest], wrench=pins[strongest].wrench + taken)
-    return replace(loads, pins=tuple(pins))

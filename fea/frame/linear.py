@@ -20,37 +20,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.theory import BeamLoads, LineLoad, Piecewise, PointLoad, deflection, internal_forces
+from fea.beam.deflection import deflection
+from fea.beam.loads import BeamLoads, LineLoad, PointLoad
+from fea.beam.piecewise import Piecewise
+from fea.beam.theory import internal_forces
 from fea.frame.element import line_load_effect, natural_deformations
-from fea.frame.model import (
-    ALL_DOFS,
-    DOFS,
-    PIN_DOFS,
-    Dof,
-    FrameElement,
-    FrameModel,
-    Guide,
-    NodeLoad,
-    Support,
-    Tie,
-)
+from fea.frame.model import DOFS, FrameModel
 from fea.frame.system import FrameSystem, refuse_mechanism
 from geometry.base.errors import CannotRunError
-
-__all__ = [
-    "ALL_DOFS",
-    "DOFS",
-    "PIN_DOFS",
-    "Dof",
-    "FrameElement",
-    "FrameModel",
-    "FrameSolution",
-    "Guide",
-    "NodeLoad",
-    "Support",
-    "Tie",
-    "solve_frame",
-]
 
 Floats = NDArray[np.float64]
 

@@ -43,11 +43,8 @@ class FrameElement:
     nodes             numbers of the first and the second node
     section           local z of the element is the section's z
     young, poisson    E [MPa] and ν
-    density           [tonne/mm³], for the model's ``gravity``
     z_axis            (3,) direction that local z leans to: its part normal to the element; along the pins by default
-    releases          per end, the local displacements and rotations that the end does not share with its node
-    offsets           (2, 3) rigid arms from each node to the beam's end, in global axes [mm]; a release lies at the
-                      node, between node and arm
+    offsets           (2, 3) rigid arms from each node to the beam's end, in global axes [mm]
     load_first, load_last  (3,) force per length of the element at its two ends, linear between, global axes [N/mm]
     """
 
@@ -55,9 +52,7 @@ class FrameElement:
     section: Section
     young: float
     poisson: float
-    density: float = 0.0
     z_axis: Floats = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
-    releases: tuple[frozenset[Dof], frozenset[Dof]] = (frozenset(), frozenset())
     offsets: Floats = field(default_factory=lambda: np.zeros((2, 3)))
     load_first: Floats = field(default_factory=_zeros)
     load_last: Floats = field(default_factory=_zeros)
@@ -145,7 +140,6 @@ class FrameModel:
     """A frame and all that acts on it.
 
     nodes    (n, 3) positions [mm]
-    gravity  (3,) acceleration [mm/s²] under which the elements weigh; zero leaves weight out
     names    of the nodes, for messages; their numbers where empty
 
     Raises ``CannotRunError`` for an element without length or along its own z, for nodes that do not exist, and for
@@ -158,14 +152,12 @@ class FrameModel:
     ties: tuple[Tie, ...] = ()
     guides: tuple[Guide, ...] = ()
     loads: tuple[NodeLoad, ...] = ()
-    gravity: Floats = field(default_factory=_zeros)
     names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Copy and check."""
         nodes = np.array(self.nodes, dtype=np.float64)
         object.__setattr__(self, "nodes", _array(nodes, "the nodes of a frame", len(nodes), 3))
-        object.__setattr__(self, "gravity", _array(self.gravity, "gravity", 3))
         if self.names and len(self.names) != len(nodes):
             raise CannotRunError(f"a frame of {len(nodes)} nodes needs as many names, not {len(self.names)}")
         if not self.elements:
@@ -224,10 +216,9 @@ class FrameModel:
         return np.vstack([x, y, np.cross(x, y)])
 
     def line_load(self, i: int) -> tuple[Floats, Floats]:
-        """Force per length (3,) at both ends of element i in local axes, weight included [N/mm]."""
-        e, R = self.elements[i], self.axes(i)
-        weight = e.density * e.section.area * self.gravity
-        return R @ (e.load_first + weight), R @ (e.load_last + weight)
+        """Force per length (3,) at both ends of element i in local axes [N/mm]."""
+        R = self.axes(i)
+        return R @ self.elements[i].load_first, R @ self.elements[i].load_last
 
     @property
     def load_scale(self) -> float:

@@ -37,25 +37,15 @@ class FrameSystem:
         mean = float(self.lengths.mean())
         self.guide_unit = np.array([1.0 if guide.axis is None else mean for guide in model.guides])
         self.owner = self._owners()
-        self._matrices = [self._attachment(i) for i in range(m)]
+        self._matrices = [self._to_ends(i) for i in range(m)]
         supported = {int(self.owner[6 * s.node + DOFS.index(dof)]) for s in model.supports for dof in s.dofs}
         idle = self._idle()
         free = [i for i in range(6 * n) if self.owner[i] == i and i not in supported and not idle[i]]
         self.labels = [f"node {model.name(i // 6)} {_motion(i % 6)}" for i in free]
-        unit = [1.0 if i % 6 < 3 else 1.0 / mean for i in free]
+        self.unit = np.array([1.0 if i % 6 < 3 else 1.0 / mean for i in free])
         number = np.full(6 * n, -1)
         number[free] = np.arange(len(free))
         self.number = number[self.owner]
-        self._released: list[list[tuple[int, int]]] = []
-        for i, element in enumerate(model.elements):
-            own = []
-            for end, dofs in enumerate(element.releases):
-                for dof in sorted(DOFS.index(d) for d in dofs):
-                    own.append((6 * end + dof, len(unit)))
-                    self.labels.append(f"the {('first', 'second')[end]} end of element {i} {_motion(dof)} of its own")
-                    unit.append(1.0 if dof < 3 else 1.0 / mean)
-            self._released.append(own)
-        self.unit = np.array(unit)
 
     def _owners(self) -> NDArray[np.int64]:
         """(6 n,) the first of all displacements tied to each."""
@@ -72,32 +62,27 @@ class FrameSystem:
                 parent[max(a, b)] = min(a, b)
         return np.array([first(i) for i in range(len(parent))])
 
-    def _attachment(self, i: int) -> tuple[Floats, Floats]:
-        """T (12, 12) from nodes to local attachments, released rows zero, and A (12, 12) from there across the arms."""
+    def _to_ends(self, i: int) -> Floats:
+        """(12, 12) from the displacements of both nodes, global axes, to those of the beam's ends, local axes."""
         R = self.model.axes(i)
-        T, A = np.zeros((12, 12)), np.eye(12)
-        for k in range(0, 12, 3):
-            T[k : k + 3, k : k + 3] = R
+        turned, across = np.kron(np.eye(4), R), np.eye(12)
         for end, (x, y, z) in enumerate(self.model.elements[i].offsets @ R.T):
-            A[6 * end : 6 * end + 3, 6 * end + 3 : 6 * end + 6] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
-            for dof in self.model.elements[i].releases[end]:
-                T[6 * end + DOFS.index(dof)] = 0.0
-        return T, A
+            across[6 * end : 6 * end + 3, 6 * end + 3 : 6 * end + 6] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+        return np.asarray(across @ turned)
 
     def _node_columns(self, i: int) -> NDArray[np.int64]:
         a, b = self.model.elements[i].nodes
         return np.concatenate([np.arange(6 * a, 6 * a + 6), np.arange(6 * b, 6 * b + 6)])
 
     def _idle(self) -> NDArray[np.bool_]:
-        """(6 n,) rotations in which no element takes part, all ends there being released, and no moment or guide.
+        """(6 n,) rotations in which no element takes part, at nodes of ties alone, and no moment or guide.
 
         They are no unknowns. Where a moment does act the rotation stays one, and is refused as a mechanism.
         """
         needed = np.zeros(len(self.owner), dtype=bool)
         needed[np.arange(len(needed)) % 6 < 3] = True
-        for i, (T, _) in enumerate(self._matrices):
-            taking_part = np.abs(T).max(axis=0) > 1e-12  # direction cosines: below is rounding
-            needed[self.owner[self._node_columns(i)[taking_part]]] = True
+        for i in range(len(self._matrices)):
+            needed[self.owner[self._node_columns(i)]] = True
         acting = [(load.node, load.wrench) for load in self.model.loads]
         acting += [(node, guide.gradient) for guide in self.model.guides for node, _ in guide.nodes]
         for node, wrench in acting:
@@ -106,18 +91,12 @@ class FrameSystem:
 
     def place(self, i: int) -> tuple[NDArray[np.int64], Floats]:
         """Numbers (k,) of the unknowns that move element i, and the matrix (12, k) from them to its beam's ends."""
-        T, A = self._matrices[i]
-        own = np.zeros((12, len(self._released[i])))
-        for column, (row, _) in enumerate(self._released[i]):
-            own[row, column] = 1.0
-        numbers = np.concatenate([self.number[self._node_columns(i)], [k for _, k in self._released[i]]])
-        numbers = numbers.astype(np.int64)
-        return numbers[numbers >= 0], (A @ np.hstack([T, own]))[:, numbers >= 0]
+        numbers = self.number[self._node_columns(i)]
+        return numbers[numbers >= 0], self._matrices[i][:, numbers >= 0]
 
     def to_nodes(self, i: int, end_forces: Floats) -> Floats:
         """Wrenches (2, 6) at both nodes of element i in global axes from forces (12,) at its beam's ends."""
-        T, A = self._matrices[i]
-        return np.asarray((T.T @ (A.T @ end_forces)).reshape(2, 6))
+        return np.asarray((self._matrices[i].T @ end_forces).reshape(2, 6))
 
     def natural_unit(self, i: int) -> Floats:
         """Factors (6,) from the scaled natural forces of element i to N and N·mm."""

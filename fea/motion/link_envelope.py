@@ -22,10 +22,10 @@ from fea.refine.discretisation import Discretisation, discretisation_source, jud
 from fea.refine.error_estimate import estimate_error
 from fea.refine.link_series import Quantity
 from fea.refine.refinement import RefinedSolid
-from fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT, LineReference
+from fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT
 from fea.solid.space import DisplacementSpace
 from fea.solid.stress import stress_field
-from fea.solid.supports import rigid_motions
+from fea.solid.supports import LineReference
 from fea.solid.traction import Transfer
 from geometry.base.errors import CannotRunError
 from geometry.parts.material import Material, stress_measure
@@ -154,8 +154,7 @@ def _balanced(solved: UnitSolutions) -> None:
 
 def _relative(space: DisplacementSpace, line: tuple[str, str], field: Real) -> Real:
     """Displacements relative to the line through the link's first and last pin."""
-    motions = rigid_motions(space.nodes, space.nodes.mean(axis=0))
-    return LineReference(space, motions, line).relative(field)
+    return LineReference(space, line).relative(field)
 
 
 def _curve(

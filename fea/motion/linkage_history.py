@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.verdict import CheckOutcome, Verdict
-from fea.frame.large_displacement import linkage_factor
+from fea.frame.build import build_frame
 from fea.frame.linear import solve_frame
-from fea.frame.linkage_frame import build_frame
-from fea.frame.toggle import dead_point_factor
+from fea.frame.stability import dead_point_factor, linkage_factor
 from fea.outcomes.linkage import by_linear_theory
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose

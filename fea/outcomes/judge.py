@@ -10,7 +10,7 @@ from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.large_displacement import LARGE, LargeDisplacement, displaced
-from fea.frame.toggle import SNAP, growth
+from fea.frame.stability import SNAP, growth
 from fea.outcomes.limits import least_safety_factor
 from fea.outcomes.linkage import linkage_outcomes
 from fea.outcomes.pins import PinStress, pin_outcome
@@ -164,7 +164,7 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
 def _point_band(case: Case, title: str, moved: LargeDisplacement, link: str, point: str, size: float) -> Band:
     """Band of how far a point moves: eyes, bores and holes (``fea.frame.displacement_band``), the moduli, and the load.
 
-    The linear answer may grow as a toggle does (``fea.frame.toggle``); on the deformed shape equilibrium is sought
+    The linear answer may grow as a toggle does (``fea.frame.stability``); on the deformed shape equilibrium is sought
     again with the ends of load over stiffness.
     """
     assert moved.frame is not None

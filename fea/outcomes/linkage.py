@@ -1,8 +1,8 @@
 """The linkage as a whole: equilibrium that was followed on the deformed shape, else buckling by linear theory.
 
 Sway of the whole linkage is the lowest factor on all loads at which its linear frame becomes unstable
-(``fea.frame.corotational.buckling_factor``). It leaves out how the frame moves before that, by which a toggle snaps
-through at a linear factor of 5.2 (``fea.frame.toggle``): the lower end of its band. Where equilibrium was followed on
+(``fea.frame.stability.buckling_factor``). It leaves out how the frame moves before that, by which a toggle snaps
+through at a linear factor of 5.2 (same module): the lower end of its band. Where equilibrium was followed on
 the deformed shape (``fea.frame.large_displacement``), as it is below a factor of 10, that answer rules and is the only
 outcome.
 """
@@ -16,7 +16,7 @@ from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict
 from fea.frame.large_displacement import LEAST_FACTOR, LargeDisplacement
-from fea.frame.toggle import SNAP, growth
+from fea.frame.stability import SNAP, growth
 from fea.outcomes.buckling import NAME as BUCKLING
 from fea.outcomes.buckling import beyond_strength
 from loads.case.case import Case

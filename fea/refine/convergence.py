@@ -225,15 +225,12 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | N
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Zero of a rising function by bisection; the nearer end where there is none."""
+    """Zero of a rising function; the nearer end where there is none."""
+    from scipy.optimize import brentq
+
     if function(low) >= 0.0:
         return low
-    if function(high) <= 0.0:
-        return high
-    for _ in range(60):
-        middle = (low + high) / 2.0
-        low, high = (middle, high) if function(middle) < 0.0 else (low, middle)
-    return (low + high) / 2.0
+    return high if function(high) <= 0.0 else float(brentq(function, low, high, xtol=1e-15))
 
 
 def williams_exponent(angle: float) -> float:

@@ -49,45 +49,49 @@ class Discretisation:
         count = len(self.meshes)
         if self.status == "unresolved":
             return (
-                f"the mesh resolves nothing: its error is estimated at {self.meshes[-1].error:.0%} in the energy norm, "
-                f"and estimates mean nothing above {NOT_RESOLVED:.0%}, so there are no numbers; {self._remedy}"
+                f"mesh too coarse: estimated error {_percent(self.meshes[-1].error)} in the energy norm, limit "
+                f"{_percent(NOT_RESOLVED)}. No stress is reported; {self._remedy}"
             )
         if self.sharp is not None:
             return self.sharp.sentence
         if self.status == "edge":
             return (
-                f"a sharp inner edge bears at least {LOADED:.0%} of the peak, and meshes ({count}, where at least "
-                f"{SERIES} are needed) do not tell yet whether its stress has a limit, so there is no safety factor; "
-                f"state the real fillet_radius; {self._remedy}"
+                f"a sharp inner edge bears at least {_percent(LOADED)} of the peak stress, and {count} of the {SERIES} "
+                "meshes are there that show whether it has a limit. No safety factor is reported; state the real "
+                f"fillet_radius; {self._remedy}"
             )
         if self.status == "growing":
             return (
-                f"the peak stress still grows as fast after {count} meshes as before ({self._values} MPa), by "
-                f"{series.step:.0%} of itself in the last step, so it has no safety factor; {self._remedy}"
+                f"the peak stress still grows after {count} meshes ({self._values} MPa), by {_percent(series.step)} in "
+                f"the last step. No safety factor is reported; {self._remedy}"
             )
         if self.status == "far":
             return (
-                f"one mesh of {self.meshes[-1].elements:,} elements, whose estimated error, taken fourfold, is "
-                f"{series.index:.0%} of the peak: every limit is further away than twice that band"
+                f"one mesh of {self.meshes[-1].elements:,} elements was enough: its error ({_percent(series.index)}, "
+                "with a fourfold margin) cannot change the verdict"
             )
         order = "" if series.order is None else f", observed order {series.order:.1f}"
         found = (
             f"{count} meshes, the finest of {self.meshes[-1].elements:,} elements: peak {self._values} MPa{order}, "
-            f"error at most {series.index:.1%} ({series.rule})"
+            f"error at most {_percent(series.index)} ({series.rule})"
         )
         if self.status == "converged":
             return f"{found}: converged"
         if self.status == "decided":
-            return f"{found}, more than the {self.accuracy:.1%} aimed at, but the verdict is clear"
-        return f"{found}, more than the {self.accuracy:.1%} asked for: {self.stopped}"
+            return f"{found}, more than the {_percent(self.accuracy)} aimed at, but the verdict is clear"
+        return f"{found}, more than the {_percent(self.accuracy)} asked for: {self.stopped}"
 
     @property
     def _remedy(self) -> str:
-        return f"refinement ended since {self.stopped}" if self.stopped else "refine further"
+        return f"refinement ended because {self.stopped}" if self.stopped else "refine further"
 
     @property
     def _values(self) -> str:
         return ", ".join(f"{value:.3g}" for value in self.stress.values)
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %"
 
 
 def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> Source:

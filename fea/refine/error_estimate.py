@@ -20,14 +20,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.elasticity import jacobians, reference_basis, stress
-from fea.solid.space import DisplacementSpace
-from fea.solid.stress import StressField, von_mises
+from fea.solid.elasticity import reference_basis
+from fea.solid.stress import StressField, element_stress, von_mises
 
 DEGREE = 5
 """Of the integration rule: its points are not those at which σ_h is best, where the estimate would be too small."""
-_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
-_CHUNK = 4096
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,13 +54,10 @@ class ErrorEstimate:
 def estimate_error(field: StressField, displacement: NDArray[np.float64], *, E: float, nu: float) -> ErrorEstimate:
     """Estimate the error of nodal displacements (n, 3) [mm] whose recovered stress is ``field``; E [MPa]."""
     space = field.space
-    _, W, phi, gradient = reference_basis(space, DEGREE)
+    phi = reference_basis(space, DEGREE)[2]
     energy, square, total = np.empty(len(space.cells)), np.empty(len(space.cells)), 0.0
-    for start in range(0, len(space.cells), _CHUNK):
-        part = slice(start, start + _CHUNK)
-        cells = space.cells[part]
-        own, weights = _own_stress(space, cells, displacement, W, gradient, E, nu)
-        gap = np.einsum("qb,kbs->kqs", phi, field.nodal[cells], optimize=True) - own
+    for part, own, weights in element_stress(space, displacement, DEGREE, E=E, nu=nu):
+        gap = np.einsum("qb,kbs->kqs", phi, field.nodal[space.cells[part]], optimize=True) - own
         energy[part] = np.sqrt((weights * energy_density(gap, E, nu)).sum(axis=1))
         square[part] = (weights * von_mises(gap) ** 2).sum(axis=1) / weights.sum(axis=1)
         total += float((weights * energy_density(own, E, nu)).sum())
@@ -98,19 +92,3 @@ def energy_density(sigma: NDArray[np.float64], E: float, nu: float) -> NDArray[n
     trace = sigma[..., :3].sum(axis=-1)
     square = (sigma[..., :3] ** 2).sum(axis=-1) + 2.0 * (sigma[..., 3:] ** 2).sum(axis=-1)
     return np.asarray(((1.0 + nu) * square - nu * trace**2) / E)
-
-
-def _own_stress(
-    space: DisplacementSpace,
-    cells: NDArray[np.int64],
-    displacement: NDArray[np.float64],
-    W: NDArray[np.float64],
-    gradient: NDArray[np.float64],
-    E: float,
-    nu: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The elements' own stress (k, q, 6) at the points of a rule, and the points' volumes (k, q)."""
-    inverse, determinant = jacobians(space.nodes[cells], gradient)
-    slopes = inverse @ gradient.transpose(0, 2, 1)
-    tensor = stress((slopes @ displacement[cells][:, None]).swapaxes(-1, -2), E, nu)
-    return np.stack([tensor[..., i, j] for i, j in _PAIRS], axis=-1), determinant * W

@@ -198,7 +198,7 @@ class _Link:
         if self._settled():
             self.done = True
         elif len(self.levels) >= self.effort.max_meshes:
-            self._stop(f"{len(self.levels)} meshes are as many as may be made")
+            self._stop(f"the limit of {len(self.levels)} meshes is reached")
         elif elapsed + time.perf_counter() - called > self.effort.time_limit:
             self._stop(f"the time limit of {self.effort.time_limit:g} s is used up")
         else:

@@ -48,10 +48,10 @@ class SharpPeak:
         x, y, z = (0.0 if abs(v) < 5e-4 else v for v in self.place)
         return (
             f"the stress at the sharp inner edge at x = {x:.3g}, y = {y:.3g}, z = {z:.3g} mm "
-            f"({np.degrees(self.angle):.0f}° of material) is singular: it grows with every refinement, as size to the "
-            f"power {-self.growth:.2f} (theory {-self.theory:.2f}), and has no limit; state the real fillet_radius. "
-            f"For screening alone: at {self.distance:.2g} mm or more from such edges von Mises stress is at most "
-            f"{self.screening:.3g} MPa"
+            f"({np.degrees(self.angle):.0f}° of material) is singular: it has no limit, but grows with every finer "
+            f"mesh, as element size to the power {-self.growth:.2f} (theory {-self.theory:.2f}). State the real "
+            f"fillet_radius. For screening only: {self.distance:.2g} mm or more from such edges, the von Mises stress "
+            f"is at most {self.screening:.3g} MPa"
         )
 
 

@@ -5,6 +5,7 @@ MKL PARDISO where MKL is installed (x86-64), else SuperLU.
 
 import ctypes
 import weakref
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,24 @@ from fea.solid.solved import Solved, accept, refined
 from geometry.base.errors import CannotRunError
 
 
-class SuperLUFactor:
+class DirectFactor(ABC):
+    """A factorised matrix."""
+
+    name: str
+    _K: SymmetricBlockMatrix
+
+    @abstractmethod
+    def apply(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Solve for (n,) or (n, k) without looking at the residual."""
+
+    def solve(self, rhs: NDArray[np.float64]) -> Solved:
+        """Solve for (n,) or (n, k), refined where rounding shows; raises ``CannotRunError`` for too large an error."""
+        x, error = refined(self._K, self.apply, rhs)
+        accept(error, self.name)
+        return Solved(x=x, error=error, iterations=0)
+
+
+class SuperLUFactor(DirectFactor):
     """SuperLU in symmetric mode: minimum degree on A' + A, pivots on the diagonal (Li 1999, SuperLU users' guide)."""
 
     name = "SuperLU"
@@ -36,17 +54,11 @@ class SuperLUFactor:
             raise CannotRunError(f"SuperLU could not solve with the stiffness matrix: {error}") from error
 
     def apply(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve for (n,) or (n, k) without looking at the residual."""
+        """Solve by forward and back substitution."""
         return np.asarray(self._lu.solve(rhs))
 
-    def solve(self, rhs: NDArray[np.float64]) -> Solved:
-        """Solve for (n,) or (n, k), refined where rounding shows; raises ``CannotRunError`` for too large an error."""
-        x, error = refined(self._K, self.apply, rhs)
-        accept(error, self.name)
-        return Solved(x=x, error=error, iterations=0)
 
-
-class PardisoFactor:
+class PardisoFactor(DirectFactor):
     """MKL PARDISO for symmetric positive definite matrices (``mtype`` 2) on the upper block triangle.
 
     Parameters and error numbers: Intel oneMKL Developer Reference, "pardiso" and "pardiso iparm Parameter".
@@ -84,14 +96,8 @@ class PardisoFactor:
         self._call(self._FACTORISE, None)
 
     def apply(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve for (n,) or (n, k) without looking at the residual."""
+        """Solve by forward and back substitution."""
         return np.asarray(self._call(self._SOLVE, np.asfortranarray(rhs, dtype=np.float64)))
-
-    def solve(self, rhs: NDArray[np.float64]) -> Solved:
-        """Solve for (n,) or (n, k), refined where rounding shows; raises ``CannotRunError`` for too large an error."""
-        x, error = refined(self._K, self.apply, rhs)
-        accept(error, self.name)
-        return Solved(x=x, error=error, iterations=0)
 
     def _call(self, phase: int, b: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
         x = None if b is None else np.zeros_like(b)

@@ -15,7 +15,7 @@ on one core of an AMD EPYC server (cubes have the fullest factors: memory is est
 """
 
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from fea.common import memory
 from fea.common.threads import bounded
 from fea.solid import mkl
 from fea.solid.block_matrix import SymmetricBlockMatrix
-from fea.solid.direct import PardisoFactor, SuperLUFactor
+from fea.solid.direct import DirectFactor, PardisoFactor, SuperLUFactor
 from fea.solid.solved import Solved
 from fea.solid.two_level import LinearLevel, TwoLevelFactor
 from geometry.base.errors import CannotRunError
@@ -44,16 +44,6 @@ By the figures above, links between bars and tubes in work and with 31 iteration
 _NAMES = {"pardiso": "MKL PARDISO", "superlu": "SuperLU", "two-level": "conjugate gradients over linear elements"}
 
 
-class Solver(Protocol):
-    """A system prepared for any number of right-hand sides."""
-
-    name: str
-
-    def solve(self, rhs: NDArray[np.float64]) -> Solved:
-        """Solve for (n,) or (n, k)."""
-        ...
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Factor:
     """A system prepared for solution.
@@ -67,7 +57,7 @@ class Factor:
     name: str
     reason: str
     threads: int | None
-    solver: Solver
+    solver: DirectFactor | TwoLevelFactor
 
     def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
         """Solve for (n,) or (n, k); raises ``CannotRunError`` where the error is not small."""
@@ -123,13 +113,13 @@ def factorise(
             needed = two_level_memory(K, level, right_hand_sides, direct[0])
             memory.require(needed, _task(method, K.size), memory_limit)
             coarse = _direct(level.stiffness(), direct[0], memory_limit)
-            solver: Solver = TwoLevelFactor(K, level, coarse)
+            solver: DirectFactor | TwoLevelFactor = TwoLevelFactor(K, level, coarse)
         else:
             solver = _direct(K, "superlu" if method == "superlu" else "pardiso", memory_limit)
     return Factor(name=solver.name, reason=reason, threads=threads, solver=solver)
 
 
-def _direct(K: SymmetricBlockMatrix, method: DirectMethod, limit: float | None) -> PardisoFactor | SuperLUFactor:
+def _direct(K: SymmetricBlockMatrix, method: DirectMethod, limit: float | None) -> DirectFactor:
     if method == "superlu":
         memory.require(direct_memory("superlu", K.size, 1), _task("superlu", K.size), limit)
         return SuperLUFactor(K)

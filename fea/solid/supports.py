@@ -1,10 +1,12 @@
-"""The 3-2-1 support that holds a free body without straining it, and the rigid-body motions."""
+"""Rigid-body motions: the 3-2-1 support that takes them, and displacements less their part."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.solid.quadrature import surface_quadrature
+from fea.solid.space import DisplacementSpace
 from geometry.base.errors import CannotRunError
 
 SMALLEST_SINGULAR_VALUE = 1e-6
@@ -68,3 +70,42 @@ def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) ->
             f"least {SMALLEST_SINGULAR_VALUE:g}): the body is degenerate"
         )
     return Supports(unknowns=unknowns, rank_margin=margin)
+
+
+class LineReference:
+    """Takes the rigid-body part out of displacements.
+
+    Six conditions: the first hole does not move on average (3), the last one stays on the line through
+    both (2), and both together do not turn about it on average (1). Where both are the same hole, that of the only
+    joint, it neither moves nor turns on average (3 + 3).
+    """
+
+    def __init__(self, space: DisplacementSpace, line: tuple[str, str]) -> None:
+        self._first, self._last = (surface_quadrature(space, name) for name in line)
+        self._alone = line[0] == line[1]
+        span = np.array([1.0, 0.0, 0.0]) if self._alone else self._last.centroid - self._first.centroid
+        if np.linalg.norm(span) == 0.0:
+            raise CannotRunError(
+                f"the surfaces {line[0]} and {line[1]} have the same centre: no line runs through them"
+            )
+        self._axis = span / np.linalg.norm(span)
+        self._across = np.linalg.svd(self._axis[None, :])[2][1:]
+        self._motions = rigid_motions(space.nodes, space.nodes.mean(axis=0))
+        self._conditions = np.linalg.inv(np.array([self._values(motion) for motion in self._motions]).T)
+
+    def _values(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
+        if self._alone:
+            hole = self._first
+            moved = np.einsum("qb,kbi->kqi", hole.phi, field[hole.nodes])
+            turned = np.einsum("kq,kqi->i", hole.w, np.cross(hole.x - hole.centroid, moved))
+            return np.array([*hole.mean(field), *turned])
+        twist = 0.0
+        for hole in (self._first, self._last):
+            lever = np.cross(self._axis, hole.x - self._first.centroid)
+            moved = np.einsum("qb,kbi->kqi", hole.phi, field[hole.nodes])
+            twist += float(np.einsum("kq,kqi,kqi->", hole.w, lever, moved))
+        return np.array([*self._first.mean(field), *(self._across @ self._last.mean(field)), twist])
+
+    def relative(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Displacements (n, 3) less their rigid-body part."""
+        return np.asarray(field - np.tensordot(self._conditions @ self._values(field), self._motions, axes=1))

@@ -12,12 +12,12 @@ unknowns: 31 and 28 at ν = 0.38, 42 and 36 at 0.45, 86 and 76 at 0.49.
 """
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.solid.block_matrix import Product, SymmetricBlockMatrix
+from fea.solid.direct import DirectFactor
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.solved import ENERGY_TARGET, REFINEMENTS, Solved, accept, energy_error
 from fea.solid.space import EDGES, DisplacementSpace
@@ -34,16 +34,6 @@ _MARGIN = 1.1  # Lanczos finds the largest eigenvalue from below
 
 Vectors = NDArray[np.float64]
 """(k, n): one contiguous row per right-hand side."""
-
-
-class Direct(Protocol):
-    """A factorised matrix."""
-
-    name: str
-
-    def apply(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve for (n, k)."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,7 +75,7 @@ class TwoLevelFactor:
     coarse   their factorised system
     """
 
-    def __init__(self, K: SymmetricBlockMatrix, level: LinearLevel, coarse: Direct) -> None:
+    def __init__(self, K: SymmetricBlockMatrix, level: LinearLevel, coarse: DirectFactor) -> None:
         self.name = f"conjugate gradients over linear elements by {coarse.name}"
         self._K = K
         self._coarse = coarse

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fea.frame.corotational import NoEquilibriumError, solve_large_displacement
-from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support
+from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
 from geometry.parts.part import rectangle
 
 DOWN = [(4.0306, 4.9238), (7.5944, 8.2901), (11.325, 10.487), (17.606, 13.032), (24.057, 14.798), (34.384, 17.026)]

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from fea.frame.linear import solve_frame
+from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
 from geometry.parts.part import Section, rectangle, ring
 
 PLANE = frozenset({"uz", "rx", "ry"})

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from fea.frame.linear import FrameElement, FrameModel, FrameSolution, NodeLoad, Support, solve_frame
+from fea.frame.linear import FrameSolution, solve_frame
+from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
 from geometry.parts.part import ring
 
-HINGES = (frozenset({"rz"}), frozenset({"rz"}))
 PLANE = frozenset({"uz", "rx", "ry"})
 
 
@@ -15,22 +15,25 @@ def truss(*, hinged: bool) -> FrameSolution:
 
     Solid rounds of those areas, E 196.2 GPa, ν 0.3 (``ssll11a.comm`` in Code_Aster's astest; N, mm here).
     """
-    nodes = np.array([[0.0, 0, 0], [1000, 0, 0], [500, 500, 0], [2000, 1000, 0]])
+    joints = np.array([[0.0, 0, 0], [1000, 0, 0], [500, 500, 0], [2000, 1000, 0]])
     bars = [((0, 2), 200.0), ((1, 2), 200.0), ((2, 3), 100.0), ((1, 3), 100.0)]
     elements = tuple(
         FrameElement(
-            nodes=pair,
+            nodes=(4 + 2 * i, 5 + 2 * i),
             section=ring(2.0 * np.sqrt(area / np.pi), 0.0),
             young=196.2e3,
             poisson=0.3,
-            releases=HINGES if hinged else (frozenset(), frozenset()),
         )
-        for pair, area in bars
+        for i, (_, area) in enumerate(bars)
     )
+    ends = [joint for pair, _ in bars for joint in pair]
+    dofs = ALL_DOFS - {"rz"} if hinged else ALL_DOFS
+    ties = tuple(Tie(nodes=(joint, 4 + k), dofs=dofs) for k, joint in enumerate(ends))
+    nodes = np.vstack([joints, joints[ends]])
     pins = tuple(Support(node=i, dofs=PLANE | {"ux", "uy"}) for i in (0, 1))
     plane = tuple(Support(node=i, dofs=PLANE) for i in (2, 3))
     loads = (NodeLoad(node=3, wrench=np.array([0.0, -9810.0, 0, 0, 0, 0])),)
-    return solve_frame(FrameModel(nodes=nodes, elements=elements, supports=pins + plane, loads=loads))
+    return solve_frame(FrameModel(nodes=nodes, elements=elements, ties=ties, supports=pins + plane, loads=loads))
 
 
 def test_displacements_as_published() -> None:

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fea.beam.theory import BeamLoads, LineLoad, PointLoad, deflection, internal_forces
+from fea.beam.deflection import deflection
+from fea.beam.loads import BeamLoads, LineLoad, PointLoad
+from fea.beam.theory import internal_forces
 from geometry.parts.part import rectangle
 
 SECTION = rectangle(7.0, 3.0)

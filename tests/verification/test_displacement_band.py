@@ -10,9 +10,9 @@ from slotted_lever import slotted_lever
 from benchmarks.displacement_band import FORCE, Link
 from fea.check.run import check_case
 from fea.common.source import Source, SourceKind
+from fea.frame.build import build_frame
 from fea.frame.displacement_band import Zone, bounds, point_bounds, zones
 from fea.frame.linear import solve_frame
-from fea.frame.linkage_frame import build_frame
 from fea.frame.model import NodeLoad
 from geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
 from loads.case.case import Case

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from planar_linkages import joint, link, oscillating_cylinder, slider_crank
 
+from fea.frame.build import build_frame
 from fea.frame.linear import solve_frame
-from fea.frame.linkage_frame import build_frame
 from geometry.base.errors import CaseError
 from geometry.linkage.continuation import DeadPointError
 from geometry.linkage.linkage import Linkage

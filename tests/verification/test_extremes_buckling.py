@@ -11,8 +11,9 @@ from euler_column import euler_load
 from fea.beam.column_factor import AxialForce, column_factors
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
-from fea.frame.corotational import buckling_factor
-from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from fea.frame.linear import solve_frame
+from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
+from fea.frame.stability import buckling_factor
 from fea.outcomes.buckling import beyond_strength
 from geometry.parts.part import Section
 from loads.case.case_file import validate

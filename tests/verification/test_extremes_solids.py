@@ -14,7 +14,8 @@ from solid_meshes import bar, box, ring
 
 from fea.check.run import check_case
 from fea.common.link_loads import LinkLoads, PinLoad
-from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support, solve_frame
+from fea.frame.linear import solve_frame
+from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
 from fea.refine.error_estimate import estimate_error
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.quadrature import surface_quadrature

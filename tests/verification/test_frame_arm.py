@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from fea.frame.build import build_frame
 from fea.frame.linear import solve_frame
-from fea.frame.linkage_frame import build_frame
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.records.applied import PointLoad

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from fea.frame.corotational import solve_large_displacement
-from fea.frame.linear import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
+from fea.frame.linear import solve_frame
+from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import ring
 

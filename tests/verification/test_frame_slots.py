@@ -21,11 +21,13 @@ from slotted_cases import (
     slider_crank,
 )
 
-from fea.frame.corotational import _gap, _Path, _State, solve_large_displacement, subdivide
+from fea.frame.build import build_frame
+from fea.frame.corotational import EquilibriumPath, solve_large_displacement, subdivide
+from fea.frame.corotational_element import guide_gap
 from fea.frame.joint_forces import PINNED_FRAME, joint_forces
 from fea.frame.large_displacement import examine
-from fea.frame.linear import FrameModel, Guide, solve_frame
-from fea.frame.linkage_frame import build_frame
+from fea.frame.linear import solve_frame
+from fea.frame.model import FrameModel, Guide
 from geometry.base.errors import CannotRunError
 from loads.case.case import Case
 from loads.case.case_file import read_case
@@ -140,7 +142,7 @@ def test_the_tangent_with_guides_is_the_derivative_of_the_balance(make: Callable
     """Central differences at a deformed state with forces in the guides, out of the plane as well."""
     case = make()
     frame = build_frame(case, case.solve_pose(), loads_on(case, plane=False), held=case.pinned_drive)
-    path = _Path(subdivide(frame.model, 2)[0])
+    path = EquilibriumPath(subdivide(frame.model, 2))
     rng = np.random.default_rng(3)
     unit = path.unit
     count = path.chain.count
@@ -309,16 +311,14 @@ def test_a_guides_gradient_and_curvature_are_the_derivatives_of_its_gap(axis, no
     displacements = rng.normal(size=(2, 3))
     rotations = Rotation.from_rotvec(rng.normal(size=(2, 3))).as_matrix()
 
+    ground = np.array([node is None for node in nodes])
+    displacements[ground], rotations[ground] = 0.0, np.eye(3)
+
     def at(change: np.ndarray):
         parts = change.reshape(2, 6)
         turned = Rotation.from_rotvec(parts[:, 3:]).as_matrix() @ rotations
-        state = _State(
-            displacements=displacements + parts[:, :3],
-            rotations=turned,
-            attachments=np.zeros((0, 2, 3, 3)),
-            guide_forces=np.zeros(1),
-        )
-        return _gap(guide, state)
+        gap, unit = guide_gap(guide, displacements + parts[:, :3], turned)
+        return gap, unit.forces[0], unit.tangent[0]
 
     free = [i for i in range(12) if nodes[i // 6] is not None]
     _, gradient, curvature = at(np.zeros(12))

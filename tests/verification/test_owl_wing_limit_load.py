@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from fea.frame.build import build_frame
 from fea.frame.corotational import NoEquilibriumError, solve_large_displacement
-from fea.frame.linkage_frame import build_frame
 from loads.case.case_file import read_case
 from loads.records.applied import PointLoad
 from loads.statics.statics import Drive

@@ -14,12 +14,14 @@ from slotted_lever import slotted_lever
 
 from fea.beam.column_factor import AxialForce, Stretch, column_factors
 from fea.beam.cut_free import beam_loads, link_loads
+from fea.beam.deflection import deflection
 from fea.beam.flanks import flanks_of
-from fea.beam.theory import deflection, internal_forces
-from fea.frame.corotational import buckling_factor, solve_large_displacement
+from fea.beam.theory import internal_forces
+from fea.frame.build import build_frame
+from fea.frame.corotational import solve_large_displacement
 from fea.frame.linear import solve_frame
-from fea.frame.linkage_frame import build_frame
 from fea.frame.model import Support
+from fea.frame.stability import buckling_factor
 from fea.outcomes.buckling import link_factors
 from loads.states.actions import actions
 from loads.statics.statics import solve_statics

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from fea.beam.cut_free import beam_loads
+from fea.beam.deflection import deflection
 from fea.beam.details import Detail, details, net_section
 from fea.beam.flanks import flanks_of
-from fea.beam.theory import BeamCheck, check_beam, deflection
+from fea.beam.theory import BeamCheck, check_beam
 from fea.common.link_loads import LinkLoads, PinLoad
 from fea.solid.solution import SolidSolution, solve_solid
 from fea.solid.stress import StressField, stress_field

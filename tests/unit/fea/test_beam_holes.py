@@ -1,15 +1,13 @@
 import pytest
 
-from fea.beam.holes import eye_stress, tube_hole_factors
+from fea.beam.holes import net_tension, tube_hole_factors
 from geometry.base.errors import CannotRunError
 
 
 def test_eye_under_its_pin() -> None:
-    stress = eye_stress(-12.0, 7.0, 1.5, 4.0)
-    assert stress.net_tension == pytest.approx(12 / 22)
-    assert stress.bearing == pytest.approx(2.0)
+    assert net_tension(-12.0, 7.0, 1.5, 4.0) == pytest.approx(12 / 22)
     with pytest.raises(CannotRunError, match="leaves no section"):
-        eye_stress(1.0, 3.0, 3.0, 1.0)
+        net_tension(1.0, 3.0, 3.0, 1.0)
 
 
 def test_small_hole_triples_the_stress() -> None:

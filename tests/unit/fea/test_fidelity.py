@@ -78,7 +78,7 @@ def test_a_limit_within_the_band_is_not_decided_by_hand():
     ("change", "says"),
     [
         ({"fillet_radius": 0.0}, "sharp"),
-        ({"fillet_radius": 0.2}, "fillet over width 0.04 is outside of the calibrated 0.1"),
+        ({"fillet_radius": 0.2}, "fillet over width 0.04 is outside the calibrated range 0.1"),
         ({"inner_diameter": 4.5}, "inner over outer diameter 0.9"),
     ],
 )

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from fea.frame.corotational import buckling_factor, solve_large_displacement, subdivide
-from fea.frame.linear import FrameElement, FrameModel, NodeLoad, Support, Tie, solve_frame
+from fea.frame.corotational import solve_large_displacement, subdivide
+from fea.frame.linear import solve_frame
+from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support, Tie
+from fea.frame.stability import buckling_factor
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import rectangle, ring
 
@@ -13,8 +15,6 @@ TUBE = ring(5.0, 2.5)
 BAR = rectangle(6.0, 2.0)
 PIN = frozenset({"ux", "uy", "uz", "rx", "ry"})
 PLANE = frozenset({"uz", "rx", "ry"})
-HINGE = frozenset({"rz"})
-NONE: frozenset = frozenset()
 
 
 def element(a: int, b: int, **more: object) -> FrameElement:
@@ -57,15 +57,11 @@ def turned(model: FrameModel, R: np.ndarray) -> FrameModel:
     )
 
 
-@pytest.mark.parametrize("release", [NONE, HINGE])
-def test_small_loads_give_the_linear_frame(release: frozenset) -> None:
-    """With pins, arms, line loads and a release; the difference falls with the load, so it is of second order."""
+def test_small_loads_give_the_linear_frame() -> None:
+    """With pins, arms and line loads; the difference falls with the load, so it is of second order."""
     differences = []
     for force in (1e-3, 1e-4):
         model = four_bar(force)
-        if release:
-            model = replace(model, elements=(*model.elements[:2], element(4, 5, releases=(NONE, release))))
-            model = replace(model, supports=(Support(node=0), Support(node=5)))
         linear, large = solve_frame(model), solve_large_displacement(model, 2)
         scale = np.abs(linear.displacements[:, :3]).max()
         differences.append(np.abs(large.displacements[:6] - linear.displacements[:, :3]).max() / scale)
@@ -111,10 +107,10 @@ def test_turning_the_frame_turns_the_answer() -> None:
     a, b = solve_large_displacement(model, 3), solve_large_displacement(turned(model, R), 3)
     assert np.abs(a.displacements).max() > 20.0
     assert b.displacements == pytest.approx(a.displacements @ R.T, abs=1e-6)
-    assert b.end_forces == pytest.approx(a.end_forces, abs=1e-6)
+    assert b.end_forces.reshape(-1, 3) == pytest.approx(a.end_forces.reshape(-1, 3) @ R.T, abs=1e-6)
 
 
-def test_section_forces_hold_what_lies_beyond() -> None:
+def test_the_root_holds_what_lies_beyond() -> None:
     """Force and moment at the root from the deformed tip's position."""
     force, moment = np.array([0.2, 0.5, -0.3]), np.array([2.0, -1.0, 3.0])
     model = FrameModel(
@@ -125,31 +121,25 @@ def test_section_forces_hold_what_lies_beyond() -> None:
     )
     out = solve_large_displacement(model, 8)
     tip = np.array([100.0, 0, 0]) + out.displacements[1]
-    assert out.section_forces(0)[0, :3] == pytest.approx(out.axes[0].T @ force, abs=1e-7)
-    assert out.section_forces(0)[0, 3:] == pytest.approx(out.axes[0].T @ (moment + np.cross(tip, force)), abs=1e-5)
-    assert out.origin.tolist() == [0] * 8
+    assert out.end_forces[0, 0] == pytest.approx([*-force, *-(moment + np.cross(tip, force))], abs=1e-5)
+    assert out.reactions[0] == pytest.approx(out.end_forces[0, 0], abs=1e-9)
 
 
 def test_division_keeps_the_linear_answer() -> None:
     model = four_bar(1.0)
-    divided, origin = subdivide(model, 3)
+    divided = subdivide(model, 3)
     a, b = solve_frame(model), solve_frame(divided)
     assert b.displacements[:6] == pytest.approx(a.displacements, rel=1e-8, abs=1e-9)
-    assert origin.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2]
 
 
 def toggle(force: float) -> FrameModel:
-    hinges = (HINGE, HINGE)
     # E A 4000 N as of a bar 2 x 2 mm, but too stiff in bending to buckle before the truss snaps.
     square = replace(rectangle(2.0, 2.0), i_y=1e3, i_z=1e3)
     return FrameModel(
-        nodes=np.array([[0.0, 0, 0], [100, 10, 0], [200, 0, 0]]),
-        elements=tuple(element(*pair, section=square, young=1000.0, releases=hinges) for pair in ((0, 1), (1, 2))),
-        supports=(
-            Support(node=0, dofs=PLANE | {"ux", "uy"}),
-            Support(node=2, dofs=PLANE | {"ux", "uy"}),
-            Support(node=1, dofs=PLANE),
-        ),
+        nodes=np.array([[0.0, 0, 0], [100, 10, 0], [200, 0, 0], [100, 10, 0]]),
+        elements=tuple(element(*pair, section=square, young=1000.0) for pair in ((0, 1), (3, 2))),
+        supports=(Support(node=0, dofs=PIN), Support(node=2, dofs=PIN), Support(node=1, dofs=PLANE)),
+        ties=(Tie(nodes=(1, 3)),),
         loads=(NodeLoad(node=1, wrench=np.array([0, -force, 0, 0, 0, 0.0])),),
     )
 
@@ -172,7 +162,7 @@ def test_flat_truss_up_to_its_limit_load(share: float) -> None:
 
 @pytest.mark.parametrize("share", [1.0001, 1.3, 2.0, 4.0, 10.0])
 def test_snap_through_is_an_error_and_no_answer(share: float) -> None:
-    with pytest.raises(CannotRunError, match="no equilibrium in large displacement"):
+    with pytest.raises(CannotRunError, match=r"gives way at .* % of its load"):
         solve_large_displacement(toggle(share * LIMIT), 1)
 
 
@@ -201,10 +191,6 @@ def test_mechanism_is_refused() -> None:
         ({"supports": (Support(node=0, dofs=PIN - {"ry"}), Support(node=5))}, "about x alone"),
         ({"ties": (Tie(nodes=(1, 2), dofs=PIN - {"ry"}), Tie(nodes=(3, 4)))}, "tie shares"),
         ({"ties": (Tie(nodes=(1, 2), dofs=PIN - {"uz"}), Tie(nodes=(3, 4)))}, "tie shares"),
-        (
-            {"elements": (element(0, 1, releases=(NONE, frozenset({"rx", "ry"}))), *four_bar(1.0).elements[1:])},
-            "released",
-        ),
     ],
 )
 def test_what_makes_no_sense_for_finite_turns_is_refused(change: dict, message: str) -> None:

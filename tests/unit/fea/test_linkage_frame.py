@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from fea.frame.build import build_frame
 from fea.frame.joint_forces import BONDED_FRAME, PINNED_FRAME, PINNED_STATICS, joint_forces, ways_to_hold
 from fea.frame.linear import solve_frame
-from fea.frame.linkage_frame import build_frame, out_of_plane
+from fea.frame.linkage_frame import out_of_plane
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case, validate
 from loads.records.applied import BodyForce, LineLoad, PointLoad, shifted

@@ -5,12 +5,13 @@ import pytest
 import solid_meshes
 
 from fea.common.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
+from fea.refine.error_estimate import energy_density
 from fea.solid import solution as solid
 from fea.solid.quadrature import surface_quadrature, volume_quadrature
 from fea.solid.solution import solve_solid
 from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
-from fea.solid.supports import rigid_motions
+from fea.solid.supports import LineReference
 from geometry.base.errors import CannotRunError
 from loads.records.bearing import WIDE
 
@@ -73,7 +74,8 @@ def test_work_of_the_loads_is_the_energy_of_the_stresses(solution):
     # Two ways: half the work of the load vector, and the integral of the stresses of straight and curved elements.
     for case in solution.cases:
         field = stress_field(solution.space, case.displacement, E=E, nu=NU)
-        assert field.strain_energy(E=E, nu=NU) == pytest.approx(case.strain_energy, rel=1e-4)
+        stored = float((field.weights * energy_density(field.at_points, E, NU)).sum()) / 2.0
+        assert stored == pytest.approx(case.strain_energy, rel=1e-4)
 
 
 def test_displacement_is_relative_to_the_line_through_the_pins(solution):
@@ -177,7 +179,7 @@ def test_case_without_load_is_refused(mesh):
 def test_the_line_of_a_single_bore_moves_and_turns_with_it(mesh):
     space = displacement_space(mesh)
     nodes = space.nodes
-    reference = solid.LineReference(space, rigid_motions(nodes, nodes.mean(axis=0)), ("bore:A", "bore:A"))
+    reference = LineReference(space, ("bore:A", "bore:A"))
     moved = np.array([1.0, -2.0, 3.0]) + np.cross([0.01, -0.03, 0.02], nodes)
     assert reference.relative(moved) == pytest.approx(np.zeros_like(nodes), abs=1e-9)
     centre = surface_quadrature(space, "bore:A").centroid

@@ -10,7 +10,8 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from fea.beam.theory import BeamLoads, PointLoad, check_beam
+from fea.beam.loads import BeamLoads, PointLoad
+from fea.beam.theory import check_beam
 from loads.records.load_case import LoadCase
 from reports.figures import diagrams, drawings
 from reports.figures.labels import along, place_labels

@@ -171,4 +171,4 @@ def test_conditions_stand_in_the_record():
         'parts.tube.material="pvc-u"', 'conditions={duration="1 day",temperature="30 degC"}', 'large_displacement="off"'
     )
     assert result_record(result)["conditions"] == {"duration": 86400.0, "temperature": pytest.approx(30.0)}
-    assert "was not looked into" in section(result)
+    assert "was not checked" in section(result)

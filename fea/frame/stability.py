@@ -1,8 +1,9 @@
-"""A shallow toggle: how near to giving way a linkage is, by what its linear frame says.
+"""How near to giving way a linkage is, by what its linear frame says: to buckling, and to a dead point.
 
-Near a dead point the leverage r of the load over whatever gives (a spring, a lever that bends, the links themselves)
-falls in proportion to the distance that is left: r = r0 (1 - w/d), where d is the distance to the dead point and w the
-way gone. Then the spring has given u = r0 (w - w²/(2d)), and virtual work with stiffness k gives the load
+Near a dead point it is a shallow toggle, where the leverage r of the load over whatever gives (a spring, a lever that
+bends, the links themselves) falls in proportion to the distance that is left: r = r0 (1 - w/d), where d is the distance
+to the dead point and w the way gone. Then the spring has given u = r0 (w - w²/(2d)), and virtual work with stiffness k
+gives the load
 
     P(w) = k u du/dw = (k r0²/(2 d²)) (2 d² w - 3 d w² + w³)
 
@@ -13,14 +14,19 @@ on the load: 3√3 = 5.2 at the true limit.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.linear import FrameSolution
+from fea.frame.corotational import SUBDIVISIONS, EquilibriumPath, subdivide
+from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame, slot_normal
+from fea.frame.model import FrameModel
 from geometry.linkage.pose import Pose, constraint_jacobian, held_motion
 
+COARSE, FINE, NEAR = 2, 8, 30.0
+"""Elements per beam for the buckling factor, and the factor by the coarse ones below which the fine ones are used."""
 SNAP = 3.0 * math.sqrt(3.0)
 """Linear factor at which a shallow toggle snaps through."""
 
@@ -41,6 +47,36 @@ def growth(factor: float) -> float:
 _ROUNDING = 1e-9
 _FAR = 1e6
 """Factor from which on two terms of the series are exact to rounding."""
+
+
+def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> float:
+    """Factor on all loads at which the frame, as it stands, becomes unstable; infinite where no factor does.
+
+    Linear stability: (K + λ K_g) φ = 0 with the geometric stiffness K_g of the linear solution's forces
+    (Przemieniecki, Theory of Matrix Structural Analysis, 1968, chapter 15). Pinned column, eight elements: π² E I/L²
+    within 0.01 %, less what shear takes. Bending before buckling is left out, which is right for small deflections.
+    """
+    from scipy.linalg import eigh
+
+    divided = subdivide(model, subdivisions)
+    linear = solve_frame(divided)
+    path = EquilibriumPath(divided)
+    start = path.state
+    f = linear.end_forces
+    natural = np.column_stack(
+        [(f[:, 1, 0] - f[:, 0, 0]) / 2.0, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]]
+    )
+    K = path.free(path.assemble(path.respond(start, 0.0), start, 0.0)[1])
+    loaded = replace(start, guide_forces=linear.guide_forces)
+    G = path.free(path.assemble(path.elements.geometric(natural), loaded, 1.0)[1])
+    largest = float(eigh(-(G + G.T) / 2.0, (K + K.T) / 2.0, eigvals_only=True)[-1])
+    return 1.0 / largest if largest > 1e-12 else np.inf
+
+
+def linkage_factor(frame: LinkageFrame) -> float:
+    """Return the factor on all loads at which the linear frame becomes unstable; infinite where it never does."""
+    factor = buckling_factor(frame.model, COARSE)
+    return buckling_factor(frame.model, FINE) if factor < NEAR else factor
 
 
 def dead_point_factor(frame: LinkageFrame, solution: FrameSolution) -> float:

@@ -1,0 +1,123 @@
+"""Deflection of a beam's axis by Timoshenko's theory, flanks of slots included."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.flanks import Flanks
+from fea.beam.piecewise import Piecewise, integral, values
+from geometry.parts.part import Section
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Deflection:
+    """Displacement of a beam's axis relative to the line through two of its stations.
+
+    functions  u, v, w [mm] and the rotations φ, θ_y, θ_z [rad] about x, y, z, as piecewise polynomials; u and φ
+               are relative to the first of the two stations
+    largest    the largest √(v² + w²) [mm]
+    """
+
+    functions: Piecewise
+    largest: float
+
+
+def deflection(
+    forces: Piecewise,
+    section: Section,
+    *,
+    young: float,
+    poisson: float,
+    line: tuple[float, float],
+    flanks: Sequence[Flanks] = (),
+) -> Deflection:
+    """Integrate the internal forces to the deflection relative to the line through two stations [mm].
+
+    One station twice is a line through it that turns with the section there, as where a single joint holds the link.
+
+    Along a slot its ``flanks`` take the section's place: as both bend alike, M_z less the moment of the pair of forces
+    that their ends' turning makes, (∫M_z dx/L) S/(S + I) with S the pair's second moment and I the flanks' own. How the
+    pin bends the flank that it pushes further than the other is left out.
+
+    Timoshenko's beam with Cowper's shear coefficient κ (Przemieniecki, Theory of Matrix Structural Analysis,
+    1968, section 5.6): θ_z' = M_z/(E I_z), v' = θ_z + V_y/(κ G A), θ_y' = M_y/(E I_y), w' = -θ_y + V_z/(κ G A),
+    u' = N/(E A), φ' = T/(G J). Exact for the polynomial loads of ``BeamLoads``. E (``young``) in MPa.
+    """
+    x_a, x_b = line
+    forces = _divided(forces, [x for slot in flanks for x in (slot.first, slot.last)])
+    middles = (forces.breaks[:-1] + forces.breaks[1:]) / 2.0
+    out = np.zeros((len(forces.coefficients), 6, 6))
+    state = np.zeros(6)
+    for i, (c, x, h) in enumerate(zip(forces.coefficients, middles, np.diff(forces.breaks), strict=True)):
+        slot = next((slot for slot in flanks if slot.first < x < slot.last), None)
+        strain = c * flexibility(section if slot is None else slot.together, young, poisson)[:, None]
+        if slot is not None:
+            own = slot.together.i_z
+            mean = _moment_between(forces, slot.first, slot.last) / slot.length
+            strain[5, 0] -= mean * slot.pair / (slot.pair + own) / (young * own)
+        out[i, [0, 3, 4, 5], :5] = integral(strain[[0, 3, 4, 5]], state[[0, 3, 4, 5]])
+        slope = out[i, [5, 4], :5] * np.array([[1.0], [-1.0]])
+        slope[:, :4] += strain[[1, 2]]
+        out[i, [1, 2]] = integral(slope, state[[1, 2]])
+        state = values(out[i], h)
+    free = Piecewise(breaks=forces.breaks, coefficients=out)
+    at_a, at_b = free.at(x_a), free.at(x_b)
+    tilt = np.array([at_a[5], -at_a[4]]) if x_a == x_b else (at_b[1:3] - at_a[1:3]) / (x_b - x_a)
+    relative = out.copy()
+    starts = forces.breaks[:-1]
+    relative[:, [0, 3], 0] -= at_a[[0, 3]]
+    for row, angle in ((1, tilt[0]), (2, tilt[1])):
+        relative[:, row, 0] -= at_a[row] + angle * (starts - x_a)
+        relative[:, row, 1] -= angle
+    relative[:, 5, 0] -= tilt[0]
+    relative[:, 4, 0] += tilt[1]
+    functions = Piecewise(breaks=forces.breaks, coefficients=relative)
+    _, _, value = functions.largest(lambda f: float(np.hypot(f[1], f[2])))
+    return Deflection(functions=functions, largest=value)
+
+
+def flexibility(section: Section, young: float, poisson: float) -> Floats:
+    """Strains (6,) per unit of N, V_y, V_z, T, M_y, M_z [1/N, 1/(N·mm²)]."""
+    shear_modulus = young / (2.0 * (1.0 + poisson))
+    shear = 1.0 / (section.shear_coefficient(poisson) * shear_modulus * section.area)
+    return np.array(
+        [
+            1.0 / (young * section.area),
+            shear,
+            shear,
+            1.0 / (shear_modulus * section.torsion),
+            1.0 / (young * section.i_y),
+            1.0 / (young * section.i_z),
+        ]
+    )
+
+
+def _divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
+    """Return the same functions with further breaks at stations inside."""
+    first, last = functions.breaks[0], functions.breaks[-1]
+    breaks = np.unique([*functions.breaks, *(x for x in stations if first < x < last)])
+    if len(breaks) == len(functions.breaks):
+        return functions
+    rows = []
+    for x in breaks[:-1]:
+        i = min(int(np.searchsorted(functions.breaks, x, side="right")) - 1, len(functions.coefficients) - 1)
+        c, s = functions.coefficients[i], float(x - functions.breaks[i])
+        taylor, factorial = [], 1.0
+        for k in range(c.shape[-1]):
+            taylor.append(values(c, s) / factorial)
+            c, factorial = np.polynomial.polynomial.polyder(c, axis=-1), factorial * (k + 1)
+        rows.append(np.stack(taylor, axis=-1))
+    return Piecewise(breaks=breaks, coefficients=np.array(rows))
+
+
+def _moment_between(forces: Piecewise, first: float, last: float) -> float:
+    """∫M_z dx between two stations that are breaks or lie beyond the beam, where there is none [N·mm²]."""
+    total = 0.0
+    for c, x, h in zip(forces.coefficients, forces.breaks[:-1], np.diff(forces.breaks), strict=True):
+        if first <= x < last:
+            total += float(values(integral(c[5], np.zeros(())), float(h)))
+    return total

@@ -1,0 +1,129 @@
+"""A balanced set of loads on a straight beam, in its link's frame."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geometry.base.errors import CannotRunError
+
+Floats = NDArray[np.float64]
+
+
+def _frozen(values: ArrayLike, name: str, *shapes: int) -> Floats:
+    """Return a read-only copy of a vector, refused unless finite and of one of the given lengths."""
+    array = np.array(values, dtype=np.float64)
+    if array.ndim != 1 or array.size not in shapes or not np.isfinite(array).all():
+        raise CannotRunError(f"{name} {array.tolist()} must be {' or '.join(map(str, shapes))} finite numbers")
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PointLoad:
+    """A wrench at a point of the link, in the link's frame.
+
+    point   (3,) x, y, z [mm] (two numbers mean z = 0); off the axis it adds the moment of its force
+    wrench  (6,) Fx, Fy, Fz [N], Mx, My, Mz [N·mm]
+    """
+
+    point: Floats
+    wrench: Floats
+
+    def __post_init__(self) -> None:
+        """Copy, complete and check the arrays."""
+        point = _frozen(self.point, "the point of a load", 2, 3)
+        object.__setattr__(self, "point", _frozen([*point, 0.0][:3], "the point of a load", 3))
+        object.__setattr__(self, "wrench", _frozen(self.wrench, "the wrench of a load", 6))
+
+    @property
+    def on_axis(self) -> Floats:
+        """The same wrench (6,), reduced to the point (x, 0, 0) of the axis."""
+        arm = np.array([0.0, self.point[1], self.point[2]])
+        return np.concatenate([self.wrench[:3], self.wrench[3:] + np.cross(arm, self.wrench[:3])])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LineLoad:
+    """A force per length on the axis, varying linearly between two stations.
+
+    start, end   x [mm], start < end
+    first, last  (3,) force per length at start and at end [N/mm], in the link's frame; equal for a uniform load
+    """
+
+    start: float
+    end: float
+    first: Floats
+    last: Floats
+
+    def __post_init__(self) -> None:
+        """Copy and check the arrays."""
+        if not (np.isfinite([self.start, self.end]).all() and self.start < self.end):
+            raise CannotRunError(f"a line load from x = {self.start:g} mm to {self.end:g} mm needs start < end")
+        object.__setattr__(self, "first", _frozen(self.first, "a line load", 3))
+        object.__setattr__(self, "last", _frozen(self.last, "a line load", 3))
+
+    @property
+    def resultant(self) -> tuple[float, Floats]:
+        """Station of the mean force's moment and wrench (6,) about that station: the load as one wrench at mid-length.
+
+        Force (first + last) L/2 at the middle, with the couple e_x × (last - first) L²/12.
+        """
+        length = self.end - self.start
+        slope = (self.last - self.first) * length**2 / 12.0
+        couple = np.array([0.0, -slope[2], slope[1]])
+        return (self.start + self.end) / 2.0, np.concatenate([(self.first + self.last) * length / 2.0, couple])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BeamLoads:
+    """All that acts on one link, joint forces included: a balanced set."""
+
+    points: tuple[PointLoad, ...]
+    lines: tuple[LineLoad, ...] = ()
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The x of the first and of the last loaded station [mm]."""
+        stations = [float(p.point[0]) for p in self.points] + [x for q in self.lines for x in (q.start, q.end)]
+        if not stations or min(stations) == max(stations):
+            raise CannotRunError("a beam needs loads at two stations or more; give the point loads of every joint")
+        return min(stations), max(stations)
+
+    @property
+    def size(self) -> float:
+        """Length scale for moments: the largest extent of the loaded points along any axis [mm]."""
+        x0, x1 = self.span
+        across = [np.abs(p.point[1:]).max() for p in self.points]
+        return max(x1 - x0, *map(float, across), 0.0)
+
+    @property
+    def scale(self) -> float:
+        """Sum of the magnitudes of all loads [N], moments divided by ``size``."""
+        total = 0.0
+        for p in self.points:
+            total += float(np.linalg.norm(p.wrench[:3]) + np.linalg.norm(p.wrench[3:]) / self.size)
+        for q in self.lines:
+            mean = (np.linalg.norm(q.first) + np.linalg.norm(q.last)) / 2.0
+            total += float(mean) * (q.end - q.start)
+        return total
+
+    @property
+    def resultant(self) -> Floats:
+        """The wrench (6,) of all loads about the middle of the span [N, N·mm]; zero where they balance."""
+        middle = sum(self.span) / 2.0
+        total = np.zeros(6)
+        wrenches = [(float(p.point[0]), p.on_axis) for p in self.points] + [q.resultant for q in self.lines]
+        for x, wrench in wrenches:
+            total += wrench
+            total[4] -= (x - middle) * wrench[2]
+            total[5] += (x - middle) * wrench[1]
+        return total
+
+    @property
+    def imbalance(self) -> float:
+        """Resultant over the sum of the loads' magnitudes (moments over ``size``)."""
+        if self.scale == 0.0:
+            return 0.0
+        force, moment = np.linalg.norm(self.resultant[:3]), np.linalg.norm(self.resultant[3:]) / self.size
+        return float(max(force, moment)) / self.scale
