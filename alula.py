@@ -237,7 +237,7 @@ def claims(name_or_path: "str | PathLike[str]", *, fidelity: str = "solid", thre
     CaseError
         For a name that is neither.
     """
-    from fea.claims.audit import check_claims
+    from fea.claims.sources import check_claims
     from fea.common.threads import bounded
     from reports.notebook.claims_report import ClaimsReport
 

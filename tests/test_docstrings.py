@@ -17,15 +17,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 NOT_YET = (
     "fea/beam",
-    "fea/calculix",
     "fea/check",
-    "fea/claims",
     "fea/common",
     "fea/frame",
     "fea/motion",
     "fea/outcomes",
-    "fea/refine",
-    "fea/solid",
     "geometry/linkage",
     "geometry/mechanisms",
     "geometry/meshing",

@@ -26,7 +26,17 @@ _GAPS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Factors:
-    """Solid over estimate: the least and the largest measured, widened by the margin, and the median."""
+    """Solid over estimate: the least and the largest measured, widened by the margin, and the median.
+
+    Attributes
+    ----------
+    low : float
+        The least measured, less the margin.
+    typical : float
+        The median.
+    high : float
+        The largest measured, with the margin.
+    """
 
     low: float
     typical: float
@@ -37,11 +47,24 @@ class Factors:
 class Calibration:
     """What was measured on one shape.
 
-    measured    date; on ``parts`` parts under ``cases`` load cases in all
-    margin      the factor by which the largest and least measured ones were widened
-    ranges      proportion -> least and largest of the measured parts
-    von_mises, principal   kind of spot -> factors of the largest stress there
-    displacement           factors of the largest displacement
+    Attributes
+    ----------
+    measured : str
+        Date.
+    parts : int
+        Number of parts measured.
+    cases : int
+        Number of load cases, of all parts together.
+    margin : float
+        The factor by which the largest and least measured ones were widened.
+    ranges : dict of str to Interval
+        Proportion -> least and largest of the measured parts.
+    von_mises : dict of Kind to Factors
+        Kind of spot and the factors of the largest stress there.
+    principal : dict of Kind to Factors
+        The same for the largest principal stress.
+    displacement : Factors
+        Factors of the largest displacement.
     """
 
     measured: str
@@ -54,7 +77,20 @@ class Calibration:
     displacement: Factors
 
     def outside(self, body: Body, nu: float) -> str:
-        """Say which proportion of a link lies outside of what was measured; "" where none does."""
+        """Say which proportion of a link lies outside of what was measured.
+
+        Parameters
+        ----------
+        body : Body
+            Geometry of the link.
+        nu : float
+            Poisson's ratio.
+
+        Returns
+        -------
+        str
+            For people; "" where all proportions lie within.
+        """
         if body.part.fillet_radius == 0.0:
             return "its junctions are sharp, where stress has no limit"
         if any(pin.y != 0.0 for pin in body.pins):
@@ -69,7 +105,20 @@ class Calibration:
 
 
 def proportions(body: Body, nu: float) -> dict[str, float]:
-    """Return the ratios on which the factors may depend, by name; distances in section widths."""
+    """Return the ratios on which the factors may depend, by name; distances in section widths.
+
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    dict of str to float
+        Name of each ratio and its value.
+    """
     part, width = body.part, body.part.section.width
     found = {
         "Poisson's ratio": nu,
@@ -114,7 +163,20 @@ def calibrations() -> Mapping[str, Calibration]:
 
 
 def uncalibrated(body: Body, nu: float) -> str:
-    """Say why hand calculation is not calibrated for a link; "" where it is."""
+    """Say why hand calculation is not calibrated for a link.
+
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    str
+        For people; "" where it is calibrated.
+    """
     if not body.part.is_beam:
         return "a disc is as wide as it is long, where beam theory does not hold"
     if any(pin.slot > 0.0 for pin in body.pins):
@@ -125,7 +187,18 @@ def uncalibrated(body: Body, nu: float) -> str:
 
 
 def calibration_of(part: Part) -> Calibration:
-    """Return the calibration of a part's shape; a disc has none."""
+    """Return the calibration of a part's shape; a disc has none.
+
+    Parameters
+    ----------
+    part : Part
+        Tube or bar.
+
+    Returns
+    -------
+    Calibration
+        What was measured on such parts.
+    """
     return calibrations()[part.shape]
 
 

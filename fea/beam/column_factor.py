@@ -32,15 +32,30 @@ NOTHING = 1e-12
 class AxialForce:
     """Compression along a column in each of P poses: a parabola between neighbouring stations.
 
-    breaks  (k + 1,) stations, rising [mm]
-    values  (k, 3, P) at the start, in the middle and at the end of each interval; tension negative [N]
+    Attributes
+    ----------
+    breaks : ndarray, shape (k + 1,)
+        Stations, rising [mm].
+    values : ndarray, shape (k, 3, P)
+        At the start, in the middle and at the end of each interval; tension negative [N].
     """
 
     breaks: Real
     values: Real
 
     def at(self, x: Real) -> Real:
-        """Compression (n, P) at stations x (n,) inside intervals; nothing beyond the first and last break."""
+        """Compression at stations inside intervals; none beyond the first and last break.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Stations [mm].
+
+        Returns
+        -------
+        ndarray, shape (n, P)
+            Compression [N].
+        """
         i = np.clip(np.searchsorted(self.breaks, x, side="right") - 1, 0, len(self.values) - 1)
         t = (x - self.breaks[i]) / (self.breaks[i + 1] - self.breaks[i])
         weights = np.stack([(1.0 - t) * (1.0 - 2.0 * t), 4.0 * t * (1.0 - t), t * (2.0 * t - 1.0)], axis=1)
@@ -52,8 +67,16 @@ class AxialForce:
 class Stretch:
     """A part of a column with a stiffness of its own.
 
-    first, last  x [mm]
-    bending      its E I over the column's; ``pair`` E S over the column's E I, that of the flanks' pair of forces
+    Attributes
+    ----------
+    first : float
+        x of its start [mm].
+    last : float
+        x of its end [mm].
+    bending : float
+        Its E I over the column's.
+    pair : float
+        E S over the column's E I, of the flanks' pair of forces.
     """
 
     first: float
@@ -70,12 +93,25 @@ def column_factors(
     built_in: Sequence[float] = (),
     stretches: Sequence[Stretch] = (),
 ) -> Real:
-    """Return the factor (P,) on the force at which a column buckles; infinite where none does, NaN where it is unknown.
+    """Return the factor on the force at which a column buckles; infinite where none does, NaN where it is unknown.
 
-    stiffness  E I [N·mm²]
-    held       x where the column is held in place, free to turn [mm]
-    built_in   x where it is held in place and in its angle [mm]
-    stretches  of another stiffness; they do not overlap
+    Parameters
+    ----------
+    force : AxialForce
+        Along the column in P poses.
+    stiffness : float
+        E I [N·mm²].
+    held : sequence of float, optional
+        x where the column is held in place, free to turn [mm].
+    built_in : sequence of float, optional
+        x where it is held in place and in its angle [mm].
+    stretches : sequence of Stretch, optional
+        Of another stiffness; they do not overlap.
+
+    Returns
+    -------
+    ndarray, shape (P,)
+        Factors.
     """
     supports = sorted({*held, *built_in})
     nodes = _nodes(force, supports, [x for stretch in stretches for x in (stretch.first, stretch.last)])
@@ -99,11 +135,23 @@ def column_factors(
 
 
 def stiffness_matrices(nodes: Real, pressed: Real, stretches: Sequence[Stretch]) -> tuple[Real, Real]:
-    """Bending stiffness (2n, 2n) and what compression takes of it (P, 2n, 2n), by deflections and slopes at the nodes.
+    """Bending stiffness and what compression takes of it, by deflections and slopes at the nodes.
 
-    Lengths are counted in whole lengths L of the column: the first times E I/L², the second as it is [N].
+    Lengths are counted in whole lengths L of the column.
 
-    nodes    (n,) x [mm]; ``pressed`` (n - 1, 4, P) compression at the elements' Gauss points [N]
+    Parameters
+    ----------
+    nodes : ndarray, shape (n,)
+        Of the mesh [mm].
+    pressed : ndarray, shape (n - 1, 4, P)
+        Compression at the elements' Gauss points [N].
+    stretches : sequence of Stretch
+        Of another stiffness.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        K (2n, 2n), in E I/L², and G (P, 2n, 2n) [N].
     """
     length = nodes[-1] - nodes[0]
     sizes, (points, weights) = np.diff(nodes) / length, GAUSS
@@ -152,6 +200,19 @@ def _bending(h: float) -> Real:
 
 
 def slopes(h: float, t: Real) -> Real:
-    """V' (n, 4) of the shape functions of a cubic element of length h at shares t (n,) of it."""
+    """Slopes of the shape functions of a cubic element, by deflection and slope at its ends.
+
+    Parameters
+    ----------
+    h : float
+        Length of the element.
+    t : ndarray, shape (n,)
+        Shares of it.
+
+    Returns
+    -------
+    ndarray, shape (n, 4)
+        Slopes.
+    """
     across = 6.0 * t * (1.0 - t) / h
     return np.stack([-across, 1.0 - 4.0 * t + 3.0 * t**2, across, 3.0 * t**2 - 2.0 * t], axis=1)

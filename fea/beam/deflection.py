@@ -17,9 +17,13 @@ Floats = NDArray[np.float64]
 class Deflection:
     """Displacement of a beam's axis relative to the line through two of its stations.
 
-    functions  u, v, w [mm] and the rotations φ, θ_y, θ_z [rad] about x, y, z, as piecewise polynomials; u and φ
-               are relative to the first of the two stations
-    largest    the largest √(v² + w²) [mm]
+    Attributes
+    ----------
+    functions : Piecewise
+        u, v, w [mm] and the rotations φ, θ_y, θ_z [rad] about x, y, z; u and φ are relative to the first of the two
+        stations.
+    largest : float
+        The largest √(v² + w²) [mm].
     """
 
     functions: Piecewise
@@ -35,17 +39,36 @@ def deflection(
     line: tuple[float, float],
     flanks: Sequence[Flanks] = (),
 ) -> Deflection:
-    """Integrate the internal forces to the deflection relative to the line through two stations [mm].
+    """Integrate the internal forces to the deflection relative to the line through two stations.
 
-    One station twice is a line through it that turns with the section there, as where a single joint holds the link.
+    Along a slot both flanks bend alike, under M_z less the moment of the pair of forces that their ends' turning makes,
+    (∫M_z dx/L) S/(S + I) with S the pair's second moment and I the flanks' own. How the pin bends the flank that it
+    pushes further than the other is left out.
 
-    Along a slot its ``flanks`` take the section's place: as both bend alike, M_z less the moment of the pair of forces
-    that their ends' turning makes, (∫M_z dx/L) S/(S + I) with S the pair's second moment and I the flanks' own. How the
-    pin bends the flank that it pushes further than the other is left out.
+    Timoshenko's beam with Cowper's shear coefficient κ (Przemieniecki, Theory of Matrix Structural Analysis, 1968,
+    section 5.6): θ_z' = M_z/(E I_z), v' = θ_z + V_y/(κ G A), θ_y' = M_y/(E I_y), w' = -θ_y + V_z/(κ G A), u' = N/(E A),
+    φ' = T/(G J).
 
-    Timoshenko's beam with Cowper's shear coefficient κ (Przemieniecki, Theory of Matrix Structural Analysis,
-    1968, section 5.6): θ_z' = M_z/(E I_z), v' = θ_z + V_y/(κ G A), θ_y' = M_y/(E I_y), w' = -θ_y + V_z/(κ G A),
-    u' = N/(E A), φ' = T/(G J). Exact for the polynomial loads of ``BeamLoads``. E (``young``) in MPa.
+    Parameters
+    ----------
+    forces : Piecewise
+        N, V_y, V_z, T, M_y, M_z along the beam.
+    section : Section
+        Of the beam.
+    young : float
+        Young's modulus [MPa].
+    poisson : float
+        Poisson's ratio.
+    line : tuple of 2 float
+        x of the two stations; one station twice is a line through it that turns with the section there, as where a
+        single joint holds the link [mm].
+    flanks : sequence of Flanks, optional
+        That take the section's place along slots.
+
+    Returns
+    -------
+    Deflection
+        Exact for the polynomial loads of ``BeamLoads``.
     """
     x_a, x_b = line
     forces = _divided(forces, [x for slot in flanks for x in (slot.first, slot.last)])
@@ -81,7 +104,22 @@ def deflection(
 
 
 def flexibility(section: Section, young: float, poisson: float) -> Floats:
-    """Strains (6,) per unit of N, V_y, V_z, T, M_y, M_z [1/N, 1/(N·mm²)]."""
+    """Strains of a section per unit of N, V_y, V_z, T, M_y, M_z.
+
+    Parameters
+    ----------
+    section : Section
+        Of the beam.
+    young : float
+        Young's modulus [MPa].
+    poisson : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    ndarray, shape (6,)
+        Strains per unit force [1/N, 1/(N·mm²)].
+    """
     shear_modulus = young / (2.0 * (1.0 + poisson))
     shear = 1.0 / (section.shear_coefficient(poisson) * shear_modulus * section.area)
     return np.array(

@@ -35,7 +35,19 @@ SLENDER = 4.0
 
 @dataclass(frozen=True, kw_only=True)
 class Detail:
-    """The largest stress by hand at one detail: ``name`` for people, station x, what its number holds."""
+    """The largest stress by hand at one detail.
+
+    Attributes
+    ----------
+    name : str
+        For people.
+    x : float
+        Station [mm].
+    stress : SectionStress
+        The largest.
+    remark : str
+        What its number holds.
+    """
 
     name: str
     x: float
@@ -44,9 +56,23 @@ class Detail:
 
 
 def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.3) -> tuple[Detail, ...]:
-    """Return the details of a link under one load case, given the internal forces along its axis.
+    """Return the details of a link under one load case.
 
-    Poisson's ratio tells how the shear stress of V is spread.
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+    loads : LinkLoads
+        Of one load case.
+    forces : Piecewise
+        Internal forces along the axis.
+    poisson : float, optional
+        Poisson's ratio, which tells how the shear stress of V is spread.
+
+    Returns
+    -------
+    tuple of Detail
+        One per slot and arm.
     """
     pushed = {load.name: load for load in loads.pins}
     found = [_slot(body, pin, pushed[pin.name], forces, poisson) for pin in body.pins if pin.slot > 0.0]
@@ -55,7 +81,20 @@ def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.
 
 
 def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
-    """Say what hand calculation found at the details, and where its section is but an estimate."""
+    """Say what hand calculation found at the details, and where its section is but an estimate.
+
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+    found : sequence of Detail
+        Its details.
+
+    Returns
+    -------
+    tuple of str
+        Sentences for people.
+    """
     said = [f"by hand {d.name} bears {d.stress.equivalent:.3g} MPa at x = {d.x:.3g} mm ({d.remark})" for d in found]
     if any(pin.slot > 0.0 for pin in body.pins):
         said.append("as a solid a pin pushes on half, and for the band on a quarter of its diameter, of a slot's flank")
@@ -68,7 +107,22 @@ def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
 
 
 def net_section(width: float, slot: float, thickness: float) -> Section:
-    """Return the two flanks that a slot leaves of a bar, as one section; J is that of two separate rectangles."""
+    """Return the two flanks that a slot leaves of a bar, as one section; J is that of two separate rectangles.
+
+    Parameters
+    ----------
+    width : float
+        Of the bar [mm].
+    slot : float
+        Width of the slot [mm].
+    thickness : float
+        Of the bar [mm].
+
+    Returns
+    -------
+    Section
+        Section of both flanks together.
+    """
     flank = rectangle((width - slot) / 2.0, thickness)
     return Section(
         area=(width - slot) * thickness,
@@ -82,9 +136,25 @@ def net_section(width: float, slot: float, thickness: float) -> Section:
 
 
 def flank_moments(length: float, at: float, force: float, x: Floats) -> Floats:
-    """Moments along a beam built in at both ends under a force at a place (Roark, 8th ed., table 8.1, case 1d).
+    """Moments along a beam built in at both ends under a force (Roark, 8th ed., table 8.1, case 1d).
 
     With b = length - at: M(0) = -F at b²/L², M(at) = 2 F at² b²/L³, M(L) = -F at² b/L², linear between.
+
+    Parameters
+    ----------
+    length : float
+        Of the beam [mm].
+    at : float
+        Distance of the force from its start [mm].
+    force : float
+        Across the beam [N].
+    x : ndarray, shape (n,)
+        Stations from its start [mm].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Moments [N·mm].
     """
     b = length - at
     ends = -force * at * b**2 / length**2, 2.0 * force * at**2 * b**2 / length**3, -force * at**2 * b / length**2

@@ -15,9 +15,18 @@ from geometry.parts.part import Body, Pin, Section, rectangle
 class Flanks:
     """The two flanks of one slot.
 
-    first, last  x between which they count as beams [mm]
-    height       of one flank across the slot [mm]; ``apart`` the distance of their axes [mm]
-    one          section of one flank
+    Attributes
+    ----------
+    first : float
+        x from which they count as beams [mm].
+    last : float
+        x up to which they do [mm].
+    height : float
+        Of one flank across the slot [mm].
+    apart : float
+        Distance of their axes [mm].
+    one : Section
+        Section of one flank.
     """
 
     first: float
@@ -51,7 +60,18 @@ class Flanks:
 
 
 def flanks_of(body: Body) -> tuple[Flanks, ...]:
-    """Return the flanks of every slot of a link, by rising x."""
+    """Return the flanks of every slot of a link, by rising x.
+
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+
+    Returns
+    -------
+    tuple of Flanks
+        One per slot.
+    """
     return tuple(sorted((_flanks(body, pin) for pin in body.pins if pin.slot > 0.0), key=lambda found: found.first))
 
 

@@ -7,10 +7,30 @@ from geometry.base.errors import CannotRunError
 
 
 def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickness: float) -> float:
-    """Mean tension F/((D - d) t) [MPa] in the section through the hole of an eye that its pin pulls.
+    """Mean tension F/((D - d) t) in the section through the hole of an eye that its pin pulls.
 
-    Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., chapter 8. Raises ``CannotRunError``
-    where the hole leaves no section.
+    Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., chapter 8.
+
+    Parameters
+    ----------
+    force : float
+        Of the pin [N].
+    eye_diameter : float
+        Width D of the eye [mm].
+    hole_diameter : float
+        d [mm].
+    thickness : float
+        t [mm].
+
+    Returns
+    -------
+    float
+        Mean stress [MPa].
+
+    Raises
+    ------
+    CannotRunError
+        Where the hole leaves no section.
     """
     if not (0.0 < hole_diameter < eye_diameter and thickness > 0.0):
         raise CannotRunError(
@@ -20,11 +40,30 @@ def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickne
 
 
 def tube_hole_factors(outer_diameter: float, inner_diameter: float, hole_diameter: float) -> tuple[float, float]:
-    """Stress concentration factors (tension, bending) of a tube with a transverse hole, on the gross section.
+    """Stress concentration factors of a tube with a transverse hole.
 
-    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., 2008, chapter 4 (polynomial fits, used here
-    for d_i/D <= 0.9 and d/D <= 0.4). In bending the hole opens at the extreme fibre. Converged solid models lie up to
-    some 10 % lower in tension and more in bending. Raises ``CannotRunError`` outside that range.
+    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., 2008, chapter 4 (polynomial fits, used here for
+    d_i/D <= 0.9 and d/D <= 0.4). In bending the hole opens at the extreme fibre. Converged solid models lie up to some
+    10 % lower in tension and more in bending.
+
+    Parameters
+    ----------
+    outer_diameter : float
+        D of the tube [mm].
+    inner_diameter : float
+        d_i of the tube [mm].
+    hole_diameter : float
+        d [mm].
+
+    Returns
+    -------
+    tuple of 2 float
+        In tension and in bending, on the gross section.
+
+    Raises
+    ------
+    CannotRunError
+        Outside of that range.
     """
     r, h = inner_diameter / outer_diameter, hole_diameter / outer_diameter
     if not (0.0 <= r <= 0.9 and 0.0 < h <= 0.4):

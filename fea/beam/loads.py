@@ -23,8 +23,12 @@ def _frozen(values: ArrayLike, name: str, *shapes: int) -> Floats:
 class PointLoad:
     """A wrench at a point of the link, in the link's frame.
 
-    point   (3,) x, y, z [mm] (two numbers mean z = 0); off the axis it adds the moment of its force
-    wrench  (6,) Fx, Fy, Fz [N], Mx, My, Mz [N·mm]
+    Attributes
+    ----------
+    point : ndarray, shape (3,)
+        x, y, z [mm] (two numbers mean z = 0); off the axis it adds the moment of its force.
+    wrench : ndarray, shape (6,)
+        Fx, Fy, Fz [N], Mx, My, Mz [N·mm].
     """
 
     point: Floats
@@ -47,8 +51,16 @@ class PointLoad:
 class LineLoad:
     """A force per length on the axis, varying linearly between two stations.
 
-    start, end   x [mm], start < end
-    first, last  (3,) force per length at start and at end [N/mm], in the link's frame; equal for a uniform load
+    Attributes
+    ----------
+    start : float
+        x [mm].
+    end : float
+        x beyond ``start`` [mm].
+    first : ndarray, shape (3,)
+        Force per length at the start, in the link's frame [N/mm].
+    last : ndarray, shape (3,)
+        The same at the end.
     """
 
     start: float
@@ -77,7 +89,15 @@ class LineLoad:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BeamLoads:
-    """All that acts on one link, joint forces included: a balanced set."""
+    """All that acts on one link, joint forces included: a balanced set.
+
+    Attributes
+    ----------
+    points : tuple of PointLoad
+        Wrenches at points.
+    lines : tuple of LineLoad
+        Spread loads.
+    """
 
     points: tuple[PointLoad, ...]
     lines: tuple[LineLoad, ...] = ()

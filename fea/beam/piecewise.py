@@ -16,13 +16,39 @@ _GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 def integral(c: Floats, constant: Floats) -> Floats:
-    """Return the integrals of polynomials with coefficients c (..., k), lowest power first, with their values at 0."""
+    """Integrate polynomials.
+
+    Parameters
+    ----------
+    c : ndarray, shape (..., k)
+        Coefficients, lowest power first.
+    constant : ndarray, shape (...)
+        Values at 0.
+
+    Returns
+    -------
+    ndarray, shape (..., k + 1)
+        Coefficients of the integrals.
+    """
     powers = np.arange(1, c.shape[-1] + 1)
     return np.concatenate([constant[..., None], c / powers], axis=-1)
 
 
 def values(c: Floats, s: float | Floats) -> Floats:
-    """Polynomials with coefficients c (..., k), lowest power first, at s."""
+    """Evaluate polynomials.
+
+    Parameters
+    ----------
+    c : ndarray, shape (..., k)
+        Coefficients, lowest power first.
+    s : float or ndarray
+        Where.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Values.
+    """
     value = np.zeros(c.shape[:-1])
     for power in range(c.shape[-1] - 1, -1, -1):
         value = value * s + c[..., power]
@@ -33,18 +59,39 @@ def values(c: Floats, s: float | Floats) -> Floats:
 class Piecewise:
     """Some functions of x, each a polynomial between neighbouring stations.
 
-    breaks        (k + 1,) stations, rising [mm]
-    coefficients  (k, m, p) of m functions in powers 0..p-1 of the distance from the interval's first station
+    Attributes
+    ----------
+    breaks : ndarray, shape (k + 1,)
+        Stations, rising [mm].
+    coefficients : ndarray, shape (k, m, p)
+        Of m functions in powers 0 to p - 1 of the distance from the interval's first station.
     """
 
     breaks: Floats
     coefficients: Floats
 
     def at(self, x: float, side: Side = "after") -> Floats:
-        """Return the m functions at x; where they jump there, ``side`` tells before from after the jump.
+        """Return the functions at x.
 
-        At the first station "before" and at the last "after" lie outside the beam: there the one-sided value
-        inside is returned. Raises ``CannotRunError`` for x off the beam.
+        At the first station "before" and at the last "after" lie outside the beam: there the one-sided value inside is
+        returned.
+
+        Parameters
+        ----------
+        x : float
+            Station [mm].
+        side : Side, optional
+            Which value, where the functions jump at x.
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            Values.
+
+        Raises
+        ------
+        CannotRunError
+            For x off the beam.
         """
         first, last = self.breaks[0], self.breaks[-1]
         slack = 1e-9 * (last - first)
@@ -55,10 +102,20 @@ class Piecewise:
         return values(self.coefficients[interval], x - self.breaks[interval])
 
     def largest(self, measure: Callable[[Floats], float]) -> tuple[float, Side, float]:
-        """Return station, side and value of the largest measure of the functions over the beam.
+        """Find the largest measure of the functions over the beam.
 
-        Both ends of every interval are tried, and inside it samples, the best of them refined by golden section;
-        a measure that is convex where the functions are linear (any norm) so has its maximum found exactly there.
+        Both ends of every interval are tried, and inside it samples, the best of them refined by golden section; a
+        measure that is convex where the functions are linear (any norm) has its maximum found exactly there.
+
+        Parameters
+        ----------
+        measure : callable
+            Of the values (m,) of the functions.
+
+        Returns
+        -------
+        tuple of float, Side and float
+            Station [mm], side and value.
         """
         best: tuple[float, Side, float] = (float(self.breaks[0]), "after", -np.inf)
         for c, x0, x1 in zip(self.coefficients, self.breaks[:-1], self.breaks[1:], strict=True):

@@ -31,11 +31,18 @@ _TERMS = 600
 class SectionStress:
     """Stresses of one section under N, V, T, M [MPa], the first four each by itself.
 
-    axial       N/A, tension positive
-    bending     at the extreme fibre: round √(M_y² + M_z²) c/I, rectangular |M_z| c_y/I_z + |M_y| c_z/I_y (a corner)
-    torsion     largest shear stress of T
-    shear       largest shear stress of V_y and V_z
-    equivalent  largest von Mises stress √(σ² + 3 τ²) over the section, of all of them together
+    Attributes
+    ----------
+    axial : float
+        N/A, tension positive.
+    bending : float
+        At the extreme fibre: round √(M_y² + M_z²) c/I, rectangular |M_z| c_y/I_z + |M_y| c_z/I_y (a corner).
+    torsion : float
+        Largest shear stress of T.
+    shear : float
+        Largest shear stress of V_y and V_z.
+    equivalent : float
+        Largest von Mises stress √(σ² + 3 τ²) over the section, of all of them together.
     """
 
     axial: float
@@ -46,9 +53,21 @@ class SectionStress:
 
 
 def section_stress(section: Section, forces: Floats, poisson: float = 0.3) -> SectionStress:
-    """Stresses of a section under forces (6,): N, V_y, V_z [N], T, M_y, M_z [N·mm].
+    """Stresses of a section under internal forces.
 
-    Poisson's ratio tells how the shear stress of V is spread.
+    Parameters
+    ----------
+    section : Section
+        Of the beam.
+    forces : ndarray, shape (6,)
+        N, V_y, V_z [N], T, M_y, M_z [N·mm].
+    poisson : float, optional
+        Poisson's ratio, which tells how the shear stress of V is spread.
+
+    Returns
+    -------
+    SectionStress
+        Each by itself and all together.
     """
     n, v_y, v_z, t, m_y, m_z = map(float, forces)
     if section.round:
@@ -66,7 +85,22 @@ def section_stress(section: Section, forces: Floats, poisson: float = 0.3) -> Se
 
 
 def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) -> float:
-    """Largest von Mises stress over a section under forces (6,), the best of a grid refined by parabolas."""
+    """Largest von Mises stress over a section, the best of a grid refined by parabolas.
+
+    Parameters
+    ----------
+    section : Section
+        Of the beam.
+    forces : ndarray, shape (6,)
+        N, V_y, V_z [N], T, M_y, M_z [N·mm].
+    poisson : float, optional
+        Poisson's ratio.
+
+    Returns
+    -------
+    float
+        Stress [MPa].
+    """
     fields = _fields(section, poisson)
     normal, along_y, along_z = np.tensordot(fields, forces, axes=1)
     square = normal**2 + 3.0 * (along_y**2 + along_z**2)
@@ -82,7 +116,20 @@ def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) ->
 
 
 def rim_shear(section: Section, nu: float) -> tuple[float, float]:
-    """Shear stress per unit V_y at (0, ±half_z) and per unit V_z at (±half_y, 0) of a rectangle's rim [1/mm²]."""
+    """Shear stress at the middle of a rectangle's rim.
+
+    Parameters
+    ----------
+    section : Section
+        A rectangle.
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    tuple of 2 float
+        Per unit V_y at (0, ±half_z) and per unit V_z at (±half_y, 0) [1/mm²].
+    """
     fields, middle = _fields(section, nu), _ACROSS // 2
     return float(fields[1, middle, 0, 1]), float(fields[2, 0, middle, 2])
 

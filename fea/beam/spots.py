@@ -31,9 +31,20 @@ Kind = Literal["eye", "hole", "end", "section"]
 class Spot:
     """A place of a link and the estimate of the largest von Mises stress there.
 
-    name      for people: "the eye at A"
-    x         station of its middle [mm]; it reaches from ``low`` to ``high``
-    estimate  by hand [MPa]
+    Attributes
+    ----------
+    kind : Kind
+        Of place.
+    name : str
+        For people: "the eye at A".
+    x : float
+        Station of its middle [mm].
+    low : float
+        Station at which it begins [mm].
+    high : float
+        Station at which it ends [mm].
+    estimate : float
+        By hand [MPa].
     """
 
     kind: Kind
@@ -45,9 +56,26 @@ class Spot:
 
 
 def spots(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[Spot, ...]:
-    """Return every spot of a link under one load case, what lies between eyes, holes and ends as one, the last.
+    """Return every spot of a link under one load case.
 
-    Raises ``CannotRunError`` for a cross hole outside of the handbook's range.
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+    loads : LinkLoads
+        Of one load case.
+    beam : BeamCheck
+        The link by beam theory.
+
+    Returns
+    -------
+    tuple of Spot
+        Eyes, holes, loaded ends; what lies between as one, the last.
+
+    Raises
+    ------
+    CannotRunError
+        For a cross hole outside of the handbook's range.
     """
     first, last = extent(body)
     found = [_eye(body, pin, loads, beam) for pin in body.pins]
@@ -67,10 +95,30 @@ def spots(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[Spot, ...]:
 def displacement_estimate(
     body: Body, loads: LinkLoads, beam: BeamCheck, *, young: float, poisson: float, line: tuple[float, float]
 ) -> float:
-    """Estimate of the largest displacement of any point, relative to the line through two stations [mm].
+    """Estimate of the largest displacement of any point, relative to the line through two stations.
 
     Of the axis by beam theory, straight on where the link stands out beyond its last load, with what the turning of
     sections and eyes adds at the surface, and the give of the eyes under their pins, F/(E t).
+
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+    loads : LinkLoads
+        Of one load case.
+    beam : BeamCheck
+        The link by beam theory.
+    young : float
+        Young's modulus [MPa].
+    poisson : float
+        Poisson's ratio.
+    line : tuple of 2 float
+        x of two stations [mm].
+
+    Returns
+    -------
+    float
+        Displacement [mm].
     """
     section, part = beam.section, body.part
     bent = deflection(beam.forces, section, young=young, poisson=poisson, line=line)
@@ -90,13 +138,25 @@ def displacement_estimate(
 
 
 def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float, float, float]:
-    """Stress concentration factors (tension, bending, torsion) of a shaft of that diameter at a filleted step up.
+    """Stress concentration factors of a shaft at a filleted step up.
 
-    step     height of the shoulder on the radius [mm]; ``radius`` of the fillet [mm]
+    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, 3.10 and 3.12: K = C1 + C2 s + C3 s²
+    + C4 s³ with s = 2 step/D, for step/radius of 0.1 to 20 in tension and bending and of 0.25 to 4 in torsion
+    (clipped).
 
-    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, 3.10 and 3.12:
-    K = C1 + C2 s + C3 s² + C4 s³ with s = 2 step/D, for step/radius of 0.1 to 20 in tension and bending and of 0.25 to
-    4 in torsion (clipped).
+    Parameters
+    ----------
+    diameter : float
+        Of the shaft [mm].
+    step : float
+        Height of the shoulder on the radius [mm].
+    radius : float
+        Of the fillet [mm].
+
+    Returns
+    -------
+    tuple of 3 float
+        In tension, bending and torsion.
     """
     t, s = min(max(step / radius, 0.1), 20.0), 2.0 * step / (diameter + 2.0 * step)
     root = math.sqrt(t)
@@ -119,7 +179,22 @@ def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float
 
 
 def forces_at(beam: BeamCheck, x: float, side: Side = "after") -> NDArray[np.float64]:
-    """Internal forces (6,) at a station; zero on what stands out beyond the last loaded one."""
+    """Internal forces at a station.
+
+    Parameters
+    ----------
+    beam : BeamCheck
+        The link by beam theory.
+    x : float
+        Station [mm].
+    side : Side, optional
+        Which value, where forces jump at x.
+
+    Returns
+    -------
+    ndarray, shape (6,)
+        Forces; zero on what stands out beyond the last loaded station.
+    """
     breaks = beam.forces.breaks
     inside = breaks[0] <= x <= breaks[-1]
     return np.asarray(beam.forces.at(x, side)) if inside else np.zeros(6)

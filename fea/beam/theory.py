@@ -33,9 +33,22 @@ LARGEST_IMBALANCE = 1e-6
 
 
 def internal_forces(loads: BeamLoads) -> Piecewise:
-    """N, V_y, V_z [N], T, M_y, M_z [N·mm] (in this order) along the beam, signs as in the module's docstring.
+    """Internal forces along the beam.
 
-    Raises ``CannotRunError``, naming the resultant, where the loads do not balance to 1e-6 of their sum.
+    Parameters
+    ----------
+    loads : BeamLoads
+        A balanced set.
+
+    Returns
+    -------
+    Piecewise
+        N, V_y, V_z [N], T, M_y, M_z [N·mm], signs as in the module's docstring.
+
+    Raises
+    ------
+    CannotRunError
+        Where the loads do not balance to 1e-6 of their sum, with the resultant.
     """
     if loads.imbalance > LARGEST_IMBALANCE:
         force, moment = loads.resultant[:3], loads.resultant[3:]
@@ -70,18 +83,44 @@ def internal_forces(loads: BeamLoads) -> Piecewise:
 class BeamCheck:
     """Internal forces and stresses along a link, and its safety factor by beam theory.
 
-    The arrays (k,) hold one value per entry of ``x``; a station where something jumps stands there twice, first
-    with the values before it and then with those after. ``forces.at(x, side)`` gives the values anywhere.
+    A station where something jumps stands in ``x`` twice, first with the values before it and then with those after.
 
-    x                  stations [mm]
-    n, v_y, v_z        normal force, tension positive, and shear forces [N]
-    t, m_y, m_z        torque and bending moments [N·mm]
-    axial, bending     N/A, tension positive, and extreme-fibre bending stress, a magnitude [MPa]
-    equivalent         largest von Mises stress over the section [MPa]
-    worst_x            station of the largest equivalent stress [mm]
-    worst              the stresses there
-    strength           the stress that the safety factor counts from [MPa]
-    safety_factor      strength over the largest equivalent stress; infinite where nothing acts
+    Attributes
+    ----------
+    forces : Piecewise
+        Along the beam; ``forces.at(x, side)`` gives the values anywhere.
+    section : Section
+        Of the beam.
+    poisson : float
+        Poisson's ratio.
+    x : ndarray, shape (k,)
+        Stations [mm].
+    n : ndarray, shape (k,)
+        Normal force, tension positive [N].
+    v_y : ndarray, shape (k,)
+        Shear force along y [N].
+    v_z : ndarray, shape (k,)
+        Shear force along z [N].
+    t : ndarray, shape (k,)
+        Torque [N·mm].
+    m_y : ndarray, shape (k,)
+        Bending moment about y [N·mm].
+    m_z : ndarray, shape (k,)
+        Bending moment about z [N·mm].
+    axial : ndarray, shape (k,)
+        N/A, tension positive [MPa].
+    bending : ndarray, shape (k,)
+        Extreme-fibre bending stress, a magnitude [MPa].
+    equivalent : ndarray, shape (k,)
+        Largest von Mises stress over the section [MPa].
+    worst_x : float
+        Station of the largest equivalent stress [mm].
+    worst : SectionStress
+        The stresses there.
+    strength : float
+        The stress that the safety factor counts from [MPa].
+    safety_factor : float
+        Strength over the largest equivalent stress; infinite where nothing acts.
     """
 
     forces: Piecewise
@@ -103,16 +142,48 @@ class BeamCheck:
     safety_factor: float
 
     def stress_at(self, x: float, side: Side = "after") -> SectionStress:
-        """Stresses at a station x [mm]."""
+        """Stresses at a station.
+
+        Parameters
+        ----------
+        x : float
+            Station [mm].
+        side : Side, optional
+            Which value, where forces jump at x.
+
+        Returns
+        -------
+        SectionStress
+            Stresses of the section.
+        """
         return section_stress(self.section, self.forces.at(x, side), self.poisson)
 
 
 def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: float = 0.3) -> BeamCheck:
-    """Hand calculation of a link of constant section under a balanced set of loads.
+    """Hand calculation of a link of constant section.
 
-    strength in MPa; Poisson's ratio tells how the shear stress of V is spread. Raises ``CannotRunError`` for unbalanced
-    loads. Eyes and holes are left out: the section is the one between the eyes, and stress concentration is not in
-    these numbers.
+    Eyes and holes are left out, and stress concentration is not in these numbers.
+
+    Parameters
+    ----------
+    loads : BeamLoads
+        A balanced set.
+    section : Section
+        The one between the eyes.
+    strength : float
+        That the safety factor counts from [MPa].
+    poisson : float, optional
+        Poisson's ratio, which tells how the shear stress of V is spread.
+
+    Returns
+    -------
+    BeamCheck
+        Forces, stresses and the safety factor.
+
+    Raises
+    ------
+    CannotRunError
+        For unbalanced loads.
     """
     forces = internal_forces(loads)
     stations, rows = [], []
@@ -147,7 +218,17 @@ def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: flo
 
 @dataclass(frozen=True, kw_only=True)
 class CantileverCheck:
-    """A whole wing as one cantilever: moment at the root [N·mm], bending stress there [MPa], safety factor."""
+    """A whole wing as one cantilever.
+
+    Attributes
+    ----------
+    moment : float
+        At the root [N·mm].
+    stress : float
+        Of bending there [MPa].
+    safety_factor : float
+        Strength over that stress.
+    """
 
     moment: float
     stress: float
@@ -155,9 +236,25 @@ class CantileverCheck:
 
 
 def uniform_cantilever(weight: float, length: float, section: Section, strength: float) -> CantileverCheck:
-    """Cantilever of a given length [mm] under a total weight [N] spread evenly: M = W L/2, σ = M c/I_z.
+    """Cantilever under a weight spread evenly: M = W L/2, σ = M c/I_z.
 
-    Gere & Goodno, Mechanics of Materials, 8th ed., example 4-5 (q = W/L). ``strength`` in MPa.
+    Gere & Goodno, Mechanics of Materials, 8th ed., example 4-5 (q = W/L).
+
+    Parameters
+    ----------
+    weight : float
+        In all [N].
+    length : float
+        Of the cantilever [mm].
+    section : Section
+        At the root.
+    strength : float
+        That the safety factor counts from [MPa].
+
+    Returns
+    -------
+    CantileverCheck
+        Moment, stress and safety factor.
     """
     if not (length > 0.0 and np.isfinite([weight, length]).all()):
         raise CannotRunError(f"a cantilever needs a length above zero and a finite weight, not {length:g} mm")

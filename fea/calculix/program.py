@@ -41,11 +41,29 @@ def write_deck(
 ) -> None:
     """Write a link's model as a CalculiX input deck (mm, N, MPa).
 
-    loads      (n, 3) nodal forces [N]; those below 1e-12 of the largest are left out
-    supports   fixed unknowns, 3 node + component
-
     Sets: NALL, EALL, SUPPORTS, and the nodes of every named surface (``bore:A`` as BORE_A).
-    Raises ``CannotRunError`` if the file cannot be written.
+
+    Parameters
+    ----------
+    path : Path
+        File to be written.
+    space : DisplacementSpace
+        The link's mesh.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    loads : ndarray, shape (n, 3)
+        Nodal forces [N]; those below 1e-12 of the largest are left out.
+    supports : ndarray of int
+        Fixed unknowns, 3 node + component.
+    title : str
+        First line of the deck, for people.
+
+    Raises
+    ------
+    CannotRunError
+        If the file cannot be written.
     """
     kind = "C3D4" if space.order == 1 else "C3D10"
     nodes, components = np.nonzero(np.abs(loads) > 1e-12 * np.abs(loads).max())
@@ -97,9 +115,26 @@ def installed() -> str | None:
 def run(deck: Path, folder: Path, *, threads: int, time_limit: float) -> tuple[Path, Path]:
     """Let ``ccx`` solve a deck inside ``folder`` and return its .dat and .frd files.
 
-    time_limit   seconds
+    Parameters
+    ----------
+    deck : Path
+        The input file.
+    folder : Path
+        Where ``ccx`` runs and leaves its results.
+    threads : int
+        That ``ccx`` may use.
+    time_limit : float
+        Seconds.
 
-    Raises ``CannotRunError`` if ccx is missing, fails, crashes, takes too long or leaves no result.
+    Returns
+    -------
+    tuple of 2 Path
+        The .dat and the .frd file.
+
+    Raises
+    ------
+    CannotRunError
+        If ccx is missing, fails, crashes, takes too long or leaves no result.
     """
     program = installed()
     if program is None:
@@ -124,8 +159,28 @@ def run(deck: Path, folder: Path, *, threads: int, time_limit: float) -> tuple[P
 def read_dat(path: Path, *, nodes: int, elements: int, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Displacements (nodes, 3) [mm] and stresses (elements, points, 6) [MPa] of a .dat file.
 
-    Stresses in our order xx, yy, zz, xy, yz, xz; points in CalculiX's. Raises ``CannotRunError`` for a file that does
-    not hold every node and every point once, with finite values.
+    Stresses in our order xx, yy, zz, xy, yz, xz; points in CalculiX's.
+
+    Parameters
+    ----------
+    path : Path
+        The .dat file.
+    nodes : int
+        Their number in the deck.
+    elements : int
+        Their number in the deck.
+    points : int
+        Integration points of an element.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        Displacements (nodes, 3) [mm] and stresses (elements, points, 6) [MPa].
+
+    Raises
+    ------
+    CannotRunError
+        For a file that does not hold every node and every point once, with finite values.
     """
     blocks = _blocks(path)
     u = _table(blocks.get("displacements", ()), 4, path)
@@ -176,7 +231,21 @@ def read_frd_stress(path: Path) -> NDArray[np.float64]:
     """Stresses (k, 6) [MPa] at the nodes of the last STRESS block of a .frd file, in our order of components.
 
     CalculiX carries its integration points' stresses to the nodes and averages them, as we do.
-    Raises ``CannotRunError`` where there is no such block.
+
+    Parameters
+    ----------
+    path : Path
+        The .frd file.
+
+    Returns
+    -------
+    ndarray, shape (k, 6)
+        Stress at the nodes [MPa].
+
+    Raises
+    ------
+    CannotRunError
+        Where there is no such block.
     """
     rows: list[list[float]] = []
     inside = False

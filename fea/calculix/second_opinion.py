@@ -33,6 +33,24 @@ def second_opinions(
     """Write ``<link>.inp`` of every link with a solid model into ``folder`` and let CalculiX solve it, if installed.
 
     Each link stands under the load case whose safety factor's band reaches lowest, with the variant that governs.
+
+    Parameters
+    ----------
+    result : CheckResult
+        Of the check, with its solid models.
+    folder : Path
+        Where the decks are written.
+    threads : int, optional
+        That CalculiX may use.
+    time_limit : float, optional
+        For one link [s].
+    progress : callable, optional
+        Called with a sentence before each step.
+
+    Returns
+    -------
+    tuple of SecondOpinion
+        One per link with a solid model.
     """
     found = []
     for link in next(iter(result.load_cases.values())).links:
@@ -71,6 +89,17 @@ def write_model(path: Path, solid: SolidSolution, case: SolidCase, title: str) -
 
     The nodal loads are K u: the consistent loads that u was solved for, less what rounding leaves of it. They balance,
     so any 3-2-1 support serves; it is the one of our own solution.
+
+    Parameters
+    ----------
+    path : Path
+        File to be written.
+    solid : SolidSolution
+        Solution of the link.
+    case : SolidCase
+        The load case and variant to be written.
+    title : str
+        First line of the deck, for people.
     """
     space = solid.space
     K = assemble_stiffness(space, E=solid.E, nu=solid.nu)
@@ -87,7 +116,28 @@ def ask(
 ) -> Answer:
     """Let CalculiX solve a deck and compare its fields with our displacement (n, 3) and stress.
 
-    Raises ``CannotRunError`` where it does not answer.
+    Parameters
+    ----------
+    deck : Path
+        The input file.
+    displacement : ndarray, shape (n, 3)
+        Our displacements [mm].
+    stress : StressField
+        Our stress.
+    threads : int
+        That CalculiX may use.
+    time_limit : float
+        Seconds.
+
+    Returns
+    -------
+    Answer
+        CalculiX's largest values, and how far they lie from ours.
+
+    Raises
+    ------
+    CannotRunError
+        Where it does not answer.
     """
     space = stress.space
     count = stress.at_points.shape[1]

@@ -12,38 +12,24 @@ Sources round their figures or cut them off: a figure of two digits or more hold
 says which.
 """
 
-import csv
-import io
 import math
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from enum import Enum
-from functools import partial
 from typing import Any
 
-from fea.claims.data import Tree, case_tree, flapping_tree, look_up, system_tree
+from fea.claims.data import look_up
 from geometry.base.errors import CaseError
-from geometry.mechanisms.flapping import FlappingWing
-from loads.case.case_file import built_in_cases, read_case, read_companion
-from loads.sources.claim import Claim, Printed, Source, System, TableSystem, read_printed, read_source, sources
+from loads.sources.claim import Claim, Printed, read_printed
 from loads.sources.expression import Path, evaluate
 from loads.sources.quantity import ANGLE, Value
 from loads.text.explain import printable
 
-FIDELITIES = ("solid", "beam")
 SOLID_LEFT_OUT = "the solid model, which runs with --fidelity solid"
 ZERO = 1e-9
 """Share of the printed figure below which ours is rounding error."""
 SAMPLING = 1e-3
 """Share of a figure below which what its name says is taken for the figure itself."""
-_CELLS = {
-    "ground_d_mm": ("ground", "", "mm"),
-    "grashof_satisfied": ("grashof", "", ""),
-    "phase_lag_deg": ("published.phase_lag", "metrics.phase_lag", "deg"),
-    "oscillation_deg": ("published.oscillation", "metrics.oscillation", "deg"),
-    "asymmetry_deg": ("published.asymmetry", "metrics.asymmetry", "deg"),
-}
-"""Columns of a table of designs: our quantity, what the name says, unit."""
 
 
 class Finding(Enum):
@@ -64,8 +50,16 @@ class Finding(Enum):
 class ClaimResult:
     """A claim and what became of it.
 
-    ours   our value in the unit of the published figure, as text; None where there is none
-    note   one plain sentence or two
+    Attributes
+    ----------
+    claim : Claim
+        As the source publishes it.
+    finding : Finding
+        What became of it.
+    ours : str or None
+        Our value in the unit of the published figure, as text; None where there is none.
+    note : str
+        One plain sentence or two.
     """
 
     claim: Claim
@@ -78,7 +72,7 @@ class _NotStatedError(Exception):
     """A path led to what the source does not state."""
 
 
-class _Names:
+class Names:
     """Paths of one claim: the source's systems, its figures, the claim's case, and what is not stated."""
 
     def __init__(self, tree: Mapping[str, Any], given: Mapping[str, str], missing: Mapping[str, str]) -> None:
@@ -86,6 +80,7 @@ class _Names:
         self.depth = 0
 
     def __call__(self, path: Path) -> Value | str:
+        """Return the value at a path."""
         if path[0] == "not_stated" and len(path) == 2 and path[1] in self.missing:
             raise _NotStatedError(self.missing[path[1]])
         if path[0] == "given" and len(path) == 2 and path[1] in self.given:
@@ -104,76 +99,26 @@ class _Names:
         return look_up(self.tree, path)
 
 
-def check_claims(
-    name: str, *, overrides: Iterable[str] = (), fidelity: str = "solid", threads: int = 2
-) -> tuple[ClaimResult, ...]:
-    """Re-derive the claims of a case or of a source document.
-
-    name       a source (``owl-wing``: all its claims), a built-in case (the claims of any source that belong to it,
-               and its own), or the path of a case file (its own ``[[claims]]``)
-    overrides  entries of the case to set anew, as ``path=value``
-    fidelity   "beam" leaves out the claims that need a solid model: they cannot be re-derived then
-
-    Raises ``CaseError`` for a name that is neither, and for a claim that cannot be read.
-    """
-    if fidelity not in FIDELITIES:
-        raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
-    overrides = tuple(overrides)
-    solve = partial(_tree_of, threads=threads, fidelity=fidelity)
-    found: list[ClaimResult] = []
-    for source in sources():
-        record = read_source(source)
-        if source == name:
-            found += _check_source(record, None, solve)
-        elif any(claim.case == name for claim in record.claims):
-            found += _check_source(record, name, partial(solve, overrides={name: overrides}))
-    if name in built_in_cases() or not found:
-        case = read_case(name, overrides)
-        tree = case_tree(case, name, fidelity=fidelity, threads=threads)
-        found += [check_claim(claim, _Names(tree, {}, claim.not_stated)) for claim in case.claims]
-    elif overrides and name in sources():
-        raise CaseError(f"--set: '{name}' is a source document, not a case; name a case to set its entries anew")
-    return tuple(found)
-
-
-def check_all(*, fidelity: str = "solid", threads: int = 2) -> dict[str, tuple[ClaimResult, ...]]:
-    """Re-derive the claims of every source document, by its name."""
-    return {name: check_claims(name, fidelity=fidelity, threads=threads) for name in sources()}
-
-
-def _tree_of(
-    system: System | str, *, fidelity: str, threads: int, overrides: Mapping[str, tuple[str, ...]] | None = None
-) -> Mapping[str, Any]:
-    """Return the quantities of a system, or of a built-in case by its name."""
-    if isinstance(system, str):
-        case = read_case(system, (overrides or {}).get(system, ()))
-        return case_tree(case, system, fidelity=fidelity, threads=threads)
-    return system_tree(system, fidelity=fidelity, threads=threads)
-
-
-def _check_source(source: Source, case: str | None, solve: Callable[..., Mapping[str, Any]]) -> list[ClaimResult]:
-    """Re-derive the claims of a source: all, or those of one case."""
-    systems = {
-        key: partial(solve, system) for key, system in source.systems.items() if not isinstance(system, TableSystem)
-    }
-    cases = Tree(**{name: partial(solve, name) for name in built_in_cases()})
-    found = []
-    for claim in source.claims:
-        if case is not None and claim.case != case:
-            continue
-        branches: dict[str, Callable[[], Any]] = dict(systems)
-        if claim.case is not None and claim.case in cases:
-            tree = cases[claim.case]
-            branches |= {key: partial(tree.__getitem__, key) for key in tree}
-        found.append(check_claim(claim, _Names(Tree(**branches), source.given, source.not_stated | claim.not_stated)))
-    for key, system in source.systems.items():
-        if case is None and isinstance(system, TableSystem):
-            found += check_table(key, system)
-    return found
-
-
 def check_claim(claim: Claim, names: Callable[[Path], Value | str]) -> ClaimResult:
-    """Re-derive one claim; raises ``CaseError`` where an expression is wrong."""
+    """Re-derive one claim.
+
+    Parameters
+    ----------
+    claim : Claim
+        The claim.
+    names : callable
+        Returns the value of a path.
+
+    Returns
+    -------
+    ClaimResult
+        The claim with its finding.
+
+    Raises
+    ------
+    CaseError
+        Where an expression is wrong.
+    """
     printed = read_printed(claim.published)
     missing: list[str] = []
 
@@ -294,51 +239,3 @@ def _off(value: Value | str, printed: Printed | None) -> str:
         much, factor = ("large", ratio) if ratio > 1.0 else ("small", 1.0 / ratio if ratio else math.inf)
         return f": the printed figure is {factor:.3g} times too {much}"
     return f": the printed figure is {abs(ratio - 1.0) * 100.0:.2g} % too {'large' if ratio > 1.0 else 'small'}"
-
-
-def check_table(name: str, table: TableSystem) -> list[ClaimResult]:
-    """Re-derive every published cell of a table of flapping-wing designs; claims are named ``table.model.column``.
-
-    A cell that does not hold, but stands in another row of the column where it does hold, is told as such: figures
-    slip into the wrong row when tables are copied.
-    """
-    text = read_companion(built_in_cases()[0], table.file)
-    found: list[ClaimResult] = []
-    for row in csv.DictReader(io.StringIO("".join(x for x in text.splitlines(True) if not x.startswith("#")))):
-        lengths = ("crank_a_mm", "coupler_b_mm", "rocker_c_mm", "width_x_mm", "height_y_mm")
-        crank, coupler, rocker, width, height = (float(row[column]) for column in lengths)
-        tree = flapping_tree(FlappingWing(crank=crank, coupler=coupler, rocker=rocker, width=width, height=height))
-        where = f"{row['table']}.{row['model']}"
-        names = _Names({name: {row["table"]: {row["model"]: tree}}}, {}, {})
-        for column, (quantity, means, unit) in _CELLS.items():
-            if not row[column]:
-                continue
-            prefix = f"{name}.{where}."
-            claim = Claim(
-                name=f"{where}.{column}",
-                quantity=prefix + quantity,
-                means=prefix + means if means else "",
-                published=f"{row[column]} {unit}".strip(),
-                source=f"{table.source}, table {row['table']}, row {row['model']}",
-            )
-            found.append(check_claim(claim, names))
-    return [_with_twin(result, found) for result in found]
-
-
-def _with_twin(result: ClaimResult, all_cells: list[ClaimResult]) -> ClaimResult:
-    if not result.finding.refutes:
-        return result
-    table, _, column = result.claim.name.split(".")
-    twins = [
-        other.claim.name
-        for other in all_cells
-        if other.finding is Finding.HOLDS
-        and other.claim.name.split(".")[2] == column
-        and other.claim.published == result.claim.published
-    ]
-    if not twins:
-        return result
-    near = min(twins, key=lambda twin: twin.split(".")[0] != table)
-    return replace(
-        result, note=f"{result.note} The same figure stands in row {near.rpartition('.')[0]}, where it holds."
-    )

@@ -67,7 +67,25 @@ class Tree(Mapping[str, Any]):
 
 
 def look_up(tree: Mapping[str, Any], path: Path) -> Value | str:
-    """Return the leaf at a path; raises ``CaseError`` naming what there is instead."""
+    """Return the leaf at a path.
+
+    Parameters
+    ----------
+    tree : dict of str to Any
+        Quantities by name.
+    path : Path
+        Names from the root to the leaf.
+
+    Returns
+    -------
+    Value or str
+        The leaf.
+
+    Raises
+    ------
+    CaseError
+        Naming what there is instead.
+    """
     here: Any = tree
     for i, name in enumerate(path):
         if not isinstance(here, Mapping) or name not in here:
@@ -92,9 +110,23 @@ def _yes(fact: bool) -> str:
 
 
 def case_tree(case: Case, name: str, *, fidelity: str = "solid", threads: int = 2) -> Tree:
-    """Return the quantities of a case. ``name`` is its path or built-in name.
+    """Return the quantities of a case.
 
-    With ``fidelity`` "beam" the branch ``solid`` is left out.
+    Parameters
+    ----------
+    case : Case
+        The case.
+    name : str
+        Its path or built-in name.
+    fidelity : str, optional
+        "solid" or "beam", which leaves out the branch ``solid``.
+    threads : int, optional
+        Upper bound on the threads of a solver.
+
+    Returns
+    -------
+    Tree
+        Its quantities, each computed when it is first asked for.
     """
     parts = Tree(
         statics=lambda: solve_case_statics(case, name),
@@ -226,7 +258,22 @@ def _material(case: Case, link: str) -> Mapping[str, Any]:
 
 
 def system_tree(system: System, *, fidelity: str = "solid", threads: int = 2) -> Mapping[str, Any]:
-    """Return the quantities of a system that a source describes."""
+    """Return the quantities of a system that a source describes.
+
+    Parameters
+    ----------
+    system : System
+        Record of the system in its source.
+    fidelity : str, optional
+        "solid" or "beam", which leaves out the branch ``solid``.
+    threads : int, optional
+        Upper bound on the threads of a solver.
+
+    Returns
+    -------
+    dict of str to Any
+        Its quantities by name.
+    """
     if isinstance(system, CaseSystem):
         return case_tree(read_case(system.case), system.case, fidelity=fidelity, threads=threads)
     if isinstance(system, FlappingSystem):
@@ -247,7 +294,18 @@ def system_tree(system: System, *, fidelity: str = "solid", threads: int = 2) ->
 
 
 def flapping_tree(wing: FlappingWing) -> Tree:
-    """Return ground, Grashof, and the metrics by the source's definition (``published``) and by their names."""
+    """Return ground, Grashof, and the metrics by the source's definition (``published``) and by their names.
+
+    Parameters
+    ----------
+    wing : FlappingWing
+        The mechanism's dimensions.
+
+    Returns
+    -------
+    Tree
+        Its quantities by name.
+    """
     rad = ("phase_lag", "oscillation", "asymmetry")
     return Tree(
         ground=lambda: Value.of(wing.ground, "mm"),

@@ -39,7 +39,7 @@ class FrameSolution:
     """Displacements and forces of a frame (n nodes, m elements).
 
     displacements      (n, 6) [mm, rad], global axes; a rotation in which no element takes part stands as zero
-    end_displacements  (m, 2, 6) of the two ends of each beam, beyond arms and releases, local axes
+    end_displacements  (m, 2, 6) of the two ends of each beam, beyond the arms, local axes
     end_forces         (m, 2, 6) what acts on the two ends of each beam, beyond the arms, local axes [N, N·mm]
     joint_wrenches     (n, 6) what ties, guides and supports together do to the part of the frame at each node, global
                        axes: the joint force at a pin; zero (to rounding) at nodes without any

@@ -53,14 +53,27 @@ Kind = Literal["one mesh", "two meshes", "monotone", "irregular", "growing"]
 class GridConvergence:
     """A number on successive meshes, coarse to fine, and what follows for its limit.
 
-    sizes     representative element sizes where the number is taken [mm]
-    values    the number on these meshes
-    order     observed order p; None where too few meshes or an oscillation give none
-    kind      "monotone": p makes sense; "irregular": it does not; "growing": no limit is in sight;
-              "one mesh", "two meshes": there is no order yet
-    factor    safety factor F in the index
-    multiple  of the estimate that the band is, where that and not the index set it; else None
     low, high interval that holds the limit; infinite where ``kind`` is "growing"
+
+    Attributes
+    ----------
+    sizes : tuple of float
+        Representative element sizes where the number is taken [mm].
+    values : tuple of float
+        The number on these meshes.
+    order : float or None
+        Observed order p; None where too few meshes or an oscillation give none.
+    kind : Kind
+        "monotone": p makes sense; "irregular": it does not; "growing": no limit is in sight; "one mesh", "two meshes":
+        there is no order yet.
+    factor : float
+        Safety factor F in the index.
+    low : float
+        Lower end of the interval that holds the limit; infinite where ``kind`` is "growing".
+    high : float
+        Its upper end.
+    multiple : float or None
+        Of the estimate that the band is, where that and not the index set it; else None.
     """
 
     sizes: tuple[float, ...]
@@ -118,21 +131,38 @@ def grid_convergence(
 ) -> GridConvergence:
     """Judge a series of meshes, coarse to fine, by its three finest.
 
-    estimate   of the error on the finest mesh, from the recovered stress where the number is taken. One mesh
-               alone is given ``ALONE`` times that, two at least that. The index of more is not taken for less than
-               ``FLOOR`` times that, nor, for a monotone series and while the number moves by less, for more than
-               ``CEILING`` times (``TOO_HIGH`` where the order is). An irregular one of low order
-               or none has no ceiling.
-    sharp      True at a re-entrant edge, where three meshes tell that a number grows without limit. Elsewhere four
-               must: the three before the finest have to rise like that as well.
-
     A number grows where its last step is significant (``SIGNIFICANT``, and above the estimate) and the order below
     ``NO_LIMIT``. A monotone series of an order up to the elements' own has its limit beyond its last value, so the
     interval reaches ``BACKWARD`` of the index the other way. A higher order is that of an error about to change its
     sign: such an interval is symmetric, as is that of a series that oscillates; both count what the step before would
     leave at the elements' own order, since two values may agree by accident.
 
-    Raises ``CannotRunError`` for sizes that do not fall by ``LEAST_RATIO`` each.
+    Parameters
+    ----------
+    sizes : sequence of float
+        Element sizes where the number is taken, coarse to fine [mm].
+    values : sequence of float
+        The number on these meshes.
+    estimate : float
+        Of the error on the finest mesh, from the recovered stress where the number is taken. One mesh alone is given
+        ``ALONE`` times that, two at least that. The index of more is not taken for less than ``FLOOR`` times that, nor,
+        for a monotone series and while the number moves by less, for more than ``CEILING`` times (``TOO_HIGH`` where
+        the order is). An irregular one of low order or none has no ceiling.
+    formal_order : float, optional
+        Order of the elements for this number.
+    sharp : bool, optional
+        True at a re-entrant edge, where three meshes tell that a number grows without limit. Elsewhere four must: the
+        three before the finest have to rise like that as well.
+
+    Returns
+    -------
+    GridConvergence
+        The series with its order and band.
+
+    Raises
+    ------
+    CannotRunError
+        For sizes that do not fall by ``LEAST_RATIO`` each.
     """
     if len(sizes) != len(values) or not sizes:
         raise CannotRunError(f"a series of {len(sizes)} sizes and {len(values)} values shows no convergence")
@@ -205,9 +235,19 @@ def _share(h: Sequence[float], order: float) -> float:
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | None:
-    """Order p, negative for a number that diverges, of three meshes, coarse to fine; None where they oscillate.
+    """Order p of three meshes, negative for a number that diverges; None where they oscillate.
 
-    Limited to −4 to 12.
+    Parameters
+    ----------
+    sizes : sequence of float
+        Element sizes of three meshes, coarse to fine [mm].
+    values : sequence of float
+        The number on them.
+
+    Returns
+    -------
+    float or None
+        The order, from -4 to 12.
     """
     h3, h2, h1 = sizes
     first, second = values[1] - values[0], values[2] - values[1]
@@ -234,10 +274,25 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
 
 
 def williams_exponent(angle: float) -> float:
-    """Exponent λ of the displacements r^λ at a re-entrant edge of that material angle [rad], π < angle ≤ 2π.
+    """Exponent λ of the displacements r^λ at a re-entrant edge with free faces.
 
-    Stress grows as r^(λ−1). The smallest root in (0.5, 1) of sin λβ = −λ sin β, the symmetric field with free
-    faces (M. L. Williams, J. Appl. Mech. 19 (1952) 526-528; J. R. Barber, Elasticity, 3rd ed., eq. 11.39).
+    Stress grows as r^(λ−1). λ is the smallest root in (0.5, 1) of sin λβ = −λ sin β, the symmetric field (M. L.
+    Williams, J. Appl. Mech. 19 (1952) 526-528; J. R. Barber, Elasticity, 3rd ed., eq. 11.39).
+
+    Parameters
+    ----------
+    angle : float
+        Of the material at the edge, π < angle ≤ 2π [rad].
+
+    Returns
+    -------
+    float
+        The exponent λ, from 0.5 to 1.
+
+    Raises
+    ------
+    ValueError
+        For an angle that is not re-entrant.
     """
     if not math.pi < angle <= 2.0 * math.pi + 1e-12:
         raise ValueError(f"an angle of {math.degrees(angle):g}° is not re-entrant")

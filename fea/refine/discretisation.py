@@ -17,16 +17,25 @@ UNKNOWN: tuple[Status, ...] = ("unresolved", "edge", "singular", "growing")
 class Discretisation:
     """How precise the deciding stress of a link is under one load case.
 
-    status        "converged": within the accuracy on at least three meshes; "decided": not that narrow, but the
-                  verdict is clear; "far": one mesh, every limit far away; "not reached": a limit of the run ended
-                  the refinement first. Without safety factor: "unresolved": the mesh is too coarse for any estimate;
-                  "edge": a sharp edge bears much and too few meshes tell whether its stress has a limit; "singular",
-                  "growing": the peak has no limit
-    accuracy      that was aimed at, relative
-    stress        series of the deciding stress; ``displacement`` of the largest displacement
-    meshes        of the link, coarse to fine
-    sharp         the singular peak
-    stopped       why refinement ended before its aim; "" where it did not
+    Attributes
+    ----------
+    status : Status
+        "converged": within the accuracy on at least three meshes; "decided": not that narrow, but the verdict is clear;
+        "far": one mesh, every limit far away; "not reached": a limit of the run ended the refinement first. Without
+        safety factor: "unresolved": the mesh is too coarse for any estimate; "edge": a sharp edge bears much and too
+        few meshes tell whether its stress has a limit; "singular", "growing": the peak has no limit.
+    accuracy : float
+        That was aimed at, relative.
+    stress : GridConvergence
+        Series of the deciding stress.
+    displacement : GridConvergence
+        Of the largest displacement.
+    meshes : tuple of MeshRecord
+        Of the link, coarse to fine.
+    sharp : SharpPeak or None
+        The singular peak.
+    stopped : str
+        Why refinement ended before its aim; "" where it did not.
     """
 
     status: Status
@@ -100,8 +109,14 @@ def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> S
     Parameters
     ----------
     series : GridConvergence
-    sharp_edges : int
-        Of the link, where the band is of a stress.
+        Of the number that has the band.
+    sharp_edges : int, optional
+        Number of re-entrant edges, where the band is of a stress.
+
+    Returns
+    -------
+    Source
+        With its words for people.
     """
     if series.kind == "one mesh":
         text = "estimated on one mesh, fourfold"
@@ -116,7 +131,22 @@ def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> S
 
 
 def judged(refined: RefinedSolid, number: int, *, brittle: bool) -> Discretisation:
-    """Say how precise case ``number`` of a solution is; the principal stress decides where ``brittle``."""
+    """Say how precise a case of a solution is.
+
+    Parameters
+    ----------
+    refined : RefinedSolid
+        The link on its meshes.
+    number : int
+        Of the case among ``refined.precision``.
+    brittle : bool
+        True where the principal stress decides, False where von Mises does.
+
+    Returns
+    -------
+    Discretisation
+        How precise the deciding stress is.
+    """
     case = refined.precision[number]
     stress = case.principal if brittle else case.von_mises
     status: Status

@@ -31,9 +31,14 @@ DEGREE = 5
 class ErrorEstimate:
     """Estimated error of one solution.
 
-    energy       (m,) energy norm of the error in each element [√(N mm)]
-    stress       (m,) root mean square of the error's von Mises stress in each element [MPa]
-    energy_norm  ‖u_h‖ of the solution, the root of twice its strain energy [√(N mm)]
+    Attributes
+    ----------
+    energy : ndarray, shape (m,)
+        Energy norm of the error in each element [√(N mm)].
+    stress : ndarray, shape (m,)
+        Root mean square of the error's von Mises stress in each element [MPa].
+    energy_norm : float
+        ‖u_h‖ of the solution, the root of twice its strain energy [√(N mm)].
     """
 
     energy: NDArray[np.float64]
@@ -52,7 +57,24 @@ class ErrorEstimate:
 
 
 def estimate_error(field: StressField, displacement: NDArray[np.float64], *, E: float, nu: float) -> ErrorEstimate:
-    """Estimate the error of nodal displacements (n, 3) [mm] whose recovered stress is ``field``; E [MPa]."""
+    """Estimate the error of nodal displacements.
+
+    Parameters
+    ----------
+    field : StressField
+        Stress recovered from the displacements.
+    displacement : ndarray, shape (n, 3)
+        At the nodes [mm].
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    ErrorEstimate
+        The estimated error, element by element.
+    """
     space = field.space
     phi = reference_basis(space, DEGREE)[2]
     energy, square, total = np.empty(len(space.cells)), np.empty(len(space.cells)), 0.0
@@ -67,12 +89,22 @@ def estimate_error(field: StressField, displacement: NDArray[np.float64], *, E: 
 def energy_factor(estimates: Sequence[float], energies: Sequence[float]) -> float | None:
     """True over estimated error in the energy norm, by the two finest of several meshes; None where they do not tell.
 
-    estimates   ‖η‖ of each mesh, coarse to fine [√(N mm)]; ``energies`` U_h of their solutions [N mm]
-
     Under given loads the strain energy lacks half the square of the error, ‖e‖² = 2 (U − U_h) (Szabó & Babuška,
     Finite Element Analysis, 1991, section 4.1), whatever the meshes. So what one mesh gains on another is what the
     error has lost, 2 (U_2 − U_1) = ‖e_1‖² − ‖e_2‖², and if the estimate misses both by the same factor, ‖e‖ = c ‖η‖,
     then c² = 2 (U_2 − U_1)/(‖η_1‖² − ‖η_2‖²). Nothing follows where energy falls or the estimate does not.
+
+    Parameters
+    ----------
+    estimates : sequence of float
+        ‖η‖ of each mesh, coarse to fine [√(N mm)].
+    energies : sequence of float
+        Strain energies U_h of their solutions [N mm].
+
+    Returns
+    -------
+    float or None
+        True over estimated error.
     """
     if len(estimates) < 2:
         return None
@@ -82,13 +114,41 @@ def energy_factor(estimates: Sequence[float], energies: Sequence[float]) -> floa
 
 
 def relative_error(error: float, energy_norm: float) -> float:
-    """η = ‖e‖/√(‖u_h‖² + ‖e‖²) (Zienkiewicz and Zhu 1987, eq. 24) of an error in the energy norm."""
+    """Error in the energy norm relative to the solution, η = ‖e‖/√(‖u_h‖² + ‖e‖²) (Zienkiewicz and Zhu 1987, eq. 24).
+
+    Parameters
+    ----------
+    error : float
+        ‖e‖ [√(N mm)].
+    energy_norm : float
+        ‖u_h‖ [√(N mm)].
+
+    Returns
+    -------
+    float
+        Η.
+    """
     whole = float(np.hypot(energy_norm, error))
     return error / whole if whole > 0.0 else 0.0
 
 
 def energy_density(sigma: NDArray[np.float64], E: float, nu: float) -> NDArray[np.float64]:
-    """σ : C⁻¹ : σ = ((1+ν) σ:σ − ν (tr σ)²)/E [MPa] of components (..., 6): twice the strain energy per volume."""
+    """Twice the energy density of a stress, σ : C⁻¹ : σ = ((1+ν) σ:σ − ν (tr σ)²)/E.
+
+    Parameters
+    ----------
+    sigma : ndarray, shape (..., 6)
+        Stress components [MPa].
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Twice the strain energy per volume [MPa].
+    """
     trace = sigma[..., :3].sum(axis=-1)
     square = (sigma[..., :3] ** 2).sum(axis=-1) + 2.0 * (sigma[..., 3:] ** 2).sum(axis=-1)
     return np.asarray(((1.0 + nu) * square - nu * trace**2) / E)

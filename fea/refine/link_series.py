@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.refine.convergence import LEAST_RATIO, GridConvergence, grid_convergence
-from fea.refine.error_estimate import ErrorEstimate, energy_factor, estimate_error, relative_error
+from fea.refine.error_estimate import energy_factor, relative_error
+from fea.refine.level import Level
 from fea.refine.singular import ON_EDGE, SharpPeak, edge_distance, loaded_edge, sharp_peak
 from fea.refine.target_sizes import LocalGoal
-from fea.solid.solution import SolidSolution
-from fea.solid.stress import stress_field
 from geometry.meshing.mesh import ReentrantEdge
-from loads.records.bearing import CONTACT_SHORTFALL, NARROW, Span
+from loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
 DISPLACEMENT_ORDER = 3.0
 """Of the displacements of quadratic elements."""
@@ -24,8 +23,6 @@ CHORD = 2.0
 NOT_RESOLVED = 0.3
 """Relative error in the energy norm above which nothing is said: estimates and orders are asymptotic. Curved elements
 25 diameters long left a tube 55 % too stiff, where a band of the estimate (0.53, hence 28 %) would have missed it."""
-_EDGE = (6.0 * np.sqrt(2.0)) ** (1.0 / 3.0)  # edge of a regular tetrahedron over the cube root of its volume
-_NEIGHBOURS = 8
 AROUND = 1.5
 """Radius about a peak, in sizes of the first mesh, in which a series measures its sizes and the next mesh is finer."""
 
@@ -36,7 +33,19 @@ Doubt = Literal["", "coarse", "edge"]
 
 @dataclass(frozen=True, kw_only=True)
 class Eye:
-    """The disc about a pin within which its pressure rules: centre (x, y) and radius [mm]; drawn out along a slot."""
+    """The disc about a pin within which its pressure rules, drawn out along a slot.
+
+    Attributes
+    ----------
+    x : float
+        Of the centre [mm].
+    y : float
+        Of the centre [mm].
+    radius : float
+        Of the disc [mm].
+    slot : float
+        Length along x by which the disc is drawn out [mm].
+    """
 
     x: float
     y: float
@@ -44,73 +53,44 @@ class Eye:
     slot: float = 0.0
 
     def holds(self, nodes: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether points (n, 3) lie in it."""
+        """Whether points lie in it.
+
+        Parameters
+        ----------
+        nodes : ndarray, shape (n, 3)
+            Points [mm].
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+            Whether each lies in the disc.
+        """
         along = np.maximum(np.abs(nodes[:, 0] - self.x) - self.slot / 2.0, 0.0)
         return np.asarray(np.hypot(along, nodes[:, 1] - self.y) <= self.radius)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CaseFigures:
-    """One case on one mesh.
-
-    von_mises, principal  nodal stresses (n,) [MPa]
-    estimate              of its error; ``energy`` its strain energy [N mm]
-    displacement          the largest [mm]
-    span                  of the pins' pressure [degrees]
-    """
-
-    von_mises: NDArray[np.float64]
-    principal: NDArray[np.float64]
-    estimate: ErrorEstimate
-    energy: float
-    displacement: float
-    span: Span
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Level:
-    """What is kept of one mesh.
-
-    nodes      (n, 3) [mm]; cells (m, b)
-    centres    (m, 3) of the elements [mm], volumes (m,) [mm³]
-    chord      relative difference of volume between mesh and geometry
-    figures    of every case, in the order of the solution's cases
-    """
-
-    nodes: NDArray[np.float64]
-    cells: NDArray[np.int64]
-    centres: NDArray[np.float64]
-    volumes: NDArray[np.float64]
-    chord: float
-    figures: tuple[CaseFigures, ...]
-
-    def size(self, place: NDArray[np.float64], radius: float = 0.0) -> float:
-        """Mean element edge [mm] of the elements within a radius of a place, at least of the nearest few."""
-        distance = np.linalg.norm(self.centres - place, axis=1)
-        near = distance <= max(radius, float(np.partition(distance, _NEIGHBOURS)[_NEIGHBOURS]))
-        return float(_EDGE * np.cbrt(self.volumes[near].mean()))
-
-    @property
-    def mean_size(self) -> float:
-        """Element edge [mm] of the mean volume."""
-        return float(_EDGE * np.cbrt(self.volumes.mean()))
-
-    def around(self, nodal: NDArray[np.float64], place: NDArray[np.float64], radius: float) -> int:
-        """Node of the largest value within a radius of a place, at least the nearest node."""
-        distance = np.linalg.norm(self.nodes - place, axis=1)
-        return int(np.argmax(np.where(distance <= max(radius, float(distance.min())), nodal, -np.inf)))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CasePrecision:
     """How far the numbers of one solved case are from their limits on ever finer meshes.
 
-    edge        the stress where a sharp edge bears most; None without an edge that bears much
-    sharp       the singular peak that the case has there; None where there is none
-    doubt       why there is no band: "coarse" where the mesh resolves nothing; "edge" where a sharp edge bears much and
-                the meshes do not tell yet whether its stress has a limit, which leaves displacements alone
-    in_contact  quantity -> largest stress in the eyes [MPa], with what contact adds to the narrow pressure's; 0 under
-                the wide one
+    Attributes
+    ----------
+    von_mises : GridConvergence
+        Series of the largest von Mises stress.
+    principal : GridConvergence
+        Series of the largest principal stress.
+    displacement : GridConvergence
+        Series of the largest displacement.
+    edge : GridConvergence or None
+        The stress where a sharp edge bears most; None without an edge that bears much.
+    sharp : SharpPeak or None
+        The singular peak that the case has there; None where there is none.
+    doubt : Doubt
+        Why there is no band: "coarse" where the mesh resolves nothing; "edge" where a sharp edge bears much and the
+        meshes do not tell yet whether its stress has a limit, which leaves displacements alone.
+    in_contact : dict of Quantity to float
+        Quantity -> largest stress in the eyes [MPa], with what contact adds to the narrow pressure's; 0 under the wide
+        one.
     """
 
     von_mises: GridConvergence
@@ -122,22 +102,66 @@ class CasePrecision:
     in_contact: Mapping[Quantity, float]
 
     def series(self, quantity: Quantity) -> GridConvergence:
-        """The series of a quantity."""
+        """The series of a quantity.
+
+        Parameters
+        ----------
+        quantity : Quantity
+            Which number.
+
+        Returns
+        -------
+        GridConvergence
+            Its series.
+        """
         found: GridConvergence = getattr(self, quantity)
         return found
 
     def known(self, quantity: Quantity) -> bool:
-        """False where no number stands for the quantity."""
+        """False where no number stands for the quantity.
+
+        Parameters
+        ----------
+        quantity : Quantity
+            Which number.
+
+        Returns
+        -------
+        bool
+            False where no number stands for it.
+        """
         if self.doubt == "coarse" or self.series(quantity).kind == "growing":
             return False
         return quantity == "displacement" or (self.sharp is None and self.doubt == "")
 
     def low(self, quantity: Quantity) -> float:
-        """Lower end of the band, not below zero."""
+        """Lower end of the band, not below zero.
+
+        Parameters
+        ----------
+        quantity : Quantity
+            Which number.
+
+        Returns
+        -------
+        float
+            Lower end; -inf where the number is unknown [MPa, mm].
+        """
         return max(self.series(quantity).low, 0.0) if self.known(quantity) else -math.inf
 
     def high(self, quantity: Quantity) -> float:
-        """Upper end of the band: of the meshes and, for what an eye bears, of pin contact on top."""
+        """Upper end of the band: of the meshes and, for what an eye bears, of pin contact on top.
+
+        Parameters
+        ----------
+        quantity : Quantity
+            Which number.
+
+        Returns
+        -------
+        float
+            Upper end; inf where the number is unknown [MPa, mm].
+        """
         if not self.known(quantity):
             return math.inf
         series = self.series(quantity)
@@ -145,46 +169,43 @@ class CasePrecision:
         return max(series.high, contact * series.high / series.value if series.value > 0.0 else 0.0)
 
 
-def level_of(solution: SolidSolution, volume: float) -> Level:
-    """Condense a solution on a mesh of a body of that volume [mm³]."""
-    space, figures = solution.space, []
-    weights = np.empty(0)
-    for case in solution.cases:
-        field = stress_field(space, case.displacement, E=solution.E, nu=solution.nu)
-        weights = field.weights.sum(axis=1)
-        figures.append(
-            CaseFigures(
-                von_mises=field.von_mises,
-                principal=field.principal[:, 0],
-                estimate=estimate_error(field, case.displacement, E=solution.E, nu=solution.nu),
-                energy=case.strain_energy,
-                displacement=case.displacement_max,
-                span=case.span,
-            )
-        )
-    return Level(
-        nodes=space.nodes,
-        cells=space.cells,
-        centres=space.nodes[space.cells[:, :4]].mean(axis=1),
-        volumes=weights,
-        chord=abs(float(weights.sum()) / volume - 1.0),
-        figures=tuple(figures),
-    )
-
-
 def precision(
     levels: Sequence[Level], edges: Sequence[ReentrantEdge], *, section: float, eyes: Sequence[Eye]
 ) -> tuple[CasePrecision, ...]:
-    """Judge every case on the meshes so far, coarse to fine.
+    """Judge every case on the meshes so far.
 
-    edges     re-entrant edges of the body; ``eyes`` of its pins
-    section   smaller dimension of the link's section [mm]
+    Parameters
+    ----------
+    levels : sequence of Level
+        The meshes so far, coarse to fine.
+    edges : sequence of ReentrantEdge
+        Re-entrant edges of the body.
+    section : float
+        Smaller dimension of the link's section [mm].
+    eyes : sequence of Eye
+        Of its pins.
+
+    Returns
+    -------
+    tuple of CasePrecision
+        One per case.
     """
     return tuple(_case(levels, number, edges, section, eyes) for number in range(len(levels[-1].figures)))
 
 
 def energy_errors(levels: Sequence[Level]) -> tuple[float, ...]:
-    """Relative error in the energy norm of the worst case on each mesh, by the estimate and the energies so far."""
+    """Relative error in the energy norm of the worst case on each mesh, by the estimate and the energies so far.
+
+    Parameters
+    ----------
+    levels : sequence of Level
+        The meshes so far, coarse to fine.
+
+    Returns
+    -------
+    tuple of float
+        One per mesh.
+    """
     return tuple(
         max(_energy_error(levels, number, end) for number in range(len(levels[-1].figures)))
         for end in range(1, len(levels) + 1)
@@ -209,11 +230,27 @@ def goals(
     section: float,
     ratios: Sequence[float],
 ) -> list[LocalGoal]:
-    """Peaks, of the principal stress where ``brittle``, that are to be resolved to a relative estimate ``allowed``.
+    """Peaks of the deciding stress that the next mesh is to resolve.
 
-    To these come sharp edges that bear much stress, so that their growth shows.
+    Parameters
+    ----------
+    levels : sequence of Level
+        The meshes so far, coarse to fine.
+    allowed : float
+        Estimate over peak that is aimed at.
+    brittle : bool
+        True where the principal stress decides, False where von Mises does.
+    edges : sequence of ReentrantEdge
+        Re-entrant edges of the link.
+    section : float
+        Smaller dimension of the link's section [mm].
+    ratios : sequence of float
+        Of the sizes about each case's peak, last mesh over next one.
 
-    ratios   of the sizes about each case's peak, last mesh over next one
+    Returns
+    -------
+    list of LocalGoal
+        The peaks, and sharp edges that bear much stress, so that their growth shows.
     """
     found, level = [], levels[-1]
     for figures, ratio in zip(level.figures, ratios, strict=True):

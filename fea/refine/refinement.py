@@ -17,7 +17,8 @@ import numpy as np
 
 from fea.common.link_loads import LinkLoads
 from fea.refine.convergence import ALONE, FORMAL_ORDER, GridConvergence
-from fea.refine.link_series import CasePrecision, Eye, Level, Quantity, energy_errors, goals, level_of, precision
+from fea.refine.level import Level, level_of
+from fea.refine.link_series import CasePrecision, Eye, Quantity, energy_errors, goals, precision
 from fea.refine.singular import NEARLY, element_exponents, loaded_edge
 from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, element_sizes, next_sizes, reduction
 from fea.solid.solution import SolidSolution, solve_solid
@@ -41,11 +42,18 @@ Progress = Callable[[str], None]
 class Effort:
     """What accuracy is asked for and what it may cost.
 
-    accuracy      largest distance of the discretisation band from the number, relative to it
-    stated        True where it was asked for: then every link is refined to it, even if its verdict is clear
-    max_unknowns  largest system that is solved for accuracy's sake
-    time_limit    seconds after which no further mesh is begun
-    max_meshes    per link
+    Attributes
+    ----------
+    accuracy : float
+        Largest distance of the discretisation band from the number, relative to it.
+    stated : bool
+        True where it was asked for: then every link is refined to it, even if its verdict is clear.
+    max_unknowns : int
+        Largest system that is solved for accuracy's sake.
+    time_limit : float
+        Seconds after which no further mesh is begun.
+    max_meshes : int
+        Per link.
     """
 
     accuracy: float = 0.05
@@ -66,11 +74,27 @@ class Effort:
 class LinkTask:
     """A link to be solved.
 
-    E, nu, density        of the material [MPa, -, tonne/mm³]
-    line                  surfaces that displacements refer to (``solve_solid``)
-    brittle               True where the principal stress decides, False where von Mises does
-    stress_limits         [MPa] on the deciding stress; ``displacement_limits`` [mm]: from the least to the largest that
-                          stated scatter makes of each, within which nothing is decided
+    Attributes
+    ----------
+    body : Body
+        Geometry of the link.
+    loads : tuple of LinkLoads
+        One per load case.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    density : float
+        Of the material [tonne/mm³].
+    line : tuple of 2 str
+        Surfaces that displacements refer to (``solve_solid``).
+    brittle : bool
+        True where the principal stress decides, False where von Mises does.
+    stress_limits : tuple of tuple of 2 float
+        On the deciding stress [MPa]: from the least to the largest that stated scatter makes of each, within which
+        nothing is decided.
+    displacement_limits : tuple of tuple of 2 float
+        The same on the displacement [mm].
     """
 
     body: Body
@@ -97,7 +121,19 @@ class LinkTask:
 
 @dataclass(frozen=True, kw_only=True)
 class MeshRecord:
-    """Size of one mesh; the worst case's relative error in the energy norm (``energy_errors``); seconds it took."""
+    """Size of one mesh, its error and its time.
+
+    Attributes
+    ----------
+    elements : int
+        Their number.
+    unknowns : int
+        Their number.
+    error : float
+        Of the worst case, in the energy norm, relative (``energy_errors``).
+    seconds : float
+        That the mesh took to solve.
+    """
 
     elements: int
     unknowns: int
@@ -109,12 +145,24 @@ class MeshRecord:
 class RefinedSolid:
     """A link's finest solution and how precise it is.
 
-    precision   of every case, in the order of ``solution.cases``
-    meshes      coarse to fine
-    stopped     why refinement ended before its aim was reached; "" where it was reached
-    far         True where one mesh sufficed since every limit is far away
-    accuracy    that was aimed at
     sharp_edges number of re-entrant edges of the link; 0 where its shape left none to look for
+
+    Attributes
+    ----------
+    solution : SolidSolution
+        On the finest mesh.
+    precision : tuple of CasePrecision
+        Of every case, in the order of ``solution.cases``.
+    meshes : tuple of MeshRecord
+        Coarse to fine.
+    stopped : str
+        Why refinement ended before its aim was reached; "" where it was reached.
+    far : bool
+        True where one mesh sufficed since every limit is far away.
+    accuracy : float
+        That was aimed at, relative.
+    sharp_edges : int
+        Number of re-entrant edges of the link; 0 where its shape left none to look for.
     """
 
     solution: SolidSolution
@@ -137,6 +185,29 @@ def refine_links(
     """Mesh and solve every link as often as its numbers need it; the next meshes are made while one is solved.
 
     Raises what ``mesh_body`` and ``solve_solid`` raise on a link's first mesh, with the link's name before it.
+
+    Parameters
+    ----------
+    tasks : dict of str to LinkTask
+        Links by name.
+    start : MeshSettings
+        Settings of the first mesh.
+    effort : Effort
+        What accuracy is asked for and what it may cost.
+    threads : int or None, optional
+        Upper bound on the threads of the libraries; their own choice where it is None.
+    progress : Progress, optional
+        Called with a sentence before each step.
+
+    Returns
+    -------
+    dict of str to RefinedSolid
+        Links by name.
+
+    Raises
+    ------
+    AlulaError
+        What ``mesh_body`` and ``solve_solid`` raise on a link's first mesh, with the link's name before it.
     """
     links = [_Link(name, task, start, effort) for name, task in tasks.items()]
     begun = time.perf_counter()

@@ -28,10 +28,22 @@ SHARE_OF_WILLIAMS = 0.3
 class SharpPeak:
     """A peak that grows without limit at a re-entrant edge.
 
-    place      of the peak (3,) [mm]; ``angle`` of the material there [rad]
-    growth     observed exponent s of the peak ~ h^(−s); ``theory`` 1 − λ after Williams
-    distance   from every re-entrant edge beyond which ``screening`` is the largest von Mises stress [mm, MPa]
-    resolved   True where elements at the edge are small enough for that distance to be the one aimed at
+    Attributes
+    ----------
+    place : ndarray, shape (3,)
+        Of the peak [mm].
+    angle : float
+        Of the material there [rad].
+    growth : float
+        Observed exponent s of the peak ~ h^(−s).
+    theory : float
+        1 − λ after Williams.
+    distance : float
+        From every re-entrant edge, at which ``screening`` is taken [mm].
+    screening : float
+        Largest von Mises stress at that distance or more [MPa].
+    resolved : bool
+        True where elements at the edge are small enough for that distance to be the one aimed at.
     """
 
     place: NDArray[np.float64]
@@ -56,7 +68,20 @@ class SharpPeak:
 
 
 def edge_distance(edges: Sequence[ReentrantEdge], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distance (n, k) of points (n, 3) from each of k edges, polylines [mm]."""
+    """Distance of points from each of k edges.
+
+    Parameters
+    ----------
+    edges : sequence of ReentrantEdge
+        Polylines.
+    points : ndarray, shape (n, 3)
+        Points [mm].
+
+    Returns
+    -------
+    ndarray, shape (n, k)
+        Distances [mm].
+    """
     found = np.empty((len(points), len(edges)))
     for number, edge in enumerate(edges):
         start, along = edge.points[:-1], np.diff(edge.points, axis=0)
@@ -80,6 +105,24 @@ def loaded_edge(
 
     nodes (n, 3) [mm] with their von Mises stress (n,) [MPa]; section [mm] as in ``sharp_peak``; share of the peak
     below which it is well below
+
+    Parameters
+    ----------
+    edges : sequence of ReentrantEdge
+        Re-entrant edges of the link.
+    nodes : ndarray, shape (n, 3)
+        Of the mesh [mm].
+    von_mises : ndarray, shape (n,)
+        Stress at the nodes [MPa].
+    section : float
+        Smaller dimension of the link's section [mm].
+    share : float, optional
+        Of the peak, below which the edge does not count.
+
+    Returns
+    -------
+    tuple of ReentrantEdge and int or None
+        The edge and the node.
     """
     if not edges:
         return None
@@ -94,9 +137,21 @@ def loaded_edge(
 def element_exponents(
     edges: Sequence[ReentrantEdge], centres: NDArray[np.float64], sizes: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Exponents (m,) by which errors fall with size: the order of quadratic elements, or λ next to an edge.
+    """Exponents by which errors fall with size: the order of quadratic elements, or λ next to an edge.
 
-    centres (m, 3) and sizes (m,) of the elements [mm]
+    Parameters
+    ----------
+    edges : sequence of ReentrantEdge
+        Re-entrant edges of the link.
+    centres : ndarray, shape (m, 3)
+        Of the elements [mm].
+    sizes : ndarray, shape (m,)
+        Of the elements [mm].
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Exponents.
     """
     exponents = np.full(len(sizes), ELEMENT_ORDER)
     if edges:
@@ -119,9 +174,29 @@ def sharp_peak(
 ) -> SharpPeak | None:
     """Return the singular peak at ``place`` on ``edge`` if its growth over the meshes is that of one, else None.
 
-    sizes, values   of the elements at the peak and of the peak, mesh by mesh, coarse to fine
-    nodes           (n, 3) [mm] of the finest, with their ``von_mises`` (n,) [MPa]
-    section         smaller dimension of the link's section [mm]
+    Parameters
+    ----------
+    edge : ReentrantEdge
+        The edge that bears the peak.
+    edges : sequence of ReentrantEdge
+        Re-entrant edges of the link.
+    place : ndarray, shape (3,)
+        Of the peak [mm].
+    sizes : sequence of float
+        Of the elements at the peak, mesh by mesh, coarse to fine [mm].
+    values : sequence of float
+        Of the peak, mesh by mesh [MPa].
+    nodes : ndarray, shape (n, 3)
+        Of the finest mesh [mm].
+    von_mises : ndarray, shape (n,)
+        Stress at these nodes [MPa].
+    section : float
+        Smaller dimension of the link's section [mm].
+
+    Returns
+    -------
+    SharpPeak or None
+        The singular peak.
     """
     if (
         len(values) < 3

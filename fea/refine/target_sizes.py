@@ -32,13 +32,23 @@ GROWTH = 0.6
 class LocalGoal:
     """A peak that is to converge.
 
-    location   of the peak (3,) [mm]
-    value      of the peak [MPa]
-    stress     (m,) largest nodal stress in each element [MPa]
-    estimate   (m,) of the stress error in each element [MPa]
-    allowed    estimate over peak that is aimed at
-    ratio      of the sizes, last mesh over next one, within ``radius`` [mm] of the peak, at least ``NEAR`` elements:
-               where a series measures its sizes, since a smaller region lets them fall by less than the ratio
+    Attributes
+    ----------
+    location : ndarray
+        Of the peak (3,) [mm].
+    value : float
+        Of the peak [MPa].
+    stress : ndarray, shape (m,)
+        Largest nodal stress in each element [MPa].
+    estimate : ndarray, shape (m,)
+        Of the stress error in each element [MPa].
+    allowed : float
+        Estimate over peak that is aimed at.
+    ratio : float
+        Of the sizes near the peak, last mesh over next one.
+    radius : float
+        About the peak [mm], at least ``NEAR`` elements, in which sizes fall by that ratio: where a series measures its
+        sizes, since a smaller region lets them fall by less.
     """
 
     location: NDArray[np.float64]
@@ -51,7 +61,18 @@ class LocalGoal:
 
 
 def element_sizes(space: DisplacementSpace) -> NDArray[np.float64]:
-    """Mean length (m,) of the edges of each element, taken straight [mm]."""
+    """Mean length of the edges of each element, taken straight.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Sizes [mm].
+    """
     corners = space.nodes[space.cells[:, :4]]
     return np.asarray(np.mean([np.linalg.norm(corners[:, a] - corners[:, b], axis=1) for a, b in EDGES], axis=0))
 
@@ -59,10 +80,23 @@ def element_sizes(space: DisplacementSpace) -> NDArray[np.float64]:
 def reduction(
     energy: NDArray[np.float64], energy_norm: float, allowed: float, exponent: NDArray[np.float64] | float
 ) -> NDArray[np.float64]:
-    """Factors (m,) ≥ 1 by which sizes fall for the relative error ``allowed`` in the energy norm.
+    """Factors by which element sizes fall for an allowed error in the energy norm.
 
-    energy     (m,) energy norm of the error in each element; ``energy_norm`` of the solution
-    exponent   p of the elements, or λ where a singularity rules
+    Parameters
+    ----------
+    energy : ndarray, shape (m,)
+        Energy norm of the error in each element [√(N mm)].
+    energy_norm : float
+        Of the solution [√(N mm)].
+    allowed : float
+        Relative error in the energy norm that is aimed at.
+    exponent : ndarray or float
+        p of the elements, or λ where a singularity rules.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Factors ≥ 1.
     """
     whole = np.sqrt((energy_norm**2 + (energy**2).sum()) / len(energy))
     if whole == 0.0:
@@ -73,10 +107,21 @@ def reduction(
 def next_sizes(
     space: DisplacementSpace, factors: Sequence[NDArray[np.float64]], goals: Sequence[LocalGoal]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points (n, 3) and element sizes (n,) [mm] of the next mesh, at the corner nodes.
+    """Points and element sizes of the next mesh, at the corner nodes.
 
-    factors   by which sizes fall, each (m,): the largest counts (``reduction``)
-    goals     peaks that are to converge
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    factors : sequence of ndarray
+        By which sizes fall, each (m,): the largest counts (``reduction``).
+    goals : sequence of LocalGoal
+        Peaks that are to converge.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        Points (n, 3) and sizes (n,) [mm].
     """
     sizes = element_sizes(space)
     centres = space.nodes[space.cells[:, :4]].mean(axis=1)

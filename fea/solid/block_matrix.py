@@ -17,9 +17,14 @@ Product = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 class SymmetricBlockMatrix:
     """Upper block triangle in block-compressed rows; diagonal blocks are stored whole.
 
-    indptr    (n + 1,) start of every block row
-    indices   (b,) block column of every block, ascending, beginning with the diagonal
-    blocks    (b, 3, 3)
+    Attributes
+    ----------
+    indptr : ndarray of int, shape (n + 1,)
+        Start of every block row.
+    indices : ndarray of int, shape (b,)
+        Block column of every block, ascending, beginning with the diagonal.
+    blocks : ndarray
+        (b, 3, 3).
     """
 
     indptr: NDArray[np.int32]
@@ -67,7 +72,18 @@ class SymmetricBlockMatrix:
         return found
 
     def with_fixed(self, unknowns: NDArray[np.int64]) -> "SymmetricBlockMatrix":
-        """Return a copy in which rows and columns of these unknowns are zero but for their diagonal entry."""
+        """Return a copy in which rows and columns of these unknowns are zero but for their diagonal entry.
+
+        Parameters
+        ----------
+        unknowns : ndarray of int
+            That are fixed.
+
+        Returns
+        -------
+        SymmetricBlockMatrix
+            A copy.
+        """
         fixed = np.zeros((len(self.indptr) - 1, 3), dtype=np.bool_)
         fixed.reshape(-1)[unknowns] = True
         touched = np.any(fixed, axis=1, keepdims=True)[:, 0]

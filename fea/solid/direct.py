@@ -26,10 +26,37 @@ class DirectFactor(ABC):
 
     @abstractmethod
     def apply(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve for (n,) or (n, k) without looking at the residual."""
+        """Solve without looking at the residual.
+
+        Parameters
+        ----------
+        rhs : ndarray, shape (n,) or (n, k)
+            Right-hand sides.
+
+        Returns
+        -------
+        ndarray
+            Solutions, of the same shape.
+        """
 
     def solve(self, rhs: NDArray[np.float64]) -> Solved:
-        """Solve for (n,) or (n, k), refined where rounding shows; raises ``CannotRunError`` for too large an error."""
+        """Solve, refined where rounding shows.
+
+        Parameters
+        ----------
+        rhs : ndarray, shape (n,) or (n, k)
+            Right-hand sides.
+
+        Returns
+        -------
+        Solved
+            Solutions and their error.
+
+        Raises
+        ------
+        CannotRunError
+            For too large an error.
+        """
         x, error = refined(self._K, self.apply, rhs)
         accept(error, self.name)
         return Solved(x=x, error=error, iterations=0)
@@ -54,7 +81,18 @@ class SuperLUFactor(DirectFactor):
             raise CannotRunError(f"SuperLU could not solve with the stiffness matrix: {error}") from error
 
     def apply(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve by forward and back substitution."""
+        """Solve by forward and back substitution.
+
+        Parameters
+        ----------
+        rhs : ndarray, shape (n,) or (n, k)
+            Right-hand sides.
+
+        Returns
+        -------
+        ndarray
+            Solutions, of the same shape.
+        """
         return np.asarray(self._lu.solve(rhs))
 
 
@@ -96,7 +134,18 @@ class PardisoFactor(DirectFactor):
         self._call(self._FACTORISE, None)
 
     def apply(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve by forward and back substitution."""
+        """Solve by forward and back substitution.
+
+        Parameters
+        ----------
+        rhs : ndarray, shape (n,) or (n, k)
+            Right-hand sides.
+
+        Returns
+        -------
+        ndarray
+            Solutions, of the same shape.
+        """
         return np.asarray(self._call(self._SOLVE, np.asfortranarray(rhs, dtype=np.float64)))
 
     def _call(self, phase: int, b: NDArray[np.float64] | None) -> NDArray[np.float64] | None:

@@ -16,12 +16,40 @@ _CHUNK = 1024  # elements at a time: some 10 MB of working memory, which caches 
 
 
 def lame_constants(E: float, nu: float) -> tuple[float, float]:
-    """Lamé's λ and μ [MPa]: λ = Eν/((1+ν)(1−2ν)), μ = E/(2(1+ν)) (Timoshenko-Goodier, 3rd ed., art. 6)."""
+    """Lamé's constants: λ = Eν/((1+ν)(1−2ν)), μ = E/(2(1+ν)) (Timoshenko-Goodier, 3rd ed., art. 6).
+
+    Parameters
+    ----------
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    tuple of 2 float
+        Λ and μ [MPa].
+    """
     return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
 
 
 def stress(gradient: NDArray[np.float64], E: float, nu: float) -> NDArray[np.float64]:
-    """Stress σ = λ tr(ε) I + 2μ ε [MPa] of displacement gradients (..., 3, 3), ∂u_i/∂x_j; same shape."""
+    """Stress σ = λ tr(ε) I + 2μ ε of displacement gradients.
+
+    Parameters
+    ----------
+    gradient : ndarray, shape (..., 3, 3)
+        Of the displacement, ∂u_i/∂x_j.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+        Stress [MPa].
+    """
     lam, mu = lame_constants(E, nu)
     sigma = mu * (gradient + np.swapaxes(gradient, -1, -2))
     dilatation = lam * np.trace(gradient, axis1=-2, axis2=-1)
@@ -33,9 +61,19 @@ def stress(gradient: NDArray[np.float64], E: float, nu: float) -> NDArray[np.flo
 def reference_basis(
     space: DisplacementSpace, degree: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Integration points (3, q), weights (q,), basis functions (q, b) and gradients (q, b, 3) on the unit tetrahedron.
+    """Integration points of scikit-fem's rule on the unit tetrahedron, with the basis there.
 
-    Points and weights are scikit-fem's rule of that polynomial degree.
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    degree : int
+        Of the polynomials that the rule integrates exactly.
+
+    Returns
+    -------
+    tuple of 4 ndarray
+        Points (3, q), weights (q,), basis functions (q, b) and their gradients (q, b, 3).
     """
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefTet
@@ -45,7 +83,20 @@ def reference_basis(
 
 
 def basis_at(space: DisplacementSpace, X: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Basis functions (q, b) and their gradients (q, b, 3) at points (3, q) of the unit tetrahedron."""
+    """Basis functions and their gradients at points of the unit tetrahedron.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    X : ndarray, shape (3, q)
+        Points of the unit tetrahedron.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        Basis functions (q, b) and their gradients (q, b, 3).
+    """
     basis = [space.element.lbasis(X, i) for i in range(space.cells.shape[1])]
     phi = np.array([b[0] for b in basis]).T
     gradient = np.array([np.broadcast_to(b[1].reshape(3, -1), X.shape) for b in basis]).transpose(2, 0, 1)
@@ -55,9 +106,24 @@ def basis_at(space: DisplacementSpace, X: NDArray[np.float64]) -> tuple[NDArray[
 def jacobians(
     nodes: NDArray[np.float64], gradient: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Inverse Jacobians (k, q, 3, 3), ∂X_j/∂x_i at [i, j], and determinants (k, q) of elements (k, b, 3).
+    """Inverse Jacobians and determinants of elements.
 
-    Raises ``CannotRunError`` where a determinant is not positive: such an element is folded over.
+    Parameters
+    ----------
+    nodes : ndarray, shape (k, b, 3)
+        Of each element [mm].
+    gradient : ndarray, shape (q, b, 3)
+        Of the basis at the integration points.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        Inverses (k, q, 3, 3), ∂X_j/∂x_i at [i, j], and determinants (k, q).
+
+    Raises
+    ------
+    CannotRunError
+        Where a determinant is not positive: such an element is folded over.
     """
     k, b, _ = nodes.shape
     q = len(gradient)
@@ -82,19 +148,37 @@ def assemble_stiffness(
     order: int | None = None,
     memory_limit: float | None = None,
 ) -> SymmetricBlockMatrix:
-    """Assemble the stiffness matrix [N/mm] of an isotropic body with E [MPa] and Poisson's ratio nu.
+    """Assemble the stiffness matrix of an isotropic body.
 
-    Equal to scikit-fem's ``linear_elasticity`` form on the same basis. Straight-sided elements: the
-    reference tensor ∫ ∂φa/∂Xk ∂φb/∂Xl dX contracted with the inverse Jacobian, exact. Curved ones:
-    products of the gradients' matrices at the points of the rule of degree ``CURVED_DEGREE``.
-    Elements are taken in chunks, so the working memory does not grow with the mesh.
+    Equal to scikit-fem's ``linear_elasticity`` form on the same basis. Straight-sided elements: the reference tensor ∫
+    ∂φa/∂Xk ∂φb/∂Xl dX contracted with the inverse Jacobian, exact. Curved ones: products of the gradients' matrices at
+    the points of the rule of degree ``CURVED_DEGREE``. Elements are taken in chunks, so the working memory does not
+    grow with the mesh.
 
-    order         1 for the linear displacements within a quadratic space, at its corner nodes (curved
-                  elements stay curved); by default the order of the space
-    memory_limit  bytes that the whole process may hold, by default what the system leaves
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    order : int or None, optional
+        1 for the linear displacements within a quadratic space, at its corner nodes (curved elements stay curved); by
+        default the order of the space.
+    memory_limit : float or None, optional
+        Bytes that the whole process may hold, by default what the system leaves.
 
-    Raises ``CannotRunError`` for a material that is not stable, a folded element, or a matrix that
-    does not fit into memory twice, as it is and with its supports.
+    Returns
+    -------
+    SymmetricBlockMatrix
+        The matrix [N/mm].
+
+    Raises
+    ------
+    CannotRunError
+        For a material that is not stable, a folded element, or a matrix that does not fit into memory twice, as it is
+        and with its supports.
     """
     if not (E > 0.0 and 0.0 <= nu < 0.5):
         raise CannotRunError(f"E = {E} MPa with ν = {nu} is no stable compressible material (E > 0, 0 ≤ ν < 0.5)")

@@ -28,11 +28,18 @@ from loads.records.bearing import PressureLaw, Span
 class Variant:
     """One load case under one model of pin pressure and one of torque transfer.
 
-    name      of the load case
-    span      loaded angle of the pin holes [degrees]
-    transfer  how the drive torque enters; None where the link carries no torque
-    load      (3n,) consistent nodal forces [N]
-    scale     sum of all forces, and of all moments over the link's size [N]
+    Attributes
+    ----------
+    name : str
+        Of the load case.
+    span : Span
+        Loaded angle of the pin holes [degrees].
+    transfer : Transfer or None
+        How the drive torque enters; None where the link carries no torque.
+    load : ndarray, shape (3n,)
+        Consistent nodal forces [N].
+    scale : float
+        Sum of all forces, and of all moments over the link's size [N].
     """
 
     name: str
@@ -52,7 +59,22 @@ class LoadVectors:
         self._size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
 
     def variants(self, case: LinkLoads, laws: Sequence[PressureLaw], transfers: Sequence[Transfer]) -> list[Variant]:
-        """Every variant of a load case; the transfers count only where the link carries a torque."""
+        """Every variant of a load case.
+
+        Parameters
+        ----------
+        case : LinkLoads
+            Loads of the link.
+        laws : sequence of PressureLaw
+            Of pin pressure.
+        transfers : sequence of Transfer
+            Of the drive torque; they count only where the link carries a torque.
+
+        Returns
+        -------
+        list of Variant
+            One per law and transfer.
+        """
         torque = any(torque != 0.0 for _, torque in self._torques(case))
         scale, rest = self._scale(case), self._spread(case)
         turned = {transfer: self._couples(case, transfer) for transfer in (transfers if torque else (None,))}

@@ -62,7 +62,18 @@ def library() -> Any:
 
 
 def address(values: NDArray[Any] | None) -> ctypes.c_void_p | None:
-    """Return a pointer to the first entry, or a null pointer."""
+    """Return a pointer to the first entry, or a null pointer.
+
+    Parameters
+    ----------
+    values : ndarray or None
+        Array.
+
+    Returns
+    -------
+    c_void_p or None
+        Pointer; null for None.
+    """
     return None if values is None else ctypes.c_void_p(values.ctypes.data)
 
 

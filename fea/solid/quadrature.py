@@ -13,10 +13,16 @@ from fea.solid.space import DisplacementSpace
 class Quadrature:
     """Integration points on k elements or faces with q points each and b basis functions.
 
-    nodes   (k, b) node numbers
-    phi     (q, b) basis functions at the points
-    x       (k, q, 3) mm
-    w       (k, q) weights: mm³ in elements, mm² on faces
+    Attributes
+    ----------
+    nodes : ndarray of int, shape (k, b)
+        Node numbers.
+    phi : ndarray, shape (q, b)
+        Basis functions at the points.
+    x : ndarray, shape (k, q, 3)
+        Mm.
+    w : ndarray, shape (k, q)
+        Weights: mm³ in elements, mm² on faces.
     """
 
     nodes: NDArray[np.int64]
@@ -35,38 +41,111 @@ class Quadrature:
         return np.asarray(np.einsum("kq,kqi->i", self.w, self.x) / self.w.sum())
 
     def load_vector(self, density: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-        """Consistent load vector (3 count,) [N] of a force density (k, q, 3) per volume or area."""
+        """Consistent load vector of a force density.
+
+        Parameters
+        ----------
+        density : ndarray, shape (k, q, 3)
+            Force per volume or area [N/mm³, MPa].
+        count : int
+            Number of nodes.
+
+        Returns
+        -------
+        ndarray, shape (3 count,)
+            Nodal forces [N].
+        """
         local = np.einsum("kq,qb,kqi->kbi", self.w, self.phi, density, optimize=True)
         node = self.nodes.ravel()
         columns = [np.bincount(node, local[..., i].ravel(), minlength=count) for i in range(3)]
         return np.asarray(np.column_stack(columns).ravel(), dtype=np.float64)
 
     def wrench(self, density: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Force [N] and moment about ``point`` [N mm] of a force density (k, q, 3), as (6,)."""
+        """Resultant of a force density.
+
+        Parameters
+        ----------
+        density : ndarray, shape (k, q, 3)
+            Force per volume or area [N/mm³, MPa].
+        point : ndarray, shape (3,)
+            About which the moment is taken [mm].
+
+        Returns
+        -------
+        ndarray, shape (6,)
+            Force [N] and moment [N mm].
+        """
         weighted = (self.w[..., None] * density).reshape(-1, 3)
         product = (self.x.reshape(-1, 3) - point).T @ weighted  # ∫ r_i f_j
         turning = product - product.T
         return np.array([*weighted.sum(axis=0), turning[1, 2], turning[2, 0], turning[0, 1]])
 
     def mean(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Mean (3,) of a nodal field (n, 3) over the volume or area."""
+        """Mean of a nodal field over the volume or area.
+
+        Parameters
+        ----------
+        field : ndarray, shape (n, 3)
+            At the nodes.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            Mean.
+        """
         return np.asarray(np.einsum("kq,qb,kbi->i", self.w, self.phi, field[self.nodes]) / self.w.sum())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SurfaceQuadrature(Quadrature):
-    """Integration points on boundary faces, with the outward unit normals (k, q, 3)."""
+    """Integration points on boundary faces.
+
+    Attributes
+    ----------
+    normals : ndarray, shape (k, q, 3)
+        Outward unit normals.
+    """
 
     normals: NDArray[np.float64]
 
 
 def surface_quadrature(space: DisplacementSpace, *names: str, degree: int = 8) -> SurfaceQuadrature:
-    """Integration over named surfaces together; degree 8 because a pin pressure has kinks in its angle."""
+    """Integration over named surfaces.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    degree : int, optional
+        Of the rule; 8 because a pin pressure has kinks in its angle.
+    *names : str
+        Of surfaces, taken together.
+
+    Returns
+    -------
+    SurfaceQuadrature
+        Points of all faces.
+    """
     return face_quadrature(space, space.faces(*names), degree=degree)
 
 
 def face_quadrature(space: DisplacementSpace, faces: NDArray[np.int64], *, degree: int) -> SurfaceQuadrature:
-    """Integration over boundary faces given by their nodes (k, 3) or (k, 6), seen from outside."""
+    """Integration over boundary faces.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    faces : ndarray of int, shape (k, 3) or (k, 6)
+        Nodes, seen from outside.
+    degree : int
+        Of the rule.
+
+    Returns
+    -------
+    SurfaceQuadrature
+        Points of the faces.
+    """
     from skfem.element import ElementTriP1, ElementTriP2
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefTri
@@ -90,7 +169,20 @@ def face_quadrature(space: DisplacementSpace, faces: NDArray[np.int64], *, degre
 
 
 def volume_quadrature(space: DisplacementSpace, *, degree: int = 5) -> Quadrature:
-    """Integration over all elements; degree 5 (14 points, weights positive) is exact for a straight one's mass."""
+    """Integration over all elements.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    degree : int, optional
+        Of the rule; 5 (14 points, weights positive) is exact for the mass of a straight element.
+
+    Returns
+    -------
+    Quadrature
+        Points of the elements.
+    """
     _, W, phi, gradient = reference_basis(space, degree)
     nodes = space.nodes[space.cells]
     _, determinant = jacobians(nodes, gradient)

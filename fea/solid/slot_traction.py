@@ -24,9 +24,25 @@ to 0.5 % of force times half its length before that is mended, with degree 8 by 
 
 
 def flank_pressure(wall: SurfaceQuadrature, centre: NDArray[np.float64], length: float, side: float) -> Density:
-    """Pressure of unit peak on the flank at y > 0 (``side`` 1) or y < 0 (-1), about ``centre``; (k, q, 3).
+    """Pressure on one flank of a slot.
 
     It counts per projected area, so that a patch that reaches round the end of the slot still pushes along y alone.
+
+    Parameters
+    ----------
+    wall : SurfaceQuadrature
+        Of the slot.
+    centre : ndarray, shape (3,)
+        Of the pressure [mm].
+    length : float
+        Of the pressure along the slot [mm].
+    side : float
+        1 for the flank at y > 0, -1 for that at y < 0.
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Pressure of unit peak.
     """
     along = wall.x[..., 0] - centre[0]
     near = np.abs(along) < length / 2.0
@@ -42,7 +58,24 @@ def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> De
     the slot are solved on the meshed flank, so that force and moment are exact. What else the wrench holds is rounding,
     or small on a deformed shape, and comes as a traction of the rigid-body fields.
 
-    Raises ``CannotRunError`` for a wrench that a slot cannot take, or a flank meshed too coarsely.
+    Parameters
+    ----------
+    wall : SurfaceQuadrature
+        Of the slot.
+    pin : PinLoad
+        What the pin does to the link.
+    law : PressureLaw
+        Of the pressure's length.
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Traction [MPa].
+
+    Raises
+    ------
+    CannotRunError
+        For a wrench that a slot cannot take, or a flank meshed too coarsely.
     """
     fx, fy, _, mx, my, mz = pin.wrench
     size = float(np.linalg.norm(pin.wrench[:3]) + np.linalg.norm(pin.wrench[3:]) / pin.diameter)

@@ -36,13 +36,22 @@ REACTION_LIMIT = 1e-2
 class SolidCase:
     """Displacements of one load case under one model of pin pressure and one of torque transfer.
 
-    load           name of the load case
-    span           loaded angle of the pin holes [degrees]
-    transfer       how the drive torque enters; None where the link carries no torque
-    displacement   (n, 3) relative to the line through the link's first and last pin [mm]
-    reaction       largest support reaction relative to the load
-    imbalance      resultant of the loads relative to their sum
-    strain_energy  half the work of the loads [N mm]
+    Attributes
+    ----------
+    load : str
+        Name of the load case.
+    span : Span
+        Loaded angle of the pin holes [degrees].
+    transfer : Transfer or None
+        How the drive torque enters; None where the link carries no torque.
+    displacement : ndarray, shape (n, 3)
+        Relative to the line through the link's first and last pin [mm].
+    reaction : float
+        Largest support reaction relative to the load.
+    imbalance : float
+        Resultant of the loads relative to their sum.
+    strain_energy : float
+        Half the work of the loads [N mm].
     """
 
     load: str
@@ -63,14 +72,30 @@ class SolidCase:
 class SolidSolution:
     """All cases of one link, solved with one factorisation.
 
-    E, nu, density   of the material [MPa, -, tonne/mm³]
-    cases            every load case under every variant
-    solver           name of the solver
-    solver_reason    why it was chosen
-    solver_error     largest relative error that it left in a case, in the energy norm (``fea.solid.solved``)
-    rank_margin      smallest singular value of the rigid-body motions at the supports
-    notes            what the report has to say about this solution
-    timings          stage -> seconds
+    Attributes
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    density : float
+        Of the material [tonne/mm³].
+    cases : tuple of SolidCase
+        Every load case under every variant.
+    solver : str
+        Name of the solver.
+    solver_reason : str
+        Why it was chosen.
+    solver_error : float
+        Largest relative error that it left in a case, in the energy norm (``fea.solid.solved``).
+    rank_margin : float
+        Smallest singular value of the rigid-body motions at the supports.
+    notes : tuple of str
+        What the report has to say about this solution.
+    timings : dict of str to float
+        Stage -> seconds.
     """
 
     space: DisplacementSpace
@@ -87,7 +112,18 @@ class SolidSolution:
 
 
 def require_compressible(nu: float) -> None:
-    """Raise ``CaseError`` for a Poisson's ratio above ``LARGEST_POISSON_RATIO``: no solid model will be solved."""
+    """Refuse a Poisson's ratio at which no solid model can be solved.
+
+    Parameters
+    ----------
+    nu : float
+        Poisson's ratio.
+
+    Raises
+    ------
+    CaseError
+        For a Poisson's ratio above ``LARGEST_POISSON_RATIO``.
+    """
     if nu > LARGEST_POISSON_RATIO:
         raise CaseError(
             f"poissons_ratio: it is {nu:g}, but displacements alone hold no solid model above {LARGEST_POISSON_RATIO}, "
@@ -111,14 +147,44 @@ def solve_solid(
 ) -> SolidSolution:
     """Solve a link under each load case with each pin pressure and, where it carries a torque, each transfer.
 
-    line      names of the surfaces at the link's first and last pin (``bore:A``, ``bore:B``): displacements
-              are relative to the line through them
-    order     of the displacements, 2 or 1
-    method    solver, by default the one with the least work that fits; ``threads`` bounds its threads
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Of the link.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    density : float
+        Of the material [tonne/mm³].
+    loads : sequence of LinkLoads
+        One per load case.
+    line : tuple of 2 str
+        Names of the surfaces at the link's first and last pin (``bore:A``, ``bore:B``): displacements are relative to
+        the line through them.
+    laws : sequence of PressureLaw, optional
+        Of pin pressure.
+    transfers : sequence of Transfer, optional
+        Of the drive torque, where the link carries one.
+    order : int, optional
+        Of the displacements, 2 or 1.
+    method : Method or None, optional
+        Solver, by default the one with the least work that fits.
+    threads : int or None, optional
+        Upper bound on the threads of the solver.
 
-    Raises ``CaseError`` for a Poisson's ratio above ``LARGEST_POISSON_RATIO``, ``CannotRunError`` for loads that do
-    not balance (to 0.1 % of the load), reactions above 1 %, surfaces that the mesh lacks, a mesh with folded elements,
-    or a solver that fails.
+    Returns
+    -------
+    SolidSolution
+        All cases under all variants.
+
+    Raises
+    ------
+    CaseError
+        For a Poisson's ratio above ``LARGEST_POISSON_RATIO``.
+    CannotRunError
+        For loads that do not balance (to 0.1 % of the load), reactions above 1 %, surfaces that the mesh lacks, a mesh
+        with folded elements, or a solver that fails.
     """
     require_compressible(nu)
     timings: dict[str, float] = {}

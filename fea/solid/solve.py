@@ -48,10 +48,18 @@ _NAMES = {"pardiso": "MKL PARDISO", "superlu": "SuperLU", "two-level": "conjugat
 class Factor:
     """A system prepared for solution.
 
-    name    what the report calls the solver
-    reason  why it was chosen
     threads upper bound on the threads of its libraries
-    solver  what solves
+
+    Attributes
+    ----------
+    name : str
+        What the report calls the solver.
+    reason : str
+        Why it was chosen.
+    threads : int or None
+        Upper bound on the threads of the libraries; their own choice where it is None.
+    solver : DirectFactor or TwoLevelFactor
+        What solves.
     """
 
     name: str
@@ -60,11 +68,38 @@ class Factor:
     solver: DirectFactor | TwoLevelFactor
 
     def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solve for (n,) or (n, k); raises ``CannotRunError`` where the error is not small."""
+        """Solve the system.
+
+        Parameters
+        ----------
+        rhs : ndarray, shape (n,) or (n, k)
+            Right-hand sides.
+
+        Returns
+        -------
+        ndarray
+            Solutions, of the same shape.
+
+        Raises
+        ------
+        CannotRunError
+            Where the error is not small.
+        """
         return self.solved(rhs).x
 
     def solved(self, rhs: NDArray[np.float64]) -> Solved:
-        """The same, with the error and the number of iterations."""
+        """Solve the system, and tell the error and the number of iterations.
+
+        Parameters
+        ----------
+        rhs : ndarray, shape (n,) or (n, k)
+            Right-hand sides.
+
+        Returns
+        -------
+        Solved
+            Solutions, error and iterations.
+        """
         with bounded(self.threads):
             return self.solver.solve(rhs)
 
@@ -85,14 +120,30 @@ def factorise(
 ) -> Factor:
     """Prepare a symmetric positive definite system for solution.
 
-    level             of linear elements; without it only direct solvers are considered
-    right_hand_sides  that will be solved for: the more, the better a factorisation pays
-    method            by default the one that takes less work, or fits into memory
-    threads           upper bound on the threads of the solver, by default what its libraries choose
-    memory_limit      bytes that the whole process may hold, by default what the system leaves
+    Parameters
+    ----------
+    K : SymmetricBlockMatrix
+        The system.
+    level : LinearLevel or None, optional
+        Of linear elements; without it only direct solvers are considered.
+    right_hand_sides : int, optional
+        That will be solved for: the more, the better a factorisation pays.
+    method : Method or None, optional
+        By default the one that takes less work, or fits into memory.
+    threads : int or None, optional
+        Upper bound on the threads of the solver, by default what its libraries choose.
+    memory_limit : float or None, optional
+        Bytes that the whole process may hold, by default what the system leaves.
 
-    Raises ``CannotRunError`` if no solver fits into memory, the matrix is not positive definite, or the
-    method does not suit the system.
+    Returns
+    -------
+    Factor
+        Ready to solve.
+
+    Raises
+    ------
+    CannotRunError
+        If no solver fits into memory, the matrix is not positive definite, or the method does not suit the system.
     """
     direct = available_methods()
     if direct[0] == "pardiso":
@@ -131,14 +182,46 @@ def _task(method: Method, unknowns: int) -> str:
 
 
 def direct_memory(method: DirectMethod, unknowns: int, right_hand_sides: int) -> float:
-    """Memory of a factorisation [bytes]."""
+    """Memory of a factorisation.
+
+    Parameters
+    ----------
+    method : DirectMethod
+        Solver.
+    unknowns : int
+        Their number.
+    right_hand_sides : int
+        Their number.
+
+    Returns
+    -------
+    float
+        Estimate [bytes].
+    """
     size = unknowns / 47_000.0
     factor: float = 0.27e9 * size**1.41 if method == "pardiso" else 1.45e9 * size**1.8
     return factor + 24.0 * unknowns * right_hand_sides
 
 
 def two_level_memory(K: SymmetricBlockMatrix, level: LinearLevel, right_hand_sides: int, direct: DirectMethod) -> float:
-    """Memory of conjugate gradients with a factorisation of the linear elements [bytes]."""
+    """Memory of conjugate gradients with a factorisation of the linear elements.
+
+    Parameters
+    ----------
+    K : SymmetricBlockMatrix
+        The quadratic system.
+    level : LinearLevel
+        The linear elements below.
+    right_hand_sides : int
+        Their number.
+    direct : DirectMethod
+        Solver of the linear elements.
+
+    Returns
+    -------
+    float
+        Estimate [bytes].
+    """
     coarse = direct_memory(direct, 3 * level.space.corners, 1)
     copy = 0.0 if direct == "pardiso" else 1.2 * K.blocks.nbytes
     vectors = 8.0 * K.size * (2 * right_hand_sides + 10 * min(right_hand_sides, 8))

@@ -32,9 +32,14 @@ SIGNED_SUMS = 2
 class Solved:
     """Solution, error and effort.
 
-    x           as the right-hand side
-    error       largest relative error of a column in the energy norm; the residual where that is tiny
-    iterations  largest number of a column; 0 of a factorisation
+    Attributes
+    ----------
+    x : ndarray
+        As the right-hand side.
+    error : float
+        Largest relative error of a column in the energy norm; the residual where that is tiny.
+    iterations : int
+        Largest number of a column; 0 of a factorisation.
     """
 
     x: NDArray[np.float64]
@@ -45,7 +50,22 @@ class Solved:
 def refined(
     K: SymmetricBlockMatrix, apply: Callable[[NDArray[np.float64]], NDArray[np.float64]], rhs: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], float]:
-    """Solve for (n,) or (n, k) with a factorisation's ``apply``, refining where rounding shows; also the error."""
+    """Solve with a factorisation, refining where rounding shows.
+
+    Parameters
+    ----------
+    K : SymmetricBlockMatrix
+        The system.
+    apply : callable
+        Solves with the factorisation.
+    rhs : ndarray, shape (n,) or (n, k)
+        Right-hand sides.
+
+    Returns
+    -------
+    tuple of ndarray and float
+        Solutions and their largest relative error.
+    """
     x = apply(rhs)
     error = np.inf
     load = np.linalg.norm(rhs, axis=0)
@@ -80,6 +100,22 @@ def sampled_error(
     Every residual r_j is taken relative to its column's √(bᵀx). A sum with random signs s_j has the expected energy
     E[(Σ s_j r_j)ᵀ K⁻¹ (Σ s_j r_j)] = Σ r_jᵀ K⁻¹ r_j (Hutchinson's estimator of a trace, Comm. Statist. Simula. 18
     (1989) 1059-1076), never below the largest column's; it finds columns whose small residual is a large error.
+
+    Parameters
+    ----------
+    residual : ndarray, shape (n, k)
+        Of every column.
+    apply : callable
+        Solves with the factorisation.
+    rhs : ndarray, shape (n, k)
+        Right-hand sides.
+    x : ndarray, shape (n, k)
+        Solutions.
+
+    Returns
+    -------
+    float
+        The largest of the probes.
     """
     work = np.abs(np.einsum("ij,ij->j", rhs, x))
     if np.any((work == 0.0) & np.any(residual != 0.0, axis=0)):
@@ -99,7 +135,24 @@ def energy_error(
     rhs: NDArray[np.float64],
     x: NDArray[np.float64],
 ) -> float:
-    """Largest relative error of the columns of x in the energy norm."""
+    """Largest relative error of the columns of x in the energy norm.
+
+    Parameters
+    ----------
+    residual : ndarray, shape (n,) or (n, k)
+        Of every column.
+    correction : ndarray
+        Solution for the residual.
+    rhs : ndarray
+        Right-hand sides.
+    x : ndarray
+        Solutions.
+
+    Returns
+    -------
+    float
+        The largest.
+    """
     work = np.abs(np.sum(rhs * x, axis=0))
     defect = np.abs(np.sum(residual * correction, axis=0))
     return float(np.sqrt(np.max(np.where(work > 0.0, defect, _lost(defect)) / np.where(work > 0.0, work, 1.0))))
@@ -111,7 +164,20 @@ def _lost(defect: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def accept(error: float, solver: str) -> None:
-    """Raise ``CannotRunError`` for an error beyond ``ENERGY_LIMIT``, or none at all."""
+    """Refuse a solution whose error is too large.
+
+    Parameters
+    ----------
+    error : float
+        In the energy norm, relative.
+    solver : str
+        Its name, for the message.
+
+    Raises
+    ------
+    CannotRunError
+        For an error beyond ``ENERGY_LIMIT``, or none at all.
+    """
     if not error <= ENERGY_LIMIT:
         raise CannotRunError(
             f"{solver} leaves an error of {error:.1e} of the solution in the energy norm (limit {ENERGY_LIMIT:g}): the "

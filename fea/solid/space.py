@@ -25,13 +25,24 @@ class DisplacementSpace:
     Node i carries the unknowns 3i, 3i+1, 3i+2 (x, y, z); corner nodes come first, then edge nodes, as
     in scikit-fem's ``ElementVector(ElementTetP1())`` and ``ElementVector(ElementTetP2())``.
 
-    nodes      (n, 3) mm
-    cells      (m, 4) or (m, 10) node numbers, all of positive volume
-    corners    number of corner nodes
-    curved     (m,) True where an element is not straight-sided
-    boundary   (b, 3) or (b, 6) nodes of all boundary faces, counter-clockwise seen from outside
-    surfaces   name -> indices of the faces in ``boundary``
     from_point (points,) node of every point of the ``TaggedMesh``; -1 where it has none
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Mm.
+    cells : ndarray of int, shape (m, 4) or (m, 10)
+        Node numbers, all of positive volume.
+    corners : int
+        Number of corner nodes.
+    curved : ndarray of bool, shape (m,)
+        True where an element is not straight-sided.
+    boundary : ndarray of int, shape (b, 3) or (b, 6)
+        Nodes of all boundary faces, counter-clockwise seen from outside.
+    surfaces : dict of str to ndarray of int
+        Name and indices of the faces in ``boundary``.
+    from_point : ndarray of int, shape (points,)
+        Node of every point of the ``TaggedMesh``; -1 where it has none.
     """
 
     nodes: NDArray[np.float64]
@@ -67,9 +78,22 @@ class DisplacementSpace:
         return (MeshTet1 if self.order == 1 else MeshTet2)(np.ascontiguousarray(self.nodes.T), corners)
 
     def faces(self, *names: str) -> NDArray[np.int64]:
-        """Nodes (k, 3) or (k, 6) of the boundary faces of the named surfaces together.
+        """Nodes of the boundary faces of the named surfaces together.
 
-        Raises ``CannotRunError`` for a surface that the mesh does not have.
+        Parameters
+        ----------
+        *names : str
+            Of surfaces.
+
+        Returns
+        -------
+        ndarray of int, shape (k, 3) or (k, 6)
+            Nodes.
+
+        Raises
+        ------
+        CannotRunError
+            For a surface that the mesh does not have.
         """
         for name in names:
             if name not in self.surfaces:
@@ -78,10 +102,24 @@ class DisplacementSpace:
 
 
 def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace:
-    """Build the space of order 1 or 2 on a mesh; linear displacements take the corner nodes alone.
+    """Build the space of displacements on a mesh.
 
-    Raises ``CannotRunError`` for an element without positive volume, or a tagged triangle that is no
-    boundary face.
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Of the link.
+    order : int, optional
+        Of the displacements; linear ones (1) take the corner nodes alone.
+
+    Returns
+    -------
+    DisplacementSpace
+        Nodes, elements and boundary.
+
+    Raises
+    ------
+    CannotRunError
+        For an element without positive volume, or a tagged triangle that is no boundary face.
     """
     from skfem import MeshTet1
     from skfem.assembly.dofs import Dofs

@@ -39,25 +39,57 @@ _NODES = np.array(
 
 
 def von_mises(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Von Mises stress of components (..., 6) in the order of ``COMPONENTS`` (Shigley, 10th ed., chapter 5)."""
+    """Von Mises stress (Shigley, 10th ed., chapter 5).
+
+    Parameters
+    ----------
+    sigma : ndarray, shape (..., 6)
+        Components in the order of ``COMPONENTS`` [MPa].
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Stress [MPa].
+    """
     xx, yy, zz, xy, yz, xz = np.moveaxis(sigma, -1, 0)
     direct = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
     return np.asarray(np.sqrt(0.5 * direct + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
 def principal(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Principal stresses (..., 3), signed, the largest first, of components (..., 6)."""
+    """Principal stresses.
+
+    Parameters
+    ----------
+    sigma : ndarray, shape (..., 6)
+        Components [MPa].
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Signed, the largest first [MPa].
+    """
     xx, yy, zz, xy, yz, xz = np.moveaxis(sigma, -1, 0)
     tensor = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=-1).reshape(*sigma.shape[:-1], 3, 3)
     return np.asarray(np.linalg.eigvalsh(tensor)[..., ::-1])
 
 
 def extreme_principal(sigma: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest and smallest principal stress (...), signed, of components (..., 6), by the closed form.
+    """Largest and smallest principal stress, by the closed form.
 
     σ1 = m + 2 √(J2/3) cos θ and σ3 = m + 2 √(J2/3) cos(θ + 2π/3) with cos 3θ = (3√3/2) J3 / J2^(3/2), m the mean stress
     and J2, J3 of the deviator (Malvern, Introduction to the Mechanics of a Continuous Medium, section 3.3). To about
     1e-8 of the von Mises stress, ten times as fast as the eigenvalues of ``principal``.
+
+    Parameters
+    ----------
+    sigma : ndarray, shape (..., 6)
+        Components [MPa].
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        The largest and the smallest (...), signed [MPa].
     """
     xx, yy, zz, xy, yz, xz = np.moveaxis(sigma, -1, 0)
     mean = (xx + yy + zz) / 3.0
@@ -72,7 +104,15 @@ def extreme_principal(sigma: NDArray[np.float64]) -> tuple[NDArray[np.float64], 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Peak:
-    """The largest von Mises stress [MPa] and where it occurs in the link's frame (3,) [mm]."""
+    """The largest von Mises stress and where it occurs.
+
+    Attributes
+    ----------
+    value : float
+        Stress [MPa].
+    location : ndarray, shape (3,)
+        In the link's frame [mm].
+    """
 
     value: float
     location: NDArray[np.float64]
@@ -82,11 +122,18 @@ class Peak:
 class SectionStress:
     """Stress along x over one cross-section, as a beam has it [MPa].
 
-    x          of the section [mm]
-    axial      mean, N/A
-    bending_y  at the extreme fibre z = +half_z, of bending about y (out of the linkage's plane)
-    bending_z  at the extreme fibre y = +half_y, of bending about z (in the linkage's plane)
-    scatter    root mean square of what is not linear over the section, relative to the largest fibre stress
+    Attributes
+    ----------
+    x : float
+        Of the section [mm].
+    axial : float
+        Mean, N/A.
+    bending_y : float
+        At the extreme fibre z = +half_z, of bending about y (out of the linkage's plane).
+    bending_z : float
+        At the extreme fibre y = +half_y, of bending about z (in the linkage's plane).
+    scatter : float
+        Root mean square of what is not linear over the section, relative to the largest fibre stress.
     """
 
     x: float
@@ -100,10 +147,18 @@ class SectionStress:
 class StressField:
     """Stress of one displacement field; components in the order of ``COMPONENTS`` [MPa].
 
-    nodal      (n, 6) recovered at the nodes
-    at_points  (m, q, 6) at the integration points of the elements (4, or 1 in linear ones)
-    points     (m, q, 3) integration points [mm]
-    weights    (m, q) their volumes [mm³]
+    Attributes
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    nodal : ndarray, shape (n, 6)
+        Recovered at the nodes.
+    at_points : ndarray, shape (m, q, 6)
+        At the integration points of the elements (4, or 1 in linear ones).
+    points : ndarray, shape (m, q, 3)
+        Integration points [mm].
+    weights : ndarray, shape (m, q)
+        Their volumes [mm³].
     """
 
     space: DisplacementSpace
@@ -123,7 +178,18 @@ class StressField:
         return principal(self.nodal)
 
     def decisive(self, *, brittle: bool) -> NDArray[np.float64]:
-        """The stress (n,) at the nodes that a strength is set against: the largest principal one where ``brittle``."""
+        """The stress at the nodes that a strength is set against.
+
+        Parameters
+        ----------
+        brittle : bool
+            True where the principal stress decides, False where von Mises does.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Stress [MPa].
+        """
         return self.principal[:, 0] if brittle else self.von_mises
 
     @property
@@ -140,13 +206,31 @@ class StressField:
         return Peak(value=float(values[element, point]), location=self.points[element, point].copy())
 
     def section(self, *, x: float, half_length: float, half_y: float, half_z: float) -> SectionStress:
-        """Fit a beam's stress to the recovered σxx on the outer surface between x ± ``half_length``.
+        """Fit a beam's stress to the recovered σxx on the outer surface of a slab.
 
-        The fit σxx = (a + b y + c z) + (x' − x)(a' + b' y + c' z) by least squares over that surface is
-        independent of the equilibrium of the section, which any solution satisfies on average.
-        ``half_y``, ``half_z`` are the distances of the extreme fibres from the axis y = z = 0 [mm].
+        The fit σxx = (a + b y + c z) + (x' − x)(a' + b' y + c' z) by least squares over that surface is independent of
+        the equilibrium of the section, which any solution satisfies on average.
 
-        Raises ``CannotRunError`` where the slab holds too few faces.
+        Parameters
+        ----------
+        x : float
+            Of the section [mm].
+        half_length : float
+            Of the slab about it [mm].
+        half_y : float
+            Distance of the extreme fibre from the axis along y [mm].
+        half_z : float
+            The same along z [mm].
+
+        Returns
+        -------
+        SectionStress
+            The beam's stress, and what of the field is not linear.
+
+        Raises
+        ------
+        CannotRunError
+            Where the slab holds too few faces.
         """
         face = self._outer
         where = np.abs(face.x[..., 0] - x) <= half_length
@@ -182,7 +266,24 @@ class StressField:
 
 
 def stress_field(space: DisplacementSpace, displacement: NDArray[np.float64], *, E: float, nu: float) -> StressField:
-    """Recover the stress of nodal displacements (n, 3) [mm] in a material with E [MPa] and nu."""
+    """Recover the stress of nodal displacements.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    displacement : ndarray, shape (n, 3)
+        At the nodes [mm].
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    StressField
+        At the nodes and at the integration points.
+    """
     X, W, phi, _ = reference_basis(space, space.order)
     shape = (len(space.cells), len(W))
     at_points, weights = np.empty((*shape, 6)), np.empty(shape)
@@ -200,7 +301,26 @@ def stress_field(space: DisplacementSpace, displacement: NDArray[np.float64], *,
 def element_stress(
     space: DisplacementSpace, displacement: NDArray[np.float64], degree: int, *, E: float, nu: float
 ) -> Iterator[tuple[slice, NDArray[np.float64], NDArray[np.float64]]]:
-    """Yield the elements' own stress (k, q, 6) [MPa] at the points of a rule, with the points' volumes (k, q) [mm³]."""
+    """Yield the elements' own stress at the points of a rule.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    displacement : ndarray, shape (n, 3)
+        At the nodes [mm].
+    degree : int
+        Of the integration rule.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+
+    Yields
+    ------
+    tuple of slice, ndarray and ndarray
+        Which elements, their stress (k, q, 6) [MPa] and the points' volumes (k, q) [mm³].
+    """
     _, W, _, gradient = reference_basis(space, degree)
     for start in range(0, len(space.cells), _CHUNK):
         part = slice(start, start + _CHUNK)
@@ -212,7 +332,20 @@ def element_stress(
 
 
 def carry_to_nodes(X: NDArray[np.float64], local: int) -> NDArray[np.float64]:
-    """Weights (local, q) that carry values at the points X (3, q) of an element to its nodes, linearly."""
+    """Weights that carry values at points of an element to its nodes, linearly.
+
+    Parameters
+    ----------
+    X : ndarray, shape (3, q)
+        Points of the unit tetrahedron.
+    local : int
+        Number of the element's nodes.
+
+    Returns
+    -------
+    ndarray
+        (local, q) Weights.
+    """
     if X.shape[1] == 1:
         return np.ones((local, 1))
     linear = np.vstack([np.ones(X.shape[1]), X]).T

@@ -14,7 +14,20 @@ SMALLEST_SINGULAR_VALUE = 1e-6
 
 
 def rigid_motions(nodes: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Three unit translations and three unit rotations about ``point`` as nodal fields (6, n, 3)."""
+    """Three unit translations and three unit rotations as nodal fields.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Positions [mm].
+    point : ndarray, shape (3,)
+        About which the rotations turn [mm].
+
+    Returns
+    -------
+    ndarray, shape (6, n, 3)
+        Nodal fields.
+    """
     motions = np.zeros((6, len(nodes), 3))
     for i in range(3):
         motions[i, :, i] = 1.0
@@ -24,7 +37,15 @@ def rigid_motions(nodes: NDArray[np.float64], point: NDArray[np.float64]) -> NDA
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Supports:
-    """Six fixed unknowns and the smallest singular value of the scaled rigid-body motions there."""
+    """A support that holds a free body without straining it.
+
+    Attributes
+    ----------
+    unknowns : ndarray of int
+        The six that are fixed.
+    rank_margin : float
+        Smallest singular value of the scaled rigid-body motions there.
+    """
 
     unknowns: NDArray[np.int64]
     rank_margin: float
@@ -36,7 +57,22 @@ def isostatic_supports(nodes: NDArray[np.float64], corners: int) -> Supports:
     The component left free at the second node is the one nearest to the line to the first; the one
     fixed at the third is nearest to the normal of the plane of the three.
 
-    Raises ``CannotRunError`` if these supports leave a rigid-body motion free.
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Positions [mm].
+    corners : int
+        Number of corner nodes, which come first.
+
+    Returns
+    -------
+    Supports
+        The six unknowns.
+
+    Raises
+    ------
+    CannotRunError
+        If these supports leave a rigid-body motion free.
     """
     points = nodes[:corners]
     first = int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))
@@ -55,9 +91,26 @@ def isostatic_supports(nodes: NDArray[np.float64], corners: int) -> Supports:
 
 
 def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) -> Supports:
-    """Return the supports, or raise ``CannotRunError`` if they leave a rigid-body motion free.
+    """Refuse supports that leave a rigid-body motion free.
 
     Rotations are scaled by the body's size, so that the singular values have no unit.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Positions [mm].
+    unknowns : ndarray of int
+        To be fixed.
+
+    Returns
+    -------
+    Supports
+        The same, with their margin.
+
+    Raises
+    ------
+    CannotRunError
+        Where they leave a rigid-body motion free.
     """
     centre = nodes.mean(axis=0)
     motions = rigid_motions(nodes, centre).reshape(6, -1)[:, unknowns]
@@ -107,5 +160,16 @@ class LineReference:
         return np.array([*self._first.mean(field), *(self._across @ self._last.mean(field)), twist])
 
     def relative(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Displacements (n, 3) less their rigid-body part."""
+        """Displacements less their rigid-body part.
+
+        Parameters
+        ----------
+        field : ndarray, shape (n, 3)
+            Displacements [mm].
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            Displacements [mm].
+        """
         return np.asarray(field - np.tensordot(self._conditions @ self._values(field), self._motions, axes=1))

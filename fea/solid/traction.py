@@ -25,11 +25,31 @@ LARGEST_CORRECTION = 0.1
 def wrench_density(
     quadrature: Quadrature, point: NDArray[np.float64], wrench: NDArray[np.float64], weight: Density | None = None
 ) -> Density:
-    """Density w(x) (a + b × r) that delivers the wrench (6,) about ``point`` exactly.
+    """Density w(x) (a + b × r) that delivers a wrench exactly.
 
-    ``weight``: w (k, q), by default 1. With r from the weighted centroid the 6×6 Gram matrix of the
-    rigid-body fields falls apart into the measure A = ∫w and the inertia J = ∫w (r² I − r rᵀ), hence
-    a = F/A and J b = M. Raises ``CannotRunError`` if the surface cannot carry every component.
+    With r from the weighted centroid the 6×6 Gram matrix of the rigid-body fields falls apart into the measure A = ∫w
+    and the inertia J = ∫w (r² I − r rᵀ), hence a = F/A and J b = M.
+
+    Parameters
+    ----------
+    quadrature : Quadrature
+        Of the surface or volume.
+    point : ndarray, shape (3,)
+        About which the wrench acts [mm].
+    wrench : ndarray, shape (6,)
+        Force [N] and moment [N mm].
+    weight : ndarray or None, shape (k, q), optional
+        w at the points; 1 by default.
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Density.
+
+    Raises
+    ------
+    CannotRunError
+        If the surface cannot carry every component.
     """
     measure = (quadrature.w if weight is None else quadrature.w * weight).ravel()
     x = quadrature.x.reshape(-1, 3)
@@ -55,7 +75,24 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
     else turn and shorten the resultant. What then remains (a moment of unsymmetric facets) is removed
     by a traction of the rigid-body fields.
 
-    Raises ``CannotRunError`` if the surface is not that hole, or meshed too coarsely.
+    Parameters
+    ----------
+    bore : SurfaceQuadrature
+        The hole on the mesh.
+    pin : PinLoad
+        What the pin does to the link.
+    law : PressureLaw
+        Of the pressure.
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Traction [MPa].
+
+    Raises
+    ------
+    CannotRunError
+        If the surface is not that hole, or meshed too coarsely.
     """
     arm = bore.x - pin.centre
     radius = float((bore.w * np.hypot(arm[..., 0], arm[..., 1])).sum() / bore.w.sum())
@@ -89,7 +126,20 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
 
 
 def thrust_traction(face: SurfaceQuadrature, pin: PinLoad) -> Density:
-    """Even pressure on an eye's flat face that delivers Fz of the pin's wrench without a moment about its centre."""
+    """Even pressure on an eye's flat face that delivers Fz of the pin's wrench without a moment about its centre.
+
+    Parameters
+    ----------
+    face : SurfaceQuadrature
+        One flat face of the eye.
+    pin : PinLoad
+        What the pin does to the link.
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Traction [MPa].
+    """
     target = np.array([0.0, 0.0, pin.wrench[2], 0.0, 0.0, 0.0])
     unit = -face.normals
     density = unit * (pin.wrench[2] / face.wrench(unit, pin.centre)[2])
@@ -99,7 +149,19 @@ def thrust_traction(face: SurfaceQuadrature, pin: PinLoad) -> Density:
 def couple_traction(surface: SurfaceQuadrature, centre: NDArray[np.float64], torque: float) -> Density:
     """Tangential traction c ẑ × r about the pin that delivers a torque about z and no net force.
 
-    ``surface``: both flat faces of the eye (``eye-faces``) or the bore (``bore-shear``).
+    Parameters
+    ----------
+    surface : SurfaceQuadrature
+        Both flat faces of the eye (``eye-faces``) or the bore (``bore-shear``).
+    centre : ndarray, shape (3,)
+        Of the pin [mm].
+    torque : float
+        About z [N mm].
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Traction [MPa].
     """
     target = np.array([0.0, 0.0, 0.0, 0.0, 0.0, torque])
     swirl = np.cross(np.array([0.0, 0.0, 1.0]), surface.x - centre)
@@ -108,7 +170,22 @@ def couple_traction(surface: SurfaceQuadrature, centre: NDArray[np.float64], tor
 
 
 def body_density(volume: Quadrature, load: BodyLoad, density: float) -> Density:
-    """Weight and inertia per volume of a body of that density [tonne/mm³]."""
+    """Weight and inertia per volume of a body.
+
+    Parameters
+    ----------
+    volume : Quadrature
+        Of the link.
+    load : BodyLoad
+        Weight and inertia.
+    density : float
+        Of the material [tonne/mm³].
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Force per volume [N/mm³].
+    """
     arm = (volume.x - load.about) * np.array([1.0, 1.0, 0.0])
     swirl = np.cross(np.array([0.0, 0.0, load.angular_acceleration]), arm)
     return np.asarray(density * (load.specific_force - swirl + load.angular_speed**2 * arm))
@@ -119,6 +196,18 @@ def line_density(volume: Quadrature, load: LineLoad) -> Density:
 
     The force per length is divided by the area of the cross-section, taken in up to 40 slices
     between the stations, so that a wide eye draws no more load than the tube beside it.
+
+    Parameters
+    ----------
+    volume : Quadrature
+        Of the link.
+    load : LineLoad
+        Spread along the axis.
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Force per volume [N/mm³].
     """
     length = load.last - load.first
     x = volume.x[..., 0]

@@ -40,9 +40,16 @@ Vectors = NDArray[np.float64]
 class LinearLevel:
     """What the system of linear elements is built from.
 
-    space   of the quadratic displacements
-    E, nu   of the material [MPa, -]
-    fixed   unknowns fixed in the quadratic system
+    Attributes
+    ----------
+    space : DisplacementSpace
+        Of the quadratic displacements.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    fixed : ndarray of int
+        Unknowns fixed in the quadratic system.
     """
 
     space: DisplacementSpace
@@ -63,7 +70,24 @@ class LinearLevel:
 
 
 def linear_level(space: DisplacementSpace, *, E: float, nu: float, fixed: NDArray[np.int64]) -> LinearLevel | None:
-    """Return the linear level below a space of quadratic displacements; None below a linear one."""
+    """Return the linear level below a space of quadratic displacements.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    fixed : ndarray of int
+        Unknowns fixed in the quadratic system.
+
+    Returns
+    -------
+    LinearLevel or None
+        None below a linear space.
+    """
     return LinearLevel(space=space, E=E, nu=nu, fixed=fixed) if space.order == 2 else None
 
 
@@ -84,7 +108,23 @@ class TwoLevelFactor:
         self._smoother = _ChebyshevSmoother(K)
 
     def solve(self, rhs: NDArray[np.float64]) -> Solved:
-        """Solve for (n,) or (n, k); raises ``CannotRunError`` where the iteration does not converge."""
+        """Solve the system.
+
+        Parameters
+        ----------
+        rhs : ndarray, shape (n,) or (n, k)
+            Right-hand sides.
+
+        Returns
+        -------
+        Solved
+            Solutions, error and iterations.
+
+        Raises
+        ------
+        CannotRunError
+            Where the iteration does not converge.
+        """
         columns = np.ascontiguousarray(rhs.reshape(self._K.size, -1).T, dtype=np.float64)
         solution = np.zeros_like(columns)
         iterations, error = 0, 0.0

@@ -252,7 +252,7 @@ def claims(
     memory: MemoryOption = None,
 ) -> None:
     """Re-derive published figures and say which of them hold."""
-    from fea.claims.audit import check_all, check_claims
+    from fea.claims.sources import check_all, check_claims
     from geometry.base.errors import CaseError
     from loads.sources.claim import read_source, sources
     from reports.tables.claims import as_json, as_markdown, as_text

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from fea.claims.audit import ClaimResult, check_claims
+from fea.claims.audit import ClaimResult
+from fea.claims.sources import check_claims
 from fea.common.verdict import Quantity, Subject, Verdict, reason_for
 from fea.frame.joint_forces import PINNED_STATICS
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult

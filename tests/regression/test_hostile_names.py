@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from fea.check.run import check_case
-from fea.claims.audit import check_claims
+from fea.claims.sources import check_claims
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import read_case, read_companion, read_text, validate

@@ -5,7 +5,8 @@ from collections import Counter
 
 import pytest
 
-from fea.claims.audit import Finding, check_all
+from fea.claims.audit import Finding
+from fea.claims.sources import check_all
 
 HOLDS, NOT_HOLD, NOT_FOLLOW = Finding.HOLDS, Finding.DOES_NOT_HOLD, Finding.DOES_NOT_FOLLOW
 MISSING = Finding.CANNOT_BE_REDERIVED

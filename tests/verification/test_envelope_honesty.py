@@ -8,7 +8,8 @@ import solid_meshes
 from turning_load import POSES, RHO, history
 
 from fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, link_envelope
-from fea.refine.link_series import level_of, precision
+from fea.refine.level import level_of
+from fea.refine.link_series import precision
 from fea.refine.refinement import MeshRecord, RefinedSolid
 from fea.solid.solution import solve_solid
 from fea.solid.space import displacement_space

@@ -11,7 +11,8 @@ from known_solutions import NU, E
 from fea.common.link_loads import EndLoad, LinkLoads
 from fea.refine.convergence import grid_convergence
 from fea.refine.error_estimate import estimate_error
-from fea.refine.link_series import CHORD, DISPLACEMENT_ORDER, level_of
+from fea.refine.level import level_of
+from fea.refine.link_series import CHORD, DISPLACEMENT_ORDER
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from loads.records.bearing import WIDE

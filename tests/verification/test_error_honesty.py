@@ -14,7 +14,8 @@ from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
 from fea.common.source import CONTACT
 from fea.common.verdict import Verdict
 from fea.refine.error_estimate import energy_factor
-from fea.refine.link_series import Eye, energy_errors, level_of, precision
+from fea.refine.level import level_of
+from fea.refine.link_series import Eye, energy_errors, precision
 from fea.refine.refinement import Effort
 from fea.solid.solution import solve_solid
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE

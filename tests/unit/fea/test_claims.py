@@ -8,7 +8,8 @@ import pytest
 from pydantic import ValidationError
 
 import fea.claims.data
-from fea.claims.audit import Finding, _Names, check_all, check_claim, check_claims
+from fea.claims.audit import Finding, Names, check_claim
+from fea.claims.sources import check_all, check_claims
 from geometry.base.errors import CaseError
 from geometry.mechanisms.ornithopter import motors
 from loads.case.case_file import read_case
@@ -44,7 +45,7 @@ def claim(published: str, **entries: object) -> Claim:
 
 def judge(published: str, given=None, **entries):
     stated = claim(published, **entries)
-    return check_claim(stated, _Names(TREE, given or {}, stated.not_stated))
+    return check_claim(stated, Names(TREE, given or {}, stated.not_stated))
 
 
 @pytest.mark.parametrize(

@@ -94,7 +94,7 @@ def test_short_flanks_are_said_to_be_an_estimate() -> None:
     for slot, told in ((10.0, False), (2.0, True)):
         body = slotted(slot)
         found = details(body, loads, check_beam(beam_loads(loads, body, 1e-9, None), BAR.section, 1.0).forces)
-        assert ("an estimate, since they are but 1.4 times as long as high" in found[0].remark) is told
+        assert ("an estimate, since they are only 1.4 times as long as high" in found[0].remark) is told
         assert remarks(body, found)[0].startswith("by hand the slot at S bears 1 MPa")
 
 

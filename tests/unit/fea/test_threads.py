@@ -65,7 +65,7 @@ def test_a_whole_run_is_bounded_by_its_keyword_or_default(options, seen):
         ("fea.check.run.solve_case_statics", ("check", "--threads", "1")),
         ("fea.motion.envelope.solve_case_motion", ("envelope", "--threads", "1")),
         ("loads.states.case_motion.solve_case_motion", ("motion", "--threads", "1")),
-        ("fea.claims.audit.check_claims", ("claims", "--threads", "1")),
+        ("fea.claims.sources.check_claims", ("claims", "--threads", "1")),
     ],
 )
 def test_commands_are_bounded_as_a_whole(monkeypatch, stage, arguments):

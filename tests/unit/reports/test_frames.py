@@ -49,8 +49,8 @@ def test_the_wings_page_sets_the_ways_to_hold_it_side_by_side(wing):
         "published: Paredes (2018), table 14: finite elements, A and G fixed 2",
     ):
         assert row in words
-    assert "its equilibrium ends at 0.203 of it" in words
     assert "belong to the undeformed pose" in words
+    assert "it gives way at 20.3 % of it" in words
     assert "A steel-wire 1.5 7 3.86 (0 to 3.86) 11.6 (0 to 11.6) 0.779" in words
 
 

@@ -1,0 +1,152 @@
+"""What is kept of a link's solution on one mesh."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.refine.error_estimate import ErrorEstimate, estimate_error
+from fea.solid.solution import SolidSolution
+from fea.solid.stress import stress_field
+from loads.records.bearing import Span
+
+_EDGE = (6.0 * np.sqrt(2.0)) ** (1.0 / 3.0)  # edge of a regular tetrahedron over the cube root of its volume
+_NEIGHBOURS = 8
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CaseFigures:
+    """One case on one mesh.
+
+    Attributes
+    ----------
+    von_mises, principal : ndarray
+        Nodal stresses (n,) [MPa].
+    estimate : ErrorEstimate
+        Of the error of its stress.
+    energy : float
+        Strain energy [N mm].
+    displacement : float
+        The largest [mm].
+    span : Span
+        Of the pins' pressure [degrees].
+    """
+
+    von_mises: NDArray[np.float64]
+    principal: NDArray[np.float64]
+    estimate: ErrorEstimate
+    energy: float
+    displacement: float
+    span: Span
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Level:
+    """What is kept of one mesh.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Of the mesh [mm].
+    cells : ndarray of int, shape (m, b)
+        Their numbers in each element.
+    centres : ndarray, shape (m, 3)
+        Of the elements [mm].
+    volumes : ndarray, shape (m,)
+        Of the elements [mm³].
+    chord : float
+        Relative difference of volume between mesh and geometry.
+    figures : tuple of CaseFigures
+        Of every case, in the order of the solution's cases.
+    """
+
+    nodes: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    centres: NDArray[np.float64]
+    volumes: NDArray[np.float64]
+    chord: float
+    figures: tuple[CaseFigures, ...]
+
+    def size(self, place: NDArray[np.float64], radius: float = 0.0) -> float:
+        """Mean edge of the elements within a radius of a place, at least of the nearest few.
+
+        Parameters
+        ----------
+        place : ndarray, shape (3,)
+            Point [mm].
+        radius : float, optional
+            About the place [mm].
+
+        Returns
+        -------
+        float
+            Mean edge [mm].
+        """
+        distance = np.linalg.norm(self.centres - place, axis=1)
+        near = distance <= max(radius, float(np.partition(distance, _NEIGHBOURS)[_NEIGHBOURS]))
+        return float(_EDGE * np.cbrt(self.volumes[near].mean()))
+
+    @property
+    def mean_size(self) -> float:
+        """Element edge [mm] of the mean volume."""
+        return float(_EDGE * np.cbrt(self.volumes.mean()))
+
+    def around(self, nodal: NDArray[np.float64], place: NDArray[np.float64], radius: float) -> int:
+        """Node of the largest value within a radius of a place, at least the nearest node.
+
+        Parameters
+        ----------
+        nodal : ndarray, shape (n,)
+            Values at the nodes.
+        place : ndarray, shape (3,)
+            Point [mm].
+        radius : float
+            About the place [mm].
+
+        Returns
+        -------
+        int
+            Number of the node.
+        """
+        distance = np.linalg.norm(self.nodes - place, axis=1)
+        return int(np.argmax(np.where(distance <= max(radius, float(distance.min())), nodal, -np.inf)))
+
+
+def level_of(solution: SolidSolution, volume: float) -> Level:
+    """Condense a solution on one mesh of a body.
+
+    Parameters
+    ----------
+    solution : SolidSolution
+        On one mesh.
+    volume : float
+        Of the body itself [mm³].
+
+    Returns
+    -------
+    Level
+        What is kept of the mesh.
+    """
+    space, figures = solution.space, []
+    weights = np.empty(0)
+    for case in solution.cases:
+        field = stress_field(space, case.displacement, E=solution.E, nu=solution.nu)
+        weights = field.weights.sum(axis=1)
+        figures.append(
+            CaseFigures(
+                von_mises=field.von_mises,
+                principal=field.principal[:, 0],
+                estimate=estimate_error(field, case.displacement, E=solution.E, nu=solution.nu),
+                energy=case.strain_energy,
+                displacement=case.displacement_max,
+                span=case.span,
+            )
+        )
+    return Level(
+        nodes=space.nodes,
+        cells=space.cells,
+        centres=space.nodes[space.cells[:, :4]].mean(axis=1),
+        volumes=weights,
+        chord=abs(float(weights.sum()) / volume - 1.0),
+        figures=tuple(figures),
+    )
