@@ -19,7 +19,6 @@ NOT_YET = (
     "fea/beam",
     "fea/check",
     "fea/common",
-    "fea/frame",
     "fea/motion",
     "fea/outcomes",
     "geometry/linkage",

@@ -29,9 +29,30 @@ _SAME_PLACE = 1e-9
 def build_frame(
     case: Case, pose: Pose, loads: Sequence[Load], *, held: Drive | None, bonded: bool = False
 ) -> LinkageFrame:
-    """Build the frame of a case in a pose under loads in global axes.
+    """Build the frame of a case in a pose under loads.
 
-    Raises ``CaseError`` for linkages without any part.
+    Parameters
+    ----------
+    case : Case
+        The case.
+    pose : Pose
+        The linkage's pose.
+    loads : sequence of Load
+        That act on the links, global axes.
+    held : Drive or None
+        The drive that holds a link; None where nothing is driven.
+    bonded : bool, optional
+        True where pins of revolute joints carry moments about their own axis as well.
+
+    Returns
+    -------
+    LinkageFrame
+        Nodes, beams, ties, guides and loads.
+
+    Raises
+    ------
+    CaseError
+        For linkages without any part.
     """
     if not case.checked_links:
         raise CaseError(

@@ -4,7 +4,7 @@ Kinematics after Crisfield, Non-linear Finite Element Analysis of Solids and Str
 (in the plane) and vol. 2, 1997, chapter 17 (in space), with the element axes of Nour-Omid & Rankin, Comput. Methods
 Appl. Mech. Engrg. 93 (1991) 353-384: x along the chord, y by the mean of the two ends' y axes. The natural
 deformations are the lengthening and the rotation vectors of both ends relative to these axes; they meet the natural
-stiffness of the linear element (``fea.frame.element``), so that small displacements give the linear frame. The
+stiffness of the linear element (``fea.frame.system``), so that small displacements give the linear frame. The
 lengthening counts how the axis bows between its ends, L (2 a² - a b + 2 b²)/30 in either plane for a cubic (the
 shallow-arch strain, Crisfield, vol. 1, section 7.3; Oran, J. Struct. Div. ASCE 99 (1973) 987-1001): without it a
 divided column buckles some 1.3 % late at eight elements.
@@ -22,9 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.element import line_load_effect, natural_flexibility
 from fea.frame.jet import Jet, cross, dot, stack, unit
 from fea.frame.model import FrameModel, Guide
+from fea.frame.system import line_load_effect, natural_flexibility
 from geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
@@ -34,8 +34,12 @@ Floats = NDArray[np.float64]
 class ElementResponse:
     """What m elements answer to their end displacements; 12 variables: displacement and spin of both nodes.
 
-    forces    (m, 12) what the nodes do to the elements, global axes, moments about the nodes [N, N·mm]
-    tangent   (m, 12, 12) derivative of the forces by the spins (forces taken in global axes)
+    Attributes
+    ----------
+    forces : ndarray, shape (m, 12)
+        What the nodes do to the elements, global axes, moments about the nodes [N, N·mm].
+    tangent : ndarray, shape (m, 12, 12)
+        Derivative of the forces by the spins (forces taken in global axes).
     """
 
     forces: Floats
@@ -68,14 +72,42 @@ class CorotationalElements:
             self.loads[i] = np.array([first, last]) @ model.axes(i)
 
     def respond(self, displacements: Floats, rotations: Floats, factor: float) -> ElementResponse:
-        """Evaluate at nodal displacements (m, 2, 3) and rotations (m, 2, 3, 3), line loads times ``factor``.
+        """Evaluate all elements.
 
-        Raises ``CannotRunError`` where an end turns by more than a right angle relative to its element.
+        Parameters
+        ----------
+        displacements : ndarray, shape (m, 2, 3)
+            Of both nodes [mm].
+        rotations : ndarray, shape (m, 2, 3, 3)
+            Of both nodes.
+        factor : float
+            Share of the line loads.
+
+        Returns
+        -------
+        ElementResponse
+            Forces and tangent.
+
+        Raises
+        ------
+        CannotRunError
+            Where an end turns by more than a right angle relative to its element.
         """
         return _response(self.potential(displacements, rotations, factor))
 
     def geometric(self, natural: Floats) -> ElementResponse:
-        """Forces and geometric stiffness of the undeformed elements under natural forces (m, 6)."""
+        """Evaluate the undeformed elements under natural forces.
+
+        Parameters
+        ----------
+        natural : ndarray, shape (m, 6)
+            Natural forces [N, N·mm].
+
+        Returns
+        -------
+        ElementResponse
+            Forces and geometric stiffness.
+        """
         m = len(self.lengths)
         displacements, rotations = np.zeros((m, 2, 3)), np.tile(np.eye(3), (m, 2, 1, 1))
         v, _ = self.natural(displacements, rotations)
@@ -83,7 +115,20 @@ class CorotationalElements:
         return _response(potential)
 
     def natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, tuple[Jet, Jet, Jet]]:
-        """Natural deformations (m, 6) and the element's axes."""
+        """Natural deformations and the element's axes.
+
+        Parameters
+        ----------
+        displacements : ndarray, shape (m, 2, 3)
+            Of both nodes [mm].
+        rotations : ndarray, shape (m, 2, 3, 3)
+            Of both nodes.
+
+        Returns
+        -------
+        tuple of Jet and tuple of 3 Jet
+            Natural deformations (m, 6) and the element's axes, (m, 3) each.
+        """
         chord = self._point(1, displacements, rotations) - self._point(0, displacements, rotations)
         length2 = dot(chord, chord)
         e1 = unit(chord)
@@ -124,7 +169,22 @@ class CorotationalElements:
         return dot(start, _constant((2.0 * first + last) * third)) + dot(end, _constant((first + 2.0 * last) * third))
 
     def potential(self, displacements: Floats, rotations: Floats, factor: float) -> Jet:
-        """Strain energy (m, 1) less the work of the line loads times ``factor`` [N·mm]."""
+        """Strain energy less the work of the line loads.
+
+        Parameters
+        ----------
+        displacements : ndarray, shape (m, 2, 3)
+            Of both nodes [mm].
+        rotations : ndarray, shape (m, 2, 3, 3)
+            Of both nodes.
+        factor : float
+            Share of the line loads.
+
+        Returns
+        -------
+        Jet
+            (m, 1) [N·mm].
+        """
         loads = factor * self.loads
         v, axes = self.natural(displacements, rotations)
         local = stack(*(dot(e, _constant(loads[:, k])) for k in range(2) for e in axes))
@@ -134,9 +194,21 @@ class CorotationalElements:
 
 
 def guide_gap(guide: Guide, displacements: Floats, rotations: Floats) -> tuple[float, ElementResponse]:
-    """Gap d · n or a · n of a guide at displacements (2, 3) and rotations (2, 3, 3) of its carrier and its pin.
+    """Gap d · n or a · n of a guide.
 
-    With the gap [mm, rad] comes what a unit of the guide's force does to both nodes.
+    Parameters
+    ----------
+    guide : Guide
+        Between its carrier and its pin.
+    displacements : ndarray, shape (2, 3)
+        Of carrier and pin; zero for the ground [mm].
+    rotations : ndarray, shape (2, 3, 3)
+        Of carrier and pin.
+
+    Returns
+    -------
+    tuple of float and ElementResponse
+        Gap [mm, rad], and what a unit of the guide's force does to both nodes.
     """
     normal = _turned(rotations[None, 0], guide.normal[None], 3)
     if guide.axis is not None:

@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 
 from fea.beam.cut_free import in_slot, link_loads
 from fea.common.link_loads import LinkLoads
-from fea.frame.corotational import (
-    CorotationalSolution,
-)
+from fea.frame.equilibrium_path import CorotationalSolution
 from fea.frame.linkage_frame import LinkageFrame
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Body
@@ -38,6 +36,28 @@ def on_deformed_shape(
     """What acts on a link on the deformed shape, for its straight shape along the chord.
 
     The chord runs from the first to the last station; z is that of the first node, turned normal to it.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        Of the linkage.
+    found : CorotationalSolution
+        Its equilibrium on the deformed shape.
+    reactions : Reactions
+        On that shape.
+    link : str
+        Its name.
+    title : str
+        Of the load case.
+    body : Body
+        Geometry of the link.
+    loads : sequence of Load
+        That act on the linkage, global axes.
+
+    Returns
+    -------
+    LinkLoads
+        Loads on the straight link.
     """
     nodes, stations = frame.model.nodes + found.displacements[: len(frame.model.nodes)], frame.stations[link]
     (x, first), (_, last) = stations[0], stations[-1]
@@ -67,7 +87,25 @@ def in_slots(loads: LinkLoads, body: Body, link: str) -> LinkLoads:
     """Return the loads with every pin in a slot at the place to which it has slid, pushing across the slot alone.
 
     On a bent link a slot is not parallel to the chord; what the pin's force has along it is left to ``balanced``.
-    Raises ``CaseError`` where a pin has slid out of its slot.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+        Of one link.
+    body : Body
+        Geometry of the link.
+    link : str
+        Its name.
+
+    Returns
+    -------
+    LinkLoads
+        Loads with pins where they have slid.
+
+    Raises
+    ------
+    CaseError
+        Where a pin has slid out of its slot.
     """
     pins = []
     for pin in loads.pins:
@@ -90,7 +128,17 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
     the bent link (the fictitious lateral loads of the P-Δ method: Wilson & Habibullah, Engineering Journal AISC 24
     (1987) 172-175). Transverse forces take the moment of having left their places along.
 
-    moved   point -> (3,) by which it has left its place in the straight link [mm]
+    Parameters
+    ----------
+    loads : LinkLoads
+        Of the straight link.
+    moved : dict of str to ndarray
+        Point -> (3,) by which it has left its place in the straight link [mm].
+
+    Returns
+    -------
+    LinkLoads
+        Loads with the pairs of forces.
     """
     stations = [(float(pin.centre[0]), pin.name, pin.wrench) for pin in loads.pins]
     stations += [(float(end.point[0]), end.name, end.wrench) for end in loads.ends]
@@ -112,11 +160,29 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
 
 
 def balanced(loads: LinkLoads, mass: PartMass | None, whole: float = 0.0) -> LinkLoads:
-    """Return the loads of a link with what they leave unbalanced taken by the pin (in no slot) with the largest force.
+    """Return the loads of a link with what they leave unbalanced taken by the pin with the largest force, in no slot.
 
     Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Where all on the link
-    is but ``NOTHING`` of the ``whole`` load [N], it is what the iteration left, and nothing acts. Raises
-    ``CannotRunError`` where more than ``LARGEST_SHIFT`` of the link's load is unbalanced.
+    is but ``NOTHING`` of the whole load, it is what the iteration left, and nothing acts.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+        Of one link.
+    mass : PartMass or None
+        Of the link.
+    whole : float, optional
+        Sum of all loads on the linkage [N].
+
+    Returns
+    -------
+    LinkLoads
+        Loads that balance.
+
+    Raises
+    ------
+    CannotRunError
+        Where more than ``LARGEST_SHIFT`` of the link's load is unbalanced.
     """
     total = np.zeros(6)
     acting = [(p.centre, p.wrench) for p in loads.pins] + [(e.point, e.wrench) for e in loads.ends]

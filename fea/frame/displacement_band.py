@@ -51,9 +51,18 @@ _POINTS = 6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Zone:
-    """A stretch of a beam between two places along it [mm], and the least and largest factor on its flexibility.
+    """A stretch of a beam, and the least and largest factor on its flexibility.
 
-    least, most  (6,) for N, V_y, V_z, T, M_y, M_z
+    Attributes
+    ----------
+    start : float
+        Place along the beam [mm].
+    end : float
+        Place beyond ``start`` [mm].
+    least : ndarray, shape (6,)
+        Least factor, for N, V_y, V_z, T, M_y, M_z.
+    most : ndarray, shape (6,)
+        Largest factor.
     """
 
     start: float
@@ -63,9 +72,25 @@ class Zone:
 
 
 def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank: bool = False) -> tuple[Zone, ...]:
-    """Return the zones of a link's beam between two places: x along its axis, or along an arm from its foot on.
+    """Return the zones of a link's beam between two places.
 
-    flank  True for a flank of a slot
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+    start : float
+        Place: x along the link's axis, or along an arm from its foot on [mm].
+    end : float
+        Place beyond ``start`` [mm].
+    arm : Pin or None, optional
+        Pin at the end of the arm; None for the link's axis.
+    flank : bool, optional
+        True for a flank of a slot.
+
+    Returns
+    -------
+    tuple of Zone
+        From start to end.
     """
     part = body.part
     rigid: list[tuple[float, float]] = []
@@ -100,10 +125,24 @@ def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank
 
 
 def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
-    """Pin -> how far it moves at the most in its bore or slot per unit of what it bears (6,) [mm/N, 1/(N·mm)].
+    """How far every pin moves at the most in its bore or slot per unit of what it bears.
 
     It sinks by ``SINK`` F/(E t), tilts as that along its length lets it, and turns about itself as the ring bends and,
     held at its rim, shears: M/(4πG t) (1/r² - 1/R²), from τ = M/(2π r² t).
+
+    Parameters
+    ----------
+    body : Body
+        Geometry of the link.
+    young : float
+        Young's modulus [MPa].
+    poisson : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Pin and its give (6,) [mm/N, 1/(N·mm)].
     """
     part = body.part
     thick, outer = part.eye_thickness, part.eye_diameter / 2.0
@@ -127,11 +166,23 @@ def bounds(
     beams: Mapping[int, Sequence[Zone]],
     bores: Sequence[tuple[int, Real]],
 ) -> tuple[float, float]:
-    """Least and largest displacement along a unit load [mm].
+    """Least and largest displacement along a unit load.
 
-    loaded, unit  the frame under the loads and under the unit load
-    beams         element -> its zones; those that are left out are as the frame has them
-    bores         (node, give (6,)) of every pin in a bore, for what acts on the node's link there
+    Parameters
+    ----------
+    loaded : FrameSolution
+        The frame under the loads.
+    unit : FrameSolution
+        The frame under the unit load.
+    beams : dict of int to sequence of Zone
+        Element and its zones; those that are left out are as the frame has them.
+    bores : sequence of tuple of int and ndarray
+        Node and give (6,) of every pin in a bore, for what acts on the node's link there.
+
+    Returns
+    -------
+    tuple of 2 float
+        Least and largest [mm].
     """
     low = high = 0.0
     for i in range(len(loaded.model.elements)):
@@ -147,9 +198,27 @@ def bounds(
 def point_bounds(
     case: Case, frame: LinkageFrame, solution: FrameSolution, link: str, point: str
 ) -> tuple[float, float]:
-    """Least and largest distance by which a point of a linkage moves in its linear frame [mm].
+    """Least and largest distance by which a point of a linkage moves in its linear frame.
 
     Where the frame is redundant, forces are those of the plain beams: exact to first order in what eyes and bores do.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    frame : LinkageFrame
+        Of the linkage.
+    solution : FrameSolution
+        In small displacements.
+    link : str
+        On which the point lies.
+    point : str
+        Its name.
+
+    Returns
+    -------
+    tuple of 2 float
+        Least and largest [mm].
     """
     node = frame.points[link, point]
     bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)

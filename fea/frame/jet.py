@@ -15,7 +15,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Jet:
-    """Value (m, c), gradient (m, c, k) and Hessian (m, c, k, k)."""
+    """Values of functions with their first two derivatives.
+
+    Attributes
+    ----------
+    value : ndarray, shape (m, c)
+        Of c functions at m points.
+    gradient : ndarray, shape (m, c, k)
+        By k variables.
+    hessian : ndarray, shape (m, c, k, k)
+        By k variables.
+    """
 
     value: Floats
     gradient: Floats
@@ -50,7 +60,18 @@ class Jet:
         )
 
     def times(self, factor: float | Floats) -> "Jet":
-        """Multiply by constants: a number, or an array that spreads over (m, c)."""
+        """Multiply by constants.
+
+        Parameters
+        ----------
+        factor : float or ndarray
+            A number, or an array that spreads over (m, c).
+
+        Returns
+        -------
+        Jet
+            The product.
+        """
         f = np.asarray(factor, dtype=np.float64)
         return Jet(
             value=self.value * f,
@@ -59,7 +80,22 @@ class Jet:
         )
 
     def apply(self, f: Floats, slope: Floats, curvature: Floats) -> "Jet":
-        """A function of each component, given its value and first two derivatives there (m, c)."""
+        """Apply a function to each component.
+
+        Parameters
+        ----------
+        f : ndarray, shape (m, c)
+            Its value at each component.
+        slope : ndarray, shape (m, c)
+            Its first derivative.
+        curvature : ndarray, shape (m, c)
+            Its second derivative.
+
+        Returns
+        -------
+        Jet
+            The function of each component.
+        """
         outer = self.gradient[..., :, None] * self.gradient[..., None, :]
         return Jet(
             value=f,
@@ -68,7 +104,18 @@ class Jet:
         )
 
     def power(self, exponent: float) -> "Jet":
-        """Each component to a constant power."""
+        """Raise each component to a constant power.
+
+        Parameters
+        ----------
+        exponent : float
+            Constant.
+
+        Returns
+        -------
+        Jet
+            The powers.
+        """
         x, n = self.value, exponent
         return self.apply(x**n, n * x ** (n - 1.0), n * (n - 1.0) * x ** (n - 2.0))
 
@@ -81,7 +128,18 @@ class Jet:
         )
 
     def map(self, matrices: Floats) -> "Jet":
-        """Linear combinations of the components by constant matrices (m, d, c)."""
+        """Combine the components linearly.
+
+        Parameters
+        ----------
+        matrices : ndarray, shape (m, d, c)
+            Constants.
+
+        Returns
+        -------
+        Jet
+            d components.
+        """
         return Jet(
             value=np.einsum("mdc,mc->md", matrices, self.value),
             gradient=np.einsum("mdc,mck->mdk", matrices, self.gradient),
@@ -90,7 +148,18 @@ class Jet:
 
 
 def stack(*parts: Jet) -> Jet:
-    """Put the components of several jets one after the other."""
+    """Put the components of several jets one after the other.
+
+    Parameters
+    ----------
+    *parts : Jet
+        One after the other.
+
+    Returns
+    -------
+    Jet
+        All components.
+    """
     return Jet(
         value=np.concatenate([p.value for p in parts], axis=1),
         gradient=np.concatenate([p.gradient for p in parts], axis=1),
@@ -99,15 +168,52 @@ def stack(*parts: Jet) -> Jet:
 
 
 def dot(a: Jet, b: Jet) -> Jet:
-    """Scalar product over the components."""
+    """Scalar product over the components.
+
+    Parameters
+    ----------
+    a : Jet
+        First factor.
+    b : Jet
+        Second factor.
+
+    Returns
+    -------
+    Jet
+        One component.
+    """
     return (a * b).sum()
 
 
 def cross(a: Jet, b: Jet) -> Jet:
-    """Vector product of three components each."""
+    """Vector product of three components each.
+
+    Parameters
+    ----------
+    a : Jet
+        First factor.
+    b : Jet
+        Second factor.
+
+    Returns
+    -------
+    Jet
+        Three components.
+    """
     return a[[1, 2, 0]] * b[[2, 0, 1]] - a[[2, 0, 1]] * b[[1, 2, 0]]
 
 
 def unit(a: Jet) -> Jet:
-    """Direction of a vector."""
+    """Direction of a vector.
+
+    Parameters
+    ----------
+    a : Jet
+        Vector.
+
+    Returns
+    -------
+    Jet
+        Of length one.
+    """
     return a * dot(a, a).power(-0.5)

@@ -25,8 +25,18 @@ BONDED_FRAME = "spatial frame with bonded joints"
 class JointForces:
     """Joint forces of one load case in the pose as it stands.
 
-    model  which model gave them, and ``reason`` why, for people
-    frame  of the linkage and its linear ``solution`` where the model is a frame; None for equilibrium alone
+    Attributes
+    ----------
+    reactions : Reactions
+        Joint forces and drive torque.
+    model : str
+        Which one gave them.
+    reason : str
+        Why, for people.
+    frame : LinkageFrame or None
+        Of the linkage where the model is a frame; None for equilibrium alone.
+    solution : FrameSolution or None
+        Of that frame; None for equilibrium alone.
     """
 
     reactions: Reactions
@@ -42,9 +52,26 @@ class JointForces:
 
 
 def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
-    """Return the joint forces under loads in global axes, by the simplest model that has them.
+    """Return the joint forces under loads, by the simplest model that has them.
 
-    Raises ``CaseError`` where no model has them, such as at a dead point of the driven link.
+    Parameters
+    ----------
+    case : Case
+        The case.
+    pose : Pose
+        The linkage's pose.
+    loads : sequence of Load
+        That act on the links, global axes.
+
+    Returns
+    -------
+    JointForces
+        With the model that gave them.
+
+    Raises
+    ------
+    CaseError
+        Where no model has them, such as at a dead point of the driven link.
     """
     bonded = case.joint_model == "bonded"
     if bonded:
@@ -79,7 +106,15 @@ def _redundant(case: Case, pose: Pose) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Held:
-    """How far a point moves with the linkage held in one way: displacement (3,) in global axes [mm]."""
+    """How far a point moves with the linkage held in one way.
+
+    Attributes
+    ----------
+    name : str
+        Of the way, for people.
+    displacement : ndarray, shape (3,)
+        Global axes [mm].
+    """
 
     name: str
     displacement: Real
@@ -94,6 +129,20 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[Held, .
     """Return how far the point that the case names moves: held at each link on the ground, and bonded all over.
 
     Linear frames in the pose as it stands.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    pose : Pose
+        The linkage's pose.
+    loads : sequence of Load
+        That act on the links, global axes.
+
+    Returns
+    -------
+    tuple of Held
+        One per way; none where the case does not ask.
     """
     asked = case.ways_to_hold
     if asked is None:

@@ -21,7 +21,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Step:
-    """One turn in a chain: number of its unknown, axis (3,) at the start, and the node that carries the axis."""
+    """One turn in a chain.
+
+    Attributes
+    ----------
+    number : int
+        Of its unknown.
+    axis : ndarray, shape (3,)
+        At the start.
+    carrier : int or None
+        Node that carries the axis; None for an axis in space.
+    """
 
     number: int
     axis: Floats
@@ -116,12 +126,36 @@ class KinematicChain:
 
 
 def present_axes(steps: list[Step], rotations: Floats) -> Floats:
-    """(k, 3) axes of the steps of a chain, given the rotations (n, 3, 3) of the nodes."""
+    """Present axes of the steps of a chain.
+
+    Parameters
+    ----------
+    steps : list of Step
+        Of a chain.
+    rotations : ndarray, shape (n, 3, 3)
+        Of the nodes.
+
+    Returns
+    -------
+    ndarray, shape (k, 3)
+        Axes.
+    """
     return np.array([s.axis if s.carrier is None else rotations[s.carrier] @ s.axis for s in steps]).reshape(-1, 3)
 
 
 def rotation_matrix(spin: Floats) -> Floats:
-    """Rotation (3, 3) about a vector by its length [rad], after Rodrigues: 1 + sin θ/θ S + (1 - cos θ)/θ² S²."""
+    """Rotation about a vector by its length, after Rodrigues: 1 + sin θ/θ S + (1 - cos θ)/θ² S².
+
+    Parameters
+    ----------
+    spin : ndarray, shape (3,)
+        Axis times angle [rad].
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Rotation.
+    """
     x, y, z = map(float, spin)
     angle = math.sqrt(x * x + y * y + z * z)
     half = math.sin(angle / 2.0) / angle if angle > 1e-8 else 0.5
@@ -131,7 +165,24 @@ def rotation_matrix(spin: Floats) -> Floats:
 
 
 def turned(steps: list[Step], axes: Floats, increments: Floats, rotation: Floats) -> Floats:
-    """Rotation (3, 3) at the end of a chain after its steps' increments [rad]; free turns first, then the pins."""
+    """Rotation at the end of a chain after its steps' increments; free turns first, then the pins.
+
+    Parameters
+    ----------
+    steps : list of Step
+        Of a chain.
+    axes : ndarray, shape (k, 3)
+        Of these steps.
+    increments : ndarray
+        Of all unknowns [rad].
+    rotation : ndarray, shape (3, 3)
+        Before.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Rotation after.
+    """
     spins: list[Floats] = []
     for step, axis in zip(steps, axes, strict=True):
         spin = axis * increments[step.number]

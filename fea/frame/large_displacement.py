@@ -22,12 +22,9 @@ from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind, distinct
 from fea.frame.build import build_frame
-from fea.frame.corotational import (
-    CorotationalSolution,
-    NoEquilibriumError,
-    solve_large_displacement,
-)
+from fea.frame.corotational import solve_large_displacement
 from fea.frame.deformed_links import balanced, on_deformed_shape
+from fea.frame.equilibrium_path import CorotationalSolution, NoEquilibriumError
 from fea.frame.joint_forces import JointForces
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
@@ -59,22 +56,40 @@ State = Literal["small", "deformed", "unstable", "no equilibrium", "off", "unkno
 class LargeDisplacement:
     """What became of one load case in large displacement.
 
-    state       small: the linear answer is valid. deformed: equilibrium was found on the deformed shape. unstable: it
-                was found, but the linkage buckles on its way there. no equilibrium: it ends below the whole load.
-                off: the case says not to look. unknown: there is no frame of this linkage
-    span        largest distance between two points of the pose [mm]
-    linear      largest displacement by the linear frame [mm], at ``where``; 0 where there is no frame
-    held        share of the load up to which equilibrium was found; 1 for all of it
-    held_band   the same with the stated scatter of load and modulus; of no meaning unless ``followed``
-    buckling    lowest factor on all loads at which the linear frame becomes unstable; infinite where it never does,
-                None where there is no frame
-    dead_point  factor on the linear displacements that takes the linkage to a dead point; infinite where they lead away
-    points      (link, point) -> displacement (3,) on the deformed shape [mm]; the linear one where small or off;
-                empty where no equilibrium or no frame was found
-    reactions   on the deformed shape, in global axes; None unless deformed
-    links       loads of each link on the deformed shape, in its chord's frame; empty unless deformed
-    sentence    for people
-    frame       the undeformed one and its linear ``solution``; None where there is no frame
+    Attributes
+    ----------
+    state : State
+        Small: the linear answer is valid. deformed: equilibrium was found on the deformed shape. unstable: it was
+        found, but the linkage buckles on its way there. no equilibrium: it ends below the whole load. off: the case
+        says not to look. unknown: there is no frame of this linkage.
+    span : float
+        Largest distance between two points of the pose [mm].
+    linear : float
+        Largest displacement by the linear frame [mm]; 0 where there is no frame.
+    where : str
+        Place of that displacement, for people.
+    held : float
+        Share of the load up to which equilibrium was found; 1 for all of it.
+    held_band : Band
+        The same with the stated scatter of load and modulus; of no meaning unless ``followed``.
+    buckling : float or None
+        Lowest factor on all loads at which the linear frame becomes unstable; infinite where it never does, None where
+        there is no frame.
+    dead_point : float
+        Factor on the linear displacements that takes the linkage to a dead point; infinite where they lead away.
+    points : dict of tuple of 2 str to ndarray
+        (link, point) -> displacement (3,) on the deformed shape [mm]; the linear one where small or off; empty where no
+        equilibrium or no frame was found.
+    reactions : Reactions or None
+        On the deformed shape, in global axes; None unless deformed.
+    links : dict of str to LinkLoads
+        Loads of each link on the deformed shape, in its chord's frame; empty unless deformed.
+    sentence : str
+        For people.
+    frame : LinkageFrame or None
+        The undeformed one; None where there is no frame.
+    solution : FrameSolution or None
+        Linear, of that frame.
     """
 
     state: State
@@ -109,7 +124,18 @@ class LargeDisplacement:
 
 
 def span(pose: Pose) -> float:
-    """Return the largest distance between two points of the pose [mm]."""
+    """Return the largest distance between two points of the pose.
+
+    Parameters
+    ----------
+    pose : Pose
+        The linkage's pose.
+
+    Returns
+    -------
+    float
+        Distance [mm].
+    """
     xy = np.array(list(pose.points.values()))
     return float(np.linalg.norm(xy[:, None] - xy[None], axis=-1).max())
 
@@ -121,7 +147,26 @@ def examine(
     loads: Sequence[Load],
     masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
-    """Solve the linear frame of a load case and, where it moves far or may give way, its deformed shape."""
+    """Solve the linear frame of a load case and, where it moves far or may give way, its deformed shape.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    title : str
+        Of the load case.
+    forces : JointForces
+        Joint forces in the pose as it stands.
+    loads : sequence of Load
+        That act on the links, global axes.
+    masses : dict of str to PartMass
+        Link and its mass.
+
+    Returns
+    -------
+    LargeDisplacement
+        Which of both shapes is valid, and what it says.
+    """
     pose = forces.reactions.pose
     size = span(pose)
 
@@ -204,7 +249,24 @@ def _holds(frame: LinkageFrame, factor: float) -> float:
 
 
 def displaced(frame: LinkageFrame, link: str, point: str, factor: float) -> float:
-    """Distance by which a point moves under ``factor`` times load over modulus [mm]; infinite where nothing holds."""
+    """Distance by which a point moves on the deformed shape.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        Of the linkage.
+    link : str
+        On which the point lies.
+    point : str
+        Its name.
+    factor : float
+        Load over modulus, relative to the case.
+
+    Returns
+    -------
+    float
+        Distance [mm]; infinite where nothing holds.
+    """
     try:
         found = _followed(frame, factor)
     except NoEquilibriumError:

@@ -1,7 +1,7 @@
 """Spatial frames of Timoshenko beams, in small displacements.
 
 Units and axes are those of ``fea.frame.model``: mm, N, N·mm, rad; x, y the linkage's plane, z along the pins. The
-unknowns are the natural forces q of the elements (``fea.frame.element``) together with the displacements u:
+unknowns are the natural forces q of the elements (``fea.frame.system``) together with the displacements u:
 
     [-F  B] [q]   [v0    ]        F  natural flexibility of the elements, B  compatibility (v = B u),
     [ Bᵀ 0] [u] = [p - p0]        v0, p0  effect of line loads on the elements, p  nodal loads
@@ -24,9 +24,8 @@ from fea.beam.deflection import deflection
 from fea.beam.loads import BeamLoads, LineLoad, PointLoad
 from fea.beam.piecewise import Piecewise
 from fea.beam.theory import internal_forces
-from fea.frame.element import line_load_effect, natural_deformations
 from fea.frame.model import DOFS, FrameModel
-from fea.frame.system import FrameSystem, refuse_mechanism
+from fea.frame.system import FrameSystem, line_load_effect, natural_deformations, refuse_mechanism
 from geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
@@ -38,18 +37,29 @@ LARGEST_RESIDUAL = 1e-8
 class FrameSolution:
     """Displacements and forces of a frame (n nodes, m elements).
 
-    displacements      (n, 6) [mm, rad], global axes; a rotation in which no element takes part stands as zero
-    end_displacements  (m, 2, 6) of the two ends of each beam, beyond the arms, local axes
-    end_forces         (m, 2, 6) what acts on the two ends of each beam, beyond the arms, local axes [N, N·mm]
-    joint_wrenches     (n, 6) what ties, guides and supports together do to the part of the frame at each node, global
-                       axes: the joint force at a pin; zero (to rounding) at nodes without any
-    reactions          (n, 6) what supports and guides on the ground do to the frame, global axes; of tied nodes the
-                       first supported has it
-    guide_forces       (g,) what each guide's carrier takes along its normal [N], or about axis x normal [N·mm]; the pin
-                       gets the opposite
-    residual           largest force left over at a node or in the balance of the whole frame, over the sum of loads
-    condition          1-norm condition number of the scaled equations (estimated)
-    redundancy         degree of static indeterminacy; 0 where equilibrium alone gives all forces
+    Attributes
+    ----------
+    model : FrameModel
+        The frame.
+    displacements : ndarray, shape (n, 6)
+        [mm, rad], global axes; a rotation in which no element takes part stands as zero.
+    end_displacements : ndarray, shape (m, 2, 6)
+        Of the two ends of each beam, beyond the arms, local axes.
+    end_forces : ndarray, shape (m, 2, 6)
+        What acts on the two ends of each beam, beyond the arms, local axes [N, N·mm].
+    joint_wrenches : ndarray, shape (n, 6)
+        What ties, guides and supports together do to the part of the frame at each node, global axes: the joint force
+        at a pin; zero (to rounding) at nodes without any.
+    reactions : ndarray, shape (n, 6)
+        What supports and guides on the ground do to the frame, global axes; of tied nodes the first supported has it.
+    guide_forces : ndarray, shape (g,)
+        What each guide's carrier takes along its normal [N], or about axis x normal [N·mm]; the pin gets the opposite.
+    residual : float
+        Largest force left over at a node or in the balance of the whole frame, over the sum of loads.
+    condition : float
+        1-norm condition number of the scaled equations (estimated).
+    redundancy : int
+        Degree of static indeterminacy; 0 where equilibrium alone gives all forces.
     """
 
     model: FrameModel
@@ -64,7 +74,18 @@ class FrameSolution:
     redundancy: int
 
     def beam_loads(self, i: int) -> BeamLoads:
-        """All that acts on the beam of element i, in its local axes with x = 0 at its first end."""
+        """All that acts on the beam of element i, in its local axes with x = 0 at its first end.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+
+        Returns
+        -------
+        BeamLoads
+            Loads on its beam.
+        """
         length = self.model.length(i)
         ends = tuple(
             PointLoad(point=np.array([x, 0.0, 0.0]), wrench=f)
@@ -74,11 +95,35 @@ class FrameSolution:
         return BeamLoads(points=ends, lines=(LineLoad(start=0.0, end=length, first=first, last=last),))
 
     def internal_forces(self, i: int) -> Piecewise:
-        """N, V_y, V_z, T, M_y, M_z along element i; signs and axes as in ``fea.beam.theory``."""
+        """N, V_y, V_z, T, M_y, M_z along an element.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+
+        Returns
+        -------
+        Piecewise
+            Signs and axes as in ``fea.beam.theory``.
+        """
         return internal_forces(self.beam_loads(i))
 
     def axis_displacements(self, i: int, stations: Floats) -> Floats:
-        """Displacements (k, 3) of the axis of element i at stations from its first end [mm], global axes."""
+        """Displacements of the axis of an element.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+        stations : ndarray, shape (k,)
+            From its first end [mm].
+
+        Returns
+        -------
+        ndarray, shape (k, 3)
+            Global axes [mm].
+        """
         e, length = self.model.elements[i], self.model.length(i)
         forces = self.internal_forces(i)
         bent = deflection(forces, e.section, young=e.young, poisson=e.poisson, line=(0.0, length)).functions
@@ -92,8 +137,21 @@ class FrameSolution:
 def solve_frame(model: FrameModel) -> FrameSolution:
     """Solve a frame in small displacements.
 
-    Raises ``CannotRunError`` where the frame can move without strain (naming what moves most) and where the forces
-    found do not balance to 1e-8 of the load.
+    Parameters
+    ----------
+    model : FrameModel
+        The frame.
+
+    Returns
+    -------
+    FrameSolution
+        Displacements and forces.
+
+    Raises
+    ------
+    CannotRunError
+        Where the frame can move without strain (naming what moves most) and where the forces found do not balance to
+        1e-8 of the load.
     """
     from scipy.sparse import bmat, csc_matrix
     from scipy.sparse.linalg import LinearOperator, onenormest, splu

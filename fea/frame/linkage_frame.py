@@ -33,8 +33,18 @@ Real = NDArray[np.float64]
 class LinkBeam:
     """Which part of a link an element of the frame is.
 
-    start, end  x along the link's axis, or along its ``arm`` (the name of the point there) from the arm's foot [mm]
-    flank       True for one flank of a slot
+    Attributes
+    ----------
+    link : str
+        Its name.
+    start : float
+        x along the link's axis, or along its arm from the arm's foot [mm].
+    end : float
+        The same beyond ``start`` [mm].
+    arm : str
+        Name of the point at the arm's end; "" for the link's axis.
+    flank : bool
+        True for one flank of a slot.
     """
 
     link: str
@@ -48,14 +58,30 @@ class LinkBeam:
 class LinkageFrame:
     """The frame of a linkage in one pose under one set of loads.
 
-    held      the link that the drive holds, and where; None where nothing is driven
-    bonded    True where pins carry moments about their own axis as well
-    points    (link, point) -> node
-    pins      joint -> nodes of its first and its second link, where the pin stands; None on the ground
-    stations  link with a part -> (x in the link's frame, node) along its axis; the node may stand off the axis
-    arms      node -> (3,) from it to its link's axis at that station, global axes [mm]; left out where zero
-    beams     element -> which part of a link it is; rigid ones are left out
-    notes     what the reader must know about this frame
+    Attributes
+    ----------
+    pose : Pose
+        The linkage's pose.
+    held : Drive or None
+        The link that the drive holds, and where; None where nothing is driven.
+    bonded : bool
+        True where pins carry moments about their own axis as well.
+    loads : tuple of Load
+        That act on the links, global axes.
+    model : FrameModel
+        Nodes, beams, ties, guides and loads.
+    points : dict of tuple of 2 str to int
+        (link, point) -> node.
+    pins : dict of str to tuple of 2 int or None
+        Joint -> nodes of its first and its second link, where the pin stands; None on the ground.
+    stations : dict of str to tuple of tuple of float and int
+        Link with a part -> (x in the link's frame, node) along its axis; the node may stand off the axis.
+    arms : dict of int to ndarray
+        Node -> (3,) from it to its link's axis at that station, global axes [mm]; left out where zero.
+    beams : dict of int to LinkBeam
+        Element -> which part of a link it is; rigid ones are left out.
+    notes : tuple of str
+        What the reader must know about this frame.
     """
 
     pose: Pose
@@ -71,10 +97,21 @@ class LinkageFrame:
     notes: tuple[str, ...]
 
     def reactions(self, joint_wrenches: Real, residual: float, displacements: Real | None = None) -> Reactions:
-        """Return joint reactions and drive torque from what all joints together do to each node (n, 6), global axes.
+        """Return joint reactions and drive torque of a solution.
 
-        The moment about z at the drive's joint is the drive torque, and not in the joint's wrench.
-        ``displacements`` (n, 3) are those of the nodes where equilibrium holds on the deformed shape [mm].
+        Parameters
+        ----------
+        joint_wrenches : ndarray, shape (n, 6)
+            What all joints together do to each node, global axes [N, N·mm].
+        residual : float
+            Of the solution, relative.
+        displacements : ndarray or None, shape (n, 3), optional
+            Of the nodes, where equilibrium holds on the deformed shape [mm].
+
+        Returns
+        -------
+        Reactions
+            The moment about z at the drive's joint is the drive torque, and not in the joint's wrench.
         """
         shape = np.zeros((len(self.model.nodes), 3)) if displacements is None else displacements
         on_link = _joint_by_joint(self, joint_wrenches, shape)
@@ -123,12 +160,34 @@ class LinkageFrame:
         return arm
 
     def at_points(self, displacements: Real) -> dict[tuple[str, str], Real]:
-        """Displacement (3,) of every link's point [mm] from those of the nodes (n, 3 or more)."""
+        """Displacement of every link's point.
+
+        Parameters
+        ----------
+        displacements : ndarray, shape (n, 3 or more)
+            Of the nodes [mm].
+
+        Returns
+        -------
+        dict of tuple of 2 str to ndarray
+            (link, point) and its displacement (3,) [mm].
+        """
         return {key: np.asarray(displacements[node, :3]) for key, node in self.points.items()}
 
 
 def out_of_plane(loads: Sequence[Load]) -> bool:
-    """Return True if any load has a force along z or a moment about x or y."""
+    """Return True if any load has a force along z or a moment about x or y.
+
+    Parameters
+    ----------
+    loads : sequence of Load
+        Global axes.
+
+    Returns
+    -------
+    bool
+        Whether any acts out of the linkage's plane.
+    """
     for load in loads:
         if isinstance(load, PointLoad):
             found = load.wrench[2:5]
@@ -142,7 +201,20 @@ def out_of_plane(loads: Sequence[Load]) -> bool:
 
 
 def slot_normal(pose: Pose, name: str) -> Real:
-    """Return the direction (3,) in the linkage's plane in which a joint's slot holds its pin."""
+    """Return the direction in the linkage's plane in which a joint's slot holds its pin.
+
+    Parameters
+    ----------
+    pose : Pose
+        The linkage's pose.
+    name : str
+        Of the joint.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Unit vector, global axes.
+    """
     joint = pose.linkage.joints[name]
     along = pose.angles[joint.links[0]] + joint.direction
     return np.array([-math.sin(along), math.cos(along), 0.0])

@@ -40,12 +40,24 @@ def _array(values: ArrayLike, name: str, *shape: int) -> Floats:
 class FrameElement:
     """A straight beam of constant section between two nodes.
 
-    nodes             numbers of the first and the second node
-    section           local z of the element is the section's z
-    young, poisson    E [MPa] and ν
-    z_axis            (3,) direction that local z leans to: its part normal to the element; along the pins by default
-    offsets           (2, 3) rigid arms from each node to the beam's end, in global axes [mm]
-    load_first, load_last  (3,) force per length of the element at its two ends, linear between, global axes [N/mm]
+    Attributes
+    ----------
+    nodes : tuple of 2 int
+        Numbers of the first and the second node.
+    section : Section
+        Local z of the element is the section's z.
+    young : float
+        Young's modulus [MPa].
+    poisson : float
+        Poisson's ratio.
+    z_axis : ndarray, shape (3,)
+        Direction that local z leans to: its part normal to the element; along the pins by default.
+    offsets : ndarray, shape (2, 3)
+        Rigid arms from each node to the beam's end, in global axes [mm].
+    load_first : ndarray, shape (3,)
+        Force per length at the first end, global axes; linear between [N/mm].
+    load_last : ndarray, shape (3,)
+        The same at the second end.
     """
 
     nodes: tuple[int, int]
@@ -72,7 +84,15 @@ class FrameElement:
 
 @dataclass(frozen=True, kw_only=True)
 class Support:
-    """Displacements and rotations of a node that the ground holds at zero, in global axes."""
+    """Displacements and rotations of a node that the ground holds.
+
+    Attributes
+    ----------
+    node : int
+        Its number.
+    dofs : frozenset of Dof
+        Held at zero, in global axes.
+    """
 
     node: int
     dofs: frozenset[Dof] = ALL_DOFS
@@ -80,7 +100,15 @@ class Support:
 
 @dataclass(frozen=True, kw_only=True)
 class Tie:
-    """Two nodes at one place that share displacements and rotations, in global axes; by default a pin along z."""
+    """Two nodes at one place that share displacements and rotations.
+
+    Attributes
+    ----------
+    nodes : tuple of 2 int
+        Their numbers.
+    dofs : frozenset of Dof
+        Shared, in global axes; by default a pin along z.
+    """
 
     nodes: tuple[int, int]
     dofs: frozenset[Dof] = PIN_DOFS
@@ -88,10 +116,21 @@ class Tie:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Guide:
-    """A pin's node stays in the plane through its carrier's node, whose normal (3,) turns with the carrier.
+    """A pin's node stays in the plane through its carrier's node, whose normal turns with the carrier.
 
-    With an axis (3,), which turns with the pin's node, it is that axis which stays in a plane of that normal, wherever
-    the node is. Both nodes start at one place; None stands for the ground, as carrier or as pin.
+    With an axis it is that axis which stays in a plane of that normal, wherever the node is. Both nodes start at one
+    place.
+
+    Attributes
+    ----------
+    carrier : int or None
+        Number of its node; None for the ground.
+    pin : int or None
+        Number of its node; None for the ground.
+    normal : ndarray, shape (3,)
+        Unit vector at the start, which turns with the carrier.
+    axis : ndarray or None, shape (3,)
+        Unit vector at the start, which turns with the pin's node; None where the pin itself is kept.
     """
 
     carrier: int | None
@@ -125,7 +164,15 @@ class Guide:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NodeLoad:
-    """A wrench (6,) on a node in global axes: Fx, Fy, Fz [N], Mx, My, Mz [N·mm]."""
+    """A wrench on a node.
+
+    Attributes
+    ----------
+    node : int
+        Its number.
+    wrench : ndarray, shape (6,)
+        Global axes: Fx, Fy, Fz [N], Mx, My, Mz [N·mm].
+    """
 
     node: int
     wrench: Floats
@@ -139,11 +186,28 @@ class NodeLoad:
 class FrameModel:
     """A frame and all that acts on it.
 
-    nodes    (n, 3) positions [mm]
-    names    of the nodes, for messages; their numbers where empty
+    Attributes
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Positions [mm].
+    elements : tuple of FrameElement
+        At least one.
+    supports : tuple of Support
+        Of nodes.
+    ties : tuple of Tie
+        Between nodes.
+    guides : tuple of Guide
+        Between nodes.
+    loads : tuple of NodeLoad
+        On nodes.
+    names : tuple of str
+        Of the nodes, for messages; their numbers where empty.
 
-    Raises ``CannotRunError`` for an element without length or along its own z, for nodes that do not exist, and for
-    ties or guides between nodes at different places.
+    Raises
+    ------
+    CannotRunError
+        For an element without length or along its own z, for nodes that do not exist, and for ties or guides between
+        nodes at different places.
     """
 
     nodes: Floats
@@ -193,22 +257,66 @@ class FrameModel:
         return float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
 
     def name(self, node: int) -> str:
-        """Name or number of a node."""
+        """Name or number of a node.
+
+        Parameters
+        ----------
+        node : int
+            Its number.
+
+        Returns
+        -------
+        str
+            Its name, or the number.
+        """
         return self.names[node] if self.names else str(node)
 
     def ends(self, i: int) -> tuple[Floats, Floats]:
-        """Both ends (3,) of the beam of element i, arms included [mm]."""
+        """Both ends of the beam of an element, arms included.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+
+        Returns
+        -------
+        tuple of 2 ndarray
+            First and second end (3,) [mm].
+        """
         a, b = self.elements[i].nodes
         arms = self.elements[i].offsets
         return self.nodes[a] + arms[0], self.nodes[b] + arms[1]
 
     def length(self, i: int) -> float:
-        """Length of the beam of element i between its arms [mm]."""
+        """Length of the beam of an element between its arms.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+
+        Returns
+        -------
+        float
+            Length [mm].
+        """
         start, end = self.ends(i)
         return float(np.linalg.norm(end - start))
 
     def axes(self, i: int) -> Floats:
-        """(3, 3) rows: local x, y, z of element i in global axes."""
+        """Local axes of an element.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+            Rows: local x, y, z in global axes.
+        """
         start, end = self.ends(i)
         x = (end - start) / np.linalg.norm(end - start)
         y = np.cross(self.elements[i].z_axis, x)
@@ -216,7 +324,18 @@ class FrameModel:
         return np.vstack([x, y, np.cross(x, y)])
 
     def line_load(self, i: int) -> tuple[Floats, Floats]:
-        """Force per length (3,) at both ends of element i in local axes [N/mm]."""
+        """Force per length at both ends of an element.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+
+        Returns
+        -------
+        tuple of 2 ndarray
+            At the first and the second end (3,), local axes [N/mm].
+        """
         R = self.axes(i)
         return R @ self.elements[i].load_first, R @ self.elements[i].load_last
 

@@ -19,7 +19,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.corotational import SUBDIVISIONS, EquilibriumPath, subdivide
+from fea.frame.corotational import SUBDIVISIONS, subdivide
+from fea.frame.equilibrium_path import EquilibriumPath
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame, slot_normal
 from fea.frame.model import FrameModel
@@ -32,10 +33,20 @@ SNAP = 3.0 * math.sqrt(3.0)
 
 
 def growth(factor: float) -> float:
-    """Return what a toggle moves over what linear theory gives, the linear factor being n; infinite below ``SNAP``.
+    """Return what a toggle moves over what linear theory gives.
 
-    The lowest root of x (1 - x) (2 - x)/2 = 1/n with x = w/d, times n. It is more than 1/(1 - 1/n), the growth of a
-    column, for every n.
+    With the linear factor n it is the lowest root of x (1 - x) (2 - x)/2 = 1/n with x = w/d, times n. It is more than
+    1/(1 - 1/n), the growth of a column, for every n.
+
+    Parameters
+    ----------
+    factor : float
+        By linear theory, to the dead point.
+
+    Returns
+    -------
+    float
+        Infinite below ``SNAP``.
     """
     if factor < SNAP:
         return math.inf
@@ -50,11 +61,23 @@ _FAR = 1e6
 
 
 def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> float:
-    """Factor on all loads at which the frame, as it stands, becomes unstable; infinite where no factor does.
+    """Factor on all loads at which the frame, as it stands, becomes unstable.
 
-    Linear stability: (K + λ K_g) φ = 0 with the geometric stiffness K_g of the linear solution's forces
-    (Przemieniecki, Theory of Matrix Structural Analysis, 1968, chapter 15). Pinned column, eight elements: π² E I/L²
-    within 0.01 %, less what shear takes. Bending before buckling is left out, which is right for small deflections.
+    Linear stability: (K + λ K_g) φ = 0 with the geometric stiffness K_g of the linear solution's forces (Przemieniecki,
+    Theory of Matrix Structural Analysis, 1968, chapter 15). Pinned column, eight elements: π² E I/L² within 0.01 %,
+    less what shear takes. Bending before buckling is left out, which is right for small deflections.
+
+    Parameters
+    ----------
+    model : FrameModel
+        The frame.
+    subdivisions : int, optional
+        Elements per beam.
+
+    Returns
+    -------
+    float
+        Infinite where no factor does.
     """
     from scipy.linalg import eigh
 
@@ -74,16 +97,39 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
 
 
 def linkage_factor(frame: LinkageFrame) -> float:
-    """Return the factor on all loads at which the linear frame becomes unstable; infinite where it never does."""
+    """Return the factor on all loads at which the linear frame becomes unstable.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        Of the linkage.
+
+    Returns
+    -------
+    float
+        Infinite where it never does.
+    """
     factor = buckling_factor(frame.model, COARSE)
     return buckling_factor(frame.model, FINE) if factor < NEAR else factor
 
 
 def dead_point_factor(frame: LinkageFrame, solution: FrameSolution) -> float:
-    """Return the factor on linear displacements that takes a linkage to a dead point; infinite where they lead away.
+    """Return the factor on linear displacements that takes a linkage to a dead point.
 
     With every link turned as its points have moved, each singular value of the constraints with the drive held (which
     is 0 at a dead point) has changed; extrapolated in proportion, the first of them vanishes at this factor.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        Of the linkage.
+    solution : FrameSolution
+        In small displacements.
+
+    Returns
+    -------
+    float
+        Infinite where they lead away.
     """
     if frame.bonded:
         return math.inf

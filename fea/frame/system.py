@@ -1,13 +1,27 @@
-"""The equations of a frame: numbering, scaling, compatibility, and the test for mechanisms."""
+"""The equations of a frame: elements, numbering, scaling, compatibility, and the test for mechanisms.
+
+Elements are Timoshenko beams in their natural mode: what it resists once rigid motion is taken out.
+
+Local axes: x from the first end to the second, z as the model says, y = z × x. Each end has three displacements
+and three rotations about the local axes (right-hand rule), in this order, and so have the forces at it.
+
+The six natural forces and the deformations that they work on (Przemieniecki, Theory of Matrix Structural Analysis,
+1968, chapters 5 and 6; the simply supported beam as the basic system):
+
+    N           normal force, tension positive             lengthening
+    M_z1, M_z2  end moments about z, right-hand rule       rotations of the end sections relative to the chord
+    M_y1, M_y2  end moments about y                        the same about y
+    T           torque, that on the second end             twist
+"""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.element import line_load_effect, natural_deformations, natural_flexibility
 from fea.frame.model import DOFS, FrameModel
 from geometry.base.errors import CannotRunError
+from geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
 
@@ -17,6 +31,104 @@ _MECHANISM = 1e-10
 
 def _motion(dof: int) -> str:
     return f"{'along' if dof < 3 else 'about'} {'xyz'[dof % 3]}"
+
+
+def natural_deformations(length: float) -> Floats:
+    """Matrix G from the displacements of both ends to the natural deformations.
+
+    Parameters
+    ----------
+    length : float
+        Of the beam [mm].
+
+    Returns
+    -------
+    ndarray, shape (6, 12)
+        G; Gᵀ gives end forces.
+    """
+    G = np.zeros((6, 12))
+    G[0, [0, 6]] = -1.0, 1.0
+    for row, rotation in ((1, 5), (2, 11)):
+        G[row, rotation] = 1.0
+        G[row, [1, 7]] = 1.0 / length, -1.0 / length
+    for row, rotation in ((3, 4), (4, 10)):
+        G[row, rotation] = 1.0
+        G[row, [2, 8]] = -1.0 / length, 1.0 / length
+    G[5, [3, 9]] = -1.0, 1.0
+    return G
+
+
+def natural_flexibility(section: Section, young: float, poisson: float, length: float) -> Floats:
+    """Natural flexibility of a Timoshenko beam, exact for any slenderness.
+
+    End rotations under end moments: L/(3EI) M1 - L/(6EI) M2 + (M1 + M2)/(κ G A L), by virtual work (inverse of
+    Przemieniecki, 1968, eq. 5.116, with Cowper's κ in the shear parameter).
+
+    Parameters
+    ----------
+    section : Section
+        Of the beam.
+    young : float
+        Young's modulus [MPa].
+    poisson : float
+        Poisson's ratio.
+    length : float
+        Of the beam [mm].
+
+    Returns
+    -------
+    ndarray, shape (6, 6)
+        Flexibility [mm/N, 1/(N·mm)].
+    """
+    shear_modulus = young / (2.0 * (1.0 + poisson))
+    shear = 1.0 / (section.shear_coefficient(poisson) * shear_modulus * section.area * length)
+    F = np.zeros((6, 6))
+    F[0, 0] = length / (young * section.area)
+    for first, inertia in ((1, section.i_z), (3, section.i_y)):
+        bending = length / (6.0 * young * inertia)
+        F[first : first + 2, first : first + 2] = np.array([[2.0, -1.0], [-1.0, 2.0]]) * bending + shear
+    F[5, 5] = length / (shear_modulus * section.torsion)
+    return F
+
+
+def line_load_effect(
+    section: Section, young: float, length: float, first: Floats, last: Floats
+) -> tuple[Floats, Floats]:
+    """Effect of a linearly varying line load on the basic system.
+
+    The basic system is simply supported and held along x at its first end. End rotations 8, 7 (360ths of q L³/(E I))
+    after Gere & Goodno, Mechanics of Materials, 8th ed., appendix G, table G-2, cases 1 and 11; shear does not turn the
+    end sections.
+
+    Parameters
+    ----------
+    section : Section
+        Of the beam.
+    young : float
+        Young's modulus [MPa].
+    length : float
+        Of the beam [mm].
+    first : ndarray, shape (3,)
+        Force per length at the first end, local axes [N/mm].
+    last : ndarray, shape (3,)
+        The same at the second end.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        Natural deformations (6,) and end forces (12,).
+    """
+    v0, p0 = np.zeros(6), np.zeros(12)
+    v0[0] = length**2 * (first[0] + 2.0 * last[0]) / (6.0 * young * section.area)
+    p0[0] = -(first[0] + last[0]) * length / 2.0
+    for axis, row, sign, inertia in ((1, 1, 1.0, section.i_z), (2, 3, -1.0, section.i_y)):
+        q1, q2 = first[axis], last[axis]
+        slope = sign * length**3 / (360.0 * young * inertia)
+        v0[row] = slope * (8.0 * q1 + 7.0 * q2)
+        v0[row + 1] = -slope * (7.0 * q1 + 8.0 * q2)
+        p0[axis] = -(2.0 * q1 + q2) * length / 6.0
+        p0[6 + axis] = -(q1 + 2.0 * q2) * length / 6.0
+    return v0, p0
 
 
 class FrameSystem:
@@ -90,16 +202,51 @@ class FrameSystem:
         return ~needed
 
     def place(self, i: int) -> tuple[NDArray[np.int64], Floats]:
-        """Numbers (k,) of the unknowns that move element i, and the matrix (12, k) from them to its beam's ends."""
+        """Which unknowns move an element, and how.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+
+        Returns
+        -------
+        tuple of ndarray of int and ndarray
+            Numbers (k,) of the unknowns, and the matrix (12, k) from them to the beam's ends.
+        """
         numbers = self.number[self._node_columns(i)]
         return numbers[numbers >= 0], self._matrices[i][:, numbers >= 0]
 
     def to_nodes(self, i: int, end_forces: Floats) -> Floats:
-        """Wrenches (2, 6) at both nodes of element i in global axes from forces (12,) at its beam's ends."""
+        """Wrenches at both nodes of an element from the forces at its beam's ends.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+        end_forces : ndarray, shape (12,)
+            At its beam's ends, local axes [N, N·mm].
+
+        Returns
+        -------
+        ndarray, shape (2, 6)
+            Global axes [N, N·mm].
+        """
         return np.asarray((self._matrices[i].T @ end_forces).reshape(2, 6))
 
     def natural_unit(self, i: int) -> Floats:
-        """Factors (6,) from the scaled natural forces of element i to N and N·mm."""
+        """Factors from the scaled natural forces of an element to N and N·mm.
+
+        Parameters
+        ----------
+        i : int
+            Number of the element.
+
+        Returns
+        -------
+        ndarray, shape (6,)
+            Factors.
+        """
         return np.array([1.0, *[self.lengths[i]] * 5])
 
     def equations(self) -> tuple[Any, Any, Floats, Floats]:
@@ -141,11 +288,23 @@ class FrameSystem:
 
 
 def refuse_mechanism(system: FrameSystem, B: Any) -> None:
-    """Raise ``CannotRunError``, naming what moves most, if the frame can move without strain.
+    """Refuse a frame that can move without strain.
 
-    The test is kinematic (the null space of the compatibility matrix B), so that no difference of stiffnesses can
-    hide or mimic a mechanism. Inverse iteration on BᵀB finds the motion of least strain; its strain is then taken
-    from B itself, without squaring the rounding error.
+    The test is kinematic (the null space of the compatibility matrix), so that no difference of stiffnesses can hide or
+    mimic a mechanism. Inverse iteration on BᵀB finds the motion of least strain; its strain is then taken from B
+    itself, without squaring the rounding error.
+
+    Parameters
+    ----------
+    system : FrameSystem
+        Equations of the frame.
+    B : Any
+        Its scaled compatibility matrix, sparse.
+
+    Raises
+    ------
+    CannotRunError
+        Where it can, naming what moves most.
     """
     from scipy.sparse import identity
     from scipy.sparse.linalg import splu

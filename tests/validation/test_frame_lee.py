@@ -9,7 +9,8 @@ test/referenceData/LeeFrameDeadLoad): displacement of the loaded point down and 
 import numpy as np
 import pytest
 
-from fea.frame.corotational import NoEquilibriumError, solve_large_displacement
+from fea.frame.corotational import solve_large_displacement
+from fea.frame.equilibrium_path import NoEquilibriumError
 from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
 from geometry.parts.part import rectangle
 

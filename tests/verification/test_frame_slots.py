@@ -22,8 +22,9 @@ from slotted_cases import (
 )
 
 from fea.frame.build import build_frame
-from fea.frame.corotational import EquilibriumPath, solve_large_displacement, subdivide
+from fea.frame.corotational import solve_large_displacement, subdivide
 from fea.frame.corotational_element import guide_gap
+from fea.frame.equilibrium_path import EquilibriumPath
 from fea.frame.joint_forces import PINNED_FRAME, joint_forces
 from fea.frame.large_displacement import examine
 from fea.frame.linear import solve_frame

@@ -61,8 +61,7 @@ def test_rigid_motion_strains_nothing(rigid: np.ndarray, shift: np.ndarray) -> N
 
 
 def test_tangent_at_rest_is_the_linear_stiffness() -> None:
-    from fea.frame.element import natural_deformations, natural_flexibility
-    from fea.frame.system import FrameSystem
+    from fea.frame.system import FrameSystem, natural_deformations, natural_flexibility
 
     rest = np.zeros((1, 2, 3)), np.tile(np.eye(3), (1, 2, 1, 1))
     e, length = MODEL.elements[0], MODEL.length(0)

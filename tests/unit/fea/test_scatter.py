@@ -19,7 +19,7 @@ from fea.common.scatter import Scatter, compliance_scatter, strength_scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import Verdict
 from fea.frame import large_displacement
-from fea.frame.corotational import NoEquilibriumError
+from fea.frame.equilibrium_path import NoEquilibriumError
 from fea.motion.envelope import envelope_case
 from fea.motion.envelope_outcomes import envelope_outcomes
 from fea.outcomes.linkage import linkage_outcomes

@@ -1,0 +1,381 @@
+"""Newton's method along the equilibrium path of a frame in large displacement."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.corotational_element import CorotationalElements, ElementResponse, guide_gap
+from fea.frame.kinematic_chain import KinematicChain, Step, present_axes, turned
+from fea.frame.model import FrameModel, Guide
+from geometry.base.errors import CannotRunError
+
+Floats = NDArray[np.float64]
+
+_TOLERANCE = 1e-9
+_MOST_ROUNDING = 1e-6
+_LARGEST_TURN = 0.3
+_DIVERGED = 100.0
+_JUMP = 4.0
+"""A step this much longer than the tangent at its start or at its end predicts has jumped to another branch.
+
+Up to a limit point it is twice as far as predicted at its start (displacement grows with the square root of the
+load), along a path that stiffens with the cube of the displacement three times as far as predicted at its end.
+"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CorotationalSolution:
+    """A frame in equilibrium on its deformed shape.
+
+    Attributes
+    ----------
+    model : FrameModel
+        The divided frame: the given nodes first, the new ones after them.
+    displacements : ndarray, shape (n, 3)
+        [mm], global axes.
+    rotations : ndarray, shape (n, 3, 3)
+        Rotation matrices of the nodes.
+    end_forces : ndarray, shape (m, 2, 6)
+        What the nodes do to each element, global axes, moments about the nodes [N, N·mm].
+    joint_wrenches : ndarray, shape (n, 6)
+        What ties, guides and supports together do to the part of the frame at each node, global axes.
+    reactions : ndarray, shape (n, 6)
+        What supports and guides on the ground do to the frame; of tied nodes the one with most supports has it.
+    guide_forces : ndarray, shape (g,)
+        What each guide's carrier takes along its turned normal [N], or about axis x normal [N·mm].
+    residual : float
+        Largest force left over, over the sum of the loads (moments over the frame's size).
+    stable : bool
+        True where every small motion stores energy (on the symmetric part of the tangent): otherwise the frame has
+        buckled on its way here, and this shape will not be seen.
+    """
+
+    model: FrameModel
+    displacements: Floats
+    rotations: Floats
+    end_forces: Floats
+    joint_wrenches: Floats
+    reactions: Floats
+    guide_forces: Floats
+    residual: float
+    stable: bool
+
+
+class NoEquilibriumError(CannotRunError):
+    """The path of equilibrium ends before the whole load acts; ``reached`` is the share of it that was held."""
+
+    def __init__(self, reached: float) -> None:
+        super().__init__(
+            f"the frame gives way at {100.0 * reached:.3g} % of its load (a limit load or a snap-through); reduce the "
+            "load or stiffen the frame"
+        )
+        self.reached = reached
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """Displacements and rotations of the nodes, and forces of the guides.
+
+    Attributes
+    ----------
+    displacements : ndarray, shape (n, 3)
+        Of the nodes [mm].
+    rotations : ndarray, shape (n, 3, 3)
+        Of the nodes.
+    guide_forces : ndarray, shape (g,)
+        Of the guides [N, N·mm].
+    """
+
+    displacements: Floats
+    rotations: Floats
+    guide_forces: Floats
+
+
+class EquilibriumPath:
+    """The equilibrium path of a frame from load factor 0 to 1."""
+
+    def __init__(self, model: FrameModel) -> None:
+        n = len(model.nodes)
+        self.model = model
+        self.chain = KinematicChain(model)
+        self.elements = CorotationalElements(model)
+        self.pairs = np.array([e.nodes for e in model.elements])
+        self.state = State(
+            displacements=np.zeros((n, 3)),
+            rotations=np.tile(np.eye(3), (n, 1, 1)),
+            guide_forces=np.zeros(len(model.guides)),
+        )
+        self.scale = model.load_scale or 1.0
+        stiffness = float(np.median(self.elements.stiffness[:, 0, 0]))
+        moving = np.where(self.chain.is_turn, 1.0 / model.size, 1.0)
+        self.gap_unit = np.array([1.0 / model.size if guide.axis is None else 1.0 for guide in model.guides])
+        self.unit = np.concatenate([moving, stiffness * model.size * self.gap_unit])
+        self.reached = 0.0
+
+    def respond(self, state: State, factor: float) -> ElementResponse:
+        """What the elements answer in a state.
+
+        Parameters
+        ----------
+        state : State
+            Of the frame.
+        factor : float
+            Share of the line loads.
+
+        Returns
+        -------
+        ElementResponse
+            Forces and tangent of all elements.
+        """
+        return self.elements.respond(state.displacements[self.pairs], state.rotations[self.pairs], factor)
+
+    def follow(self, least_step: float, most_iterations: int) -> None:
+        """Go on to the whole load, halving the step where Newton's method fails.
+
+        Parameters
+        ----------
+        least_step : float
+            Of the load.
+        most_iterations : int
+            Of Newton's method in one step.
+
+        Raises
+        ------
+        NoEquilibriumError
+            Where the step falls below ``least_step``.
+        """
+        step = 0.25
+        while self.reached < 1.0:
+            target = min(1.0, self.reached + step)
+            found = self._newton(target, most_iterations)
+            if found is None:
+                step /= 2.0
+                if step < least_step:
+                    raise NoEquilibriumError(self.reached)
+                continue
+            self.state, iterations = found
+            self.reached = target
+            if iterations <= 6:
+                step *= 2.0
+
+    def _newton(self, factor: float, most_iterations: int) -> tuple[State, int] | None:
+        """Equilibrium at a load factor from the present state, with the iterations it took; None where it fails."""
+        state, predicted = self.state, 0.0
+        for iteration in range(most_iterations):
+            try:
+                residual, tangent = self.balance(state, factor)
+                if self._measure(residual) <= max(_TOLERANCE * factor, self._rounding(state)) and iteration > 0:
+                    predicted = min(predicted, self._size(self._solve(tangent, self.balance(state, self.reached)[0])))
+                    moved = float(np.linalg.norm(state.displacements - self.state.displacements))
+                    return (state, iteration) if moved <= _JUMP * predicted else None
+                change = -self._solve(tangent, residual)
+            except CannotRunError:
+                return None
+            if iteration == 0:
+                predicted = self._size(change)
+            turn = float(np.abs(change[: self.chain.count][self.chain.is_turn]).max(initial=0.0))
+            if not np.isfinite(change).all() or turn > _DIVERGED:
+                return None
+            state = self._moved(state, change * min(1.0, _LARGEST_TURN / turn if turn > 0.0 else 1.0))
+        return None
+
+    def balance(self, state: State, factor: float) -> tuple[Floats, Floats]:
+        """Out-of-balance forces and gaps of the guides, with their derivative.
+
+        Parameters
+        ----------
+        state : State
+            Of the frame.
+        factor : float
+            Share of the loads.
+
+        Returns
+        -------
+        tuple of 2 ndarray
+            What is left over (k + g,) and its derivative (k + g, k + g).
+        """
+        answer = self.respond(state, factor)
+        return self.assemble(answer, state, factor)
+
+    def _solve(self, tangent: Floats, right: Floats) -> Floats:
+        # A sparse factorisation, single-threaded: threads that wait for each other cost more than matrices this small.
+        from scipy.sparse import csc_matrix
+        from scipy.sparse.linalg import splu
+
+        try:
+            scaled = splu(csc_matrix(tangent * np.outer(self.unit, self.unit))).solve(right * self.unit)
+        except RuntimeError as error:
+            raise CannotRunError(f"the tangent stiffness of the frame is singular: {error}") from None
+        return np.asarray(scaled * self.unit)
+
+    def _size(self, change: Floats) -> float:
+        """Norm of the displacements of all nodes in a change of the unknowns."""
+        places = self.chain.translations
+        return float(np.linalg.norm(np.where(places >= 0, change[places], 0.0)))
+
+    def _rounding(self, state: State) -> float:
+        """What rounding of displacements and rotations leaves of forces in the stiffest element, over the loads."""
+        k = self.elements.stiffness
+        stretched = k[:, 0, 0].max() * np.abs(state.displacements).max()
+        bent = (k[:, [1, 3], [1, 3]].max(axis=1) / self.elements.lengths).max()
+        return min(8.0 * float(np.finfo(float).eps * (stretched + bent)) / self.scale, _MOST_ROUNDING)
+
+    def _measure(self, residual: Floats) -> float:
+        """Largest force left over, over the sum of the loads; or gap of a guide, over the frame's size or in rad."""
+        count = self.chain.count
+        forces = float(np.abs(residual[:count] * self.unit[:count]).max(initial=0.0)) / self.scale
+        return max(forces, float(np.abs(residual[count:] * self.gap_unit).max(initial=0.0)))
+
+    def _moved(self, state: State, change: Floats) -> State:
+        places = self.chain.translations
+        displacements = state.displacements + np.where(places >= 0, change[places], 0.0)
+        rotations = state.rotations.copy()
+        for node, steps in enumerate(self.chain.nodes):
+            axes = present_axes(steps, state.rotations)
+            rotations[node] = turned(steps, axes, change, state.rotations[node])
+        return State(
+            displacements=displacements,
+            rotations=rotations,
+            guide_forces=state.guide_forces + change[self.chain.count :],
+        )
+
+    def assemble(self, answer: ElementResponse, state: State, factor: float) -> tuple[Floats, Floats]:
+        """Out-of-balance forces and gaps, with their derivative, from what the elements answer.
+
+        Parameters
+        ----------
+        answer : ElementResponse
+            Of the elements.
+        state : State
+            Of the frame.
+        factor : float
+            Share of the loads.
+
+        Returns
+        -------
+        tuple of 2 ndarray
+            What is left over (k + g,) and its derivative (k + g, k + g).
+        """
+        count, size = self.chain.count, self.chain.count + len(self.model.guides)
+        residual, tangent = np.zeros(size), np.zeros((size, size))
+
+        def add(nodes: Sequence[int | None], forces: Floats, stiffness: Floats) -> tuple[NDArray[np.int64], Floats]:
+            numbers, T = self._place(nodes, state)
+            np.add.at(residual, numbers, T @ forces)
+            np.add.at(tangent, (numbers[:, None], numbers), T @ stiffness @ T.T)
+            for end, node in enumerate(nodes):
+                steps = [] if node is None else self.chain.nodes[node]
+                _carry(tangent, steps, present_axes(steps, state.rotations), forces[6 * end + 3 : 6 * end + 6])
+            return numbers, T
+
+        for pair, forces, stiffness in zip(self.pairs, answer.forces, answer.tangent, strict=True):
+            add(pair, forces, stiffness)
+        for j, (guide, force) in enumerate(zip(self.model.guides, state.guide_forces, strict=True), start=count):
+            residual[j], unit = self._gap(guide, state)
+            numbers, T = add((guide.carrier, guide.pin), force * unit.forces[0], force * unit.tangent[0])
+            column = np.zeros(size)
+            np.add.at(column, numbers, T @ unit.forces[0])
+            tangent[:, j] += column
+            tangent[j] += column
+        for load in self.model.loads:
+            places = self.chain.translations[load.node]
+            np.add.at(residual, places[places >= 0], -factor * load.wrench[:3][places >= 0])
+            steps = self.chain.nodes[load.node]
+            axes = present_axes(steps, state.rotations)
+            np.add.at(residual, [s.number for s in steps], -factor * (axes @ load.wrench[3:]))
+            _carry(tangent, steps, axes, -factor * load.wrench[3:])
+        return residual, tangent
+
+    def _gap(self, guide: Guide, state: State) -> tuple[float, ElementResponse]:
+        """Gap of a guide, and what a unit of its force does; what the latter does to the ground stands for nothing."""
+        nodes = [guide.carrier, guide.pin]
+        displacements = np.array([np.zeros(3) if node is None else state.displacements[node] for node in nodes])
+        rotations = np.array([np.eye(3) if node is None else state.rotations[node] for node in nodes])
+        return guide_gap(guide, displacements, rotations)
+
+    def _place(self, nodes: Sequence[int | None], state: State) -> tuple[NDArray[np.int64], Floats]:
+        """Numbers (c,) of the unknowns that move two nodes, and (c, 12) how each moves them; None: the ground."""
+        numbers: list[int] = []
+        columns: list[Floats] = []
+        for end, node in enumerate(nodes):
+            if node is None:
+                continue
+            steps = self.chain.nodes[node]
+            for k, number in enumerate(self.chain.translations[node]):
+                if number >= 0:
+                    numbers.append(int(number))
+                    columns.append(np.eye(12)[6 * end + k])
+            for step, axis in zip(steps, present_axes(steps, state.rotations), strict=True):
+                numbers.append(step.number)
+                column = np.zeros(12)
+                column[6 * end + 3 : 6 * end + 6] = axis
+                columns.append(column)
+        return np.array(numbers, dtype=np.int64), np.array(columns).reshape(-1, 12)
+
+    def free(self, bordered: Floats) -> Floats:
+        """Scaled stiffness of the motions that the guides allow.
+
+        Parameters
+        ----------
+        bordered : ndarray, shape (k + g, k + g)
+            Derivative with the guides' rows and columns.
+
+        Returns
+        -------
+        ndarray
+            Square matrix over the motions that are left.
+        """
+        from scipy.linalg import null_space
+
+        count = self.chain.count
+        scaled = bordered * np.outer(self.unit, self.unit)
+        if count == len(scaled):
+            return scaled
+        Z = null_space(bordered[count:, :count] * self.unit[:count])
+        return np.asarray(Z.T @ scaled[:count, :count] @ Z)
+
+    def record(self) -> CorotationalSolution:
+        """Return the present state as the frame's solution."""
+        model, state = self.model, self.state
+        answer = self.respond(state, 1.0)
+        residual, tangent = self.assemble(answer, state, 1.0)
+        joints = np.zeros((len(model.nodes), 6))
+        ends = answer.forces.reshape(-1, 2, 6)
+        np.add.at(joints, self.pairs, ends)
+        for load in model.loads:
+            joints[load.node] -= load.wrench
+        tied, grounded = joints.copy(), np.zeros_like(joints)
+        for guide, force in zip(model.guides, state.guide_forces, strict=True):
+            wrenches = force * self._gap(guide, state)[1].forces.reshape(2, 6)
+            for wrench, node in zip(wrenches, (guide.carrier, guide.pin), strict=True):
+                if node is not None:
+                    tied[node] += wrench
+                    if len(guide.nodes) == 1:
+                        grounded[node] -= wrench
+        reactions = np.zeros_like(joints)
+        np.add.at(reactions, self.chain.groups, tied)
+        supported = {int(self.chain.groups[s.node]) for s in model.supports}
+        reactions[[i for i in range(len(model.nodes)) if i not in supported]] = 0.0
+        reactions += grounded
+        scaled = self.free(tangent)
+        return CorotationalSolution(
+            model=model,
+            displacements=state.displacements,
+            rotations=state.rotations,
+            end_forces=ends,
+            joint_wrenches=joints,
+            reactions=reactions,
+            guide_forces=state.guide_forces,
+            residual=self._measure(residual),
+            stable=bool(np.linalg.eigvalsh((scaled + scaled.T) / 2.0).min(initial=1.0) > 0.0),
+        )
+
+
+def _carry(tangent: Floats, steps: list[Step], axes: Floats, moment: Floats) -> None:
+    """Add what a moment gains about a pin's axis when the steps before it turn that axis: (ω × a) · moment."""
+    for j, step in enumerate(steps):
+        if step.carrier is not None:
+            for i in range(j):
+                tangent[step.number, steps[i].number] += np.cross(axes[i], axes[j]) @ moment
