@@ -111,7 +111,7 @@ def load_cases(counts: tuple[int, int, int]) -> dict[str, Any]:
     points, cells = grid(counts, False)
     mesh = TaggedMesh(points=points, cells=cells, surfaces={}, areas={}, volume=0.0, centroid=np.zeros(3))
     space = displacement_space(mesh)
-    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    fixed = isostatic_supports(space.nodes, space.corners)
     K = assemble_stiffness(space, E=E, nu=NU).with_fixed(fixed)
     level = LinearLevel(space=space, E=E, nu=NU, fixed=fixed)
     rhs = np.random.default_rng(1).normal(size=(space.unknowns, max(LOADS)))

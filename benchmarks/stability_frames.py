@@ -73,7 +73,7 @@ def bonded(ratio: float) -> tuple[float, float]:
     strain = np.zeros_like(space.nodes)
     strain[:, 0] = 1e-3 * (space.nodes[:, 0] - 5.0)
     load = K @ strain.ravel()
-    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    fixed = isostatic_supports(space.nodes, space.corners)
     free = np.setdiff1d(np.arange(K.shape[0]), fixed)
     exact = strain.ravel()
     found = exact.copy()

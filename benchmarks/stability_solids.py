@@ -55,7 +55,7 @@ def solved(
     space = displacement_space(mesh, order=order)
     faces = surface_quadrature(space, *(names or mesh.surfaces))
     load = faces.load_vector(np.einsum("kqij,kqj->kqi", tensor(exact(faces.x)), faces.normals), len(space.nodes))
-    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    fixed = isostatic_supports(space.nodes, space.corners)
     whole = load.copy()
     load[fixed] = 0.0
     K = assemble_stiffness(space, E=YOUNG, nu=nu).with_fixed(fixed)

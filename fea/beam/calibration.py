@@ -157,7 +157,7 @@ def proportions(body: Body, nu: float) -> dict[str, float]:
 
 @cache
 def calibrations() -> Mapping[str, Calibration]:
-    """Shape ("tube", "bar") -> its calibration."""
+    """Read the calibration of every shape ("tube", "bar")."""
     data = tomllib.loads((files("fea") / "calibration.toml").read_text(encoding="utf-8"))
     return {shape: _parsed(entry) for shape, entry in data.items()}
 

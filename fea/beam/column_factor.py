@@ -44,7 +44,7 @@ class AxialForce:
     values: Real
 
     def at(self, x: Real) -> Real:
-        """Compression at stations inside intervals; none beyond the first and last break.
+        """Return the compression at stations inside intervals; none beyond the first and last break.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ def column_factors(
 
 
 def stiffness_matrices(nodes: Real, pressed: Real, stretches: Sequence[Stretch]) -> tuple[Real, Real]:
-    """Bending stiffness and what compression takes of it, by deflections and slopes at the nodes.
+    """Return the bending stiffness and what compression takes of it, by deflections and slopes at the nodes.
 
     Lengths are counted in whole lengths L of the column.
 
@@ -200,7 +200,7 @@ def _bending(h: float) -> Real:
 
 
 def slopes(h: float, t: Real) -> Real:
-    """Slopes of the shape functions of a cubic element, by deflection and slope at its ends.
+    """Return the slopes of the shape functions of a cubic element, by deflection and slope at its ends.
 
     Parameters
     ----------

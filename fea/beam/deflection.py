@@ -104,7 +104,7 @@ def deflection(
 
 
 def flexibility(section: Section, young: float, poisson: float) -> Floats:
-    """Strains of a section per unit of N, V_y, V_z, T, M_y, M_z.
+    """Return the strains of a section per unit of N, V_y, V_z, T, M_y, M_z.
 
     Parameters
     ----------

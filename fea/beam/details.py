@@ -136,7 +136,7 @@ def net_section(width: float, slot: float, thickness: float) -> Section:
 
 
 def flank_moments(length: float, at: float, force: float, x: Floats) -> Floats:
-    """Moments along a beam built in at both ends under a force (Roark, 8th ed., table 8.1, case 1d).
+    """Return the moments along a beam built in at both ends under a force (Roark, 8th ed., table 8.1, case 1d).
 
     With b = length - at: M(0) = -F at b²/L², M(at) = 2 F at² b²/L³, M(L) = -F at² b/L², linear between.
 

@@ -7,7 +7,7 @@ from geometry.base.errors import CannotRunError
 
 
 def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickness: float) -> float:
-    """Mean tension F/((D - d) t) in the section through the hole of an eye that its pin pulls.
+    """Return the mean tension F/((D - d) t) in the section through the hole of an eye that its pin pulls.
 
     Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., chapter 8.
 
@@ -40,7 +40,7 @@ def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickne
 
 
 def tube_hole_factors(outer_diameter: float, inner_diameter: float, hole_diameter: float) -> tuple[float, float]:
-    """Stress concentration factors of a tube with a transverse hole.
+    """Return the stress concentration factors of a tube with a transverse hole.
 
     Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., 2008, chapter 4 (polynomial fits, used here for
     d_i/D <= 0.9 and d/D <= 0.4). In bending the hole opens at the extreme fibre. Converged solid models lie up to some

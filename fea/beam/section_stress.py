@@ -53,7 +53,7 @@ class SectionStress:
 
 
 def section_stress(section: Section, forces: Floats, poisson: float = 0.3) -> SectionStress:
-    """Stresses of a section under internal forces.
+    """Return the stresses of a section under internal forces.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def section_stress(section: Section, forces: Floats, poisson: float = 0.3) -> Se
 
 
 def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) -> float:
-    """Largest von Mises stress over a section, the best of a grid refined by parabolas.
+    """Return the largest von Mises stress over a section, the best of a grid refined by parabolas.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) ->
 
 
 def rim_shear(section: Section, nu: float) -> tuple[float, float]:
-    """Shear stress at the middle of a rectangle's rim.
+    """Return the shear stress at the middle of a rectangle's rim.
 
     Parameters
     ----------

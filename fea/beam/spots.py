@@ -138,7 +138,7 @@ def displacement_estimate(
 
 
 def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float, float, float]:
-    """Stress concentration factors of a shaft at a filleted step up.
+    """Return the stress concentration factors of a shaft at a filleted step up.
 
     Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, 3.10 and 3.12: K = C1 + C2 s + C3 s²
     + C4 s³ with s = 2 step/D, for step/radius of 0.1 to 20 in tension and bending and of 0.25 to 4 in torsion
@@ -179,7 +179,7 @@ def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float
 
 
 def forces_at(beam: BeamCheck, x: float, side: Side = "after") -> NDArray[np.float64]:
-    """Internal forces at a station.
+    """Return the internal forces at a station.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ LARGEST_IMBALANCE = 1e-6
 
 
 def internal_forces(loads: BeamLoads) -> Piecewise:
-    """Internal forces along the beam.
+    """Return the internal forces along the beam.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ class BeamCheck:
     safety_factor: float
 
     def stress_at(self, x: float, side: Side = "after") -> SectionStress:
-        """Stresses at a station.
+        """Return the stresses at a station.
 
         Parameters
         ----------
@@ -160,7 +160,7 @@ class BeamCheck:
 
 
 def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: float = 0.3) -> BeamCheck:
-    """Hand calculation of a link of constant section.
+    """Calculate a link of constant section by hand.
 
     Eyes and holes are left out, and stress concentration is not in these numbers.
 
@@ -236,7 +236,7 @@ class CantileverCheck:
 
 
 def uniform_cantilever(weight: float, length: float, section: Section, strength: float) -> CantileverCheck:
-    """Cantilever under a weight spread evenly: M = W L/2, σ = M c/I_z.
+    """Calculate a cantilever under a weight spread evenly: M = W L/2, σ = M c/I_z.
 
     Gere & Goodno, Mechanics of Materials, 8th ed., example 4-5 (q = W/L).
 

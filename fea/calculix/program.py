@@ -108,7 +108,7 @@ def _lines(numbers: list[int]) -> Iterator[str]:
 
 
 def installed() -> str | None:
-    """Path of ``ccx``, or None where it is not on PATH."""
+    """Return the path of ``ccx``, or None where it is not on PATH."""
     return shutil.which(PROGRAM)
 
 
@@ -157,7 +157,7 @@ def run(deck: Path, folder: Path, *, threads: int, time_limit: float) -> tuple[P
 
 
 def read_dat(path: Path, *, nodes: int, elements: int, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Displacements (nodes, 3) [mm] and stresses (elements, points, 6) [MPa] of a .dat file.
+    """Read the displacements and stresses of a .dat file.
 
     Stresses in our order xx, yy, zz, xy, yz, xz; points in CalculiX's.
 
@@ -228,7 +228,7 @@ def _table(lines: Iterable[str], columns: int, path: Path) -> NDArray[np.float64
 
 
 def read_frd_stress(path: Path) -> NDArray[np.float64]:
-    """Stresses (k, 6) [MPa] at the nodes of the last STRESS block of a .frd file, in our order of components.
+    """Read the stress at the nodes of the last STRESS block of a .frd file, in our order of components.
 
     CalculiX carries its integration points' stresses to the nodes and averages them, as we do.
 

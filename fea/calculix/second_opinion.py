@@ -107,7 +107,7 @@ def write_model(path: Path, solid: SolidSolution, case: SolidCase, title: str) -
     # A node without load keeps the rounding of its row: some 1e-16 of the stiffness times the displacement.
     rounding = 1e-13 * np.abs(K.diagonal).max(axis=(1, 2)) * np.abs(case.displacement).max()
     loads[(np.abs(loads) <= rounding[:, None]).all(axis=1)] = 0.0
-    supports = isostatic_supports(space.nodes, space.corners).unknowns
+    supports = isostatic_supports(space.nodes, space.corners)
     calculix.write_deck(path, space, E=solid.E, nu=solid.nu, loads=loads, supports=supports, title=title)
 
 

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.beam.deflection import flexibility
 from fea.frame.jet import Jet, cross, dot, stack, unit
 from fea.frame.model import FrameModel, Guide
 from fea.frame.system import line_load_effect, natural_flexibility
@@ -115,7 +116,7 @@ class CorotationalElements:
         return _response(potential)
 
     def natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, tuple[Jet, Jet, Jet]]:
-        """Natural deformations and the element's axes.
+        """Return the natural deformations and the element's axes.
 
         Parameters
         ----------
@@ -169,7 +170,7 @@ class CorotationalElements:
         return dot(start, _constant((2.0 * first + last) * third)) + dot(end, _constant((first + 2.0 * last) * third))
 
     def potential(self, displacements: Floats, rotations: Floats, factor: float) -> Jet:
-        """Strain energy less the work of the line loads.
+        """Return the strain energy less the work of the line loads.
 
         Parameters
         ----------
@@ -194,7 +195,7 @@ class CorotationalElements:
 
 
 def guide_gap(guide: Guide, displacements: Floats, rotations: Floats) -> tuple[float, ElementResponse]:
-    """Gap d · n or a · n of a guide.
+    """Return the gap d · n or a · n of a guide.
 
     Parameters
     ----------
@@ -240,7 +241,7 @@ def _own_deflection(model: FrameModel, i: int) -> Floats:
     supported beam, and of the axial load's part that is self-balanced over the chord.
     """
     e, length = model.elements[i], model.length(i)
-    shear = e.section.shear_coefficient(e.poisson) * e.young / (2.0 + 2.0 * e.poisson) * e.section.area
+    along, shear, _, _, about_y, about_z = flexibility(e.section, e.young, e.poisson)
     nodes, weights = np.polynomial.legendre.leggauss(4)
     t = (1.0 + nodes) / 2.0
     # Per unit load at the first and at the last end, over the span from 0 to 1: N - mean N, V and M.
@@ -249,10 +250,9 @@ def _own_deflection(model: FrameModel, i: int) -> Floats:
     m = np.array([t / 3.0 - t**2 / 2.0 + t**3 / 6.0, t / 6.0 - t**3 / 6.0]) * length**2
     dx = weights * length / 2.0
     out = np.zeros((6, 6))
-    axial = n * dx @ n.T / (e.young * e.section.area)
-    for axis, inertia in ((1, e.section.i_z), (2, e.section.i_y)):
-        out[np.ix_([axis, axis + 3], [axis, axis + 3])] = m * dx @ m.T / (e.young * inertia) + v * dx @ v.T / shear
-    out[np.ix_([0, 3], [0, 3])] = axial
+    out[np.ix_([0, 3], [0, 3])] = n * dx @ n.T * along
+    for axis, bending in ((1, about_z), (2, about_y)):
+        out[np.ix_([axis, axis + 3], [axis, axis + 3])] = m * dx @ m.T * bending + v * dx @ v.T * shear
     return out
 
 

@@ -33,7 +33,7 @@ def on_deformed_shape(
     body: Body,
     loads: Sequence[Load],
 ) -> LinkLoads:
-    """What acts on a link on the deformed shape, for its straight shape along the chord.
+    """Return what acts on a link on the deformed shape, for its straight shape along the chord.
 
     The chord runs from the first to the last station; z is that of the first node, turned normal to it.
 

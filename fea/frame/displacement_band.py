@@ -125,7 +125,7 @@ def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank
 
 
 def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
-    """How far every pin moves at the most in its bore or slot per unit of what it bears.
+    """Return how far every pin moves at the most in its bore or slot per unit of what it bears.
 
     It sinks by ``SINK`` F/(E t), tilts as that along its length lets it, and turns about itself as the ring bends and,
     held at its rim, shears: M/(4πG t) (1/r² - 1/R²), from τ = M/(2π r² t).
@@ -166,7 +166,7 @@ def bounds(
     beams: Mapping[int, Sequence[Zone]],
     bores: Sequence[tuple[int, Real]],
 ) -> tuple[float, float]:
-    """Least and largest displacement along a unit load.
+    """Return the least and largest displacement along a unit load.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def bounds(
 def point_bounds(
     case: Case, frame: LinkageFrame, solution: FrameSolution, link: str, point: str
 ) -> tuple[float, float]:
-    """Least and largest distance by which a point of a linkage moves in its linear frame.
+    """Return the least and largest distance by which a point of a linkage moves in its linear frame.
 
     Where the frame is redundant, forces are those of the plain beams: exact to first order in what eyes and bores do.
 

@@ -115,7 +115,7 @@ class EquilibriumPath:
         self.reached = 0.0
 
     def respond(self, state: State, factor: float) -> ElementResponse:
-        """What the elements answer in a state.
+        """Return what the elements answer in a state.
 
         Parameters
         ----------
@@ -182,7 +182,7 @@ class EquilibriumPath:
         return None
 
     def balance(self, state: State, factor: float) -> tuple[Floats, Floats]:
-        """Out-of-balance forces and gaps of the guides, with their derivative.
+        """Return the out-of-balance forces and gaps of the guides, with their derivative.
 
         Parameters
         ----------
@@ -242,7 +242,7 @@ class EquilibriumPath:
         )
 
     def assemble(self, answer: ElementResponse, state: State, factor: float) -> tuple[Floats, Floats]:
-        """Out-of-balance forces and gaps, with their derivative, from what the elements answer.
+        """Return the out-of-balance forces and gaps, with their derivative, from what the elements answer.
 
         Parameters
         ----------
@@ -315,7 +315,7 @@ class EquilibriumPath:
         return np.array(numbers, dtype=np.int64), np.array(columns).reshape(-1, 12)
 
     def free(self, bordered: Floats) -> Floats:
-        """Scaled stiffness of the motions that the guides allow.
+        """Return the scaled stiffness of the motions that the guides allow.
 
         Parameters
         ----------

@@ -120,7 +120,7 @@ class Jet:
         return self.apply(x**n, n * x ** (n - 1.0), n * (n - 1.0) * x ** (n - 2.0))
 
     def sum(self) -> "Jet":
-        """Sum of the components, as one component."""
+        """Return the sum of the components, as one component."""
         return Jet(
             value=self.value.sum(axis=1, keepdims=True),
             gradient=self.gradient.sum(axis=1, keepdims=True),
@@ -168,7 +168,7 @@ def stack(*parts: Jet) -> Jet:
 
 
 def dot(a: Jet, b: Jet) -> Jet:
-    """Scalar product over the components.
+    """Return the scalar product over the components.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def dot(a: Jet, b: Jet) -> Jet:
 
 
 def cross(a: Jet, b: Jet) -> Jet:
-    """Vector product of three components each.
+    """Return the vector product of three components each.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def cross(a: Jet, b: Jet) -> Jet:
 
 
 def unit(a: Jet) -> Jet:
-    """Direction of a vector.
+    """Return the direction of a vector.
 
     Parameters
     ----------

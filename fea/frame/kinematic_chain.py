@@ -1,12 +1,11 @@
 """Finite rotations of the nodes of a frame: who turns with whom, and about which axes.
 
 Tied nodes form trees. The rotation of a tied node is that of its parent, followed by a turn about the pin's axis,
-which the parent carries along. Virtual spins of a node are so the sum of
-the spins of its chain of steps, each about its present axis. Displacements are shared or are not, apart from that: a
-slider turns with what carries it and moves by itself.
+which the parent carries along. Virtual spins of a node are so the sum of the spins of its chain of steps, each about
+its present axis. Displacements are shared or are not, apart from that: a slider turns with what carries it and moves by
+itself.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,7 +125,7 @@ class KinematicChain:
 
 
 def present_axes(steps: list[Step], rotations: Floats) -> Floats:
-    """Present axes of the steps of a chain.
+    """Return the present axes of the steps of a chain.
 
     Parameters
     ----------
@@ -143,29 +142,8 @@ def present_axes(steps: list[Step], rotations: Floats) -> Floats:
     return np.array([s.axis if s.carrier is None else rotations[s.carrier] @ s.axis for s in steps]).reshape(-1, 3)
 
 
-def rotation_matrix(spin: Floats) -> Floats:
-    """Rotation about a vector by its length, after Rodrigues: 1 + sin θ/θ S + (1 - cos θ)/θ² S².
-
-    Parameters
-    ----------
-    spin : ndarray, shape (3,)
-        Axis times angle [rad].
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Rotation.
-    """
-    x, y, z = map(float, spin)
-    angle = math.sqrt(x * x + y * y + z * z)
-    half = math.sin(angle / 2.0) / angle if angle > 1e-8 else 0.5
-    sine = math.sin(angle) / angle if angle > 1e-8 else 1.0
-    S = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.asarray(np.eye(3) + sine * S + 2.0 * half**2 * (S @ S))
-
-
 def turned(steps: list[Step], axes: Floats, increments: Floats, rotation: Floats) -> Floats:
-    """Rotation at the end of a chain after its steps' increments; free turns first, then the pins.
+    """Return the rotation at the end of a chain after its steps' increments; free turns first, then the pins.
 
     Parameters
     ----------
@@ -183,6 +161,8 @@ def turned(steps: list[Step], axes: Floats, increments: Floats, rotation: Floats
     ndarray, shape (3, 3)
         Rotation after.
     """
+    from scipy.spatial.transform import Rotation
+
     spins: list[Floats] = []
     for step, axis in zip(steps, axes, strict=True):
         spin = axis * increments[step.number]
@@ -191,5 +171,5 @@ def turned(steps: list[Step], axes: Floats, increments: Floats, rotation: Floats
         else:
             spins.append(spin)
     for spin in reversed(spins):
-        rotation = rotation_matrix(spin) @ rotation
+        rotation = Rotation.from_rotvec(spin).as_matrix() @ rotation
     return rotation

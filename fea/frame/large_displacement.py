@@ -249,7 +249,7 @@ def _holds(frame: LinkageFrame, factor: float) -> float:
 
 
 def displaced(frame: LinkageFrame, link: str, point: str, factor: float) -> float:
-    """Distance by which a point moves on the deformed shape.
+    """Return the distance by which a point moves on the deformed shape.
 
     Parameters
     ----------

@@ -74,7 +74,7 @@ class FrameSolution:
     redundancy: int
 
     def beam_loads(self, i: int) -> BeamLoads:
-        """All that acts on the beam of element i, in its local axes with x = 0 at its first end.
+        """Return all that acts on the beam of an element, in local axes with x = 0 at its first end.
 
         Parameters
         ----------
@@ -95,7 +95,7 @@ class FrameSolution:
         return BeamLoads(points=ends, lines=(LineLoad(start=0.0, end=length, first=first, last=last),))
 
     def internal_forces(self, i: int) -> Piecewise:
-        """N, V_y, V_z, T, M_y, M_z along an element.
+        """Return N, V_y, V_z, T, M_y, M_z along an element.
 
         Parameters
         ----------
@@ -110,7 +110,7 @@ class FrameSolution:
         return internal_forces(self.beam_loads(i))
 
     def axis_displacements(self, i: int, stations: Floats) -> Floats:
-        """Displacements of the axis of an element.
+        """Return the displacements of the axis of an element.
 
         Parameters
         ----------

@@ -160,7 +160,7 @@ class LinkageFrame:
         return arm
 
     def at_points(self, displacements: Real) -> dict[tuple[str, str], Real]:
-        """Displacement of every link's point.
+        """Return the displacement of every link's point.
 
         Parameters
         ----------

@@ -257,7 +257,7 @@ class FrameModel:
         return float(np.linalg.norm(np.ptp(self.nodes, axis=0)))
 
     def name(self, node: int) -> str:
-        """Name or number of a node.
+        """Return the name or number of a node.
 
         Parameters
         ----------
@@ -272,7 +272,7 @@ class FrameModel:
         return self.names[node] if self.names else str(node)
 
     def ends(self, i: int) -> tuple[Floats, Floats]:
-        """Both ends of the beam of an element, arms included.
+        """Return both ends of the beam of an element, arms included.
 
         Parameters
         ----------
@@ -289,7 +289,7 @@ class FrameModel:
         return self.nodes[a] + arms[0], self.nodes[b] + arms[1]
 
     def length(self, i: int) -> float:
-        """Length of the beam of an element between its arms.
+        """Return the length of the beam of an element between its arms.
 
         Parameters
         ----------
@@ -305,7 +305,7 @@ class FrameModel:
         return float(np.linalg.norm(end - start))
 
     def axes(self, i: int) -> Floats:
-        """Local axes of an element.
+        """Return the local axes of an element.
 
         Parameters
         ----------
@@ -324,7 +324,7 @@ class FrameModel:
         return np.vstack([x, y, np.cross(x, y)])
 
     def line_load(self, i: int) -> tuple[Floats, Floats]:
-        """Force per length at both ends of an element.
+        """Return the force per length at both ends of an element.
 
         Parameters
         ----------

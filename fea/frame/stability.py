@@ -61,7 +61,7 @@ _FAR = 1e6
 
 
 def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> float:
-    """Factor on all loads at which the frame, as it stands, becomes unstable.
+    """Return the factor on all loads at which the frame, as it stands, becomes unstable.
 
     Linear stability: (K + λ K_g) φ = 0 with the geometric stiffness K_g of the linear solution's forces (Przemieniecki,
     Theory of Matrix Structural Analysis, 1968, chapter 15). Pinned column, eight elements: π² E I/L² within 0.01 %,

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.beam.deflection import flexibility
 from fea.frame.model import DOFS, FrameModel
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Section
@@ -34,7 +35,7 @@ def _motion(dof: int) -> str:
 
 
 def natural_deformations(length: float) -> Floats:
-    """Matrix G from the displacements of both ends to the natural deformations.
+    """Return the matrix G from the displacements of both ends to the natural deformations.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def natural_deformations(length: float) -> Floats:
 
 
 def natural_flexibility(section: Section, young: float, poisson: float, length: float) -> Floats:
-    """Natural flexibility of a Timoshenko beam, exact for any slenderness.
+    """Return the natural flexibility of a Timoshenko beam, exact for any slenderness.
 
     End rotations under end moments: L/(3EI) M1 - L/(6EI) M2 + (M1 + M2)/(κ G A L), by virtual work (inverse of
     Przemieniecki, 1968, eq. 5.116, with Cowper's κ in the shear parameter).
@@ -80,21 +81,18 @@ def natural_flexibility(section: Section, young: float, poisson: float, length: 
     ndarray, shape (6, 6)
         Flexibility [mm/N, 1/(N·mm)].
     """
-    shear_modulus = young / (2.0 * (1.0 + poisson))
-    shear = 1.0 / (section.shear_coefficient(poisson) * shear_modulus * section.area * length)
-    F = np.zeros((6, 6))
-    F[0, 0] = length / (young * section.area)
-    for first, inertia in ((1, section.i_z), (3, section.i_y)):
-        bending = length / (6.0 * young * inertia)
-        F[first : first + 2, first : first + 2] = np.array([[2.0, -1.0], [-1.0, 2.0]]) * bending + shear
-    F[5, 5] = length / (shear_modulus * section.torsion)
+    along, shear, _, twist, about_y, about_z = flexibility(section, young, poisson)
+    F = np.diag([along, 0.0, 0.0, 0.0, 0.0, twist]) * length
+    for first, bending in ((1, about_z), (3, about_y)):
+        own = np.array([[2.0, -1.0], [-1.0, 2.0]]) * bending * length / 6.0
+        F[first : first + 2, first : first + 2] = own + shear / length
     return F
 
 
 def line_load_effect(
     section: Section, young: float, length: float, first: Floats, last: Floats
 ) -> tuple[Floats, Floats]:
-    """Effect of a linearly varying line load on the basic system.
+    """Return the effect of a linearly varying line load on the basic system.
 
     The basic system is simply supported and held along x at its first end. End rotations 8, 7 (360ths of q L³/(E I))
     after Gere & Goodno, Mechanics of Materials, 8th ed., appendix G, table G-2, cases 1 and 11; shear does not turn the
@@ -161,18 +159,15 @@ class FrameSystem:
 
     def _owners(self) -> NDArray[np.int64]:
         """(6 n,) the first of all displacements tied to each."""
-        parent = list(range(6 * len(self.model.nodes)))
+        from scipy.sparse import coo_matrix
+        from scipy.sparse.csgraph import connected_components
 
-        def first(i: int) -> int:
-            while parent[i] != i:
-                i = parent[i]
-            return i
-
-        for tie in self.model.ties:
-            for dof in tie.dofs:
-                a, b = (first(6 * node + DOFS.index(dof)) for node in tie.nodes)
-                parent[max(a, b)] = min(a, b)
-        return np.array([first(i) for i in range(len(parent))])
+        size = 6 * len(self.model.nodes)
+        pairs = [6 * np.array(tie.nodes) + DOFS.index(dof) for tie in self.model.ties for dof in tie.dofs]
+        a, b = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+        _, group = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False)
+        _, first = np.unique(group, return_index=True)
+        return np.asarray(first[group])
 
     def _to_ends(self, i: int) -> Floats:
         """(12, 12) from the displacements of both nodes, global axes, to those of the beam's ends, local axes."""
@@ -202,7 +197,7 @@ class FrameSystem:
         return ~needed
 
     def place(self, i: int) -> tuple[NDArray[np.int64], Floats]:
-        """Which unknowns move an element, and how.
+        """Return which unknowns move an element, and how.
 
         Parameters
         ----------
@@ -218,7 +213,7 @@ class FrameSystem:
         return numbers[numbers >= 0], self._matrices[i][:, numbers >= 0]
 
     def to_nodes(self, i: int, end_forces: Floats) -> Floats:
-        """Wrenches at both nodes of an element from the forces at its beam's ends.
+        """Return the wrenches at both nodes of an element from the forces at its beam's ends.
 
         Parameters
         ----------
@@ -235,7 +230,7 @@ class FrameSystem:
         return np.asarray((self._matrices[i].T @ end_forces).reshape(2, 6))
 
     def natural_unit(self, i: int) -> Floats:
-        """Factors from the scaled natural forces of an element to N and N·mm.
+        """Return the factors from the scaled natural forces of an element to N and N·mm.
 
         Parameters
         ----------
@@ -250,7 +245,7 @@ class FrameSystem:
         return np.array([1.0, *[self.lengths[i]] * 5])
 
     def equations(self) -> tuple[Any, Any, Floats, Floats]:
-        """Scaled B (6 m + g, k) and F, sparse, natural deformations v0 (6 m + g,) and nodal loads p - p0 (k,).
+        """Return scaled B (6 m + g, k) and F, sparse, deformations v0 (6 m + g,) and nodal loads p - p0 (k,).
 
         The g guides come after the m elements: rows of unit stiffness in B, without flexibility in F.
         """

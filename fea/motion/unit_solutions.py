@@ -91,11 +91,11 @@ def solve_units(
     K = assemble_stiffness(space, E=E, nu=nu)
     supports = isostatic_supports(space.nodes, space.corners)
     rows = np.zeros((space.unknowns, 6))
-    rows[supports.unknowns, np.arange(6)] = 1.0
+    rows[supports, np.arange(6)] = 1.0
     rows = K @ rows
     factor = factorise(
-        K.with_fixed(supports.unknowns),
-        level=linear_level(space, E=E, nu=nu, fixed=supports.unknowns),
+        K.with_fixed(supports),
+        level=linear_level(space, E=E, nu=nu, fixed=supports),
         right_hand_sides=count,
         method=method,
         threads=threads,
@@ -103,8 +103,8 @@ def solve_units(
     F = np.empty((space.unknowns, count), order="F")  # as solvers take it
     for mode, column in zip(modes.T, F.T, strict=True):
         column[:] = units.vectors @ mode
-    held = F[supports.unknowns]
-    F[supports.unknowns] = 0.0
+    held = F[supports]
+    F[supports] = 0.0
     answer = factor.solved(F)
     U = answer.x
     reaction = np.abs((rows.T @ U - held) @ combination).max(axis=0) / scale

@@ -30,6 +30,8 @@ LEAST_RATIO = 1.15
 """Of the sizes of successive meshes: the order of meshes that are closer than this means nothing."""
 BACKWARD = 0.2
 """Share of the index by which the band of a monotone series reaches back from its last value."""
+SERIES = 3
+"""Meshes in the least series with an observed order."""
 NO_LIMIT = 0.2
 """Observed order below which a rising peak may have no limit; a crack's peak has −0.5."""
 SIGNIFICANT = 0.02
@@ -171,53 +173,43 @@ def grid_convergence(
         listed = ", ".join(f"{size:.3g}" for size in h)
         raise CannotRunError(f"element sizes of {listed} mm do not fall by {LEAST_RATIO:g} from mesh to mesh")
 
-    def result(
-        order: float | None,
-        kind: Kind,
-        factor: float,
-        reach: float,
-        *,
-        back: float = 1.0,
-        multiple: float | None = None,
-    ) -> GridConvergence:
-        rises = len(f) > 1 and f[-1] >= f[-2]
-        below, above = (back * reach, reach) if rises else (reach, back * reach)
-        low, high = f[-1] - below, f[-1] + above
-        return GridConvergence(
-            sizes=h, values=f, order=order, kind=kind, factor=factor, low=low, high=high, multiple=multiple
-        )
+    order, kind, factor, reach, back = _reach(h, f, estimate, formal_order, sharp)
+    least, most, multiple = ALONE if len(f) < SERIES else FLOOR, math.inf, None
+    if order is not None and order >= LEAST_ORDER:
+        most = max((TOO_HIGH if kind == "irregular" else CEILING) * estimate, abs(f[-1] - f[-2]))
+    if kind == "one mesh" or reach < least * estimate:
+        reach, multiple = least * estimate, least
+    elif reach > most:
+        reach, multiple = most, most / estimate if estimate > 0.0 else None
+    rises = len(f) > 1 and f[-1] >= f[-2]
+    below, above = (back * reach, reach) if rises else (reach, back * reach)
+    low, high = f[-1] - below, f[-1] + above
+    return GridConvergence(
+        sizes=h, values=f, order=order, kind=kind, factor=factor, low=low, high=high, multiple=multiple
+    )
 
-    def bounded(
-        order: float | None, kind: Kind, factor: float, index: float, *, least: float = FLOOR, back: float = 1.0
-    ) -> GridConvergence:
-        most = math.inf
-        if order is not None and order >= LEAST_ORDER:
-            most = max((TOO_HIGH if kind == "irregular" else CEILING) * estimate, abs(step))
-        if index < least * estimate:
-            return result(order, kind, factor, least * estimate, back=back, multiple=least)
-        if index > most:
-            multiple = most / estimate if estimate > 0.0 else None
-            return result(order, kind, factor, most, back=back, multiple=multiple)
-        return result(order, kind, factor, index, back=back)
 
+def _reach(
+    h: Sequence[float], f: Sequence[float], estimate: float, formal_order: float, sharp: bool
+) -> tuple[float | None, Kind, float, float, float]:
+    """Return order, kind and factor of a series, its index, and the share of it by which its band reaches back."""
     if len(f) == 1:
-        return result(None, "one mesh", ALONE, ALONE * estimate, multiple=ALONE)
+        return None, "one mesh", ALONE, 0.0, 1.0
     step, ratio = f[-1] - f[-2], h[-2] / h[-1]
     if len(f) == 2:
-        index = DOUBT * abs(step) / (math.pow(ratio, formal_order) - 1.0)
-        return bounded(None, "two meshes", DOUBT, index, least=ALONE)
+        return None, "two meshes", DOUBT, DOUBT * abs(step) / (math.pow(ratio, formal_order) - 1.0), 1.0
     order = observed_order(h[-3:], f[-3:])
     if abs(step) > max(estimate, SIGNIFICANT * abs(f[-1])) and _rises(h, f) and (sharp or _rises(h[:-1], f[:-1])):
-        return result(order, "growing", DOUBT, math.inf)
+        return order, "growing", DOUBT, math.inf, 1.0
     left = max(abs(step), abs(f[-2] - f[-3]) * _share(h, formal_order))
     if order is None or not LEAST_ORDER <= order <= formal_order + ABOVE_FORMAL:
         index = DOUBT * left / (math.pow(max(ratio, NOISE_RATIO), formal_order) - 1.0)
         # The limit of a slow series lies beyond its last value; a negative order is scatter, and tells no side.
         slow = order is not None and 0.0 <= order < LEAST_ORDER
-        return bounded(order, "irregular", DOUBT, index, back=BACKWARD if slow else 1.0)
+        return order, "irregular", DOUBT, index, BACKWARD if slow else 1.0
     if order > formal_order:
-        return bounded(order, "monotone", SAFETY, SAFETY * left / (math.pow(ratio, formal_order) - 1.0))
-    return bounded(order, "monotone", SAFETY, SAFETY * abs(step) / (math.pow(ratio, order) - 1.0), back=BACKWARD)
+        return order, "monotone", SAFETY, SAFETY * left / (math.pow(ratio, formal_order) - 1.0), 1.0
+    return order, "monotone", SAFETY, SAFETY * abs(step) / (math.pow(ratio, order) - 1.0), BACKWARD
 
 
 def _rises(sizes: Sequence[float], values: Sequence[float]) -> bool:
@@ -235,7 +227,7 @@ def _share(h: Sequence[float], order: float) -> float:
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | None:
-    """Order p of three meshes, negative for a number that diverges; None where they oscillate.
+    """Return the order p of three meshes, negative for a number that diverges; None where they oscillate.
 
     Parameters
     ----------
@@ -274,7 +266,7 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
 
 
 def williams_exponent(angle: float) -> float:
-    """Exponent λ of the displacements r^λ at a re-entrant edge with free faces.
+    """Return the exponent λ of the displacements r^λ at a re-entrant edge with free faces.
 
     Stress grows as r^(λ−1). λ is the smallest root in (0.5, 1) of sin λβ = −λ sin β, the symmetric field (M. L.
     Williams, J. Appl. Mech. 19 (1952) 526-528; J. R. Barber, Elasticity, 3rd ed., eq. 11.39).

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fea.common.source import Source, SourceKind
-from fea.refine.convergence import GridConvergence
+from fea.refine.convergence import SERIES, GridConvergence
 from fea.refine.link_series import NOT_RESOLVED
-from fea.refine.refinement import SERIES, MeshRecord, RefinedSolid
+from fea.refine.refinement import MeshRecord, RefinedSolid
 from fea.refine.singular import LOADED, SharpPeak
 
 Status = Literal["converged", "decided", "far", "not reached", "unresolved", "edge", "singular", "growing"]

@@ -87,7 +87,7 @@ def estimate_error(field: StressField, displacement: NDArray[np.float64], *, E: 
 
 
 def energy_factor(estimates: Sequence[float], energies: Sequence[float]) -> float | None:
-    """True over estimated error in the energy norm, by the two finest of several meshes; None where they do not tell.
+    """Return true over estimated error in the energy norm, by the two finest meshes; None where they do not tell.
 
     Under given loads the strain energy lacks half the square of the error, ‖e‖² = 2 (U − U_h) (Szabó & Babuška,
     Finite Element Analysis, 1991, section 4.1), whatever the meshes. So what one mesh gains on another is what the
@@ -114,7 +114,7 @@ def energy_factor(estimates: Sequence[float], energies: Sequence[float]) -> floa
 
 
 def relative_error(error: float, energy_norm: float) -> float:
-    """Error in the energy norm relative to the solution, η = ‖e‖/√(‖u_h‖² + ‖e‖²) (Zienkiewicz and Zhu 1987, eq. 24).
+    """Return the relative error η = ‖e‖/√(‖u_h‖² + ‖e‖²) in the energy norm (Zienkiewicz and Zhu 1987, eq. 24).
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def relative_error(error: float, energy_norm: float) -> float:
 
 
 def energy_density(sigma: NDArray[np.float64], E: float, nu: float) -> NDArray[np.float64]:
-    """Twice the energy density of a stress, σ : C⁻¹ : σ = ((1+ν) σ:σ − ν (tr σ)²)/E.
+    """Return twice the energy density of a stress, σ : C⁻¹ : σ = ((1+ν) σ:σ − ν (tr σ)²)/E.
 
     Parameters
     ----------

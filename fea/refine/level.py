@@ -68,7 +68,7 @@ class Level:
     figures: tuple[CaseFigures, ...]
 
     def size(self, place: NDArray[np.float64], radius: float = 0.0) -> float:
-        """Mean edge of the elements within a radius of a place, at least of the nearest few.
+        """Return the mean edge of the elements within a radius of a place, at least of the nearest few.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class Level:
         return float(_EDGE * np.cbrt(self.volumes.mean()))
 
     def around(self, nodal: NDArray[np.float64], place: NDArray[np.float64], radius: float) -> int:
-        """Node of the largest value within a radius of a place, at least the nearest node.
+        """Return the node of the largest value within a radius of a place, at least the nearest node.
 
         Parameters
         ----------

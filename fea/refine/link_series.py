@@ -53,7 +53,7 @@ class Eye:
     slot: float = 0.0
 
     def holds(self, nodes: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Whether points lie in it.
+        """Return whether points lie in it.
 
         Parameters
         ----------
@@ -102,7 +102,7 @@ class CasePrecision:
     in_contact: Mapping[Quantity, float]
 
     def series(self, quantity: Quantity) -> GridConvergence:
-        """The series of a quantity.
+        """Return the series of a quantity.
 
         Parameters
         ----------
@@ -118,7 +118,7 @@ class CasePrecision:
         return found
 
     def known(self, quantity: Quantity) -> bool:
-        """False where no number stands for the quantity.
+        """Return whether a number stands for the quantity.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class CasePrecision:
         return quantity == "displacement" or (self.sharp is None and self.doubt == "")
 
     def low(self, quantity: Quantity) -> float:
-        """Lower end of the band, not below zero.
+        """Return the lower end of the band, not below zero.
 
         Parameters
         ----------
@@ -150,7 +150,7 @@ class CasePrecision:
         return max(self.series(quantity).low, 0.0) if self.known(quantity) else -math.inf
 
     def high(self, quantity: Quantity) -> float:
-        """Upper end of the band: of the meshes and, for what an eye bears, of pin contact on top.
+        """Return the upper end of the band: of the meshes and, for what an eye bears, of pin contact on top.
 
         Parameters
         ----------
@@ -194,7 +194,7 @@ def precision(
 
 
 def energy_errors(levels: Sequence[Level]) -> tuple[float, ...]:
-    """Relative error in the energy norm of the worst case on each mesh, by the estimate and the energies so far.
+    """Return the worst case's relative error in the energy norm on each mesh, by estimates and energies so far.
 
     Parameters
     ----------
@@ -230,7 +230,7 @@ def goals(
     section: float,
     ratios: Sequence[float],
 ) -> list[LocalGoal]:
-    """Peaks of the deciding stress that the next mesh is to resolve.
+    """Return the peaks of the deciding stress that the next mesh is to resolve.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from fea.common.link_loads import LinkLoads
-from fea.refine.convergence import ALONE, FORMAL_ORDER, GridConvergence
+from fea.refine.convergence import ALONE, FORMAL_ORDER, SERIES, GridConvergence
 from fea.refine.level import Level, level_of
 from fea.refine.link_series import CasePrecision, Eye, Quantity, energy_errors, goals, precision
 from fea.refine.singular import NEARLY, element_exponents, loaded_edge
@@ -33,8 +33,6 @@ ROUGH = 0.25
 """Estimate over peak above which one mesh decides nothing."""
 START = MeshSettings(size=0.6, bore_elements=10, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)
 """The first mesh: coarse, since the next ones become finer where it matters."""
-SERIES = 3
-"""Meshes in the least series with an observed order."""
 Progress = Callable[[str], None]
 
 
@@ -276,7 +274,7 @@ class _Link:
             self._refine(pool)
 
     def result(self) -> RefinedSolid:
-        """What was found."""
+        """Return what was found."""
         assert self.solution is not None
         return RefinedSolid(
             solution=self.solution,

@@ -68,7 +68,7 @@ class SharpPeak:
 
 
 def edge_distance(edges: Sequence[ReentrantEdge], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distance of points from each of k edges.
+    """Return the distance of points from each of k edges.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def loaded_edge(
     section: float,
     share: float = LOADED,
 ) -> tuple[ReentrantEdge, int] | None:
-    """The edge whose nodes bear the largest stress of all edges, and that node; None where it is well below the peak.
+    """Return the edge whose nodes bear the largest stress, and that node; None where it is well below the peak.
 
     nodes (n, 3) [mm] with their von Mises stress (n,) [MPa]; section [mm] as in ``sharp_peak``; share of the peak
     below which it is well below
@@ -137,7 +137,7 @@ def loaded_edge(
 def element_exponents(
     edges: Sequence[ReentrantEdge], centres: NDArray[np.float64], sizes: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Exponents by which errors fall with size: the order of quadratic elements, or λ next to an edge.
+    """Return the exponents by which errors fall with size: the order of quadratic elements, or λ next to an edge.
 
     Parameters
     ----------

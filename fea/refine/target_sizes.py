@@ -61,7 +61,7 @@ class LocalGoal:
 
 
 def element_sizes(space: DisplacementSpace) -> NDArray[np.float64]:
-    """Mean length of the edges of each element, taken straight.
+    """Return the mean length of the edges of each element, taken straight.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def element_sizes(space: DisplacementSpace) -> NDArray[np.float64]:
 def reduction(
     energy: NDArray[np.float64], energy_norm: float, allowed: float, exponent: NDArray[np.float64] | float
 ) -> NDArray[np.float64]:
-    """Factors by which element sizes fall for an allowed error in the energy norm.
+    """Return the factors by which element sizes fall for an allowed error in the energy norm.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def reduction(
 def next_sizes(
     space: DisplacementSpace, factors: Sequence[NDArray[np.float64]], goals: Sequence[LocalGoal]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points and element sizes of the next mesh, at the corner nodes.
+    """Return the points and element sizes of the next mesh, at the corner nodes.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ _CHUNK = 1024  # elements at a time: some 10 MB of working memory, which caches 
 
 
 def lame_constants(E: float, nu: float) -> tuple[float, float]:
-    """Lamé's constants: λ = Eν/((1+ν)(1−2ν)), μ = E/(2(1+ν)) (Timoshenko-Goodier, 3rd ed., art. 6).
+    """Return Lamé's constants: λ = Eν/((1+ν)(1−2ν)), μ = E/(2(1+ν)) (Timoshenko-Goodier, 3rd ed., art. 6).
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def lame_constants(E: float, nu: float) -> tuple[float, float]:
 
 
 def stress(gradient: NDArray[np.float64], E: float, nu: float) -> NDArray[np.float64]:
-    """Stress σ = λ tr(ε) I + 2μ ε of displacement gradients.
+    """Return the stress σ = λ tr(ε) I + 2μ ε of displacement gradients.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def stress(gradient: NDArray[np.float64], E: float, nu: float) -> NDArray[np.flo
 def reference_basis(
     space: DisplacementSpace, degree: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Integration points of scikit-fem's rule on the unit tetrahedron, with the basis there.
+    """Return the integration points of scikit-fem's rule on the unit tetrahedron, with the basis there.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def reference_basis(
 
 
 def basis_at(space: DisplacementSpace, X: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Basis functions and their gradients at points of the unit tetrahedron.
+    """Return the basis functions and their gradients at points of the unit tetrahedron.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def basis_at(space: DisplacementSpace, X: NDArray[np.float64]) -> tuple[NDArray[
 def jacobians(
     nodes: NDArray[np.float64], gradient: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Inverse Jacobians and determinants of elements.
+    """Return the inverse Jacobians and determinants of elements.
 
     Parameters
     ----------

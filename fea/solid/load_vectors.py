@@ -59,7 +59,7 @@ class LoadVectors:
         self._size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
 
     def variants(self, case: LinkLoads, laws: Sequence[PressureLaw], transfers: Sequence[Transfer]) -> list[Variant]:
-        """Every variant of a load case.
+        """Return every variant of a load case.
 
         Parameters
         ----------

@@ -41,7 +41,7 @@ class Quadrature:
         return np.asarray(np.einsum("kq,kqi->i", self.w, self.x) / self.w.sum())
 
     def load_vector(self, density: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-        """Consistent load vector of a force density.
+        """Return the consistent load vector of a force density.
 
         Parameters
         ----------
@@ -61,7 +61,7 @@ class Quadrature:
         return np.asarray(np.column_stack(columns).ravel(), dtype=np.float64)
 
     def wrench(self, density: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Resultant of a force density.
+        """Return the resultant of a force density.
 
         Parameters
         ----------
@@ -81,7 +81,7 @@ class Quadrature:
         return np.array([*weighted.sum(axis=0), turning[1, 2], turning[2, 0], turning[0, 1]])
 
     def mean(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Mean of a nodal field over the volume or area.
+        """Return the mean of a nodal field over the volume or area.
 
         Parameters
         ----------
@@ -110,7 +110,7 @@ class SurfaceQuadrature(Quadrature):
 
 
 def surface_quadrature(space: DisplacementSpace, *names: str, degree: int = 8) -> SurfaceQuadrature:
-    """Integration over named surfaces.
+    """Prepare integration over named surfaces.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def surface_quadrature(space: DisplacementSpace, *names: str, degree: int = 8) -
 
 
 def face_quadrature(space: DisplacementSpace, faces: NDArray[np.int64], *, degree: int) -> SurfaceQuadrature:
-    """Integration over boundary faces.
+    """Prepare integration over boundary faces.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def face_quadrature(space: DisplacementSpace, faces: NDArray[np.int64], *, degre
 
 
 def volume_quadrature(space: DisplacementSpace, *, degree: int = 5) -> Quadrature:
-    """Integration over all elements.
+    """Prepare integration over all elements.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ to 0.5 % of force times half its length before that is mended, with degree 8 by 
 
 
 def flank_pressure(wall: SurfaceQuadrature, centre: NDArray[np.float64], length: float, side: float) -> Density:
-    """Pressure on one flank of a slot.
+    """Return the pressure on one flank of a slot.
 
     It counts per projected area, so that a patch that reaches round the end of the slot still pushes along y alone.
 
@@ -51,7 +51,7 @@ def flank_pressure(wall: SurfaceQuadrature, centre: NDArray[np.float64], length:
 
 
 def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Density:
-    """Pressure of a pin in a slot that delivers its wrench, but for Fz.
+    """Return the pressure of a pin in a slot that delivers its wrench, but for Fz.
 
     The force Fy is even along the pin; the moment Mx about the slot's axis is that of a tilted pin, which presses on
     one flank above the mid-plane and on the other below it, in proportion to the height. Amplitude and slope along

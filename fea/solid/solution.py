@@ -1,6 +1,5 @@
 """A link as a free elastic body: displacements under loads that balance."""
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,7 +9,8 @@ from numpy.typing import NDArray
 from fea.common.link_loads import LinkLoads
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.load_vectors import LoadVectors, Variant
-from fea.solid.solve import Method, factorise
+from fea.solid.solve import Factor, Method, factorise
+from fea.solid.solved import Solved
 from fea.solid.space import DisplacementSpace, displacement_space
 from fea.solid.supports import LineReference, isostatic_supports, rigid_motions
 from fea.solid.traction import (
@@ -90,12 +90,8 @@ class SolidSolution:
         Why it was chosen.
     solver_error : float
         Largest relative error that it left in a case, in the energy norm (``fea.solid.solved``).
-    rank_margin : float
-        Smallest singular value of the rigid-body motions at the supports.
     notes : tuple of str
         What the report has to say about this solution.
-    timings : dict of str to float
-        Stage -> seconds.
     """
 
     space: DisplacementSpace
@@ -106,9 +102,7 @@ class SolidSolution:
     solver: str
     solver_reason: str
     solver_error: float
-    rank_margin: float
     notes: tuple[str, ...]
-    timings: dict[str, float]
 
 
 def require_compressible(nu: float) -> None:
@@ -187,72 +181,65 @@ def solve_solid(
         with folded elements, or a solver that fails.
     """
     require_compressible(nu)
-    timings: dict[str, float] = {}
-    clock = _Clock(timings)
     space = displacement_space(mesh, order=order)
-    clock("space")
     vectors = LoadVectors(space, density)
     variants = [variant for case in loads for variant in vectors.variants(case, laws, transfers)]
     F = np.array([variant.load for variant in variants]).T
     size = np.array([variant.scale for variant in variants])
     imbalance = _imbalance(space, F, size, variants)
-    clock("loads")
-    K = assemble_stiffness(space, E=E, nu=nu)
-    clock("assembly")
-    supports = isostatic_supports(space.nodes, space.corners)
-    factor = factorise(
-        K.with_fixed(supports.unknowns),
-        level=linear_level(space, E=E, nu=nu, fixed=supports.unknowns),
-        right_hand_sides=F.shape[1],
-        method=method,
-        threads=threads,
-    )
-    clock("factorisation")
-    free = F.copy()
-    free[supports.unknowns] = 0.0
-    answer = factor.solved(free)
-    U = answer.x
-    clock("solution")
-    reaction = np.abs((K @ U - F)[supports.unknowns]).max(axis=0) / size
+    factor, answer, reactions = _solved(space, F, E=E, nu=nu, method=method, threads=threads)
+    U, reaction = answer.x, np.abs(reactions).max(axis=0) / size
     reference = LineReference(space, line)
-    cases = tuple(
-        SolidCase(
-            load=variant.name,
-            span=variant.span,
-            transfer=variant.transfer,
-            displacement=reference.relative(U[:, i].reshape(-1, 3)),
-            reaction=float(reaction[i]),
-            imbalance=float(imbalance[i]),
-            strain_energy=float(U[:, i] @ F[:, i]) / 2.0,
-        )
-        for i, variant in enumerate(variants)
-    )
+    rows = zip(variants, U.T, F.T, reaction.tolist(), imbalance.tolist(), strict=True)
     return SolidSolution(
         space=space,
         E=E,
         nu=nu,
         density=density,
-        cases=cases,
+        cases=tuple(_case(reference, *row) for row in rows),
         solver=factor.name,
         solver_reason=factor.reason,
         solver_error=answer.error,
-        rank_margin=supports.rank_margin,
         notes=(*mesh.notes, *_notes(reaction, variants, nu)),
-        timings=timings,
     )
 
 
-class _Clock:
-    """Writes down how long each stage took."""
+def _case(
+    reference: LineReference,
+    variant: Variant,
+    u: NDArray[np.float64],
+    f: NDArray[np.float64],
+    reaction: float,
+    imbalance: float,
+) -> SolidCase:
+    return SolidCase(
+        load=variant.name,
+        span=variant.span,
+        transfer=variant.transfer,
+        displacement=reference.relative(u.reshape(-1, 3)),
+        reaction=reaction,
+        imbalance=imbalance,
+        strain_energy=float(u @ f) / 2.0,
+    )
 
-    def __init__(self, timings: dict[str, float]) -> None:
-        self._timings = timings
-        self._last = time.perf_counter()
 
-    def __call__(self, stage: str) -> None:
-        now = time.perf_counter()
-        self._timings[stage] = now - self._last
-        self._last = now
+def _solved(
+    space: DisplacementSpace, F: NDArray[np.float64], *, E: float, nu: float, method: Method | None, threads: int | None
+) -> tuple[Factor, Solved, NDArray[np.float64]]:
+    """Solve a free body under load vectors (3n, k); also the reactions (6, k) of the supports that hold it."""
+    K = assemble_stiffness(space, E=E, nu=nu)
+    supports = isostatic_supports(space.nodes, space.corners)
+    factor = factorise(
+        K.with_fixed(supports),
+        level=linear_level(space, E=E, nu=nu, fixed=supports),
+        right_hand_sides=F.shape[1],
+        method=method,
+        threads=threads,
+    )
+    free = F.copy()
+    free[supports] = 0.0
+    answer = factor.solved(free)
+    return factor, answer, (K @ answer.x - F)[supports]
 
 
 def _imbalance(

@@ -182,7 +182,7 @@ def _task(method: Method, unknowns: int) -> str:
 
 
 def direct_memory(method: DirectMethod, unknowns: int, right_hand_sides: int) -> float:
-    """Memory of a factorisation.
+    """Return the memory of a factorisation.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def direct_memory(method: DirectMethod, unknowns: int, right_hand_sides: int) ->
 
 
 def two_level_memory(K: SymmetricBlockMatrix, level: LinearLevel, right_hand_sides: int, direct: DirectMethod) -> float:
-    """Memory of conjugate gradients with a factorisation of the linear elements.
+    """Return the memory of conjugate gradients with a factorisation of the linear elements.
 
     Parameters
     ----------

@@ -95,7 +95,7 @@ def sampled_error(
     rhs: NDArray[np.float64],
     x: NDArray[np.float64],
 ) -> float:
-    """Relative error of many columns (n, k) in the energy norm, without a solution for each of them.
+    """Return the relative error of many columns (n, k) in the energy norm, without a solution for each of them.
 
     Every residual r_j is taken relative to its column's √(bᵀx). A sum with random signs s_j has the expected energy
     E[(Σ s_j r_j)ᵀ K⁻¹ (Σ s_j r_j)] = Σ r_jᵀ K⁻¹ r_j (Hutchinson's estimator of a trace, Comm. Statist. Simula. 18
@@ -135,7 +135,7 @@ def energy_error(
     rhs: NDArray[np.float64],
     x: NDArray[np.float64],
 ) -> float:
-    """Largest relative error of the columns of x in the energy norm.
+    """Return the largest relative error of the columns of x in the energy norm.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ class DisplacementSpace:
         return (MeshTet1 if self.order == 1 else MeshTet2)(np.ascontiguousarray(self.nodes.T), corners)
 
     def faces(self, *names: str) -> NDArray[np.int64]:
-        """Nodes of the boundary faces of the named surfaces together.
+        """Return the nodes of the boundary faces of the named surfaces together.
 
         Parameters
         ----------

@@ -39,7 +39,7 @@ _NODES = np.array(
 
 
 def von_mises(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Von Mises stress (Shigley, 10th ed., chapter 5).
+    """Return the von Mises stress (Shigley, 10th ed., chapter 5).
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def von_mises(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def principal(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Principal stresses.
+    """Return the principal stresses.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def principal(sigma: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def extreme_principal(sigma: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Largest and smallest principal stress, by the closed form.
+    """Return the largest and smallest principal stress, by the closed form.
 
     σ1 = m + 2 √(J2/3) cos θ and σ3 = m + 2 √(J2/3) cos(θ + 2π/3) with cos 3θ = (3√3/2) J3 / J2^(3/2), m the mean stress
     and J2, J3 of the deviator (Malvern, Introduction to the Mechanics of a Continuous Medium, section 3.3). To about
@@ -178,7 +178,7 @@ class StressField:
         return principal(self.nodal)
 
     def decisive(self, *, brittle: bool) -> NDArray[np.float64]:
-        """The stress at the nodes that a strength is set against.
+        """Return the stress at the nodes that a strength is set against.
 
         Parameters
         ----------
@@ -332,7 +332,7 @@ def element_stress(
 
 
 def carry_to_nodes(X: NDArray[np.float64], local: int) -> NDArray[np.float64]:
-    """Weights that carry values at points of an element to its nodes, linearly.
+    """Return the weights that carry values at points of an element to its nodes, linearly.
 
     Parameters
     ----------

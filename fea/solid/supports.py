@@ -1,7 +1,5 @@
 """Rigid-body motions: the 3-2-1 support that takes them, and displacements less their part."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,7 +12,7 @@ SMALLEST_SINGULAR_VALUE = 1e-6
 
 
 def rigid_motions(nodes: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Three unit translations and three unit rotations as nodal fields.
+    """Return three unit translations and three unit rotations as nodal fields.
 
     Parameters
     ----------
@@ -35,23 +33,7 @@ def rigid_motions(nodes: NDArray[np.float64], point: NDArray[np.float64]) -> NDA
     return motions
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Supports:
-    """A support that holds a free body without straining it.
-
-    Attributes
-    ----------
-    unknowns : ndarray of int
-        The six that are fixed.
-    rank_margin : float
-        Smallest singular value of the scaled rigid-body motions there.
-    """
-
-    unknowns: NDArray[np.int64]
-    rank_margin: float
-
-
-def isostatic_supports(nodes: NDArray[np.float64], corners: int) -> Supports:
+def isostatic_supports(nodes: NDArray[np.float64], corners: int) -> NDArray[np.int64]:
     """Fix three components at one corner node, two at a second and one at a third, all far apart.
 
     The component left free at the second node is the one nearest to the line to the first; the one
@@ -66,8 +48,8 @@ def isostatic_supports(nodes: NDArray[np.float64], corners: int) -> Supports:
 
     Returns
     -------
-    Supports
-        The six unknowns.
+    ndarray of int, shape (6,)
+        The fixed unknowns.
 
     Raises
     ------
@@ -90,7 +72,7 @@ def isostatic_supports(nodes: NDArray[np.float64], corners: int) -> Supports:
     return checked_supports(nodes, np.array(fixed))
 
 
-def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) -> Supports:
+def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) -> NDArray[np.int64]:
     """Refuse supports that leave a rigid-body motion free.
 
     Rotations are scaled by the body's size, so that the singular values have no unit.
@@ -104,8 +86,8 @@ def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) ->
 
     Returns
     -------
-    Supports
-        The same, with their margin.
+    ndarray of int, shape (6,)
+        The same.
 
     Raises
     ------
@@ -122,7 +104,7 @@ def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) ->
             f"the supports leave a rigid-body motion free (smallest singular value {margin:.1e}, "
             f"least {SMALLEST_SINGULAR_VALUE:g}): the body is degenerate"
         )
-    return Supports(unknowns=unknowns, rank_margin=margin)
+    return unknowns
 
 
 class LineReference:
@@ -160,7 +142,7 @@ class LineReference:
         return np.array([*self._first.mean(field), *(self._across @ self._last.mean(field)), twist])
 
     def relative(self, field: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Displacements less their rigid-body part.
+        """Return the displacements less their rigid-body part.
 
         Parameters
         ----------

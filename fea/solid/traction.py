@@ -25,7 +25,7 @@ LARGEST_CORRECTION = 0.1
 def wrench_density(
     quadrature: Quadrature, point: NDArray[np.float64], wrench: NDArray[np.float64], weight: Density | None = None
 ) -> Density:
-    """Density w(x) (a + b × r) that delivers a wrench exactly.
+    """Return the density w(x) (a + b × r) that delivers a wrench exactly.
 
     With r from the weighted centroid the 6×6 Gram matrix of the rigid-body fields falls apart into the measure A = ∫w
     and the inertia J = ∫w (r² I − r rᵀ), hence a = F/A and J b = M.
@@ -67,7 +67,7 @@ def wrench_density(
 
 
 def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Density:
-    """Pressure of a pin that delivers Fx, Fy, Mx and My of its wrench, and nothing else.
+    """Return the pressure of a pin that delivers Fx, Fy, Mx and My of its wrench, and nothing else.
 
     The force is a pressure p0 law(θ − α) n, constant along the pin; the moment is that of a pin tilted
     in its hole, pressing in the direction β above the mid-plane and in β + π below it, in proportion
@@ -126,7 +126,7 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
 
 
 def thrust_traction(face: SurfaceQuadrature, pin: PinLoad) -> Density:
-    """Even pressure on an eye's flat face that delivers Fz of the pin's wrench without a moment about its centre.
+    """Return the even pressure on an eye's flat face that delivers Fz of the pin, without a moment about its centre.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def thrust_traction(face: SurfaceQuadrature, pin: PinLoad) -> Density:
 
 
 def couple_traction(surface: SurfaceQuadrature, centre: NDArray[np.float64], torque: float) -> Density:
-    """Tangential traction c ẑ × r about the pin that delivers a torque about z and no net force.
+    """Return the tangential traction c ẑ × r about the pin that delivers a torque about z and no net force.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def couple_traction(surface: SurfaceQuadrature, centre: NDArray[np.float64], tor
 
 
 def body_density(volume: Quadrature, load: BodyLoad, density: float) -> Density:
-    """Weight and inertia per volume of a body.
+    """Return the weight and inertia per volume of a body.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def body_density(volume: Quadrature, load: BodyLoad, density: float) -> Density:
 
 
 def line_density(volume: Quadrature, load: LineLoad) -> Density:
-    """Force per volume of a load spread along the axis, with its exact resultant and moment.
+    """Return the force per volume of a load spread along the axis, with its exact resultant and moment.
 
     The force per length is divided by the area of the cross-section, taken in up to 40 slices
     between the stations, so that a wide eye draws no more load than the tube beside it.

@@ -64,7 +64,7 @@ class LinearLevel:
         return float(extents[2] / extents[1])
 
     def stiffness(self) -> SymmetricBlockMatrix:
-        """Stiffness of the linear displacements, with what is fixed of them."""
+        """Return the stiffness of the linear displacements, with what is fixed of them."""
         K = assemble_stiffness(self.space, E=self.E, nu=self.nu, order=1)
         return K.with_fixed(self.fixed[self.fixed < K.size])
 
@@ -219,11 +219,11 @@ class _Transfer:
         self._downward = self._upward.T.tocsr()
 
     def prolonged(self, x: Vectors) -> Vectors:
-        """Values (k, 3 nodes) at all nodes of values (k, 3 corners)."""
+        """Return the values (k, 3 nodes) at all nodes of values (k, 3 corners)."""
         return np.array([(self._upward @ row.reshape(-1, 3)).ravel() for row in x])
 
     def restricted(self, r: Vectors) -> Vectors:
-        """Transpose of ``prolonged``."""
+        """Return the transpose of ``prolonged``."""
         return np.array([(self._downward @ row.reshape(-1, 3)).ravel() for row in r])
 
 

@@ -60,7 +60,6 @@ def test_every_variant_is_there_once(solution):
     energies = [c.strain_energy for c in solution.cases]
     assert len(set(energies)) == len(energies)
     assert solution.notes == ()
-    assert set(solution.timings) == {"space", "loads", "assembly", "factorisation", "solution"}
 
 
 def test_loads_balance_and_supports_do_not_react(solution):

@@ -19,7 +19,7 @@ E = 2900.0
 def _system(mesh, nu=0.38, columns=1):
     """Free body on six supports under smooth loads that balance: matrix, level below, right-hand sides."""
     space = displacement_space(mesh)
-    fixed = isostatic_supports(space.nodes, space.corners).unknowns
+    fixed = isostatic_supports(space.nodes, space.corners)
     K = assemble_stiffness(space, E=E, nu=nu).with_fixed(fixed)
     motions = rigid_motions(space.nodes, space.nodes.mean(axis=0)).reshape(6, -1)
     x = space.nodes / np.ptp(space.nodes, axis=0)
