@@ -34,7 +34,7 @@ class CorotationalSolution:
     model : FrameModel
         The divided frame: the given nodes first, the new ones after them.
     displacements : ndarray, shape (n, 3)
-        [mm], global axes.
+        Global axes [mm].
     rotations : ndarray, shape (n, 3, 3)
         Rotation matrices of the nodes.
     end_forces : ndarray, shape (m, 2, 6)

@@ -42,7 +42,7 @@ class FrameSolution:
     model : FrameModel
         The frame.
     displacements : ndarray, shape (n, 6)
-        [mm, rad], global axes; a rotation in which no element takes part stands as zero.
+        Global axes [mm, rad]; a rotation in which no element takes part stands as zero.
     end_displacements : ndarray, shape (m, 2, 6)
         Of the two ends of each beam, beyond the arms, local axes.
     end_forces : ndarray, shape (m, 2, 6)

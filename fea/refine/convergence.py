@@ -55,8 +55,6 @@ Kind = Literal["one mesh", "two meshes", "monotone", "irregular", "growing"]
 class GridConvergence:
     """A number on successive meshes, coarse to fine, and what follows for its limit.
 
-    low, high interval that holds the limit; infinite where ``kind`` is "growing"
-
     Attributes
     ----------
     sizes : tuple of float

@@ -143,8 +143,6 @@ class MeshRecord:
 class RefinedSolid:
     """A link's finest solution and how precise it is.
 
-    sharp_edges number of re-entrant edges of the link; 0 where its shape left none to look for
-
     Attributes
     ----------
     solution : SolidSolution

@@ -103,9 +103,6 @@ def loaded_edge(
 ) -> tuple[ReentrantEdge, int] | None:
     """Return the edge whose nodes bear the largest stress, and that node; None where it is well below the peak.
 
-    nodes (n, 3) [mm] with their von Mises stress (n,) [MPa]; section [mm] as in ``sharp_peak``; share of the peak
-    below which it is well below
-
     Parameters
     ----------
     edges : sequence of ReentrantEdge

@@ -20,7 +20,7 @@ class Quadrature:
     phi : ndarray, shape (q, b)
         Basis functions at the points.
     x : ndarray, shape (k, q, 3)
-        Mm.
+        Positions of the points [mm].
     w : ndarray, shape (k, q)
         Weights: mm³ in elements, mm² on faces.
     """

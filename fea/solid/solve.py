@@ -48,8 +48,6 @@ _NAMES = {"pardiso": "MKL PARDISO", "superlu": "SuperLU", "two-level": "conjugat
 class Factor:
     """A system prepared for solution.
 
-    threads upper bound on the threads of its libraries
-
     Attributes
     ----------
     name : str

@@ -25,12 +25,10 @@ class DisplacementSpace:
     Node i carries the unknowns 3i, 3i+1, 3i+2 (x, y, z); corner nodes come first, then edge nodes, as
     in scikit-fem's ``ElementVector(ElementTetP1())`` and ``ElementVector(ElementTetP2())``.
 
-    from_point (points,) node of every point of the ``TaggedMesh``; -1 where it has none
-
     Attributes
     ----------
     nodes : ndarray, shape (n, 3)
-        Mm.
+        Positions [mm].
     cells : ndarray of int, shape (m, 4) or (m, 10)
         Node numbers, all of positive volume.
     corners : int
