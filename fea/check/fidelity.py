@@ -99,7 +99,7 @@ def decide(
     found: dict[str, DecidedLink] = {}
     for link, task in tasks.items():
         if fidelity == "solid" or effort.stated:
-            reasons[link] = "a solid was asked for" if fidelity == "solid" else "an accuracy was asked for"
+            reasons[link] = "a solid was requested" if fidelity == "solid" else "an accuracy was requested"
             continue
         hands[link] = _hands(task, beams[link])
         decision, reasons[link] = decided_by_hand(task, [*hands[link].values()])
@@ -121,9 +121,9 @@ def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck]) -> DecidedLink:
     hands = _hands(task, beams)
     outside = next((hand.outside for hand in hands.values() if hand.outside), "")
     if outside:
-        why = f"hand calculation is not calibrated for it, since {outside}, so it cannot decide; run the solid model"
+        why = f"hand calculation is not calibrated for this link: {outside}; run the solid model"
         return DecidedLink(decision=Decision(model="", why=why, next_cost=""), hands=hands)
-    return DecidedLink(decision=Decision(model="beam", why="hand calculation was asked for", next_cost=""), hands=hands)
+    return DecidedLink(decision=Decision(model="beam", why="hand calculation was requested", next_cost=""), hands=hands)
 
 
 def _hands(task: LinkTask, beams: Mapping[str, BeamCheck]) -> dict[str, HandBands]:
@@ -175,8 +175,8 @@ def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[
             for band in bands:
                 if band.unknowable or (band.low <= limit[1] and limit[0] <= band.high):
                     return (
-                        f"the band of its {what}, {band.low:.3g} to {band.high:.3g} {unit}, holds the limit "
-                        f"{_limit(limit)}"
+                        f"the {what} is {band.low:.3g} to {band.high:.3g} {unit}; the limit, {_limit(limit)} {unit}, "
+                        "lies inside"
                     )
     return ""
 
@@ -191,20 +191,20 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
     """Return the decision if hand calculation makes it, else None and why not."""
     for hand in hands:
         if hand.outside:
-            return None, f"hand calculation is not calibrated for it: {hand.outside}"
+            return None, f"hand calculation is not calibrated for this link: {hand.outside}"
     stresses = [hand.deciding(brittle=task.brittle) for hand in hands]
     open_limit = undecided(task, stresses, [hand.displacement for hand in hands])
     if open_limit:
-        return None, f"by hand calculation {open_limit}"
+        return None, f"by hand {open_limit}, so finite elements decided"
     worst = max(range(len(hands)), key=lambda i: stresses[i].high)
     band, spot = stresses[worst], hands[worst].spots[0].spot
     limits = ", ".join(map(_limit, task.stress_limits))
     ends = f"{band.low:.3g} and {band.high:.3g} MPa"
-    why = f"by hand calculation its peak stress lies between {ends}, at most at {spot.name}"
+    why = f"by hand the peak stress lies between {ends}, at most at {spot.name}"
     why += f", clear of the limit {limits} MPa" if limits else ""
     if task.displacement_limits:
         moved = Band.largest([hand.displacement for hand in hands])
-        why += f", and its displacement, {moved.low:.3g} to {moved.high:.3g} mm, of its limits"
+        why += f"; the displacement, {moved.low:.3g} to {moved.high:.3g} mm, is clear of its limits"
     return Decision(model="beam", why=why, next_cost=_solid_cost(task.body)), ""
 
 

@@ -19,7 +19,13 @@ PIPE_CLOSED = 141
 
 
 def run(app: Callable[[], object]) -> NoReturn:
-    """Run the command line to its end."""
+    """Run the command line to its end.
+
+    Parameters
+    ----------
+    app : callable
+        The command line.
+    """
     end_cleanly_on_signals()
     make_writable()
     try:

@@ -1,4 +1,4 @@
-"""What ``alula envelope`` prints and writes: the least safety factor of each link over the motion, and its curve."""
+"""Output of ``alula envelope``: the least safety factor of each link over the motion, and its curve."""
 
 import csv
 import json
@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.band import Band
-from fea.common.verdict import Quantity
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.unchecked import unchecked
@@ -19,11 +17,11 @@ from geometry.base.version import result_stamp
 from geometry.parts.material import Material
 from loads.records.check_spec import SafetyFactorCheck
 from reports.page.output import MARK, write_folder
-from reports.tables.bands import band_record
-from reports.tables.console import VERDICT_COLOURS, verdict_line
+from reports.tables.console import say_checks, verdict_line
+from reports.tables.data import check_records, data, entries, finite
 from reports.tables.meshes import solver_record
-from reports.words.terminal import KEPT, say, say_table
-from reports.words.wording import band, fixed, not_checked, number, plain
+from reports.words.terminal import say, say_table
+from reports.words.wording import band, fixed, not_checked, number
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,7 +34,18 @@ FIGURE = "envelope.png"
 
 
 def drive_angle(result: EnvelopeResult, pose: int) -> float:
-    """Direction of the driven link at a pose [degrees]."""
+    """Return the direction of the driven link at a pose [degrees].
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+    pose : int
+        Its number.
+
+    Returns
+    -------
+    float
+    """
     return math.degrees(float(result.drive_angles[pose]))
 
 
@@ -45,7 +54,20 @@ def write_envelope(
 ) -> None:
     """Write ``result.json``, ``envelope.csv``, ``envelope.png``, ``vtu/<link>.vtu`` and ``pictures/stress-<link>.png``.
 
-    VTU file and picture show the worst pose under the worst load case. Raises as ``write_folder`` does.
+    VTU file and picture show the worst pose under the worst load case.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+    target : Path
+        The output folder; the files go to its subfolder ``envelope``.
+    progress : callable, optional
+        Receives messages.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``write_folder``.
     """
     from reports.figures.envelope_figures import envelope_figure, stress_pictures
     from reports.page.export import write_vtu
@@ -70,7 +92,13 @@ def write_envelope(
 
 
 def write_curves(result: EnvelopeResult, path: Path) -> None:
-    """Write the curves over the motion as CSV, load case below load case; poses left out have empty fields."""
+    """Write the curves over the motion as CSV, one load case below the other; omitted poses have empty fields.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+    path : Path
+    """
     angles = {
         f"{result.moved.motion.coordinate} angle [deg]": np.degrees(result.angles),
         f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles),
@@ -102,14 +130,33 @@ def _columns(link: LinkEnvelope, load_case: str, count: int) -> list[Real]:
 
 
 def as_json(result: EnvelopeResult) -> str:
-    """Return the result as JSON text."""
+    """Return the result as JSON text.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+
+    Returns
+    -------
+    str
+    """
     return json.dumps(record(result), indent=2, allow_nan=False)
 
 
 def record(result: EnvelopeResult) -> dict[str, Any]:
-    """Return the result as plain data: angles in degrees, infinite or unknown numbers as null."""
+    """Return the result as plain data.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+
+    Returns
+    -------
+    dict
+        Angles in degrees; infinite and unknown numbers are None.
+    """
     motion = result.moved.motion
-    return {
+    found = {
         **result_stamp(),
         "case": result.name,
         "title": result.case.title,
@@ -128,47 +175,29 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         "links": {name: _link_record(result, link) for name, link in result.links.items()},
         "idle_links": list(result.idle),
         "not_checked": list(unchecked(result.case, (SafetyFactorCheck,))),
-        "checks": [
-            {
-                "name": check.name,
-                "link": check.link,
-                "load_case": check.load_case,
-                "quantity": check.quantity,
-                "value": _band_record(check.value),
-                "limit": check.limit,
-                "verdict": check.verdict.value,
-                "reason": check.reason,
-            }
-            for check in result.checks
-        ],
+        "checks": check_records(result.checks),
         "warnings": list(result.warnings),
         "timings_s": dict(result.timings),
     }
+    return dict(finite(found, {}))
 
 
 def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
     material = result.case.material_of(link.link)
-    return {
-        "measure": link.measure,
-        "strength": link.strength,
+    return entries(link, "measure strength elements unknowns imbalance notes") | {
         "worst_load_case": link.worst.name,
         "load_cases": {name: _load_case_record(result, found, material) for name, found in link.load_cases.items()},
         "no_fatigue": link.no_fatigue or None,
-        "elements": link.elements,
-        "unknowns": link.unknowns,
         "unit_loads": link.units,
         "solutions": link.modes,
         **solver_record(link),
         "support_reaction": link.reaction,
-        "imbalance": link.imbalance,
-        "notes": list(link.notes),
     }
 
 
 def _load_case_record(result: EnvelopeResult, found: LoadCaseEnvelope, material: Material) -> dict[str, Any]:
     return {
-        "stress": _band_record(found.stress),
-        "safety_factor": _band_record(found.safety_factor),
+        **entries(found, "stress safety_factor"),
         "at": {
             "pose": found.pose,
             "coordinate": math.degrees(float(result.angles[found.pose])),
@@ -192,45 +221,63 @@ def _fatigue_record(fatigue: LinkFatigue, material: Material) -> dict[str, Any]:
         "largest": life.largest,
         "range": life.stress_range,
         "cycles": [{"range": size, "mean": mean, "count": count} for size, mean, count in life.cycles],
-        "equivalent_peak_stress": _band_record(fatigue.stress),
+        "equivalent_peak_stress": data(fatigue.stress),
         "wanted_repetitions": fatigue.wanted,
         "strength_at_wanted": fatigue.strength,
-        "repetitions": None if fatigue.repetitions is None else _band_record(fatigue.repetitions),
+        "repetitions": data(fatigue.repetitions),
         "scatter": scatter_of(material),
         "source": material.fatigue.source,
     }
 
 
-def _band_record(value: Band) -> dict[str, Any]:
-    return {key: _finite(item) if isinstance(item, float) else item for key, item in band_record(value).items()}
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
-
-
 def measure_of(material: Material) -> str:
-    """What stands for the stress that varies."""
+    """Return the stress whose cycles count for fatigue.
+
+    Parameters
+    ----------
+    material : Material
+
+    Returns
+    -------
+    str
+    """
     if material.brittle:
-        return "the principal stress of largest size"
-    return "the von Mises stress with the sign of the principal stress of largest size"
+        return "the principal stress of largest magnitude"
+    return "the von Mises stress with the sign of the principal stress of largest magnitude"
 
 
 def scatter_of(material: Material) -> str:
-    """How far a life may be off, in one sentence."""
+    """Return the uncertainty of a fatigue life, in one sentence.
+
+    Parameters
+    ----------
+    material : Material
+        With data on fatigue.
+
+    Returns
+    -------
+    str
+    """
     fatigue = material.fatigue
     assert fatigue is not None
-    asked = f"the limits of {STRESS_FACTOR:g} on stress and {LIFE_FACTOR:g} on life are to cover it"
+    asked = f"the required factors of {STRESS_FACTOR:g} on stress and {LIFE_FACTOR:g} on life must cover it"
     if fatigue.exponent is None:
-        return f"the card states one point of the S-N curve and no scatter; {asked}"
+        return f"the material card states one point of the S-N curve and no scatter; {asked}"
     return (
-        f"the card states no scatter in numbers; 10 % more stress shortens a life by a factor of "
+        f"the material card states no scatter; 10 % more stress shortens the life by a factor of "
         f"{1.1**fatigue.exponent:.2g}; {asked}"
     )
 
 
 def print_envelope(result: EnvelopeResult, console: "Console") -> None:
-    """Print a compact account; broken at spaces where the terminal is narrow."""
+    """Print the result of an envelope.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+    console : rich.console.Console
+        On a narrow one, lines break at spaces.
+    """
     verdict_line(result.verdict, result.case.title, console)
     coordinate, (first, last) = result.moved.motion.coordinate, np.degrees(result.angles[[0, -1]])
     say(
@@ -245,16 +292,16 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
     if fatigued:
         _fatigue(fatigued, console)
         for material in {result.case.part_of(n).material: result.case.material_of(n) for n in fatigued}.values():
-            say(console, f"Fatigue of {material.title}: of {measure_of(material)}; {scatter_of(material)}.")
+            say(console, f"Fatigue of {material.title}: cycles of {measure_of(material)}; {scatter_of(material)}.")
     missing: dict[str, list[str]] = {}
     for name, link in result.links.items():
         if link.no_fatigue:
             missing.setdefault(link.no_fatigue, []).append(name)
     for why, names in missing.items():
         say(console, f"No fatigue of {', '.join(names)}: {why}.")
-    _checks(result, console)
+    say_checks(result.checks, console)
     if result.idle:
-        say(console, f"Nothing acts on {', '.join(result.idle)}.")
+        say(console, f"Links without load: {', '.join(result.idle)}.")
     for warning in result.warnings:
         say(console, f"Warning: {warning}.", style="yellow")
 
@@ -299,35 +346,10 @@ def _fatigue(links: Mapping[str, LinkEnvelope], console: "Console") -> None:
             load_case,
             f"{number(fatigue.life.smallest, 3)} to {number(fatigue.life.largest, 3)}",
             number(fatigue.life.stress_range, 3),
-            "no exponent known" if fatigue.repetitions is None else band(fatigue.repetitions, 2),
+            "unknown, no exponent" if fatigue.repetitions is None else band(fatigue.repetitions, 2),
         )
         for name, link in links.items()
         for load_case, found in link.load_cases.items()
         if (fatigue := found.fatigue) is not None
-    ]
-    say_table(console, columns, rows)
-
-
-def _checks(result: EnvelopeResult, console: "Console") -> None:
-    from rich.text import Text
-
-    columns = (
-        ("check", False),
-        ("link", False),
-        ("load case", False),
-        ("value\n(band)", True),
-        ("limit", True),
-        ("verdict", False),
-    )
-    rows = [
-        (
-            check.name if check.quantity is Quantity.SAFETY_FACTOR else check.quantity,
-            check.link,
-            check.load_case,
-            band(check.value),
-            f"{check.quantity.sense.value}{KEPT}{plain(check.limit)}",
-            Text(check.verdict.value, style=VERDICT_COLOURS[check.verdict]),
-        )
-        for check in result.checks
     ]
     say_table(console, columns, rows)

@@ -22,7 +22,16 @@ UNITS = {"angle": "deg", "length": "mm", "force": "N", "moment": "N*mm", "time":
 
 
 def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
-    """Write ``result.json``, the tables, the figures and the animation into an existing folder."""
+    """Write ``result.json``, the tables, the figures and the animation.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    folder : Path
+        An existing folder.
+    name : str
+        Of the case, as the command was given it.
+    """
     from reports.figures.motion_animation import draw_animation
     from reports.figures.motion_figures import draw_figures
 
@@ -33,7 +42,16 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
 
 
 def write_tables(result: CaseMotion, folder: Path) -> None:
-    """Write ``links.csv``, ``points.csv`` and, load case below load case, ``torque.csv`` and ``joint-forces.csv``."""
+    """Write ``links.csv``, ``points.csv``, ``torque.csv`` and ``joint-forces.csv``.
+
+    The last two have one load case below the other.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    folder : Path
+        An existing folder.
+    """
     motion = result.motion
     _write(folder / "links.csv", {**_base(motion), **_link_columns(motion)})
     _write(folder / "points.csv", {**_base(motion), **_point_columns(motion)})
@@ -43,7 +61,19 @@ def write_tables(result: CaseMotion, folder: Path) -> None:
 
 
 def record(result: CaseMotion, name: str) -> dict[str, Any]:
-    """Return the motion's result as plain data; angles in degrees, unbounded torques as null."""
+    """Return the result of a motion as plain data.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    name : str
+        Of the case, as the command was given it.
+
+    Returns
+    -------
+    dict
+        Angles in degrees; unbounded torques are None.
+    """
     motion = result.motion
     return {
         **result_stamp(),
@@ -113,7 +143,16 @@ def _extremes(result: CaseMotion, values: Real) -> dict[str, Any]:
 
 
 def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
-    """Print the summary, or the record as JSON."""
+    """Print the result of a motion.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    name : str
+        Of the case, as the command was given it.
+    json : bool
+        True to print JSON.
+    """
     found = record(result, name)
     if json:
         print(jsonlib.dumps(found, indent=2))

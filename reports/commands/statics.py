@@ -1,4 +1,4 @@
-"""What ``alula statics`` prints: pose, reactions, and the equations themselves."""
+"""Output of ``alula statics``: pose, reactions and equations."""
 
 import json as jsonlib
 import math
@@ -8,11 +8,20 @@ import numpy as np
 from fea.check.run import CaseStatics
 from geometry.base.version import result_stamp
 from loads.statics.statics import Reactions, System
-from reports.tables.frames import AXES, shown_components
+from reports.tables.frames import AXES, reaction_records, shown_components
 
 
 def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
-    """Print pose and reactions of every load case; with ``matrix`` also [A] and [b]."""
+    """Print pose and reactions of every load case.
+
+    Parameters
+    ----------
+    statics : CaseStatics
+    matrix : bool
+        True to print [A] and [b] as well.
+    json : bool
+        True to print JSON.
+    """
     if json:
         print(jsonlib.dumps(_record(statics, matrix=matrix), indent=2))
         return
@@ -95,17 +104,7 @@ def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
         },
         "load_cases": {
             title: {
-                "reactions": [
-                    {
-                        "joint": joint.joint,
-                        "on": joint.on,
-                        "by": joint.by,
-                        "force": joint.force[:2].tolist(),
-                        "magnitude": joint.magnitude,
-                        "wrench": joint.wrench.tolist(),
-                    }
-                    for joint in reactions.joints.values()
-                ],
+                "reactions": reaction_records(reactions),
                 "drive_torque": reactions.drive_torque,
                 "drive_force": reactions.drive_force,
                 "residual": reactions.residual,

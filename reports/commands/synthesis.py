@@ -16,6 +16,7 @@ from geometry.base.units import POSITIVE, Angle, Length
 from geometry.base.version import result_stamp
 from geometry.mechanisms.synthesis import DRIVES, PrecisionPoint, Synthesis, synthesise
 from loads.text.explain import printable, sentence
+from reports.tables.data import entries
 
 PUBLISHED_POINTS = ("0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg")
 """Precision points (theta, psi) of Arango and Hurtado."""
@@ -36,10 +37,23 @@ class _Ground(CaseModel):
 
 
 def read_synthesis(points: Sequence[str], ground: str) -> Synthesis:
-    """Synthesise from three texts such as ``"20 deg, 110 deg"`` (theta, psi) and a length such as ``"10 m"``.
+    """Synthesise a four-bar from text.
 
-    Raises ``CaseError`` for other than three points, for text that is no pair of angles or no length, and where
-    no linkage follows from the points.
+    Parameters
+    ----------
+    points : sequence of str
+        Three pairs (theta, psi) such as ``"20 deg, 110 deg"``.
+    ground : str
+        A length such as ``"10 m"``.
+
+    Returns
+    -------
+    Synthesis
+
+    Raises
+    ------
+    CaseError
+        For other than three points, for invalid text, and where no linkage follows from the points.
     """
     if len(points) != 3:
         raise CaseError(f"--point: there are {len(points)} precision points, but the synthesis takes three; give three")
@@ -63,22 +77,26 @@ def read_synthesis(points: Sequence[str], ground: str) -> Synthesis:
 
 
 def record(found: Synthesis) -> dict[str, Any]:
-    """Return the synthesis as plain data; lengths in mm, angles in degrees from -180 to 180."""
+    """Return the synthesis as plain data.
+
+    Parameters
+    ----------
+    found : Synthesis
+
+    Returns
+    -------
+    dict
+        Lengths in mm, angles in degrees from -180 to 180.
+    """
     bar, grashof = found.four_bar, found.four_bar.grashof
     return {
         **result_stamp(),
         "units": {"length": "mm", "angle": "deg"},
         "coefficients": {"K1": found.K[0], "K2": found.K[1], "K3": found.K[2]},
         "condition": found.condition,
-        "lengths": {"a": bar.a, "b": bar.b, "c": bar.c, "d": bar.d},
+        "lengths": entries(bar, "a b c d"),
         "turned": {"b": found.b_turned, "c": found.c_turned},
-        "grashof": {
-            "satisfied": grashof.satisfied,
-            "relation": grashof.relation,
-            "inversion": grashof.inversion,
-            "shortest_plus_longest": grashof.shortest_plus_longest,
-            "other_two": grashof.other_two,
-        },
+        "grashof": entries(grashof, "satisfied relation inversion shortest_plus_longest other_two"),
         "points": [
             {
                 "theta": math.degrees(point.theta),
@@ -99,14 +117,19 @@ def record(found: Synthesis) -> dict[str, Any]:
             }
             for lock in found.lock_ups
         ],
-        "findings": [
-            {"kind": finding.kind, "drive": finding.drive, "sentence": finding.sentence} for finding in found.findings
-        ],
+        "findings": [entries(finding, "kind drive sentence") for finding in found.findings],
     }
 
 
 def print_synthesis(found: Synthesis, *, json: bool) -> None:
-    """Print the synthesis for a person, or its record as JSON."""
+    """Print the synthesis.
+
+    Parameters
+    ----------
+    found : Synthesis
+    json : bool
+        True to print JSON.
+    """
     if json:
         print(jsonlib.dumps(record(found), indent=2, ensure_ascii=False))
         return
@@ -153,7 +176,18 @@ def _in_unit(text: str, found: Synthesis) -> str:
 
 
 def joints_at(found: Synthesis, point: PrecisionPoint) -> NDArray[np.float64]:
-    """Return O2, A, B, O4 (4, 2) at a precision point, in the unit of d."""
+    """Return the joints of the linkage at a precision point.
+
+    Parameters
+    ----------
+    found : Synthesis
+    point : PrecisionPoint
+
+    Returns
+    -------
+    array
+        O2, A, B, O4 (4, 2) in the unit of d.
+    """
     bar = found.four_bar
     psi = point.psi + math.pi * found.c_turned
     crank = bar.a * np.array([math.cos(point.phi), math.sin(point.phi)])
@@ -162,14 +196,28 @@ def joints_at(found: Synthesis, point: PrecisionPoint) -> NDArray[np.float64]:
 
 
 def write_synthesis(found: Synthesis, folder: Path) -> None:
-    """Write ``result.json`` and ``linkage.png`` into an existing folder."""
+    """Write ``result.json`` and ``linkage.png``.
+
+    Parameters
+    ----------
+    found : Synthesis
+    folder : Path
+        An existing folder.
+    """
     text = jsonlib.dumps(record(found), indent=2, ensure_ascii=False)
     (folder / "result.json").write_text(text + "\n", encoding="utf-8")
     draw_linkage(found, folder / "linkage.png")
 
 
 def draw_linkage(found: Synthesis, path: Path) -> None:
-    """Draw the linkage at the three precision points, one below the other."""
+    """Draw the linkage at the three precision points, one below the other.
+
+    Parameters
+    ----------
+    found : Synthesis
+    path : Path
+        File to write.
+    """
     from matplotlib.figure import Figure
 
     unit, factor = _unit(found)

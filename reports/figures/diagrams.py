@@ -19,11 +19,20 @@ _COLOURS = {"N": "#7a4fa3", "V": "#00795a", "M": "#c8460b", "T": "#0067a8"}
 
 
 def internal_force_diagram(beam: BeamCheck, points: dict[str, float]) -> bytes:
-    """Draw N, V and M of a link over its length, extreme values marked; returns a PNG.
+    """Draw N, V and M of a link over its length, with extreme values.
 
-    points   name -> x of the link's pins and load points [mm]
+    Out-of-plane shear, moment and torque are drawn where they are not zero.
 
-    Out-of-plane shear, moment and the torque are drawn where they are not nil.
+    Parameters
+    ----------
+    beam : BeamCheck
+    points : dict
+        Name -> x of the link's pins and load points [mm].
+
+    Returns
+    -------
+    bytes
+        A PNG.
     """
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -40,16 +40,36 @@ _ARROW = 0.2
 
 
 def as_png(figure: Any) -> bytes:
-    """Return a matplotlib figure as PNG, without a date so that equal drawings are equal bytes."""
+    """Return a matplotlib figure as PNG, without a date, so that equal drawings are equal bytes.
+
+    Parameters
+    ----------
+    figure : object
+
+    Returns
+    -------
+    bytes
+    """
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
     return stream.getvalue()
 
 
 def linkage_drawing(result: CheckResult, load_case: str) -> bytes:
-    """Draw the linkage to scale in its pose under a load case; returns a PNG.
+    """Draw the linkage to scale in its pose under a load case.
 
-    Every joint force is drawn as it acts on the link that its label names.
+    Each joint force is drawn as it acts on the link in its label.
+
+    Parameters
+    ----------
+    result : CheckResult
+    load_case : str
+        Name of the load case.
+
+    Returns
+    -------
+    bytes
+        A PNG.
     """
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg

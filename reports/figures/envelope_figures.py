@@ -24,7 +24,17 @@ _PANEL = 2.1
 
 
 def envelope_figure(result: EnvelopeResult) -> bytes:
-    """Draw one panel per link: the safety factor of each load case, its band, its least value and the limit."""
+    """Draw a panel per link: safety factor of each load case, band, least value and limit.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+
+    Returns
+    -------
+    bytes
+        A PNG.
+    """
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -67,8 +77,21 @@ def envelope_figure(result: EnvelopeResult) -> bytes:
 
 
 def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[str, bytes], tuple[str, ...]]:
-    """Draw the stress of some links at their worst pose: link -> PNG, and what to warn of."""
-    from reports.figures.figures import plots_of, scene_from
+    """Draw the stress of links at their worst poses.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+    links : iterable of str
+        Their names.
+
+    Returns
+    -------
+    tuple
+        Link -> PNG, and warnings.
+    """
+    from reports.figures.figures import plots_of
+    from reports.figures.scene import scene_from
 
     scenes, stations = {}, {}
     for name in links:
@@ -85,7 +108,17 @@ def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[
 
 
 def abscissa(result: EnvelopeResult) -> tuple[Real, str]:
-    """Return angles (n,) [degrees] to draw over, and their label: the drive's, or the coordinate's if it turns back."""
+    """Return the angles of the horizontal axis and their label.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+
+    Returns
+    -------
+    tuple
+        Angles (n,) [degrees] of the drive, or of the coordinate if the drive reverses its direction; and the label.
+    """
     steps = np.diff(result.drive_angles)
     if np.all(steps > 0.0) or np.all(steps < 0.0):
         return np.degrees(result.drive_angles), f"direction of {result.drive.link} (driven) [deg]"

@@ -21,11 +21,17 @@ SMOOTH_BELOW = 40.0
 def render(view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) -> None:
     """Render one view in parallel projection and save it.
 
-    view     ``size`` (width, height) in pixels, ``focus`` and ``toward`` (3,) where the camera looks and from
-             which direction, ``up`` (3,), ``half_height`` [mm], ``limits`` of the colours [MPa], ``colours``
-             name of the colour map, ``cut`` a height z [mm] above which the body is cut away, or null
-    arrays   ``points`` (n, 3), ``triangles`` (k, 3), ``values`` (n,), ``outline`` (n, 3) of the undeformed body
-             (empty for none), and ``cells`` (m, 4) tetrahedra to be cut
+    Parameters
+    ----------
+    view : dict
+        ``size`` (width, height) in pixels, ``focus`` and ``toward`` (3,) where the camera looks and from which
+        direction, ``up`` (3,), ``half_height`` [mm], ``limits`` of the colours [MPa], ``colours`` name of the colour
+        map, ``cut`` a height z [mm] above which the body is cut away, or null.
+    arrays : dict
+        ``points`` (n, 3), ``triangles`` (k, 3), ``values`` (n,), ``outline`` (n, 3) of the undeformed body (empty for
+        none), and ``cells`` (m, 4) tetrahedra to be cut.
+    path : Path
+        The image, as a NumPy file.
     """
     import pyvista
 
@@ -75,7 +81,15 @@ def render(view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) ->
 
 
 def main(folder: Path, request: str) -> None:
-    """Render every view that the request lists."""
+    """Render every view of a request.
+
+    Parameters
+    ----------
+    folder : Path
+        Contains the request and its arrays; receives the images.
+    request : str
+        Name of a JSON file.
+    """
     end_with_parent(folder)
     for name, view in json.loads((folder / request).read_text(encoding="utf-8")).items():
         with np.load(folder / view["arrays"]) as stored:

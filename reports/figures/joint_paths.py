@@ -11,7 +11,17 @@ _SAME = 1e-9
 
 
 def moving_points(motion: Motion) -> dict[str, Real]:
-    """Paths (n, 2) [mm] of all points that move, by name; ``link.point`` where points of one name differ."""
+    """Return the paths of all points that move.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    dict
+        Name -> path (n, 2) [mm]; ``link.point`` where points of one name differ.
+    """
     groups: dict[str, list[tuple[str, Real]]] = {}
     for link, point in motion.closure.point_names:
         groups.setdefault(point, []).append((link, motion.position(link, point)))
@@ -26,5 +36,16 @@ def moving_points(motion: Motion) -> dict[str, Real]:
 
 
 def path_length(xy: Real) -> float:
-    """Length of the path along xy (n, 2), in its unit."""
+    """Return the length of a path.
+
+    Parameters
+    ----------
+    xy : array
+        (n, 2).
+
+    Returns
+    -------
+    float
+        In the unit of the path.
+    """
     return float(np.sum(np.linalg.norm(np.diff(xy, axis=0), axis=1)))

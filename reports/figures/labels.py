@@ -27,12 +27,20 @@ def place_labels(
     *,
     fontsize: float,
 ) -> None:
-    """Write labels (anchors, text, colour) beside one of their anchors (k, 2), each where least is in its way.
+    """Write labels beside their anchors, where they cover least.
 
-    axes        a matplotlib Axes whose limits and size no longer change
-    obstacles   (n, 2) points of what is drawn, in data coordinates
+    The labels are placed one after the other. One that is far from its anchor has a thin line to it.
 
-    A label that had to move far away gets a thin line to its anchor. Greedy, in the order given.
+    Parameters
+    ----------
+    axes : object
+        A matplotlib Axes with final limits and size.
+    labels : sequence of tuple
+        Anchors (k, 2), of which one is chosen; text; colour.
+    obstacles : array
+        Points (n, 2) of what is drawn, in data coordinates.
+    fontsize : float
+        In points.
     """
     from matplotlib.patheffects import withStroke
 
@@ -73,13 +81,34 @@ def place_labels(
 
 
 def along(start: NDArray[np.float64], end: NDArray[np.float64], count: int = 240) -> NDArray[np.float64]:
-    """Points (count, 2) on a line: what a label must not cover."""
+    """Return points on a line that labels must not cover.
+
+    Parameters
+    ----------
+    start : array
+    end : array
+    count : int, optional
+
+    Returns
+    -------
+    array
+        (count, 2).
+    """
     return np.asarray(np.linspace(start, end, count))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stacked:
-    """A name above a station, in which row from below; ``at`` [inches] along the axis."""
+    """A name above an axis.
+
+    Attributes
+    ----------
+    text : str
+    at : float
+        Place along the axis [inches].
+    row : int
+        From below.
+    """
 
     text: str
     at: float
@@ -87,9 +116,18 @@ class Stacked:
 
 
 def stacked(names: Iterable[str], at: Iterable[float]) -> tuple[Stacked, ...]:
-    """Return names above their stations so that none is written over another.
+    """Return names above an axis without overlap.
 
-    at   place of each along the axis [inches]; names of one place stand together, others move to a higher row
+    Parameters
+    ----------
+    names : iterable of str
+    at : iterable of float
+        Place of each along the axis [inches]; names of one place stand together, others move to a higher row.
+
+    Returns
+    -------
+    tuple of Stacked
+        Names of one place are joined; others move to a higher row.
     """
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextPath
@@ -113,12 +151,30 @@ def stacked(names: Iterable[str], at: Iterable[float]) -> tuple[Stacked, ...]:
 
 
 def heights(names: Sequence[Stacked]) -> float:
-    """Room that stacked names need above an axis [inches]."""
+    """Return the height that stacked names need [inches].
+
+    Parameters
+    ----------
+    names : sequence of Stacked
+
+    Returns
+    -------
+    float
+    """
     return _NAME_ROW * (1 + max((name.row for name in names), default=0))
 
 
 def write_stacked(axes: Any, names: Sequence[Stacked], width: float) -> None:
-    """Write stacked names above axes that are so wide [inches]."""
+    """Write stacked names above an axis.
+
+    Parameters
+    ----------
+    axes : object
+        A matplotlib Axes.
+    names : sequence of Stacked
+    width : float
+        Of the axes [inches].
+    """
     for name in names:
         axes.annotate(
             name.text,

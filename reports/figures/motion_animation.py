@@ -21,7 +21,14 @@ _DPI = 80
 
 
 def draw_animation(motion: Motion, path: Path) -> None:
-    """Draw one full turn, or a range there and back, as a GIF that repeats for ever."""
+    """Draw one full turn, or a range there and back, as a GIF that repeats.
+
+    Parameters
+    ----------
+    motion : Motion
+    path : Path
+        File to write.
+    """
     figure, axes = plane(motion, width=7.0)
     for xy in moving_points(motion).values():
         axes.plot(*xy.T, color="0.75", linewidth=1.0, zorder=1)

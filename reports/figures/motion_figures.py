@@ -36,7 +36,19 @@ def quiet_glyphs() -> Iterator[None]:
 
 
 def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
-    """Draw all figures of a motion as PNG files into a folder and return their paths."""
+    """Draw all figures of a motion as PNG files.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    folder : Path
+        Folder to write into.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
     figures = {
         "link-angles": angles_figure(result),
         "paths": paths_figure(result.motion),
@@ -54,7 +66,16 @@ def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
 
 
 def angles_figure(result: CaseMotion) -> Figure:
-    """Direction of every moving link over the coordinate's angle."""
+    """Draw the direction of every moving link over the coordinate.
+
+    Parameters
+    ----------
+    result : CaseMotion
+
+    Returns
+    -------
+    Figure
+    """
     motion = result.motion
     figure, axes = _over_angle(motion, "direction of the link [deg]")
     for i, link in enumerate(motion.linkage.moving):
@@ -65,7 +86,16 @@ def angles_figure(result: CaseMotion) -> Figure:
 
 
 def torque_figure(result: CaseMotion) -> Figure:
-    """Drive torque over the coordinate's angle, one line per load case."""
+    """Draw drive torque or force over the coordinate, one line per load case.
+
+    Parameters
+    ----------
+    result : CaseMotion
+
+    Returns
+    -------
+    Figure
+    """
     motion = result.motion
     figure, axes = _over_angle(motion, f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]")
     for i, (load_case, torque) in enumerate(result.torque.items()):
@@ -78,7 +108,18 @@ def torque_figure(result: CaseMotion) -> Figure:
 
 
 def forces_figure(result: CaseMotion, load_case: str) -> Figure:
-    """Size of every joint force over the coordinate's angle under one load case."""
+    """Draw the magnitude of every joint force over the coordinate.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    load_case : str
+        Name of the load case.
+
+    Returns
+    -------
+    Figure
+    """
     motion, forces = result.motion, result.forces[load_case].forces
     figure, axes = _over_angle(motion, "joint force [N]")
     sizes = {joint: np.linalg.norm(force, axis=1) for joint, force in forces.items()}
@@ -93,7 +134,16 @@ def forces_figure(result: CaseMotion, load_case: str) -> Figure:
 
 
 def paths_figure(motion: Motion) -> Figure:
-    """Paths of the moving points, with the linkage at a few poses from light to dark."""
+    """Draw the paths of the moving points and the linkage at a few poses, from light to dark.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    Figure
+    """
     figure, axes = plane(motion, width=8.0)
     indices = np.unique(np.linspace(0, len(motion.angles) - 1, _POSES).round().astype(int))
     if motion.returns:
@@ -119,7 +169,18 @@ def paths_figure(motion: Motion) -> Figure:
 
 
 def plane(motion: Motion, *, width: float) -> tuple[Figure, Any]:
-    """Return an empty figure and axes that hold the whole motion to scale, in mm."""
+    """Return a figure and axes that contain the whole motion to scale [mm].
+
+    Parameters
+    ----------
+    motion : Motion
+    width : float
+        Of the figure [inches].
+
+    Returns
+    -------
+    tuple
+    """
     everything = motion.points
     x, y = everything.real, everything.imag
     margin = 0.06 * max(np.ptp(x), np.ptp(y))
@@ -138,7 +199,17 @@ def plane(motion: Motion, *, width: float) -> tuple[Figure, Any]:
 
 
 def chains(linkage: Linkage) -> list[list[tuple[str, str]]]:
-    """Lines that draw each moving link: its points in order, closed where they do not lie on one line."""
+    """Return the lines that draw each moving link.
+
+    Parameters
+    ----------
+    linkage : Linkage
+
+    Returns
+    -------
+    list of list[tuple[str, str]]
+        Pairs (link, point) in order; closed where the points are not on one line.
+    """
     found = []
     for link in linkage.moving:
         points = linkage.links[link].points
@@ -151,7 +222,14 @@ def chains(linkage: Linkage) -> list[list[tuple[str, str]]]:
 
 
 def ground(axes: Any, motion: Motion) -> None:
-    """Mark and name the joints of the ground: pivots as triangles, its slots as bars of the length of the travel."""
+    """Draw and name the joints of the ground: pivots as triangles, slots as bars of the length of the travel.
+
+    Parameters
+    ----------
+    axes : object
+        A matplotlib Axes.
+    motion : Motion
+    """
     base = motion.linkage.ground
     for name in motion.linkage.joints_of(base):
         joint = motion.linkage.joints[name]

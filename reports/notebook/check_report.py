@@ -18,7 +18,7 @@ from reports.words.wording import checks_of, headline
 class CheckReport:
     """A check of a case, as ``alula check`` makes it.
 
-    Parameters
+    Attributes
     ----------
     result : CheckResult
         The record that the numbers come from, with everything else that was found.
@@ -101,6 +101,10 @@ class CheckReport:
         load_case : str, optional
             Its name; the first one when left out.
 
+        Returns
+        -------
+        Picture
+
         Raises
         ------
         CaseError
@@ -121,6 +125,10 @@ class CheckReport:
             A link that was solved as a solid.
         load_case : str, optional
             Its name; the one that stresses the link most when left out.
+
+        Returns
+        -------
+        Picture
 
         Raises
         ------
@@ -143,6 +151,13 @@ class CheckReport:
 
     def write(self, folder: str | Path, *, progress: Callable[[str], None] = lambda message: None) -> None:
         """Write ``report.html``, ``result.json``, pictures and VTU files into a folder, as ``alula check -o`` does.
+
+        Parameters
+        ----------
+        folder : str | Path
+            The output folder.
+        progress : callable, optional
+            Receives messages.
 
         Raises
         ------
@@ -211,7 +226,16 @@ class CheckReport:
 
 
 def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:
-    """Return a row for every outcome."""
+    """Return one row per check.
+
+    Parameters
+    ----------
+    checks : iterable of CheckOutcome
+
+    Returns
+    -------
+    list of Row
+    """
     return [
         {
             "check": check.name,

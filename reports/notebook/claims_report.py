@@ -14,7 +14,7 @@ from reports.tables.claims import as_records, count
 class ClaimsReport:
     """Published figures re-derived, as ``alula claims`` does.
 
-    Parameters
+    Attributes
     ----------
     result : tuple of ClaimResult
         A record per figure.

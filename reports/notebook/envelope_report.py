@@ -23,7 +23,7 @@ Real = NDArray[np.float64]
 class EnvelopeReport:
     """A case over its whole motion, as ``alula envelope`` makes it.
 
-    Parameters
+    Attributes
     ----------
     result : EnvelopeResult
         The record that the numbers come from: curves over the motion, fatigue, meshes.
@@ -56,8 +56,15 @@ class EnvelopeReport:
 
         Parameters
         ----------
-        link, load_case : str
+        link : str
             Their names.
+        load_case : str
+            Their names.
+
+        Returns
+        -------
+        array
+            [MPa].
 
         Raises
         ------
@@ -73,6 +80,11 @@ class EnvelopeReport:
         ----------
         of : {"links", "checks"}
             The worst pose of every link and load case, or the checks with value, band and limit.
+
+        Returns
+        -------
+        Table
+            A sequence of mappings, shown as a table.
 
         Raises
         ------
@@ -95,6 +107,10 @@ class EnvelopeReport:
         ----------
         link : str
             A link on which something acts.
+
+        Returns
+        -------
+        Picture
 
         Raises
         ------

@@ -18,7 +18,7 @@ Real = NDArray[np.float64]
 class MotionReport:
     """A case over its motion, as ``alula motion`` makes it.
 
-    Parameters
+    Attributes
     ----------
     result : CaseMotion
         The record that the numbers come from: poses, joint forces and powers of every load case.

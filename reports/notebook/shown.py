@@ -25,7 +25,7 @@ class Table:
     Printed it is aligned text, in a notebook a table; ``list(table)`` is plain data, as ``pandas.DataFrame`` takes it.
     A number that is not known is NaN, and an entry that does not apply is None.
 
-    Parameters
+    Attributes
     ----------
     rows : tuple of mappings
         All with the same keys; the unit stands in the key, ``"x [mm]"``, or in a column of its own.
@@ -80,7 +80,7 @@ class Table:
 class Picture:
     """A picture that a notebook shows by itself.
 
-    Parameters
+    Attributes
     ----------
     png : bytes
         The picture as a PNG file.
@@ -97,6 +97,11 @@ class Picture:
     def save(self, path: str | Path) -> None:
         """Write the picture as a PNG file.
 
+        Parameters
+        ----------
+        path : str | Path
+            File to write.
+
         Raises
         ------
         OSError
@@ -106,7 +111,25 @@ class Picture:
 
 
 def pick(named: Mapping[str, T], name: str, what: str) -> T:
-    """Return an entry by its name; raises ``CaseError`` that names the others."""
+    """Return an entry by its name.
+
+    Parameters
+    ----------
+    named : mapping
+    name : str
+        Its name.
+    what : str
+        What it is called in the error, such as ``link``.
+
+    Returns
+    -------
+    T
+
+    Raises
+    ------
+    CaseError
+        For a name that does not exist; the error lists the others.
+    """
     if name not in named:
         close = get_close_matches(str(name), named, n=1)
         choice = f"did you mean '{close[0]}'?" if close else f"choose one of {', '.join(named) or 'none'}"
@@ -115,7 +138,21 @@ def pick(named: Mapping[str, T], name: str, what: str) -> T:
 
 
 def summary(verdict: Verdict, title: str, lead: str, table: Table, warnings: Sequence[str]) -> str:
-    """Return a short account of a result as HTML, all text escaped."""
+    """Return a short account of a result as HTML, with all text escaped.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    title : str
+    lead : str
+        Its first sentence.
+    table : Table
+    warnings : sequence of str
+
+    Returns
+    -------
+    str
+    """
     told = "".join(f"<li>{escape(warning)}</li>" for warning in warnings)
     return (
         f"<p>{_marked(verdict.value, verdict.value.upper())} <b>{escape(title)}</b></p>\n<p>{escape(lead)}</p>\n"

@@ -15,7 +15,17 @@ IMPACT = "A sudden load causes higher stresses than the same load applied slowly
 
 
 def not_covered(result: CheckResult) -> tuple[tuple[str, str], ...]:
-    """Return (title, text) of each effect that the models of this check do not cover."""
+    """Return each effect that the models of this check do not cover.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    tuple of tuple
+        Pairs (title, text).
+    """
     moves = result.case.motion is not None
     return (
         ("Other poses", "Only this pose was checked; another pose can give higher stresses"

@@ -14,11 +14,21 @@ PRINCIPAL = ("first", "second", "third")
 def write_vtu(path: Path, displacement: NDArray[np.float64], stress: StressField) -> None:
     """Write displacement and stress of a solid as an unstructured grid of (quadratic) tetrahedra.
 
-    displacement   (n, 3) at the nodes of ``stress.space`` [mm]
+    Point data have their units in their names: displacement, von Mises stress, principal stresses, and components of
+    the stress tensor. Coordinates are those of the undeformed link in its own frame [mm].
 
-    Point data, units in the names: displacement, von Mises stress, the three principal stresses and the
-    six components of the stress tensor. Coordinates are those of the link's frame in mm, undeformed.
-    Raises ``CannotRunError`` if the file cannot be written.
+    Parameters
+    ----------
+    path : Path
+        File to write.
+    displacement : array
+        (n, 3) at the nodes of ``stress.space`` [mm].
+    stress : StressField
+
+    Raises
+    ------
+    CannotRunError
+        If the file cannot be written.
     """
     import meshio
 

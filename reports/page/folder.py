@@ -18,7 +18,16 @@ DECKS = "calculix"
 
 
 def report_names(case: Case) -> set[str]:
-    """Return the names of all files that the report of a case can consist of."""
+    """Return the names of all files that the report of a case can contain.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    set[str]
+    """
     links, pictures = case.checked_links, set(map(linkage_name, case.load_cases))
     pictures |= {name(link) for link in links for name in (diagram_name, stress_name)}
     return {
@@ -37,12 +46,25 @@ def write_report(
     decks: Path | None = None,
     progress: Callable[[str], None] = lambda message: None,
 ) -> None:
-    """Write ``report.html``, ``result.json``, ``pictures/*.png`` and ``vtu/<link>.vtu`` into a folder, or nothing.
+    """Write ``report.html``, ``result.json``, pictures and VTU files, or nothing.
 
-    decks   folder whose CalculiX decks go into ``calculix/``
+    The VTU file of a link has the load case with the least safety factor. A picture that cannot be rendered is left out
+    with a warning.
 
-    The VTU file of a link holds the load case that stresses it most. Pictures that cannot be rendered are
-    left out with a warning in report and result. Raises as ``write_folder`` does.
+    Parameters
+    ----------
+    result : CheckResult
+    target : Path
+        The output folder.
+    decks : Path, optional
+        Folder whose CalculiX decks go into ``calculix/``.
+    progress : callable, optional
+        Receives messages.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``write_folder``.
     """
     from reports.page.export import write_vtu
     from reports.page.html import render

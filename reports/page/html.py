@@ -71,7 +71,15 @@ def _findings(name: str) -> tuple[ClaimResult, ...]:
 def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
     """Return the report as one HTML page.
 
-    figures   PNG pictures by the names of ``reports.page.pictures``; a missing one is left out of the page
+    Parameters
+    ----------
+    result : CheckResult
+    figures : mapping
+        PNG pictures by the names of ``reports.page.pictures``; the page omits missing ones.
+
+    Returns
+    -------
+    str
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -133,7 +141,16 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
 
 
 def data_uri(picture: bytes) -> str:
-    """Return a PNG as a URI that holds it."""
+    """Return a PNG as a data URI.
+
+    Parameters
+    ----------
+    picture : bytes
+
+    Returns
+    -------
+    str
+    """
     return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
 
 

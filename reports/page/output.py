@@ -31,17 +31,44 @@ _NEW, _OLD, _JOURNAL = "new", "old", "journal.json"
 
 
 def place(output: Path, command: str) -> Path:
-    """Return the folder that takes a command's files."""
+    """Return the folder that receives a command's files.
+
+    Parameters
+    ----------
+    output : Path
+        The folder that the user named.
+    command : str
+        Its name.
+
+    Returns
+    -------
+    Path
+    """
     target = Path(os.path.abspath(output))
     return target if command in _TOP else target / command
 
 
 def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> None:
-    """Let ``fill`` write a command's files into an empty folder, then put them in their place.
+    """Write a command's files into an empty folder, then put them in their place.
 
-    Files of the command's earlier run are replaced, or removed where this one has no such file (those of ``export``
-    stay), if they are as alula left them. Of several runs into one folder the last to finish stays. Raises
-    ``CaseError`` for a file in the way, ``CannotRunError`` where the disk refuses; nothing is changed then.
+    Files of the command's earlier run are replaced, or removed where this run has no such file (``export`` keeps them),
+    if they are as alula left them. The last of several runs into one folder stays.
+
+    Parameters
+    ----------
+    output : Path
+        The folder that the user named.
+    command : str
+        Its name.
+    fill : callable
+        Writes the files into the folder that it is given.
+
+    Raises
+    ------
+    CaseError
+        For a file in the way.
+    CannotRunError
+        Where the disk refuses; nothing is changed then.
     """
     target = place(output, command)
     made = [folder for folder in (target, *target.parents) if not os.path.lexists(folder)]
@@ -76,9 +103,19 @@ def write_folder(output: Path, command: str, fill: Callable[[Path], object]) -> 
 def refuse_unusable(output: Path | None, command: str, names: Iterable[str] = (MARK,)) -> None:
     """Refuse an output folder before anything is computed for it.
 
-    names   the files that the command will write, as far as they are known
+    Parameters
+    ----------
+    output : Path, optional
+        The folder that the user named, if any.
+    command : str
+        Its name.
+    names : iterable of str, optional
+        The files that the command will write, as far as they are known.
 
-    Raises as ``write_folder`` does.
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``write_folder``.
     """
     if output is None:
         return

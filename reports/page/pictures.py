@@ -7,22 +7,62 @@ from reports.tables.record import worst_load_case
 
 
 def linkage_name(load_case: str) -> str:
-    """Name of the linkage's drawing under a load case."""
+    """Return the name of the linkage's drawing under a load case.
+
+    Parameters
+    ----------
+    load_case : str
+        Name of the load case.
+
+    Returns
+    -------
+    str
+    """
     return f"linkage-{load_case}"
 
 
 def diagram_name(link: str) -> str:
-    """Name of a link's N, V and M diagram, under the load case that stresses it most."""
+    """Return the name of a link's N, V and M diagram.
+
+    Parameters
+    ----------
+    link : str
+        Name of the link.
+
+    Returns
+    -------
+    str
+    """
     return f"diagram-{link}"
 
 
 def stress_name(link: str) -> str:
-    """Name of a link's stress plot, under the load case that stresses it most."""
+    """Return the name of a link's stress plot.
+
+    Parameters
+    ----------
+    link : str
+        Name of the link.
+
+    Returns
+    -------
+    str
+    """
     return f"stress-{link}"
 
 
 def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
-    """The first load case and those that stress some link most."""
+    """Return the first load case and those with the least safety factor of some link.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    tuple of str
+        Their names.
+    """
     first = next(iter(result.load_cases.values()))
     return tuple(dict.fromkeys([first.name, *(worst_load_case(result, link).name for link in first.links)]))
 
@@ -30,10 +70,21 @@ def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
 def draw_pictures(
     result: CheckResult, progress: Callable[[str], None] = lambda message: None
 ) -> tuple[dict[str, bytes], tuple[str, ...]]:
-    """Draw every picture of a report: name -> PNG, and what to warn of.
+    """Draw every picture of a report.
 
-    The linkage under every governing load case; every link's internal forces and, where it ran as a
-    solid, its stress, under the load case that stresses it most.
+    The linkage under every governing load case; internal forces and, for a solid, stress of every link under its
+    governing load case.
+
+    Parameters
+    ----------
+    result : CheckResult
+    progress : callable, optional
+        Receives messages.
+
+    Returns
+    -------
+    tuple
+        Name -> PNG, and warnings.
     """
     from reports.figures.diagrams import internal_force_diagram
     from reports.figures.drawings import linkage_drawing

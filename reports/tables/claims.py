@@ -17,7 +17,16 @@ _WORDS = {
 
 
 def count(results: Sequence[ClaimResult]) -> str:
-    """Return how many claims there are of each finding, in one sentence."""
+    """Return the number of claims of each finding, in one sentence.
+
+    Parameters
+    ----------
+    results : sequence of ClaimResult
+
+    Returns
+    -------
+    str
+    """
     found = Counter(result.finding for result in results)
     several = {
         Finding.HOLDS: "hold",
@@ -30,7 +39,17 @@ def count(results: Sequence[ClaimResult]) -> str:
 
 
 def as_records(results: Sequence[ClaimResult]) -> list[dict[str, str | None]]:
-    """Return the findings as plain data: name, quantity, published, ours, finding, source, note."""
+    """Return the findings as plain data.
+
+    Parameters
+    ----------
+    results : sequence of ClaimResult
+
+    Returns
+    -------
+    list of dict
+        Entries name, quantity, published, ours, finding, source, note.
+    """
     return [
         {
             "name": result.claim.name,
@@ -46,12 +65,30 @@ def as_records(results: Sequence[ClaimResult]) -> list[dict[str, str | None]]:
 
 
 def as_json(results: Sequence[ClaimResult]) -> str:
-    """Return the findings as a JSON list."""
+    """Return the findings as a JSON list.
+
+    Parameters
+    ----------
+    results : sequence of ClaimResult
+
+    Returns
+    -------
+    str
+    """
     return json.dumps(as_records(results), indent=2, ensure_ascii=False)
 
 
 def as_text(results: Sequence[ClaimResult]) -> str:
-    """Return the findings for the terminal: one line per claim, its sentence below, the counts at the end."""
+    """Return the findings for the terminal: one line per claim, its sentence below, the counts at the end.
+
+    Parameters
+    ----------
+    results : sequence of ClaimResult
+
+    Returns
+    -------
+    str
+    """
     lines = []
     for result in results:
         ours = "" if result.ours is None else f", ours {result.ours}"
@@ -61,10 +98,18 @@ def as_text(results: Sequence[ClaimResult]) -> str:
 
 
 def as_markdown(found: Mapping[str, Sequence[ClaimResult]], titles: Mapping[str, str]) -> str:
-    """Return a page with the counts and a table of findings per source.
+    """Return a Markdown page with the counts and a table of findings per source.
 
-    found    findings by name of the source
-    titles   what each source is called
+    Parameters
+    ----------
+    found : mapping
+        Findings by name of the source.
+    titles : mapping
+        What each source is called.
+
+    Returns
+    -------
+    str
     """
     lines = [
         "# Published figures, re-derived",

@@ -1,9 +1,11 @@
 """The result of a check on the terminal: verdict, links, checks, hand calculations, warnings."""
 
+from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from fea.check.anchor import anchor_loads
-from fea.common.verdict import Quantity, Verdict
+from fea.common.verdict import CheckOutcome, Quantity, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from loads.records.aero import AirForces
 from reports.tables.frames import frame_lines
@@ -18,7 +20,14 @@ VERDICT_COLOURS = {Verdict.PASS: "green", Verdict.FAIL: "red", Verdict.UNDECIDED
 
 
 def print_result(result: CheckResult, console: "Console") -> None:
-    """Print a compact account of a check; broken at spaces where the terminal is narrow."""
+    """Print the result of a check.
+
+    Parameters
+    ----------
+    result : CheckResult
+    console : rich.console.Console
+        On a narrow one, lines break at spaces.
+    """
     verdict_line(result.verdict, result.case.title, console)
     say(console, headline(result))
     several = len(result.load_cases) > 1
@@ -34,7 +43,7 @@ def print_result(result: CheckResult, console: "Console") -> None:
         say(console, _anchor(case))
         _links(case, console)
         if case.checks:
-            _checks(case, console)
+            say_checks(case.checks, console)
         for check in case.checks:
             if check.quantity is Quantity.DRIVE_POWER:
                 say(console, f"Motor: {check.reason}.")
@@ -57,7 +66,14 @@ def print_result(result: CheckResult, console: "Console") -> None:
 
 
 def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
-    """Print the verdict, in its colour, and the title of the case."""
+    """Print the verdict, in its colour, and the title of the case.
+
+    Parameters
+    ----------
+    verdict : Verdict
+    title : str
+    console : rich.console.Console
+    """
     from rich.text import Text
 
     badge = (f" {verdict.value.upper()} ", f"bold reverse {VERDICT_COLOURS[verdict]}")
@@ -122,20 +138,33 @@ def _links(case: LoadCaseResult, console: "Console") -> None:
     say_table(console, columns, rows)
 
 
-def _checks(case: LoadCaseResult, console: "Console") -> None:
+def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
+    """Print the checks with value, band, limit and verdict.
+
+    Parameters
+    ----------
+    checks : sequence of CheckOutcome
+        The load case has a column if there are several. The quantity is shown if one name stands for several.
+    console : rich.console.Console
+    """
     from rich.text import Text
 
-    columns = (("check", False), ("link", False), ("value (band)", True), ("limit", True), ("verdict", False))
-    rows = []
-    for check in case.checks:
+    several = len({check.load_case for check in checks}) > 1
+    named = Counter((check.name, check.link, check.load_case) for check in checks)
+    columns = [("check", False), ("link", False), *([("load case", False)] if several else [])]
+    columns += [("value (band)", True), ("limit", True), ("verdict", False)]
+    rows: list[tuple[str | Text, ...]] = []
+    for check in checks:
         unit = f" {check.unit}" if check.unit else ""
-        sign = check.quantity.sense.value
         rows.append(
             (
-                check.name,
+                check.name
+                if named[check.name, check.link, check.load_case] == 1
+                else f"{check.name}: {check.quantity}",
                 check.link,
+                *([check.load_case] if several else []),
                 band(check.value) + unit,
-                f"{sign}{KEPT}{plain(check.limit)}{unit}",
+                f"{check.quantity.sense.value}{KEPT}{plain(check.limit)}{unit}",
                 Text(check.verdict.value, style=VERDICT_COLOURS[check.verdict]),
             )
         )
@@ -143,7 +172,7 @@ def _checks(case: LoadCaseResult, console: "Console") -> None:
 
 
 def _hand(case: LoadCaseResult) -> list[str]:
-    """Where hand calculation and solid model agree, and by how much they differ where they do not."""
+    """Return the agreement of hand calculation and solid model, and the largest difference of each link."""
     solids = {name: link for name, link in case.links.items() if isinstance(link, SolidResult)}
     compared = {name: link.comparisons for name, link in solids.items() if link.comparisons}
     if not compared:

@@ -1,4 +1,4 @@
-"""Which model gave the joint forces, what large displacement changes, and pins: as data and as lines of text."""
+"""Joint forces and their model, large displacement, and pins: as plain data and as lines of text."""
 
 import math
 from typing import Any
@@ -8,38 +8,26 @@ import numpy as np
 from fea.frame.joint_forces import PINNED_STATICS
 from fea.outcomes.result import CheckResult, LoadCaseResult
 from loads.statics.statics import Reactions
-from reports.tables.bands import band_record
+from reports.tables.data import entries
 from reports.words.wording import fixed, number
-
-UNITS = {
-    "reactions.wrench": "N; N*mm",
-    "large_displacement.span": "mm",
-    "large_displacement.linear": "mm",
-    "large_displacement.held": "share of the load",
-    "large_displacement.buckling": "1",
-    "large_displacement.points.displacement": "mm",
-    "large_displacement.reactions.wrench": "N; N*mm",
-    "large_displacement.reactions.force": "N",
-    "large_displacement.reactions.magnitude": "N",
-    "large_displacement.drive_torque": "N*mm",
-    "large_displacement.drive_force": "N",
-    "pins.lever": "mm",
-    "pins.moment": "N*mm",
-    "pins.bending": "MPa",
-    "pins.shear": "MPa",
-    "ways_to_hold.displacement": "mm",
-    "ways_to_hold.size": "mm",
-}
-
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 _ROUNDING = 1e-9
 
 
 def shown_components(reactions: Reactions) -> tuple[str, ...]:
-    """Return the components of the joints' wrenches that a table shows: the plane's, and those beyond it that act.
+    """Return the components of the joint forces that a table shows.
 
-    In the plane these are Fx and Fy. Fz, Mx and My come with loads out of it, Mz with joints that are bonded.
+    Fx and Fy always; Fz, Mx and My with loads out of the plane; Mz with bonded joints.
+
+    Parameters
+    ----------
+    reactions : Reactions
+
+    Returns
+    -------
+    tuple of str
+        Of ``AXES``.
     """
     wrenches = np.array([joint.wrench for joint in reactions.joints.values()]).reshape(-1, 6)
     sizes = np.abs(wrenches).max(axis=0, initial=0.0)
@@ -53,60 +41,67 @@ def shown_components(reactions: Reactions) -> tuple[str, ...]:
 
 
 def reaction_records(reactions: Reactions) -> list[dict[str, Any]]:
-    """Return every joint's reaction: force in the plane and its size, and the whole wrench."""
+    """Return the reaction of every joint as plain data: force in the plane, magnitude, and the whole wrench.
+
+    Parameters
+    ----------
+    reactions : Reactions
+
+    Returns
+    -------
+    list of dict
+        One entry per joint.
+    """
     return [
-        {
-            "joint": joint.joint,
-            "on": joint.on,
-            "by": joint.by,
-            "force": [float(x) for x in joint.force[:2]],
-            "magnitude": joint.magnitude,
-            "wrench": [float(x) for x in joint.wrench],
-        }
+        entries(joint, "joint on by magnitude wrench") | {"force": joint.force[:2].tolist()}
         for joint in reactions.joints.values()
     ]
 
 
 def frame_record(case: LoadCaseResult) -> dict[str, Any]:
-    """Return what a load case's ``joint_forces``, ``large_displacement``, ``pins`` and ``ways_to_hold`` are."""
+    """Return ``joint_forces``, ``large_displacement``, ``pins`` and ``ways_to_hold`` of a load case as plain data.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    dict
+        Those four entries.
+    """
     moved = case.large_displacement
+    deformed = moved.reactions
     return {
-        "joint_forces": {"model": case.forces.model, "reason": case.forces.reason},
-        "large_displacement": {
-            "state": moved.state,
-            "span": moved.span,
-            "linear": moved.linear,
-            "where": moved.where,
-            "held": moved.held,
+        "joint_forces": entries(case.forces, "model reason"),
+        "large_displacement": entries(moved, "state span linear where held sentence")
+        | {
             "buckling": None if moved.buckling is None or math.isinf(moved.buckling) else moved.buckling,
-            "sentence": moved.sentence,
             "points": [
-                {"link": link, "point": point, "displacement": [float(x) for x in d]}
-                for (link, point), d in moved.points.items()
+                {"link": link, "point": point, "displacement": d.tolist()} for (link, point), d in moved.points.items()
             ],
-            "reactions": None if moved.reactions is None else reaction_records(moved.reactions),
-            "drive_torque": None if moved.reactions is None else moved.reactions.drive_torque,
-            "drive_force": None if moved.reactions is None else moved.reactions.drive_force,
+            "reactions": deformed and reaction_records(deformed),
+            "drive_torque": deformed and deformed.drive_torque,
+            "drive_force": deformed and deformed.drive_force,
         },
-        "pins": [
-            {
-                "joint": joint,
-                "lever": pin.lever,
-                "moment": band_record(pin.moment),
-                "bending": band_record(pin.bending),
-                "shear": pin.shear,
-            }
-            for joint, pin in case.pins.items()
-        ],
-        "ways_to_hold": [
-            {"name": held.name, "displacement": [float(x) for x in held.displacement], "size": held.size}
-            for held in case.ways_to_hold
-        ],
+        "pins": [{"joint": joint} | entries(pin, "lever moment bending shear") for joint, pin in case.pins.items()],
+        "ways_to_hold": [entries(held, "name displacement size") for held in case.ways_to_hold],
     }
 
 
 def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:
-    """Return what the terminal says of a load case's joint forces and displacements."""
+    """Return the lines of the terminal on joint forces and displacements of a load case.
+
+    Parameters
+    ----------
+    result : CheckResult
+    case : LoadCaseResult
+        One of its load cases.
+
+    Returns
+    -------
+    list of str
+    """
     lines = []
     if case.forces.model != PINNED_STATICS:
         lines.append(f"Joint forces by a {case.forces.model}: {case.forces.reason}.")

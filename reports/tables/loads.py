@@ -3,36 +3,31 @@
 import math
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fea.check.anchor import anchor_loads
 from fea.outcomes.result import CheckResult, LoadCaseResult
 from loads.case.case import Case
 from loads.records.aero import shares
 from loads.records.carried import CarriedSpread
+from reports.tables.data import entries
 from reports.words.wording import joined, plain
-
-UNITS = {
-    "anchor.joints.force": "N",
-    "anchor.joints.moment": "N*mm",
-    "anchor.total.force": "N",
-    "anchor.total.moment": "N*mm",
-    "air.speed": "mm/s",
-    "air.density": "tonne/mm^3",
-    "air.area": "mm^2",
-    "air.dynamic_pressure": "MPa",
-    "air.lift": "N",
-    "air.drag": "N",
-    "air.lift_coefficient": "1",
-    "air.drag_coefficient": "1",
-    "air.lift_direction": "1",
-    "air.drag_direction": "1",
-    "air.force": "N",
-    "air.spread.share": "1",
-    "air.spread.span": "1",
-}
 
 
 def weight_sentence(case: Case, name: str) -> str:
-    """Return in one sentence what weighs in a load case and what moves, and which links count as massless."""
+    """Return weight, inertia and massless links of a load case in one sentence, without its full stop.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Of the load case.
+
+    Returns
+    -------
+    str
+    """
     load_case = case.load_cases[name]
     if not load_case.own_weight and load_case.speed == 0.0:
         return "The links are massless in this load case; weights are among the stated forces"
@@ -55,44 +50,56 @@ def weight_sentence(case: Case, name: str) -> str:
 
 
 def anchor_record(case: LoadCaseResult) -> dict[str, Any]:
-    """Return force and moment on the ground at each of its joints, and their total."""
+    """Return force and moment on the ground, at each of its joints and in total.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    dict
+        As plain data.
+    """
     anchor = anchor_loads(case)
+
+    def wrench(values: NDArray[np.float64]) -> dict[str, list[float]]:
+        return {"force": values[:3].tolist(), "moment": values[3:].tolist()}
+
     return {
-        "joints": [
-            {"joint": name, "force": [float(x) for x in wrench[:3]], "moment": [float(x) for x in wrench[3:]]}
-            for name, wrench in anchor.joints.items()
-        ],
-        "total": {
-            "about": anchor.about,
-            "force": [float(x) for x in anchor.total[:3]],
-            "moment": [float(x) for x in anchor.total[3:]],
-        },
+        "joints": [{"joint": name} | wrench(values) for name, values in anchor.joints.items()],
+        "total": {"about": anchor.about} | wrench(anchor.total),
         "deformed": anchor.deformed,
         "unstable": anchor.unstable,
     }
 
 
 def air_record(result: CheckResult, name: str) -> list[dict[str, Any]]:
-    """Return lift and drag of every air load of a load case, with its coefficients and where it acts."""
+    """Return lift and drag of every air load of a load case, with coefficients and places.
+
+    Parameters
+    ----------
+    result : CheckResult
+    name : str
+        Of the load case.
+
+    Returns
+    -------
+    list of dict
+        As plain data.
+    """
     points = result.case.link_points
     found = []
     for air, forces in zip(result.case.load_cases[name].air, result.case.air_forces(name), strict=True):
         lift, drag = forces.coefficients or (None, None)
         found.append(
-            {
-                "title": air.title,
-                "given": forces.given,
-                "speed": air.speed,
-                "density": air.density,
-                "area": air.area,
+            entries(air, "title speed density area")
+            | entries(forces, "given lift drag lift_direction drag_direction warnings")
+            | {
                 "dynamic_pressure": forces.pressure,
-                "lift": forces.lift,
-                "drag": forces.drag,
                 "lift_coefficient": lift,
                 "drag_coefficient": drag,
-                "lift_direction": [float(x) for x in forces.lift_direction],
-                "drag_direction": [float(x) for x in forces.drag_direction],
-                "force": [float(x) for x in forces.total],
+                "force": forces.total.tolist(),
                 "spread": [
                     {
                         "link": patch.link,
@@ -103,7 +110,6 @@ def air_record(result: CheckResult, name: str) -> list[dict[str, Any]]:
                     }
                     for patch, share in zip(air.spread, shares(air, points), strict=True)
                 ],
-                "warnings": list(forces.warnings),
             }
         )
     return found

@@ -11,8 +11,18 @@ from loads.case.case import Case
 class DesignFigure:
     """One figure of a design [deg].
 
-    published   by the source's definition; None where the source's program has none
-    proper      as its name says
+    Attributes
+    ----------
+    name : str
+        Its name.
+    published : float, optional
+        By the source's definition; None where it has none.
+    published_as : str
+        That definition in words.
+    proper : float
+        As its name means.
+    proper_as : str
+        That definition in words.
     """
 
     name: str
@@ -24,16 +34,35 @@ class DesignFigure:
 
 @dataclass(frozen=True, kw_only=True)
 class Design:
-    """The figures of a design, and whether it meets each criterion: (fulfilled, sentence)."""
+    """Figures of a design and criteria for them.
+
+    Attributes
+    ----------
+    figures : tuple of DesignFigure
+    criteria : tuple of tuple
+        Pairs (fulfilled, sentence).
+    """
 
     figures: tuple[DesignFigure, ...]
     criteria: tuple[tuple[bool, str], ...]
 
 
 def design_of(case: Case) -> Design | None:
-    """Return the design figures of a case that says which flapping wing it is; None for others.
+    """Return the design figures of a flapping wing.
 
-    Raises ``CaseError`` for a wing whose crank does not turn fully.
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    Design or None
+        None for other cases.
+
+    Raises
+    ------
+    CaseError
+        For a wing whose crank does not turn fully.
     """
     if case.flapping_wing is None:
         return None
@@ -89,7 +118,17 @@ def design_of(case: Case) -> Design | None:
 
 
 def design_record(case: Case) -> dict[str, Any] | None:
-    """Return the design figures as plain data [deg]."""
+    """Return the design figures as plain data [deg].
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    dict or None
+        None for a case without a flapping wing.
+    """
     design = design_of(case)
     if design is None:
         return None
@@ -109,7 +148,17 @@ def design_record(case: Case) -> dict[str, Any] | None:
 
 
 def design_lines(case: Case) -> list[str]:
-    """Return the design figures as lines for the terminal; none for a case without."""
+    """Return the design figures as lines for the terminal.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    list of str
+        Empty for a case without a flapping wing.
+    """
     design = design_of(case)
     if design is None:
         return []

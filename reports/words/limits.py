@@ -20,6 +20,10 @@ def limited(threads: int, memory: str | None = None) -> Iterator[None]:
     memory : str, optional
         Memory of this process with its unit, such as ``"4 GB"``.
 
+    Returns
+    -------
+    Iterator[None]
+
     Raises
     ------
     CaseError

@@ -21,7 +21,15 @@ _INDENT = 2
 
 
 def say(console: "Console", text: "str | Text", *, style: str = "") -> None:
-    """Print text whose lines end at spaces."""
+    """Print text whose lines break at spaces.
+
+    Parameters
+    ----------
+    console : Console
+    text : str | Text
+    style : str, optional
+        Of rich.
+    """
     from rich.text import Text
 
     for line in _wrapped(Text(text, style=style) if isinstance(text, str) else text, console.width):
@@ -33,7 +41,15 @@ def say_table(
 ) -> None:
     """Print a table.
 
-    columns   (title, True where its cells stand to the right)
+    Parameters
+    ----------
+    console : Console
+    columns : sequence of tuple
+        Title, and True for alignment to the right.
+    rows : sequence of Sequence
+        Cells.
+    title : str, optional
+        Printed above.
     """
     from rich.text import Text
 

@@ -15,9 +15,19 @@ HAND_AGREEMENT = 0.03
 
 
 def number(value: float, digits: int = 4, beside: float = 0.0) -> str:
-    """Return a number with so many significant digits; a power of ten outside 1e-4 to 1e5.
+    """Return a number with some significant digits; with a power of ten outside 1e-4 to 1e5.
 
-    beside   a number of which this one is a part: what is smaller than rounding leaves of it counts as zero
+    Parameters
+    ----------
+    value : float
+    digits : int, optional
+        Significant ones.
+    beside : float, optional
+        A number of which this one is a part: what is smaller than its rounding error is zero.
+
+    Returns
+    -------
+    str
     """
     if math.isnan(value):
         return "not known"
@@ -35,46 +45,122 @@ def number(value: float, digits: int = 4, beside: float = 0.0) -> str:
 
 
 def fixed(value: float, decimals: int) -> str:
-    """Return a number with so many decimals; zero has no sign."""
+    """Return a number with some decimals; zero has no sign.
+
+    Parameters
+    ----------
+    value : float
+    decimals : int
+
+    Returns
+    -------
+    str
+    """
     text = f"{value:.{decimals}f}"
     return text.lstrip("-") if float(text) == 0.0 else text.replace("-", "−")
 
 
 def plain(value: float) -> str:
-    """Return a stated number (a limit, a size) without padding zeros."""
+    """Return a stated number, such as a limit, without padding zeros.
+
+    Parameters
+    ----------
+    value : float
+
+    Returns
+    -------
+    str
+    """
     return f"{value:g}".replace("-", "−")
 
 
 def band(value: Band, digits: int = 3) -> str:
-    """Return ``3.21 (2.44 to 3.21)``, or the value alone where the band has no visible width."""
+    """Return ``3.21 (2.44 to 3.21)``, or the value alone where the band has no visible width.
+
+    Parameters
+    ----------
+    value : Band
+    digits : int, optional
+        Significant ones.
+
+    Returns
+    -------
+    str
+    """
     shown = number(value.value, digits)
     low, high = number(value.low, digits), number(value.high, digits)
     return shown if low == high else f"{shown} ({low} to {high})"
 
 
 def percent(ratio: float) -> str:
-    """Return a ratio as a signed percentage."""
+    """Return a ratio as a signed percentage.
+
+    Parameters
+    ----------
+    ratio : float
+
+    Returns
+    -------
+    str
+    """
     text = f"{100.0 * ratio:+.1f}"
     return f"{text[1:] if float(text) == 0.0 else text} %".replace("-", "−")
 
 
 def joined(words: tuple[str, ...] | list[str]) -> str:
-    """Return ``a, b and c``."""
+    """Return ``a, b and c``.
+
+    Parameters
+    ----------
+    words : tuple
+
+    Returns
+    -------
+    str
+    """
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
 
 
 def turning(torque: float) -> str:
-    """Return the sense of a torque about z."""
+    """Return the sense of a torque about z.
+
+    Parameters
+    ----------
+    torque : float
+        Counter-clockwise positive.
+
+    Returns
+    -------
+    str
+    """
     return "none" if torque == 0.0 else "clockwise" if torque < 0.0 else "counter-clockwise"
 
 
 def apart(compared: Sequence[SectionComparison]) -> list[SectionComparison]:
-    """Return the sections at which hand calculation and solid model differ by more than ``HAND_AGREEMENT``."""
+    """Return the sections at which hand calculation and solid model differ by more than ``HAND_AGREEMENT``.
+
+    Parameters
+    ----------
+    compared : sequence of SectionComparison
+
+    Returns
+    -------
+    list of SectionComparison
+    """
     return [c for c in compared if abs(c.difference) > HAND_AGREEMENT]
 
 
 def agreement(compared: Sequence[SectionComparison]) -> str:
-    """Say how well hand calculation and solid model agree over some sections."""
+    """Say how well hand calculation and solid model agree over some sections.
+
+    Parameters
+    ----------
+    compared : sequence of SectionComparison
+
+    Returns
+    -------
+    str
+    """
     if apart(compared):
         return f"they differ by more than {100.0 * HAND_AGREEMENT:g} %"
     most = max(abs(c.difference) for c in compared)
@@ -82,12 +168,30 @@ def agreement(compared: Sequence[SectionComparison]) -> str:
 
 
 def checks_of(result: CheckResult) -> tuple[CheckOutcome, ...]:
-    """Return all checks of all load cases."""
+    """Return all checks of all load cases.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    tuple of CheckOutcome
+    """
     return tuple(check for load_case in result.load_cases.values() for check in load_case.checks)
 
 
 def tightness(check: CheckOutcome) -> float:
-    """Return the margin of the unfavourable end of a check's band, relative to the limit; −∞ if it is unknown."""
+    """Return the margin of the unfavourable end of a check's band, relative to the limit; −∞ if it is unknown.
+
+    Parameters
+    ----------
+    check : CheckOutcome
+
+    Returns
+    -------
+    float
+    """
     if check.value.unknowable:
         return -math.inf
     margin = check.value.low - check.limit if check.at_least else check.limit - check.value.high
@@ -95,7 +199,16 @@ def tightness(check: CheckOutcome) -> float:
 
 
 def tightest(checks: Sequence[CheckOutcome]) -> CheckOutcome:
-    """Return the check closest to its limit, or furthest beyond it."""
+    """Return the check closest to its limit, or furthest beyond it.
+
+    Parameters
+    ----------
+    checks : sequence of CheckOutcome
+
+    Returns
+    -------
+    CheckOutcome
+    """
     return min(checks, key=tightness)
 
 
@@ -116,7 +229,16 @@ def headline(result: CheckResult) -> str:
 
 
 def not_checked(what: tuple[str, ...]) -> str:
-    """Return what no check looks at as a sentence; empty where every check is there."""
+    """Return what no check looks at as a sentence; empty where every check is there.
+
+    Parameters
+    ----------
+    what : tuple of str
+
+    Returns
+    -------
+    str
+    """
     return f"Not checked: {'; '.join(what)}." if what else ""
 
 
@@ -144,7 +266,17 @@ def _headline(result: CheckResult) -> str:
 
 
 def gives_way(check: CheckOutcome) -> str:
-    """Return at which share of its load a linkage gives way, in words."""
+    """Return at which share of its load a linkage gives way, in words.
+
+    Parameters
+    ----------
+    check : CheckOutcome
+        Of the share of the load that a linkage holds.
+
+    Returns
+    -------
+    str
+    """
     value = check.value
     if value.low <= 0.0:  # unstable on the way, so that the share itself is not known
         return "the linkage becomes unstable below its full load"
@@ -171,5 +303,14 @@ def _with_limit(result: CheckResult, check: CheckOutcome) -> str:
 
 
 def sentence(text: str) -> str:
-    """Return a text that begins with a capital and ends with a full stop."""
+    """Return a text that begins with a capital and ends with a full stop.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+    """
     return f"{text[:1].upper()}{text[1:].rstrip('.')}."

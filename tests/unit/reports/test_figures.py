@@ -7,6 +7,7 @@ import pytest
 from matplotlib.image import imread
 
 from reports.figures import figures
+from reports.figures import scene as scenes
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 # Seen from outside counter-clockwise.
@@ -66,7 +67,7 @@ def test_a_missing_library_is_tried_again_with_another_renderer(solid, monkeypat
 
 
 def test_the_scene_states_a_round_scale_that_shows(solid):
-    scene = figures.scene_of(solid["GF"])
+    scene = scenes.scene_of(solid["GF"])
     shown = scene.scale * np.linalg.norm(scene.displacement, axis=1).max()
     length = np.ptp(scene.points[:, 0])
     assert 0.02 * length < shown <= 0.0801 * length
@@ -82,14 +83,14 @@ def test_the_close_view_is_as_wide_as_the_section_whatever_stands_out_of_it(soli
     """An arm once made the close view as large as the link."""
     link = solid["GF"]
     slender = replace(link.beam.section, half_y=0.5, half_z=0.4)
-    scene = figures.scene_of(replace(link, beam=replace(link.beam, section=slender)))
+    scene = scenes.scene_of(replace(link, beam=replace(link.beam, section=slender)))
     assert scene.close.half_width == pytest.approx(0.65 * 1.0)
     assert scene.close.half_width < 0.25 * np.ptp(scene.points[:, 1])
 
 
 def test_the_stress_that_decides_is_plotted(solid):
     link = solid["GF"]
-    ductile, brittle = figures.scene_of(link), figures.scene_of(replace(link, brittle=True))
+    ductile, brittle = scenes.scene_of(link), scenes.scene_of(replace(link, brittle=True))
     nodal = link.stress.nodal
     tensors = nodal[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
     largest = np.linalg.eigvalsh(tensors)[:, -1]
@@ -102,7 +103,7 @@ def test_the_stress_that_decides_is_plotted(solid):
 def test_a_body_that_does_not_move_is_drawn_as_it_is(solid):
     link = solid["GF"]
     still = replace(link.governing_case, displacement=np.zeros_like(link.governing_case.displacement))
-    assert figures.scene_of(replace(link, governing_case=still)).scale == 1.0
+    assert scenes.scene_of(replace(link, governing_case=still)).scale == 1.0
 
 
 def test_quadratic_cells_are_split_without_gaps(solid):
@@ -113,14 +114,14 @@ def test_quadratic_cells_are_split_without_gaps(solid):
         a, b, c, d = np.moveaxis(space.nodes[tetrahedra], 1, 0)
         return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6.0
 
-    parts = volume(cells[:, list(map(list, figures._CORNERS_AND_EDGES))].reshape(-1, 4)).reshape(-1, 8)
+    parts = volume(cells[:, list(map(list, scenes._CORNERS_AND_EDGES))].reshape(-1, 4)).reshape(-1, 8)
     straight = np.abs(parts.sum(axis=1) - volume(cells[:, :4])) < 1e-12
     assert (parts > 0.0).all()
     assert straight.any()
 
 
 def test_triangles_cover_the_surface(solid):
-    scene, space = figures.scene_of(solid["GF"]), solid["GF"].stress.space
+    scene, space = scenes.scene_of(solid["GF"]), solid["GF"].stress.space
     assert len(scene.triangles) == 4 * len(space.boundary)
     a, b, c = np.moveaxis(scene.points[scene.triangles], 1, 0)
     # A closed surface: its area vectors sum to nothing.
@@ -129,30 +130,30 @@ def test_triangles_cover_the_surface(solid):
 
 @pytest.mark.parametrize(("value", "rounded"), [(2500.0, 2000.0), (5.0, 5.0), (0.99, 0.5), (1.0, 1.0), (11.0, 10.0)])
 def test_scales_are_round(value, rounded):
-    assert figures.round_scale(value) == pytest.approx(rounded)
+    assert scenes.round_scale(value) == pytest.approx(rounded)
 
 
 def test_a_corner_is_seen_from_its_side_alone():
     toward = np.array([1.0, 1.0, 1.0]) / np.sqrt(3.0)
-    assert figures._seen(CUBE, FACES, 7, toward)
-    assert not figures._seen(CUBE, FACES, 7, -toward)
-    assert figures._seen(CUBE, FACES, 0, -toward)
+    assert scenes._seen(CUBE, FACES, 7, toward)
+    assert not scenes._seen(CUBE, FACES, 7, -toward)
+    assert scenes._seen(CUBE, FACES, 0, -toward)
 
 
 def test_the_close_view_finds_a_free_direction():
-    direction = figures._free_direction(CUBE, FACES, 7, 1.0)
+    direction = scenes._free_direction(CUBE, FACES, 7, 1.0)
     assert direction @ np.ones(3) > 0.0
-    assert figures._free_direction(CUBE, FACES, 3, 1.0)[0] < 0.9
+    assert scenes._free_direction(CUBE, FACES, 3, 1.0)[0] < 0.9
 
 
 def test_what_is_walled_in_is_cut_open():
     shell = np.vstack([CUBE, 4.0 * CUBE - 1.5])
     walled = np.vstack([FACES, FACES + 8])
-    assert figures._free_direction(shell, walled, 7, 1.0) is None
-    assert figures._close_view(shell, walled, 7, 1.0).cut == 1.0
+    assert scenes._free_direction(shell, walled, 7, 1.0) is None
+    assert scenes._close_view(shell, walled, 7, 1.0).cut == 1.0
 
 
 def test_a_view_is_right_handed():
-    for toward in (figures._TOWARD, np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0])):
-        right, up = figures._axes_of(toward)
+    for toward in (scenes._TOWARD, np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0])):
+        right, up = scenes._axes_of(toward)
         assert np.cross(right, up) == pytest.approx(toward)

@@ -41,18 +41,18 @@ def test_components_are_those_that_act(name, overrides, load_case, components):
 
 def test_the_table_of_a_plane_case_stays_plain():
     _, words = statics_section(WING)
-    assert "Joint forces [N], global axes Joint pushes F x F y magnitude A AG pushes AE 0.5011 0.8095 0.9520" in words
+    assert "Joint forces [N], global axes Joint by → on F x F y magnitude A AG → AE 0.5011 0.8095 0.9520" in words
     assert "The links are massless in this load case" in words
 
 
 def test_the_table_out_of_the_plane_holds_the_whole_wrench():
     result, words = statics_section(FLIGHT)
     assert (
-        "Joint forces [N] and moments about the joint [N·mm], global axes Joint pushes F x F y F z magnitude" in words
+        "Joint forces [N] and moments about the joint [N·mm], global axes Joint by → on F x F y F z magnitude" in words
     )
     wrench = result.load_cases["as-published"].reactions.joints["A"].wrench
     assert wrench[2] == pytest.approx(-0.1393, abs=5e-5)
-    assert "A AG pushes AE 0.5011 0.8095 −0.1393 0.9621 −7.660 −21.85" in words
+    assert "A AG → AE 0.5011 0.8095 −0.1393 0.9621 −7.660 −21.85" in words
     assert "CF carries 13.9 g spread from F to C and CH carries 11.58 g spread from C to H" in words
 
 

@@ -1,0 +1,97 @@
+"""Results as plain data that JSON can hold."""
+
+import math
+from collections.abc import Iterable, Mapping
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from fea.common.band import Band
+from fea.common.verdict import CheckOutcome
+
+
+def data(value: Any) -> Any:
+    """Return a value as plain data.
+
+    Parameters
+    ----------
+    value : object
+        A band becomes an object with its sources of error, an array or tuple a list, an enumeration its text.
+
+    Returns
+    -------
+    object
+        Of dict, list, str, int, float, bool and None.
+    """
+    if isinstance(value, Band):
+        kinds = [source.kind.name.lower() for source in value.sources]
+        return entries(value, "value low high") | {"holds": list(value.texts), "kinds": kinds}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): data(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [data(item) for item in value]
+    return value.value if isinstance(value, Enum) else value
+
+
+def entries(record: object, names: str) -> dict[str, Any]:
+    """Return some fields of a record as plain data.
+
+    Parameters
+    ----------
+    record : object
+        Any record, such as a dataclass.
+    names : str
+        Names of its fields, separated by spaces.
+
+    Returns
+    -------
+    dict
+        Name -> value as plain data.
+    """
+    return {name: data(getattr(record, name)) for name in names.split()}
+
+
+def check_records(checks: Iterable[CheckOutcome]) -> list[dict[str, Any]]:
+    """Return the outcomes of checks as plain data.
+
+    Parameters
+    ----------
+    checks : iterable of CheckOutcome
+
+    Returns
+    -------
+    list of dict
+        One entry per check; the unit of a pure number is ``"1"``.
+    """
+    names = "name link load_case quantity value limit verdict reason"
+    return [entries(check, names) | {"unit": check.unit or "1"} for check in checks]
+
+
+def finite(value: Any, nulls: dict[str, str], path: str = "") -> Any:
+    """Return data in which None replaces every infinite or undefined number.
+
+    Parameters
+    ----------
+    value : object
+        Plain data.
+    nulls : dict
+        Receives, for every number that was replaced, its path and what it was.
+    path : str, optional
+        Where the value stands in the whole data.
+
+    Returns
+    -------
+    object
+        A copy.
+    """
+    if isinstance(value, Mapping):
+        return {key: finite(item, nulls, f"{path}.{key}" if path else str(key)) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(item, nulls, f"{path}.{i}") for i, item in enumerate(value)]
+    if isinstance(value, float) and not math.isfinite(value):
+        nulls[path] = "not a number" if math.isnan(value) else "infinite" if value > 0.0 else "minus infinite"
+        return None
+    return float(value) if isinstance(value, float) else value
