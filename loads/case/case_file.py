@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from geometry.base.errors import CaseError
-from geometry.base.version import CASE_SCHEMA_VERSION, alula_version
+from geometry.base.version import CASE_SCHEMA_VERSION
 from loads.case.case import Case
 from loads.case.revisable import Origin
 from loads.text.entries import alike, names_tables
@@ -197,8 +197,8 @@ def _check_version(data: Mapping[str, Any]) -> None:
     shown = printable(repr(stated))
     if type(stated) is int and stated > CASE_SCHEMA_VERSION:
         raise CaseError(
-            f"schema_version: the case is written in version {shown} of the format, but alula {alula_version()} reads "
-            f"version {CASE_SCHEMA_VERSION}; install a newer alula"
+            f"schema_version: the case is written in version {shown} of the format, but this alula reads version "
+            f"{CASE_SCHEMA_VERSION}; install a newer alula"
         )
     if type(stated) is not int or stated != CASE_SCHEMA_VERSION:
         raise CaseError(f"schema_version: it is {shown}, but there is no such version of the format; {remedy}")

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from geometry.base.errors import CaseError
-from geometry.base.version import CASE_SCHEMA_VERSION, RESULT_SCHEMA_VERSION, alula_version
+from geometry.base.version import CASE_SCHEMA_VERSION, RESULT_SCHEMA_VERSION
 from loads.case.case import Case
 from loads.case.case_file import validate
 
@@ -85,7 +85,7 @@ def test_what_0_1_let_pass_and_is_a_mistake_is_told_with_its_remedy():
 @pytest.mark.parametrize(
     ("stated", "told"),
     [
-        (2, "the case is written in version 2 of the format, but alula VERSION reads version 1; install a newer alula"),
+        (2, "the case is written in version 2 of the format, but this alula reads version 1; install a newer alula"),
         (10**30, "the case is written in version 1000+ of the format, but .*; install a newer alula"),
         (0, "it is 0, but there is no such version of the format; write schema_version = 1"),
         (-1, "it is -1, but there is no such version of the format; write schema_version = 1"),
@@ -97,7 +97,6 @@ def test_what_0_1_let_pass_and_is_a_mistake_is_told_with_its_remedy():
 def test_another_version_is_refused_with_what_to_do(stated, told):
     with pytest.raises(CaseError) as refused:
         validate(FORMAT_1["cases"]["owl-wing-static"] | {"schema_version": stated})
-    told = told.replace("VERSION", re.escape(alula_version()))
     assert re.fullmatch(f"schema_version: {told}", str(refused.value))
 
 
