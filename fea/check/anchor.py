@@ -60,7 +60,7 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
         about=about,
         total=_rounded(total, size),
         deformed=moved is not None,
-        unstable=moved is None and case.large_displacement.followed,
+        unstable=case.large_displacement.gives_way,
     )
 
 

@@ -95,7 +95,7 @@ def _at(
     try:
         forces = joint_forces(soft, pose, loads)
         moved = examine(soft, title, forces, loads, masses)
-        if moved.state in ("no equilibrium", "unstable"):
+        if moved.gives_way:
             return None
         cut = {link: cut_link(soft, link, title, moved, forces.reactions, loads, masses) for link in soft.checked_links}
         hands = {link: link_by_hand(soft, link, what, masses) for link, what in cut.items()}

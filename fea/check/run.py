@@ -21,6 +21,7 @@ from fea.frame.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.buckling import buckling_outcomes
 from fea.outcomes.judge import outcomes
+from fea.outcomes.linkage import unless_it_gives_way
 from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.pins import PinStress, stress_at
 from fea.outcomes.result import CheckResult, LoadCaseResult
@@ -166,12 +167,13 @@ class _LoadCase:
             for link, hand in self.hands.items()
         }
         pins = _pins(case, reactions)
-        checks: Iterable[CheckOutcome] = (
+        found = (
             *outcomes(case, title, links, pins, moved, self.uneven.joints),
             *_bearing(case, title, reactions, self.uneven),
             *buckling_outcomes(case, title, {link: hand.check for link, hand in self.hands.items()}, moved),
             *motors,
         )
+        checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {title} if moved.gives_way else ())
         if self.idle:
             joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
             checks = undecided(checks, title, self.size, joints)

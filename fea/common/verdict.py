@@ -74,6 +74,10 @@ class Quantity(StrEnum):
     TORQUE_SHARE = "share of the motor's torque at its speed", "", Sense.AT_MOST
 
 
+MOTOR_QUANTITIES = (Quantity.DRIVE_POWER, Quantity.DRIVE_SPEED, Quantity.DRIVE_TORQUE, Quantity.TORQUE_SHARE)
+"""What is asked of a motor over the motion of a rigid linkage."""
+
+
 @dataclass(frozen=True)
 class Subject:
     """What a check is about; its text is what files and tables show.

@@ -122,6 +122,11 @@ class LargeDisplacement:
         """True where equilibrium was sought on the deformed shape, so that its answer rules."""
         return self.state in ("deformed", "unstable", "no equilibrium")
 
+    @property
+    def gives_way(self) -> bool:
+        """True where no stable equilibrium was found under the whole load."""
+        return self.state in ("unstable", "no equilibrium")
+
 
 def span(pose: Pose) -> float:
     """Return the largest distance between two points of the pose.

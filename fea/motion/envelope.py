@@ -21,6 +21,7 @@ from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from fea.motion.link_envelope import link_envelope
 from fea.motion.link_history import LinkHistory, link_histories
 from fea.motion.linkage_history import linkage_outcomes
+from fea.outcomes.linkage import unless_it_gives_way
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
 from fea.refine.refinement import START, Effort, refine_links
@@ -128,7 +129,7 @@ def envelope_case(
         links[link] = over_motion(link, space, repetitions=repetitions, refined=solid, notes=solid.solution.notes)
     timings["motion of the solids"] = time.perf_counter() - begin
     checks = [*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, loaded, evaluated)]
-    checks += linkage_outcomes(moved, evaluated)
+    checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
     idle = set(case.load_cases) - {history.load_case for found in loaded.values() for history in found}
     for title in (title for title in case.load_cases if title in idle):
         forces = {name: np.linalg.norm(f[evaluated], axis=1).max() for name, f in moved.forces[title].forces.items()}

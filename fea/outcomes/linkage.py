@@ -8,13 +8,13 @@ outcome.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind, distinct
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict
+from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, CheckOutcome, Quantity, Verdict
 from fea.frame.large_displacement import LEAST_FACTOR, LargeDisplacement
 from fea.frame.stability import SNAP, growth
 from fea.outcomes.buckling import NAME as BUCKLING
@@ -22,6 +22,7 @@ from fea.outcomes.buckling import beyond_strength
 from loads.case.case import Case
 
 NAME = "large displacement"
+NO_EQUILIBRIUM = "the linkage gives way, so the number is that of the undeformed pose, which is no equilibrium"
 
 
 def linkage_outcomes(
@@ -91,6 +92,37 @@ def by_linear_theory(
     if least < LEAST_FACTOR:
         return found.because(f"{how}; displacements are up to {growth(least):.3g} times those of linear theory")
     return found
+
+
+def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] = ()) -> list[CheckOutcome]:
+    """Return outcomes of which none passes that rests on an equilibrium which the linkage does not have.
+
+    Parameters
+    ----------
+    outcomes : sequence of CheckOutcome
+        Of one or several load cases.
+    lost : collection of str, optional
+        Load cases without stable equilibrium, besides those under which the linkage as a whole fails.
+
+    Returns
+    -------
+    list of CheckOutcome
+        Under these load cases links and pins that passed are undecided. What fails in the undeformed pose still
+        fails. Motors are judged on a rigid linkage and stay; a point without equilibrium has no value anyway.
+    """
+    failed = {one.load_case for one in outcomes if one.subject == LINKAGE and one.verdict is Verdict.FAIL}
+    failed |= set(lost)
+    return [_in_no_equilibrium(one) if one.load_case in failed and _rests_on_it(one) else one for one in outcomes]
+
+
+def _rests_on_it(outcome: CheckOutcome) -> bool:
+    return outcome.subject.kind in ("link", "pin") and outcome.quantity not in MOTOR_QUANTITIES
+
+
+def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
+    if outcome.verdict is Verdict.PASS:
+        return outcome.left_open(NO_EQUILIBRIUM)
+    return outcome.because(f"{outcome.reason}; {NO_EQUILIBRIUM}")
 
 
 def _followed(title: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome:

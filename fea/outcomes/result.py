@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fea.beam.theory import BeamCheck, CantileverCheck
 from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Verdict
+from fea.common.verdict import LINKAGE, CheckOutcome, Verdict
 from fea.frame.joint_forces import Held, JointForces
 from fea.frame.large_displacement import LargeDisplacement
 from fea.outcomes.opinion import SecondOpinion
@@ -226,6 +226,12 @@ class LoadCaseResult:
     def reactions(self) -> Reactions:
         """Joint reactions in the undeformed pose."""
         return self.forces.reactions
+
+    @property
+    def gives_way(self) -> bool:
+        """True where the linkage as a whole does not hold the load, so that no link passes."""
+        failed = any(check.subject == LINKAGE and check.verdict is Verdict.FAIL for check in self.checks)
+        return failed or self.large_displacement.gives_way
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -202,6 +202,7 @@ def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[
     return {
         "name": name,
         "load_case": worst.name,
+        "gives_way": worst.gives_way,
         "found": found,
         "material": result.case.material_of(name),
         "part": result.case.part_of(name),

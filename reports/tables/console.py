@@ -135,6 +135,8 @@ def _links(case: LoadCaseResult, console: "Console") -> None:
         )
         for name, link in case.links.items()
     ]
+    if case.gives_way:
+        say(console, "Links in the undeformed pose. The linkage gives way, so no link passes:")
     say_table(console, columns, rows)
 
 

@@ -11,7 +11,7 @@ from fea.beam.cut_free import beam_loads
 from fea.beam.theory import internal_forces
 from fea.check.run import check_case, solve_case_statics
 from fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
-from fea.common.verdict import Verdict
+from fea.common.verdict import LINKAGE, Verdict
 from fea.frame.build import build_frame
 from fea.frame.corotational import solve_large_displacement
 from fea.frame.deformed_links import balanced, bent, in_slots
@@ -88,6 +88,23 @@ def test_its_verdict_is_fail_and_the_undeformed_figures_stay():
     assert off.verdict is not Verdict.FAIL
     assert not any(c.name == "large displacement" for c in off.load_cases["weight"].checks)
     assert any("large_displacement = off" in warning for warning in off.warnings)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "load", "lost"),
+    [((), -0.25, True), (HELD_AT_GF, -0.25, False), (('large_displacement="off"',), -5.0, True)],
+)
+def test_no_link_passes_where_the_linkage_gives_way(overrides, load, lost):
+    """Links once passed, by the forces of the undeformed pose, beside a linkage that does not hold the load."""
+    limits = 'checks.each={type="displacement", maximum="5 mm"}', 'checks.eyes={type="bearing"}'
+    case = under([0, load], *overrides, *limits)
+    checks = check_case(case, name="owl-wing-static", fidelity="beam").load_cases["weight"].checks
+    asked = [check for check in checks if check.subject != LINKAGE]
+    assert {check.name for check in asked} >= {"strength", "each", "pins", "eyes", "buckling"}
+    assert any(check.verdict is Verdict.PASS for check in asked) is not lost
+    assert {"gives way" in check.reason for check in asked} == {lost}
+    if load < -1.0:  # what fails in the pose as it stands still fails
+        assert any(check.verdict is Verdict.FAIL for check in asked)
 
 
 def test_an_elastic_answer_beyond_the_strength_says_that_it_is_void():

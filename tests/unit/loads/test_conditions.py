@@ -109,8 +109,9 @@ def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
     assert pulled[0] == pytest.approx(pulled[1], rel=1e-12), "nothing bends ED"
     (root,) = [c for c in long.checks if c.quantity == "sustained stress" and c.link == "AE"]
     assert (root.verdict, root.limit, root.unit) == (Verdict.UNDECIDED, 11.0, "MPa")
-    others = {c.link: c.verdict for c in long.checks if c.quantity == "sustained stress" and c.link != "AE"}
-    assert set(others.values()) == {Verdict.PASS}, "by calibrated hand calculation"
+    others = [c for c in long.checks if c.quantity == "sustained stress" and c.link != "AE"]
+    assert all(c.value.high < c.limit for c in others), "by calibrated hand calculation"
+    assert {c.verdict for c in others} == {Verdict.UNDECIDED}, "the linkage gives way once it has crept"
     warm = checked('conditions.duration="10 year"', 'conditions.temperature="40 degC"')
     (root,) = [c for c in warm.checks if c.quantity == "sustained stress" and c.link == "AE"]
     assert root.limit == pytest.approx(7.7)
