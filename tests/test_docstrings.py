@@ -23,7 +23,6 @@ NOT_YET = (
     "fea/outcomes",
     "geometry/linkage",
     "geometry/mechanisms",
-    "geometry/meshing",
     "loads/states",
     "loads/statics",
 )

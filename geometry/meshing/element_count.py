@@ -28,10 +28,27 @@ _SQUARE = np.modf(np.arange(1, _SAMPLES + 1)[:, None] * np.array([0.754877666246
 
 
 def estimated_elements(gmsh: Any, solid: Solid, sizes: Sizes, turn_elements: int) -> float:
-    """Return ``PER_SIZE`` (∫dA/h² + ∫dV/h³), h the size at each point, on surfaces at most what their curvature allows.
+    """Estimate the number of tetrahedra.
 
+    It is ``PER_SIZE`` (∫dA/h² + ∫dV/h³), h the size at each point, on surfaces at most what their curvature allows.
     Sizes inside are those at a quarter and three quarters of the depth V/A from the surface, on the coarser side of it:
     that needs no test of what lies inside, which takes the kernel a tenth of a second for each point.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with the solid as its model.
+    solid : Solid
+        The solid.
+    sizes : callable
+        Element sizes at points.
+    turn_elements : int
+        Least number of element edges on a full turn of a round surface.
+
+    Returns
+    -------
+    float
+        The estimate, right within a factor of ``SAFETY``.
     """
     occ = gmsh.model.occ
     volume = occ.getMass(3, solid.volume)

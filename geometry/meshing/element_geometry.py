@@ -40,10 +40,25 @@ def _cubic_lattice() -> tuple[_Array, _Array]:
 
 
 def jacobian_coefficients(points: _Array, cells: _Ints) -> _Array:
-    """Return the Bernstein coefficients of each element's Jacobian determinant, (m, 1) or (m, 20).
+    """Return the Bernstein coefficients of each element's Jacobian determinant.
 
-    Their least and greatest value bound the determinant everywhere in the element; their mean is
-    six times its volume (Johnen, Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359-372, section 3).
+    Their least and greatest value bound the determinant everywhere in the element; their mean is six times its volume.
+
+    Parameters
+    ----------
+    points : ndarray
+        Nodes (n, 3).
+    cells : ndarray
+        Elements (m, 4) or (m, 10), node numbers.
+
+    Returns
+    -------
+    ndarray
+        Coefficients (m, 1) of straight elements, (m, 20) of curved ones.
+
+    References
+    ----------
+    Johnen, Remacle, Geuzaine, J. Comput. Phys. 233 (2013) 359-372, section 3.
     """
     x = points[cells]
     if cells.shape[1] == 4:
@@ -67,51 +82,60 @@ def _determinants(matrices: _Array) -> _Array:
 
 
 def scaled_jacobians(points: _Array, cells: _Ints) -> _Array:
-    """Return each element's least over greatest Jacobian determinant, (m,): 1 straight, not positive if invalid.
+    """Return each element's least over greatest Jacobian determinant: 1 straight, not positive if invalid.
 
     A guaranteed lower bound while positive, since it is taken from Bernstein coefficients.
+
+    Parameters
+    ----------
+    points : ndarray
+        Nodes (n, 3).
+    cells : ndarray
+        Elements (m, 4) or (m, 10), node numbers.
+
+    Returns
+    -------
+    ndarray
+        Ratios (m,).
     """
     coefficients = jacobian_coefficients(points, cells)
     greatest = np.abs(coefficients).max(axis=1)
     return np.asarray(coefficients.min(axis=1) / np.where(greatest > 0.0, greatest, 1.0))
 
 
-def shape_quality(points: _Array, cells: _Ints) -> _Array:
-    """Return 12 (3V)^(2/3) / Σl² of each element's corners, (m,): 1 for the regular tetrahedron, 0 for a flat one.
-
-    Knupp, SIAM J. Sci. Comput. 23 (2001) 193-218 (inverse mean ratio of a tetrahedron).
-    """
-    x = points[cells[:, :4]]
-    volume = np.linalg.det(x[:, 1:] - x[:, :1]) / 6.0
-    i, j = TETRA_EDGES.T
-    squares = ((x[:, i] - x[:, j]) ** 2).sum(axis=(1, 2))
-    return np.asarray(12.0 * np.cbrt(3.0 * volume) ** 2 * np.sign(volume) / squares)
-
-
 def element_volumes(points: _Array, cells: _Ints) -> _Array:
-    """Return each element's volume (m,), exactly for curved ones too."""
+    """Return each element's volume, exactly for curved ones too.
+
+    Parameters
+    ----------
+    points : ndarray
+        Nodes (n, 3).
+    cells : ndarray
+        Elements (m, 4) or (m, 10), node numbers.
+
+    Returns
+    -------
+    ndarray
+        Volumes (m,), negative of elements turned inside out.
+    """
     return np.asarray(jacobian_coefficients(points, cells).mean(axis=1) / 6.0)
 
 
-def volumes_and_moments(points: _Array, cells: _Ints) -> tuple[_Array, _Array]:
-    """Return each element's volume (m,) and its first moment ∫x dV (m, 3), exactly for curved ones too."""
-    volume = element_volumes(points, cells)
-    if cells.shape[1] == 4:
-        return volume, volume[:, None] * points[cells].mean(axis=1)
-    at, weights = _tetra_rule()
-    bary = np.hstack([1.0 - at.sum(axis=1, keepdims=True), at])
-    i, j = TETRA_EDGES.T
-    shapes = np.hstack([bary * (2.0 * bary - 1.0), 4.0 * bary[:, i] * bary[:, j]])
-    x = points[cells]
-    moment = np.zeros((len(cells), 3))
-    for shape, gradient, weight in zip(shapes, _gradients(TETRA_EDGES, at), weights, strict=True):
-        determinant = _determinants(x.transpose(0, 2, 1) @ gradient)
-        moment += weight * determinant[:, None] * np.einsum("enx,n->ex", x, shape)
-    return volume, moment
-
-
 def triangle_areas(points: _Array, triangles: _Ints) -> _Array:
-    """Return the area of each triangle of 3 or 6 nodes, (k,); curved ones to a relative 1e-6 of mild curvature."""
+    """Return the area of each triangle, of a curved one to a relative 1e-6 while its curvature is mild.
+
+    Parameters
+    ----------
+    points : ndarray
+        Nodes (n, 3).
+    triangles : ndarray
+        Triangles (k, 3) or (k, 6), node numbers.
+
+    Returns
+    -------
+    ndarray
+        Areas (k,).
+    """
     x = points[triangles]
     if triangles.shape[1] == 3:
         return np.asarray(np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1) / 2.0)
@@ -124,34 +148,36 @@ def triangle_areas(points: _Array, triangles: _Ints) -> _Array:
 
 
 @cache
-def _line_rule() -> tuple[_Array, _Array]:
-    at, weights = np.polynomial.legendre.leggauss(5)
-    return (at + 1.0) / 2.0, weights / 2.0
-
-
-@cache
 def _triangle_rule() -> tuple[_Array, _Array]:
     """Return the Gauss rule of the square, collapsed onto the triangle: exact to degree 8."""
-    s, w = _line_rule()
+    at, weights = np.polynomial.legendre.leggauss(5)
+    s, w = (at + 1.0) / 2.0, weights / 2.0
     u, v = (a.ravel() for a in np.meshgrid(s, s, indexing="ij"))
     return np.stack([u, v * (1.0 - u)], axis=1), np.outer(w, w).ravel() * (1.0 - u)
 
 
-@cache
-def _tetra_rule() -> tuple[_Array, _Array]:
-    """Return the Gauss rule of the cube, collapsed onto the tetrahedron: exact to degree 7."""
-    s, w = _line_rule()
-    u, v, t = (a.ravel() for a in np.meshgrid(s, s, s, indexing="ij"))
-    weights = np.einsum("i,j,k->ijk", w, w, w).ravel() * (1.0 - u) ** 2 * (1.0 - v)
-    return np.stack([u, v * (1.0 - u), t * (1.0 - u) * (1.0 - v)], axis=1), weights
-
-
 def flatten(points: _Array, cells: _Ints, least: float) -> tuple[_Array, int]:
-    """Return points with elements of less than ``least`` scaled Jacobian flattened, and the number of those.
+    """Flatten curved elements that are nearly invalid.
 
     The mid-nodes of such an element move a quarter of the way to the middle of their edges, and all the
     way from the eighth time on. Moving a mid-node bends the neighbours too, so this repeats until every
     element is valid; it ends, since elements with straight edges have scaled Jacobians of one.
+
+    Parameters
+    ----------
+    points : ndarray
+        Nodes (n, 3).
+    cells : ndarray
+        Elements (m, 10), node numbers.
+    least : float
+        Scaled Jacobian below which an element is flattened.
+
+    Returns
+    -------
+    points : ndarray
+        The nodes (n, 3) in their new places.
+    flattened : int
+        Number of elements that were flattened.
     """
     points = points.copy()
     times = np.zeros(len(cells), dtype=int)

@@ -51,10 +51,15 @@ KERNEL_MEMORY_LIMIT = MeshSettings.memory_limit
 class MassProperties:
     """Volume integrals of a body in its link's frame.
 
-    volume     mm³
-    centroid   (3,) mm
-    inertia    (3, 3) mm⁵: the inertia tensor about the centroid for unit density, products of inertia
-               with their minus sign (off-diagonal entries -∫xy dV)
+    Attributes
+    ----------
+    volume : float
+        Volume [mm³].
+    centroid : ndarray
+        Centroid (3,) [mm].
+    inertia : ndarray
+        Inertia tensor (3, 3) about the centroid for unit density, products of inertia with their minus sign
+        (off-diagonal entries -∫xy dV) [mm⁵].
     """
 
     volume: float
@@ -63,10 +68,26 @@ class MassProperties:
 
 
 def mesh_body(body: Body, settings: MeshSettings | None = None) -> TaggedMesh:
-    """Mesh a body into tetrahedra with named surfaces (node order as ``TaggedMesh`` says; cells not sorted).
+    """Mesh a body into tetrahedra with named surfaces.
 
-    Raises ``CaseError`` if the body cannot be built as described, ``CannotRunError`` if the kernel or
-    the mesher fails, crashes or exceeds a limit.
+    Parameters
+    ----------
+    body : Body
+        The body.
+    settings : MeshSettings, optional
+        How fine, and what it may cost.
+
+    Returns
+    -------
+    TaggedMesh
+        The mesh, its cells not sorted.
+
+    Raises
+    ------
+    CaseError
+        If the body cannot be built as described.
+    CannotRunError
+        If the kernel or the mesher fails, crashes or exceeds a limit.
     """
     settings = settings or MeshSettings()
     check_body(body)
@@ -77,9 +98,21 @@ def mesh_body(body: Body, settings: MeshSettings | None = None) -> TaggedMesh:
 def mesh_bodies(
     bodies: Mapping[str, Body], settings: MeshSettings | None = None, *, processes: int | None = None
 ) -> dict[str, TaggedMesh]:
-    """Mesh several bodies by name, at most ``processes`` at once (one per core unless told).
+    """Mesh several bodies at once; errors of ``mesh_body`` begin with the body's name.
 
-    Raises as ``mesh_body`` does, with the body's name before the sentence.
+    Parameters
+    ----------
+    bodies : mapping of str to Body
+        Bodies by name.
+    settings : MeshSettings, optional
+        For all of them.
+    processes : int, optional
+        How many run at once; one for each core unless given.
+
+    Returns
+    -------
+    dict of str to TaggedMesh
+        Meshes by name.
     """
 
     def one(item: tuple[str, Body]) -> TaggedMesh:
@@ -90,9 +123,17 @@ def mesh_bodies(
 
 
 def mass_properties(body: Body) -> MassProperties:
-    """Return the body's volume, centroid and inertia by the geometry kernel.
+    """Return a body's volume, centroid and inertia by the geometry kernel; errors are those of ``mesh_body``.
 
-    Raises ``CaseError`` and ``CannotRunError`` as ``mesh_body`` does.
+    Parameters
+    ----------
+    body : Body
+        The body.
+
+    Returns
+    -------
+    MassProperties
+        Its volume integrals.
     """
     check_body(body)
     volume, centroid, inertia = _run("mass", body)
@@ -102,7 +143,17 @@ def mass_properties(body: Body) -> MassProperties:
 def reentrant_edges(body: Body) -> list[ReentrantEdge]:
     """Return the sharp edges at which the material's angle exceeds 180°, where linear elastic stress is infinite.
 
-    Found on the kernel's own edges. Raises ``CaseError`` and ``CannotRunError`` as ``mesh_body`` does.
+    Found on the kernel's own edges; errors are those of ``mesh_body``.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+
+    Returns
+    -------
+    list of ReentrantEdge
+        The edges.
     """
     check_body(body)
     edges: list[ReentrantEdge] = _run("reentrant", body)
@@ -110,9 +161,19 @@ def reentrant_edges(body: Body) -> list[ReentrantEdge]:
 
 
 def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:
-    """Write each body as ``<name>.step`` (in mm) into an existing folder and return the paths.
+    """Write each body as ``<name>.step`` in mm; errors of ``mesh_body`` begin with the body's name.
 
-    Raises as ``mesh_body`` does, with the body's name before the sentence.
+    Parameters
+    ----------
+    bodies : mapping of str to Body
+        Bodies by name.
+    folder : Path
+        An existing folder.
+
+    Returns
+    -------
+    list of Path
+        The files.
     """
     paths = []
     for file, (name, body) in zip(step_names(bodies), bodies.items(), strict=True):
@@ -122,7 +183,18 @@ def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:
 
 
 def step_names(bodies: Iterable[str]) -> list[str]:
-    """Return the names of the STEP files of bodies."""
+    """Return the names of the STEP files of bodies.
+
+    Parameters
+    ----------
+    bodies : iterable of str
+        Names of bodies.
+
+    Returns
+    -------
+    list of str
+        Names of files.
+    """
     return [f"{name}.step" for name in bodies]
 
 
@@ -143,11 +215,7 @@ def _command(folder: Path) -> list[str]:
 
 
 def _run(task: str, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memory: float = KERNEL_MEMORY_LIMIT) -> Any:
-    """Do a task of ``geometry.meshing.mesh_worker`` in a child process and return its result.
-
-    time_limit   seconds
-    memory       bytes that the child may hold
-    """
+    """Do a task of ``geometry.meshing.mesh_worker`` in a child process and return its result."""
     try:
         with tempfile.TemporaryDirectory(prefix="alula-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
@@ -160,8 +228,8 @@ def _run(task: str, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memo
                 raise CannotRunError(_obituary(status, told)) from None
     except subprocess.TimeoutExpired:
         raise CannotRunError(
-            f"the mesher was stopped after its time limit of {time_limit:g} s; use a coarser size (solid.mesh_size) "
-            "or check with fidelity beam"
+            f"the mesher was stopped after its time limit of {time_limit:g} s; increase solid.mesh_size or check with "
+            "--fidelity beam"
         ) from None
     except OSError as error:
         raise CannotRunError(
@@ -175,14 +243,14 @@ def _run(task: str, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memo
     if kind == "memory":
         raise CannotRunError(
             f"the mesher needed more than the {memory / 1e9:.3g} GB of memory that it may take; "
-            "use a coarser size (solid.mesh_size)"
+            "increase solid.mesh_size"
         )
     return result
 
 
 def _obituary(status: int, told: str) -> str:
     if status == -signal.SIGKILL:
-        return "the mesher was killed (SIGKILL), as the system does when memory runs out; raise solid.mesh_size"
+        return "the mesher was killed (SIGKILL), as the system does when memory runs out; increase solid.mesh_size"
     if status < 0:
         name = signal.Signals(-status).name
         return f"the mesher crashed ({name}); change the part's dimensions or the mesh size a little"

@@ -11,20 +11,31 @@ from numpy.typing import NDArray
 class MeshSettings:
     """Element sizes as ratios, so that a part at any scale gets the same mesh; and limits.
 
-    size            general element edge as a fraction of the section's smaller dimension
-                    (outer diameter of a tube; the lesser of width and thickness of a bar)
-    bore_elements   element edges round a pin hole
-    hole_elements   element edges round each hole of a row
-    turn_elements   least number of element edges on a full turn of any other round surface
-    fillet_size     element edge along fillets as a fraction of the fillet radius
-                    (at sharp junctions of the general size)
-    growth          growth of the element edge per distance from a hole or fillet
-    curved          True: quadratic elements that follow round surfaces (10 nodes); False: straight (4 nodes)
-    size_points     (n, 3) mm, with ``size_values`` (n,) mm: element edges at points, interpolated linearly
-                    between; these replace all sizes above but for ``turn_elements``
-    time_limit      seconds of wall time for one body
-    max_elements    largest number of tetrahedra that is accepted
-    memory_limit    bytes that the mesher may hold; at most half of what the machine has, since two may run at once
+    Attributes
+    ----------
+    size : float
+        General element edge as a fraction of the section's smaller size.
+    bore_elements : int
+        Element edges round a pin hole.
+    hole_elements : int
+        Element edges round each hole of a row.
+    turn_elements : int
+        Least number of element edges on a full turn of any other round surface.
+    fillet_size : float
+        Element edge along fillets as a fraction of the fillet radius (at sharp junctions of the general size).
+    growth : float
+        Growth of the element edge per distance from a hole or fillet.
+    curved : bool
+        Whether elements are quadratic and follow round surfaces (10 nodes), else straight (4 nodes).
+    size_points, size_values : ndarray, optional
+        Points (n, 3) and the element edges there (n,), interpolated linearly between [mm]; they replace all sizes above
+        but for ``turn_elements``.
+    time_limit : float
+        Wall time for one body [s].
+    max_elements : int
+        Largest number of tetrahedra that is accepted.
+    memory_limit : float
+        What the mesher may hold [bytes]; at most half of what the machine has, since two may run at once.
     """
 
     size: float = 0.25
@@ -41,7 +52,18 @@ class MeshSettings:
     memory_limit: float = 6e9
 
     def scaled(self, factor: float) -> "MeshSettings":
-        """Return the same settings with every element edge longer by ``factor`` (a turn keeps at least six)."""
+        """Return the same settings with all element edges longer; a turn keeps at least six.
+
+        Parameters
+        ----------
+        factor : float
+            By which edges grow.
+
+        Returns
+        -------
+        MeshSettings
+            The new settings.
+        """
         values = self.size_values
         return replace(
             self,

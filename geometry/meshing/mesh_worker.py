@@ -16,58 +16,37 @@ from geometry.base import child_memory
 from geometry.base.child import end_with_parent
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.system_libraries import advice
-from geometry.meshing.mesh_settings import MeshSettings
-from geometry.parts.part import Body
+from geometry.meshing.mesher import mesh_solid
+from geometry.meshing.reentrant import find_reentrant_edges
+from geometry.meshing.solid_model import Solid, build, kernel, volume_centroid_inertia, write_step
+from geometry.parts.body import Body
 
 
-def mesh(gmsh: Any, body: Body, settings: MeshSettings) -> object:
-    """Return the ``TaggedMesh`` of a body."""
-    from geometry.meshing.mesher import mesh_solid
-    from geometry.meshing.solid_model import build
-
-    return mesh_solid(gmsh, build(gmsh, body), settings)
-
-
-def mass(gmsh: Any, body: Body) -> object:
-    """Return (volume, centroid, inertia) of a body in mm."""
-    from geometry.meshing.solid_model import build, volume_centroid_inertia
-
-    return volume_centroid_inertia(gmsh, build(gmsh, body))
-
-
-def step(gmsh: Any, body: Body, path: str) -> object:
-    """Write a body as STEP."""
-    from geometry.meshing.solid_model import build, write_step
-
+def _step(gmsh: Any, solid: Solid, path: str) -> None:
     os.chdir(Path(path).parent)  # gmsh takes names in UTF-8 alone, and a path need not be
     draft = Path(".draft.step")  # no body's, since a name begins with a letter or a digit
-    write_step(gmsh, build(gmsh, body), draft)
+    write_step(gmsh, solid, draft)
     draft.rename(Path(path).name)
-    return None
 
 
-def reentrant(gmsh: Any, body: Body) -> object:
-    """Return the ``ReentrantEdge`` list of a body."""
-    from geometry.meshing.reentrant import find_reentrant_edges
-    from geometry.meshing.solid_model import build
-
-    return find_reentrant_edges(gmsh, build(gmsh, body))
-
-
-TASKS: dict[str, Callable[..., object]] = {"mesh": mesh, "mass": mass, "step": step, "reentrant": reentrant}
+TASKS: dict[str, Callable[..., object]] = {
+    "mesh": mesh_solid,
+    "mass": volume_centroid_inertia,
+    "step": _step,
+    "reentrant": find_reentrant_edges,
+}
+"""What the worker does with gmsh, the solid of a body and further arguments."""
 
 
-def answer(task: str, arguments: tuple[Any, ...]) -> tuple[str, object]:
+def _answer(task: str, body: Body, *arguments: Any) -> tuple[str, object]:
     """Do a task and return its answer, with every error as a sentence."""
-    from geometry.meshing.solid_model import kernel
-
     try:
         import_module("gmsh")
     except (ImportError, OSError) as error:
         return "cannot", f"gmsh could not be loaded ({error}); {advice()}"
     try:
         with kernel() as gmsh:
-            return "done", TASKS[task](gmsh, *arguments)
+            return "done", TASKS[task](gmsh, build(gmsh, body), *arguments)
     except CaseError as error:
         return "case", str(error)
     except CannotRunError as error:
@@ -80,14 +59,20 @@ def answer(task: str, arguments: tuple[Any, ...]) -> tuple[str, object]:
 
 
 def main(folder: Path) -> None:
-    """Answer the request in a folder."""
+    """Answer the request in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder that the parent made.
+    """
     end_with_parent(folder)
     limit, task, *arguments = pickle.loads((folder / "request").read_bytes())
-    child_memory.bound(limit, lambda: write(folder, ("memory", "")))
-    write(folder, answer(task, tuple(arguments)))
+    child_memory.bound(limit, lambda: _write(folder, ("memory", "")))
+    _write(folder, _answer(task, *arguments))
 
 
-def write(folder: Path, told: tuple[str, object]) -> None:
+def _write(folder: Path, told: tuple[str, object]) -> None:
     """Write the answer, by renaming, so that a crash leaves no half of one."""
     draft = folder / "draft"
     draft.write_bytes(pickle.dumps(told))

@@ -41,12 +41,29 @@ _GMSH_TRIANGLE = {1: 2, 2: 9}
 
 
 def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
-    """Mesh the solid and return the mesh in mm, checked against the kernel's areas and volume.
+    """Mesh a solid and check the mesh against the kernel's areas and volume.
 
     A mesh that fails these checks is made anew, finer, up to ``ATTEMPTS`` times in all, and the mesh's notes say so.
 
-    Raises ``CannotRunError`` if the mesher fails, if the mesh will exceed or exceeds ``max_elements``, if an element
-    stays invalid, or if an area or the volume is off by more than the elements' chord error.
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with the solid as its model.
+    solid : Solid
+        The solid.
+    settings : MeshSettings
+        How fine, and what it may cost.
+
+    Returns
+    -------
+    TaggedMesh
+        The mesh in mm.
+
+    Raises
+    ------
+    CannotRunError
+        If the mesher fails, if the mesh will exceed or exceeds ``max_elements``, if an element stays invalid, or if an
+        area or the volume is off by more than the elements' chord error.
     """
     first: CoarseMeshError | None = None
     allowed = settings.chord_error  # what the size asked for may miss, finer ones may too
@@ -73,8 +90,7 @@ def _mesh(gmsh: Any, solid: Solid, settings: MeshSettings, allowed: float) -> Ta
     if estimate > SAFETY * settings.max_elements:
         raise CannotRunError(
             f"the mesh would have about {estimate:,.2g} tetrahedra, more than max_elements {settings.max_elements:,} "
-            f"even if that is {SAFETY:g} times too many; use a coarser size (solid.mesh_size) "
-            "or check with fidelity beam"
+            f"even if that is {SAFETY:g} times too many; increase solid.mesh_size or check with --fidelity beam"
         )
     _set_sizes(gmsh, solid, settings)
     options = {"Mesh.Algorithm": 6, "Mesh.Algorithm3D": 1, "Mesh.Optimize": 1, "Mesh.ElementOrder": 1}
@@ -90,7 +106,7 @@ def _mesh(gmsh: Any, solid: Solid, settings: MeshSettings, allowed: float) -> Ta
     if count > settings.max_elements:
         raise CannotRunError(
             f"the mesh has {count:,} tetrahedra, more than max_elements {settings.max_elements:,}; "
-            "use a coarser size (solid.mesh_size) or check with fidelity beam"
+            "increase solid.mesh_size or check with --fidelity beam"
         )
     if order == 2:
         gmsh.model.mesh.setOrder(2)

@@ -26,14 +26,35 @@ _POINTS = 25
 
 @dataclass(frozen=True, kw_only=True)
 class ReentrantEdge:
-    """A re-entrant edge: a polyline of points (n, 3) [mm] along it and its greatest material angle [rad]."""
+    """A re-entrant edge.
+
+    Attributes
+    ----------
+    points : ndarray
+        Polyline (n, 3) along it [mm].
+    angle : float
+        Greatest angle that the material spans [rad].
+    """
 
     points: NDArray[np.float64]
     angle: float
 
 
 def find_reentrant_edges(gmsh: Any, solid: "Solid") -> list[ReentrantEdge]:
-    """Return the edges whose material angle exceeds π by more than ``SHARP`` at one of three stations."""
+    """Return the edges whose material angle exceeds π by more than ``SHARP`` at one of three stations.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with the solid as its model.
+    solid : Solid
+        The solid.
+
+    Returns
+    -------
+    list of ReentrantEdge
+        The edges.
+    """
     edges = []
     for _, tag in gmsh.model.getEntities(1):
         faces = gmsh.model.getAdjacencies(1, tag)[0]

@@ -225,9 +225,13 @@ def _flat_eye(kernel: Kernel, pin: Pin, diameter: float, z: float) -> Entity:
 
 
 def _hole_rows(kernel: Kernel, body: Body) -> list[Entity]:
-    reach = 2.0 * max(body.part.section.width, body.part.section.height)
+    """Return what the rows cut out; of a bar with arms just through its section, since an arm may pass beside it."""
+    section, arms = body.part.section, any(pin.foot for pin in body.pins)
+    reach = 2.0 * max(section.width, section.height)
     holes: list[Entity] = []
     for row in body.holes:
+        if arms:
+            reach = 0.51 * (section.width if row.along == "y" else section.height)
         dy, dz = (1, 0) if row.along == "y" else (0, 1)
         start, axis = (-reach * dy, -reach * dz), (2.0 * reach * dy, 2.0 * reach * dz)
         holes += [kernel.cylinder((x, *start), (0, *axis), row.diameter / 2.0) for x in row.positions]
@@ -273,19 +277,39 @@ def _named_faces(gmsh: Any, body: Body) -> dict[str, list[int]]:
 
 
 def _on_outside(body: Body, points: NDArray[np.float64]) -> bool:
-    """Return whether a face belongs to the outer surface of a round part or to the four sides of a flat one."""
+    """Return whether a face belongs to the outer surface of a round part, or to the four sides of a flat one.
+
+    The top of an arm lies in the plane of the bar's, but beyond its width.
+    """
     section = body.part.section
     if section.round:
         return bool(np.abs(np.hypot(points[:, 1], points[:, 2]) - section.half_y).max() < ON_SURFACE)
     offsets = ((points[:, 1], section.half_y), (points[:, 2], section.half_z))
-    return any(bool(np.abs(np.abs(offset.mean()) - half) < ON_SURFACE > np.ptp(offset)) for offset, half in offsets)
+    within = np.abs(points[:, 1]).max() < section.half_y + ON_SURFACE
+    return bool(within) and any(
+        bool(np.abs(np.abs(offset.mean()) - half) < ON_SURFACE > np.ptp(offset)) for offset, half in offsets
+    )
 
 
 def write_step(gmsh: Any, solid: Solid, path: Path) -> None:
-    """Write the solid as STEP in mm.
+    """Write a solid as STEP in mm.
 
     The solid passes through a file to be scaled as it is read: the kernel's own scaling of a solid
     (``occ.dilate``) redraws every face as a spline and moves a filleted one.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with the solid as its model.
+    solid : Solid
+        The solid.
+    path : Path
+        The file, whose name is ASCII.
+
+    Raises
+    ------
+    CannotRunError
+        Where the volume in the file is another.
     """
     volume = gmsh.model.occ.getMass(3, solid.volume) * solid.unit**3
     unscaled = path.with_suffix(".brep")
@@ -303,7 +327,24 @@ def write_step(gmsh: Any, solid: Solid, path: Path) -> None:
 
 
 def volume_centroid_inertia(gmsh: Any, solid: Solid) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-    """Return volume [mm³], centroid (3,) [mm] and inertia about it for unit density (3, 3) [mm⁵]."""
+    """Return the volume integrals of a solid.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with the solid as its model.
+    solid : Solid
+        The solid.
+
+    Returns
+    -------
+    volume : float
+        Volume [mm³].
+    centroid : ndarray
+        Centroid (3,) [mm].
+    inertia : ndarray
+        Inertia tensor (3, 3) about the centroid, for unit density [mm⁵].
+    """
     occ = gmsh.model.occ
     inertia = np.asarray(occ.getMatrixOfInertia(3, solid.volume)).reshape(3, 3)
     return (

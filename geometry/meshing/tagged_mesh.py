@@ -17,17 +17,28 @@ class TaggedMesh:
     The ten nodes stand in VTK's order, which is scikit-fem's too: corners 0-3, then the edges
     01, 12, 02, 03, 13, 23. A surface is an array of triangles, each by its three corner nodes.
 
-    points      (n, 3) float, mm
-    cells       (m, 4) or (m, 10) int, node numbers
-    surfaces    name -> (k, 3) int, corner nodes of the boundary triangles of that surface:
-                ``bore:A`` the pin hole at A, ``top:A`` and ``bottom:A`` the flat faces of the eye
-                at A (towards +z and -z), ``end:H`` the loaded patch of a plain end at H
-    areas       name -> area in mm² by the geometry kernel, for every surface
-    volume      mm³ by the geometry kernel
-    centroid    (3,) mm by the geometry kernel
-    notes       what the mesher had to do to make every element valid (for the report)
+    Attributes
+    ----------
+    points : ndarray
+        Nodes (n, 3) [mm].
+    cells : ndarray
+        Elements (m, 4) or (m, 10), node numbers.
+    surfaces : mapping of str to ndarray
+        Corner nodes (k, 3) of the boundary triangles of each surface: ``bore:A`` is the pin hole at A, ``top:A`` and
+        ``bottom:A`` the flat faces of the eye at A (towards +z and -z), ``end:H`` the loaded patch of a plain end at H.
+    areas : mapping of str to float
+        Area of every surface by the geometry kernel [mm²].
+    volume : float
+        Volume by the geometry kernel [mm³].
+    centroid : ndarray
+        Centroid (3,) by the geometry kernel [mm].
+    notes : tuple of str
+        What the mesher had to do to make every element valid, for the report.
 
-    Raises ``CannotRunError`` if a surface is empty or if arrays do not fit each other.
+    Raises
+    ------
+    CannotRunError
+        If a surface is empty or if arrays do not fit each other.
     """
 
     points: NDArray[np.float64]
@@ -39,7 +50,7 @@ class TaggedMesh:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse what would turn into a silent error later on."""
+        """Refuse arrays that do not fit each other."""
         if self.cells.ndim != 2 or self.cells.shape[1] not in (4, 10) or len(self.cells) == 0:
             raise CannotRunError(f"the mesh has cells of shape {self.cells.shape}; expected (m, 4) or (m, 10)")
         if self.cells.min() < 0 or self.cells.max() >= len(self.points):

@@ -182,7 +182,7 @@ def test_a_tube_of_a_thousand_diameters_is_refused_where_it_is_too_fine(tmp_path
     done = programs.run("check", str(path), "--fidelity", "solid", scratch=tmp_path / "scratch")
     assert done.returncode == 4
     assert "the mesh would have about" in done.stderr
-    assert "use a coarser size" in done.stderr
+    assert "increase solid.mesh_size" in done.stderr
     assert time.monotonic() - begun < 60.0
 
 

@@ -7,10 +7,11 @@ import math
 
 import numpy as np
 import pytest
+from mesh_measures import volumes_and_moments
 from scipy.integrate import quad
 from skfem import Basis, ElementTetP2, Functional, MeshTet2
 
-from geometry.meshing.element_geometry import triangle_areas, volumes_and_moments
+from geometry.meshing.element_geometry import triangle_areas
 from geometry.meshing.mesh import COARSE, mass_properties, mesh_body
 from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 

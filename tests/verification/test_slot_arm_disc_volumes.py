@@ -1,13 +1,14 @@
 """Slotted bars, bars with arms and discs against closed forms: volume, centroid, inertia, named areas."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from geometry.meshing.element_geometry import triangle_areas
 from geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
-from geometry.parts.part import Bar, Body, Disc, Pin, PlainEnd
+from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd
 
 T = 3.0
 
@@ -114,6 +115,18 @@ def test_a_bar_with_an_arm_meshes_with_its_plain_end() -> None:
         assert mesh.areas[f"top:{name}"] == pytest.approx(math.pi * (4.5**2 - 0.75**2), rel=1e-8)
     for name, triangles in mesh.surfaces.items():
         assert triangle_areas(mesh.points, triangles).sum() == pytest.approx(mesh.areas[name], rel=0.05), name
+
+
+def test_an_arm_above_a_patch_and_a_hole_belongs_to_neither() -> None:
+    """The patch's four faces are 2 x 4 mm x (5 mm + T); a hole of 1 mm along y goes through the bar of 5 mm alone."""
+    turn = math.radians(35.0)
+    pins = (*with_arm(35.0, 0.8).pins[:2], Pin(name="Q", x=44.0 * math.cos(turn), y=44.0 * math.sin(turn),
+            diameter=1.5, foot=(0.0, 0.0)))  # fmt: skip
+    row = HoleRow(count=1, diameter="1 mm", first="14 mm", last="14 mm", along="y")
+    plain = Body(part=bar(0.8), pins=pins, ends=(PlainEnd(name="E", x=18.0, patch=4.0),), holes=())
+    mesh, drilled = mesh_body(plain, COARSE), mass_properties(replace(plain, holes=(row,)))
+    assert mesh.areas["end:E"] == pytest.approx(4.0 * 2.0 * (5.0 + T), rel=1e-8)
+    assert mesh.volume - drilled.volume == pytest.approx(math.pi / 4.0 * 5.0, rel=1e-6)
 
 
 def test_volume_centroid_and_inertia_of_a_disc() -> None:

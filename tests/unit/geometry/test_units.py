@@ -117,7 +117,7 @@ def test_a_bare_number_asks_for_its_unit(number: object) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        *["", " ", "mm", "nan mm", "inf mm", "-inf mm", "1e999 mm", "1,5 mm", "1_000 mm", "١ mm", "--1 mm"],
+        *["", " ", "mm", "nan mm", "inf mm", "-inf mm", "1e999 mm", "1,5,0 mm", "1_000 mm", "١ mm", "--1 mm"],
         *["1 mm" + " " * 100, "9" * 100 + " mm", None, [], {}, b"1 mm", ("1 mm",)],
     ],
 )
