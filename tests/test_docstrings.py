@@ -20,7 +20,6 @@ NOT_YET = (
     "fea/check",
     "fea/common",
     "fea/motion",
-    "fea/outcomes",
     "geometry/linkage",
     "geometry/mechanisms",
     "loads/states",

@@ -36,6 +36,10 @@ class Sense(Enum):
             The number; where it is not known, the verdict is undecided.
         limit : float
             In the unit of the number.
+
+        Returns
+        -------
+        Verdict
         """
         if self is Sense.AT_LEAST:
             kept, missed = value.low >= limit, value.high < limit
@@ -94,17 +98,44 @@ class Subject:
 
     @classmethod
     def link(cls, name: str) -> "Subject":
-        """Return the link of that name."""
+        """Return the link of that name.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Subject
+        """
         return cls("link", name)
 
     @classmethod
     def pin(cls, joint: str) -> "Subject":
-        """Return the pin of a joint."""
+        """Return the pin of a joint.
+
+        Parameters
+        ----------
+        joint : str
+
+        Returns
+        -------
+        Subject
+        """
         return cls("pin", joint)
 
     @classmethod
     def point(cls, name: str, link: str) -> "Subject":
-        """Return a point of a link."""
+        """Return a point of a link.
+
+        Parameters
+        ----------
+        name, link : str
+
+        Returns
+        -------
+        Subject
+        """
         return cls("point", f"{name} of {link}")
 
     def __str__(self) -> str:
@@ -170,6 +201,10 @@ class CheckOutcome:
             As the attributes.
         reason : str, optional
             By default where the band lies beside the limit.
+
+        Returns
+        -------
+        CheckOutcome
         """
         verdict = quantity.sense.verdict(value, limit)
         return cls(
@@ -184,11 +219,29 @@ class CheckOutcome:
         )
 
     def because(self, reason: str) -> "CheckOutcome":
-        """Return the outcome with another reason."""
+        """Return the outcome with another reason.
+
+        Parameters
+        ----------
+        reason : str
+
+        Returns
+        -------
+        CheckOutcome
+        """
         return replace(self, reason=reason)
 
     def left_open(self, reason: str) -> "CheckOutcome":
-        """Return the outcome undecided whatever its band says, for a reason."""
+        """Return the outcome undecided whatever its band says.
+
+        Parameters
+        ----------
+        reason : str
+
+        Returns
+        -------
+        CheckOutcome
+        """
         return replace(self, verdict=Verdict.UNDECIDED, reason=reason)
 
     @property
@@ -217,6 +270,10 @@ def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
         In the unit of the value.
     verdict : Verdict
         What the band gave.
+
+    Returns
+    -------
+    str
     """
     band = f"its band {value.low:.3g} to {value.high:.3g}"
     if verdict is Verdict.UNDECIDED:
@@ -232,6 +289,10 @@ def overall(verdicts: Iterable[Verdict]) -> Verdict:
     ----------
     verdicts : iterable of Verdict
         Of all checks.
+
+    Returns
+    -------
+    Verdict
     """
     found = set(verdicts)
     for verdict in (Verdict.FAIL, Verdict.UNDECIDED, Verdict.PASS):

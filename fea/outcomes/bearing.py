@@ -18,11 +18,28 @@ WITHOUT = "the joint force of statics, evenly over the pin's projected area"
 
 
 def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) -> tuple[str, Band]:
-    """Return the link whose eye or slot a joint's pin loads worst, and its safety factor, under a force [N] across it.
+    """Return the link whose eye or slot a joint's pin loads worst, and its safety factor.
 
-    The band holds the scatter of the ``load`` and, where its strength is that of the safety factor, of the strength.
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Of the check.
+    joint : str
+    force : float
+        Across the pin [N].
+    load : Scatter
+        Of that force. The band holds it and, where the strength is that of the safety factor, the strength's.
 
-    Raises ``CaseError`` for a joint without pin diameter, which the check ``name`` needs.
+    Returns
+    -------
+    tuple of (str, Band)
+        The link, and its safety factor.
+
+    Raises
+    ------
+    CaseError
+        For a joint without pin diameter.
     """
     record = case.joints[joint]
     if record.pin_diameter is None:
@@ -62,6 +79,10 @@ def bearing_outcome(
         Across its pin [N].
     growth : Scatter, optional
         By which that force grows beside scattered loads (``fea.check.load_growth``).
+
+    Returns
+    -------
+    CheckOutcome
 
     Raises
     ------

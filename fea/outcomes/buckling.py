@@ -57,11 +57,18 @@ ON_AXIS = 1e-9
 class Holding:
     """Where joints hold a link as a column; x along its axis [mm].
 
-    outermost   first and last pin on it, or the one that there is
-    in_plane    where pins hold it in the linkage's plane, free to turn, at the most; None where that is not known
-    kept        where they keep its angle in that plane as well, at the most
-    across      where they hold it and keep its angle out of the plane, at the most; None where that is not known
-    alone       where it may be built in and free elsewhere, each by itself; empty where its joints stay in place
+    Attributes
+    ----------
+    outermost : tuple of float
+        First and last pin on it, or the one that there is.
+    in_plane : tuple of float or None
+        Where pins hold it in the linkage's plane, free to turn, at the most; None where that is not known.
+    kept : tuple of float
+        Where they keep its angle in that plane as well, at the most.
+    across : tuple of float or None
+        Where they hold it and keep its angle out of the plane, at the most; None where that is not known.
+    alone : tuple of float
+        Where it may be built in and free elsewhere, each by itself; empty where its joints stay in place.
     """
 
     outermost: tuple[float, ...]
@@ -73,11 +80,16 @@ class Holding:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ColumnFactors:
-    """Buckling factors (P,) of a link as a column; infinite where nothing makes it buckle, NaN where not known.
+    """Buckling factors of a link as a column; infinite where nothing makes it buckle, NaN where not known.
 
-    value  outermost pins in place and free to turn
-    least  where the joints of a driven or a bonded link move as well
-    most   joints hold it as well as they can
+    Attributes
+    ----------
+    value : ndarray, shape (P,)
+        Outermost pins in place and free to turn.
+    least : ndarray, shape (P,)
+        The least where the joints of a driven or a bonded link move as well.
+    most : ndarray, shape (P,)
+        Joints hold it as well as they can.
     """
 
     value: Real
@@ -118,6 +130,10 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
     link : str
     beam : BeamCheck
         Its hand calculation, whose normal force is that of the column.
+
+    Returns
+    -------
+    Column or None
     """
     _, _, compression = beam.forces.largest(lambda f: -float(f[0]))
     forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
@@ -146,6 +162,10 @@ def worst_column(
         Of every pose.
     counted : ndarray of bool, shape (P,)
         The poses that count.
+
+    Returns
+    -------
+    Column or None
     """
     pose = first_largest(np.where(counted, 1.0 / factors.value, -np.inf))
     if math.isinf(factors.value[pose]):
@@ -161,12 +181,30 @@ def first_largest(values: Real) -> int:
     Parameters
     ----------
     values : ndarray, shape (P,)
+
+    Returns
+    -------
+    int
     """
     return int(np.argmax(values >= values.max() * (1.0 - 1e-9)))
 
 
 def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
-    """Return the factors of a link in every pose of ``force``, for the modulus of its card."""
+    """Return the factors of a link in every pose, for the modulus of its card.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    section : Section
+    force : AxialForce
+        Compression along the link, in P poses.
+
+    Returns
+    -------
+    ColumnFactors
+        Each of shape (P,).
+    """
     where, young = holding(case, link), case.material_of(link).youngs_modulus
     in_plane, across = columns(section, flanks_of(case.body(link)))
 
@@ -195,7 +233,19 @@ def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> 
 def columns(
     section: Section, slots: Sequence[Flanks]
 ) -> tuple[tuple[float, Sequence[Stretch]], tuple[float, Sequence[Stretch]]]:
-    """Second moment [mm⁴] and softer stretches of a link's column in the plane and out of it."""
+    """Return the second moments and softer stretches of a link's column.
+
+    Parameters
+    ----------
+    section : Section
+    slots : sequence of Flanks
+        Beside which two flanks take the section's place.
+
+    Returns
+    -------
+    tuple of two (float, sequence of Stretch)
+        Second moment [mm⁴] and stretches in the plane, and out of it.
+    """
     in_plane = [
         Stretch(
             first=slot.first,
@@ -210,7 +260,17 @@ def columns(
 
 
 def holding(case: Case, link: str) -> Holding:
-    """Return where joints hold a link as a column."""
+    """Return where joints hold a link as a column.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    Holding
+    """
     linkage, bonded = case.linkage, case.joint_model == "bonded"
     pins = {pin.name: pin for pin in case.body(link).pins}
     joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
@@ -251,6 +311,10 @@ def buckling_outcomes(
     beams : mapping of str to BeamCheck
         Link -> its hand calculation.
     moved : LargeDisplacement
+
+    Yields
+    ------
+    CheckOutcome
     """
     for link, beam in beams.items():
         if (found := column(case, link, beam)) is not None:
@@ -276,6 +340,10 @@ def column_outcome(
         What became of the linkage in large displacement; left out over a motion, whose links are taken as rigid.
     where : str, optional
         Of several poses the one of ``found``, for people.
+
+    Returns
+    -------
+    CheckOutcome
     """
     material = case.material_of(link)
     moduli = (material.youngs_modulus, *(material.youngs_modulus_range or ()))
@@ -320,6 +388,10 @@ def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
     ----------
     beams : mapping of str to BeamCheck
         Link -> its hand calculation.
+
+    Returns
+    -------
+    str
     """
     link, worst = max(beams.items(), key=lambda item: item[1].worst.equivalent / item[1].strength)
     stress = worst.worst.equivalent

@@ -13,9 +13,16 @@ LARGEST_COUNT = 6
 
 
 def clear_sections(body: Body) -> tuple[float, ...]:
-    """Stations at least one diameter (or width) away from every eye, hole and loaded end [mm].
+    """Return the stations at least one diameter (or width) away from every eye, hole and loaded end.
 
-    One in the middle of every stretch that is left, the longest stretches first; none on a disc.
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    tuple of float
+        One in the middle of every stretch that is left [mm], of the longest stretches; none on a disc.
     """
     part, size = body.part, max(body.part.section.width, body.part.section.height)
     if not part.is_beam:
@@ -42,6 +49,16 @@ def compare_sections(body: Body, beam: BeamCheck, stress: StressField) -> tuple[
 
     Bending stress on a link that bends, N/A on one that does not, each difference relative to the
     largest section stress of that kind by hand on the link.
+
+    Parameters
+    ----------
+    body : Body
+    beam : BeamCheck
+    stress : StressField
+
+    Returns
+    -------
+    tuple of SectionComparison
     """
     bends = float(beam.bending.max()) > BENDS * float(abs(beam.axial).max())
     scale = float(beam.bending.max()) if bends else float(abs(beam.axial).max())

@@ -51,6 +51,10 @@ def outcomes(
     uneven : mapping of str to Scatter, optional
         Joint -> how its force grows beside scattered loads (``fea.check.load_growth``).
 
+    Returns
+    -------
+    tuple of CheckOutcome
+
     Raises
     ------
     CaseError
@@ -115,6 +119,10 @@ def safety_factor_outcome(
         Of one pose, or the least of a motion.
     meshes : Discretisation or None
         What the meshes of the link leave open; None where hand calculation gave the factor.
+
+    Returns
+    -------
+    CheckOutcome
 
     Raises
     ------

@@ -22,6 +22,10 @@ def least_safety_factor(name: str, stated: float | None, material: Material, wha
     what : str
         What the check is about, for the error.
 
+    Returns
+    -------
+    float
+
     Raises
     ------
     CaseError
@@ -40,6 +44,10 @@ def stress_limits(case: Case, link: str) -> tuple[Ends, ...]:
     ----------
     case : Case
     link : str
+
+    Returns
+    -------
+    tuple of (float, float)
 
     Raises
     ------
@@ -64,6 +72,10 @@ def displacement_limits(case: Case, link: str) -> tuple[Ends, ...]:
     ----------
     case : Case
     link : str
+
+    Returns
+    -------
+    tuple of (float, float)
     """
     scatter = compliance_scatter(case.material_of(link)).times(_widest_load(case))
     return tuple(

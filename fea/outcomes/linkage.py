@@ -39,6 +39,10 @@ def linkage_outcomes(
         What became of it.
     beams : mapping of str to BeamCheck
         Link -> its hand calculation, which says where material gives way first.
+
+    Yields
+    ------
+    CheckOutcome
     """
     value, least = moved.buckling, moved.factor
     if moved.followed:
@@ -71,6 +75,10 @@ def by_linear_theory(
         What happens at ``least``, for people.
     remedy : str, optional
         What tells more, for people.
+
+    Returns
+    -------
+    CheckOutcome
     """
     compliances = [compliance_scatter(case.material_of(link)) for link in case.checked_links]
     slack = max((compliance.high for compliance in compliances), default=1.0)

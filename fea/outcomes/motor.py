@@ -26,9 +26,14 @@ SOURCES = (Source(kind=SourceKind.FLYWHEEL, detail="from the mean over the motio
 class MotorDemand:
     """What a load case asks of the drive over its motion.
 
-    peak_power   greatest drive power [W]
-    mean_power   on average over time, what flows back taken off [W]; 0 where more flows back
-    peak_torque  greatest size of the drive torque [N mm]
+    Attributes
+    ----------
+    peak_power : float
+        Greatest drive power [W].
+    mean_power : float
+        On average over time, what flows back taken off [W]; 0 where more flows back.
+    peak_torque : float
+        Greatest size of the drive torque [N mm].
     """
 
     peak_power: float
@@ -37,7 +42,19 @@ class MotorDemand:
 
 
 def demand(power: Real, torque: Real, times: Real) -> MotorDemand:
-    """Return the demand from power [N mm/s] and torque [N mm] at the times [s] of a motion."""
+    """Return what a motion asks of its drive.
+
+    Parameters
+    ----------
+    power, torque : ndarray, shape (n,)
+        [N mm/s] and [N mm].
+    times : ndarray, shape (n,)
+        [s]
+
+    Returns
+    -------
+    MotorDemand
+    """
     mean = _mean(power, times)
     rounding = 1e-9 * float(np.abs(power).max())
     return MotorDemand(
@@ -48,11 +65,24 @@ def demand(power: Real, torque: Real, times: Real) -> MotorDemand:
 
 
 def line_share(torque: Real, speed: Real, times: Real, stall: float, free: float) -> tuple[float, float]:
-    """Shares of what a motor with a straight torque-speed line gives: on average, and at the worst place.
+    """Return the shares of what a motor with a straight torque-speed line gives: on average, and at the worst place.
 
-    torque [N mm] and speed [rad/s] of the drive at the times [s]. The motor drives with up to
-    ``stall`` (1 - |speed|/``free``) and holds back with up to ``stall`` (1 + |speed|/``free``), its full voltage
-    reversed. The mean compares power, since a flywheel keeps energy. Infinite beyond the speed without load.
+    The motor drives with up to ``stall`` (1 - |speed|/``free``) and holds back with up to ``stall``
+    (1 + |speed|/``free``), its full voltage reversed. The mean compares power, since a flywheel keeps energy.
+
+    Parameters
+    ----------
+    torque, speed : ndarray, shape (n,)
+        Of the drive [N mm], [rad/s].
+    times : ndarray, shape (n,)
+        [s]
+    stall, free : float
+        Torque at standstill [N mm] and speed without load [rad/s].
+
+    Returns
+    -------
+    tuple of (float, float)
+        Infinite beyond the speed without load.
     """
     drives = torque * speed > 0.0
     given = stall * (1.0 - np.where(drives, 1.0, -1.0) * np.abs(speed) / free)
@@ -162,7 +192,19 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
 
 
 def largest_factor(bare: Real, load: Real, limit: float) -> float:
-    """Return the largest k with max(bare + k load) <= limit; 0 where even the bare linkage exceeds it."""
+    """Return the largest k with max(bare + k load) <= limit.
+
+    Parameters
+    ----------
+    bare, load : ndarray, shape (n,)
+        Power of the bare linkage, and of what it carries.
+    limit : float
+
+    Returns
+    -------
+    float
+        0 where even the bare linkage exceeds the limit.
+    """
     if bare.max() > limit:
         return 0.0
     rising = load > 0.0

@@ -12,12 +12,20 @@ two codes that share mesh, element and integration points, but not the rule of a
 class Answer:
     """What CalculiX found [MPa, mm], and how far its fields lie from ours.
 
-    von_mises          largest at the integration points
-    von_mises_nodal    largest at the nodes, carried there by CalculiX
-    displacement       largest of a node, once a rigid motion is fitted to ours
-    stress_gap         largest difference of von Mises stress at an integration point over our largest
-    displacement_gap   largest difference at a node over our largest
-    seconds            that CalculiX took
+    Attributes
+    ----------
+    von_mises : float
+        Largest at the integration points.
+    von_mises_nodal : float
+        Largest at the nodes, carried there by CalculiX.
+    displacement : float
+        Largest of a node, once a rigid motion is fitted to ours.
+    stress_gap : float
+        Largest difference of von Mises stress at an integration point over our largest.
+    displacement_gap : float
+        Largest difference at a node over our largest.
+    seconds : float
+        That CalculiX took.
     """
 
     von_mises: float
@@ -37,12 +45,23 @@ class Answer:
 class SecondOpinion:
     """CalculiX beside our solution of one link under the load case that stresses it most.
 
-    link, load_case    names; ``variant`` of pin pressure and torque transfer
-    deck               name of the deck's file
-    von_mises          our largest at the integration points [MPa]; ``von_mises_nodal`` at the nodes
-    displacement       our largest [mm]
-    known              False where the peak of our mesh is no result: what two programs share then is its mesh alone
-    answer             None where CalculiX did not answer; ``reason`` says why
+    Attributes
+    ----------
+    link, load_case : str
+    variant : str
+        Of pin pressure and torque transfer.
+    deck : str
+        Name of the deck's file.
+    von_mises, von_mises_nodal : float
+        Our largest at the integration points and at the nodes [MPa].
+    displacement : float
+        Our largest [mm].
+    known : bool
+        False where the peak of our mesh is no result: what two programs share then is its mesh alone.
+    answer : Answer or None
+        None where CalculiX did not answer.
+    reason : str
+        Why it did not.
     """
 
     link: str

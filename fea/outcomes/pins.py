@@ -38,13 +38,20 @@ SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
 
 @dataclass(frozen=True, kw_only=True)
 class PinStress:
-    """Stresses of a pin [MPa].
+    """Stresses of a pin.
 
-    lever       distance between the middles of the two eyes [mm]
-    moment      largest bending moment, by how the eyes take the couple [N mm]
-    bending     extreme-fibre stress of that moment
-    shear       largest shear stress, at the neutral axis, where nothing bends
-    equivalent  von Mises stress: the bending at the extreme fibre, or √3 times the shear at the neutral axis
+    Attributes
+    ----------
+    lever : float
+        Distance between the middles of the two eyes [mm].
+    moment : Band
+        Largest bending moment, by how the eyes take the couple [N mm].
+    bending : Band
+        Extreme-fibre stress of that moment [MPa].
+    shear : float
+        Largest shear stress, at the neutral axis, where nothing bends [MPa].
+    equivalent : Band
+        Von Mises stress [MPa]: the bending at the extreme fibre, or √3 times the shear at the neutral axis.
     """
 
     lever: float
@@ -63,9 +70,30 @@ def pin_stress(
     moment: float = 0.0,
     poisson: float = 0.3,
 ) -> PinStress:
-    """Return the stresses of a pin under a joint force [N] across it and a moment about x or y [N mm].
+    """Return the stresses of a pin.
 
-    Lengths in mm; ``eyes`` are the thicknesses of the two eyes, ``gap`` lies between them.
+    Parameters
+    ----------
+    force : float
+        Of the joint, across the pin [N].
+    diameter : float
+        [mm]
+    eyes : tuple of (float, float)
+        Thicknesses of the two eyes [mm].
+    gap : float
+        Between the eyes [mm].
+    moment : float
+        About x or y [N mm].
+    poisson : float
+
+    Returns
+    -------
+    PinStress
+
+    Raises
+    ------
+    CaseError
+        For a pin without diameter.
     """
     if not diameter > 0.0:
         raise CaseError(f"a pin needs a diameter above zero, not {diameter:g} mm; state its pin_diameter")
@@ -90,9 +118,22 @@ def pin_stress(
 
 
 def eyes(case: Case, joint: str) -> tuple[float, float]:
-    """Thicknesses of a joint's two eyes [mm].
+    """Return the thicknesses of a joint's two eyes; one of a link without part is as thick as the other link's.
 
-    An eye of a link without part is taken as thick as the other link's. Raises ``CaseError`` where neither has a part.
+    Parameters
+    ----------
+    case : Case
+    joint : str
+
+    Returns
+    -------
+    tuple of (float, float)
+        [mm]
+
+    Raises
+    ------
+    CaseError
+        Where neither link has a part.
     """
     links = [link for link in case.joints[joint].links if case.links[link].part is not None]
     thicknesses = [case.part_of(link).eye_thickness for link in links]
@@ -102,15 +143,47 @@ def eyes(case: Case, joint: str) -> tuple[float, float]:
 
 
 def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
-    """Return the stresses of a joint's pin under its reaction; raises ``CaseError`` for a pin without diameter."""
+    """Return the stresses of a joint's pin under its reaction.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    reaction : JointReaction
+
+    Returns
+    -------
+    PinStress
+
+    Raises
+    ------
+    CaseError
+        For a pin without diameter.
+    """
     wrench = reaction.wrench
     return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
 
 
 def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:
-    """Return the stresses of a joint's pin under a force [N] across it and a moment about x or y [N mm].
+    """Return the stresses of a joint's pin.
 
-    Raises ``CaseError`` for a pin without diameter.
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    force : float
+        Across the pin [N].
+    moment : float
+        About x or y [N mm].
+
+    Returns
+    -------
+    PinStress
+
+    Raises
+    ------
+    CaseError
+        For a pin without diameter.
     """
     record = case.joints[joint]
     if record.pin_diameter is None:
@@ -137,6 +210,10 @@ def pin_outcome(
         Of its pin.
     growth : Scatter, optional
         By which the joint's force grows beside scattered loads (``fea.check.load_growth``).
+
+    Returns
+    -------
+    CheckOutcome
 
     Raises
     ------

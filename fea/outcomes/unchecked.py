@@ -12,7 +12,15 @@ Strength = type[SafetyFactorCheck] | type[SustainedCheck]
 def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, SustainedCheck)) -> tuple[str, ...]:
     """Return what is not checked, each in a few words with the reason: ``thigh, no part``.
 
-    strength  the kinds of check that set a link's stress against a strength; an envelope knows the first alone
+    Parameters
+    ----------
+    case : Case
+    strength : sequence of type
+        The kinds of check that set a link's stress against a strength; an envelope knows the first alone.
+
+    Returns
+    -------
+    tuple of str
     """
     found = [f"{link}, no part" for link in case.linkage.moving if link not in case.checked_links]
     stressed: set[str] = set()
@@ -34,7 +42,16 @@ def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Sus
 
 
 def unusual_materials(case: Case) -> list[str]:
-    """Return a sentence for every unusual value of the materials of links and of checked pins."""
+    """Return a sentence for every unusual value of the materials of links and of checked pins.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    list of str
+    """
     used = [case.part_of(link).material for link in case.checked_links]
     for check in case.all_checks.values():
         if isinstance(check, PinCheck):

@@ -27,9 +27,18 @@ SHARE = 1e-9
 
 
 def load_size(loads: Iterable[Load], length: float) -> float:
-    """Return the largest of the loads' sizes [N], moments over ``length`` [mm]; weight and inertia are left out.
+    """Return the largest of the loads' sizes but for weight and inertia, which act inside their link anyway.
 
-    These act inside their link whatever else does.
+    Parameters
+    ----------
+    loads : iterable of Load
+    length : float
+        By which moments are divided [mm].
+
+    Returns
+    -------
+    float
+        [N]
     """
     sizes = [0.0]
     for load in loads:
@@ -42,7 +51,20 @@ def load_size(loads: Iterable[Load], length: float) -> float:
 
 
 def acts(loads: LinkLoads, size: float, length: float) -> bool:
-    """Return True if anything but rounding beside loads of a ``size`` [N] acts on a link."""
+    """Return True if anything but rounding acts on a link.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+    size : float
+        Of the loads that the load case states [N].
+    length : float
+        By which moments are divided [mm].
+
+    Returns
+    -------
+    bool
+    """
     inert = (np.any(b.specific_force) or b.angular_speed or b.angular_acceleration for b in loads.bodies)
     wrenches = [p.wrench for p in loads.pins] + [e.wrench for e in loads.ends]
     found = [_size(wrench, length) for wrench in wrenches] + [abs(c.torque) / length for c in loads.couples]
@@ -50,7 +72,20 @@ def acts(loads: LinkLoads, size: float, length: float) -> bool:
 
 
 def without_rounding(loads: LinkLoads, size: float, length: float) -> LinkLoads:
-    """Return the loads on a link, with zeros for what is but rounding: as loads these would not balance."""
+    """Return the loads on a link, with zeros for what is but rounding: as loads these would not balance.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+    size : float
+        Of the loads that the load case states [N].
+    length : float
+        By which moments are divided [mm].
+
+    Returns
+    -------
+    LinkLoads
+    """
     if acts(loads, size, length):
         return loads
     pins = tuple(replace(pin, wrench=np.zeros(6)) for pin in loads.pins)
@@ -78,7 +113,19 @@ def _spread(lines: Sequence[LineLoad]) -> float:
 
 
 def nothing_acts(title: str, size: float) -> str:
-    """Say why the checks of a load case decide nothing."""
+    """Say why the checks of a load case decide nothing.
+
+    Parameters
+    ----------
+    title : str
+        The load case.
+    size : float
+        Of the loads that it states [N].
+
+    Returns
+    -------
+    str
+    """
     why = "its loads cancel where they act, or pass by every link with a part" if size else "it states no load"
     return (
         f"nothing acts inside any link under load case '{title}' ({why}), so its checks decide nothing; give it a load"
@@ -90,7 +137,21 @@ def undecided(
 ) -> Iterator[CheckOutcome]:
     """Yield the outcomes of a load case under which nothing acts inside any link, undecided.
 
-    Pins and motors keep theirs where a joint bears a force: ``joints`` holds that of each [N].
+    Pins and motors keep theirs where a joint bears a force.
+
+    Parameters
+    ----------
+    outcomes : iterable of CheckOutcome
+    title : str
+        The load case.
+    size : float
+        Of the loads that it states [N].
+    joints : mapping of str to float
+        Joint -> the force that it bears [N].
+
+    Yields
+    ------
+    CheckOutcome
     """
     bearing = {name for name, force in joints.items() if force > SHARE * size}
     for outcome in outcomes:
@@ -102,7 +163,18 @@ def undecided(
 
 
 def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
-    """Yield an outcome without value for every safety factor that an envelope would judge under an idle load case."""
+    """Yield an outcome without value for every safety factor that an envelope would judge under an idle load case.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+
+    Yields
+    ------
+    CheckOutcome
+    """
     for name, check in case.all_checks.items():
         if not isinstance(check, SafetyFactorCheck):
             continue
@@ -112,6 +184,18 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
 
 
 def stated_size(case: Case, title: str) -> float:
-    """Return ``load_size`` of what a load case states, whatever the pose."""
+    """Return ``load_size`` of what a load case states, whatever the pose.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        The load case.
+
+    Returns
+    -------
+    float
+        [N]
+    """
     stated = stated_loads(case, case.load_cases[title], {})
     return load_size((one.load for one in stated), case.linkage.longest)
