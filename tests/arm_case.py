@@ -1,7 +1,9 @@
 """An arm on two pins, loaded at its free end, as a case: the smallest one that has a solid model."""
 
 import tomllib
+from functools import cache
 
+from fea.check.run import check_case
 from loads.case.case_file import validate
 
 ARM = """
@@ -48,3 +50,10 @@ def arm(*, part=BAR, fillet=1.0, force=-1.0, minimum=3.0, solid=""):
     thickness = 3.0 if part is BAR else 7.0
     text = ARM.format(part=part, fillet=fillet, force=force, minimum=minimum, thickness=thickness)
     return validate(tomllib.loads(text + (f"[solid]\n{solid}\n" if solid else "")))
+
+
+@cache
+def checked(effort=None, **changes):
+    """Return what is found for the arm as a solid and the outcome of its check; the same arm is solved once."""
+    found = check_case(arm(**changes), fidelity="solid", effort=effort, threads=1).load_cases["tip"]
+    return found.links["arm"], found.checks[0]

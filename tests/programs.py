@@ -1,18 +1,24 @@
 """Programs that tests start, watch and kill: the command itself and small ones that write an output folder."""
 
+import io
 import json
 import os
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
+
+from reports.commands import ending
+from reports.commands.cli import app
 
 ROOT = Path(__file__).resolve().parents[1]
 COMMAND = [sys.executable, "-c", "from reports.commands.cli import main; main()"]
-BEAM = ("check", "owl-wing-static", "--fidelity", "beam")
+BEAM = ("check", "four-bar-synthesis", "--fidelity", "beam")
+"""The whole check that takes least."""
 WRITING = (
     "import json, os, sys\n"
     "from pathlib import Path\n"
@@ -55,6 +61,21 @@ def run(*arguments: str, scratch: Path, **options: Any) -> subprocess.CompletedP
     with start(*arguments, scratch=scratch, **options) as process:
         out, told = process.communicate(timeout=300)
     return subprocess.CompletedProcess(process.args, process.returncode, out, told)
+
+
+def inside(*arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run the command in this process, which spares the imports: for what needs no process of its own."""
+    out, told, status = io.StringIO(), io.StringIO(), None
+    with (
+        redirect_stdout(out), redirect_stderr(told), chdir(folder or "."),
+        patch.object(ending, "end_cleanly_on_signals"),
+    ):  # fmt: skip
+        try:
+            ending.run(lambda: app(list(arguments), prog_name="alula"))
+        except SystemExit as stop:
+            status = stop.code
+    assert isinstance(status, int)
+    return subprocess.CompletedProcess(arguments, status, out.getvalue(), told.getvalue())
 
 
 def script(text: str, *arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:

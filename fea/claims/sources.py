@@ -55,6 +55,8 @@ def check_claims(
     if fidelity not in FIDELITIES:
         raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
     overrides = tuple(overrides)
+    if overrides and name in sources() and name not in built_in_cases():
+        raise CaseError(f"--set: '{name}' is a source document, not a case; name a case to set its entries anew")
     solve = partial(_tree_of, threads=threads, fidelity=fidelity)
     found: list[ClaimResult] = []
     for source in sources():
@@ -67,8 +69,6 @@ def check_claims(
         case = read_case(name, overrides)
         tree = case_tree(case, name, fidelity=fidelity, threads=threads)
         found += [check_claim(claim, Names(tree, {}, claim.not_stated)) for claim in case.claims]
-    elif overrides and name in sources():
-        raise CaseError(f"--set: '{name}' is a source document, not a case; name a case to set its entries anew")
     return tuple(found)
 
 

@@ -51,9 +51,9 @@ from fuzz.findings import Findings
 targets.warm()
 guard.install()
 for engine, name, inputs in (
-    (mutations, "case_tables", 300), (mutations, "case_bytes", 200), (properties, "override", 100),
-    (properties, "expression", 200), (properties, "claim", 100), (properties, "quantity", 100),
-    (properties, "companion", 50), (properties, "case_tables", 50),
+    (mutations, "case_tables", 150), (mutations, "case_bytes", 100), (properties, "override", 50),
+    (properties, "expression", 100), (properties, "claim", 50), (properties, "quantity", 50),
+    (properties, "companion", 25), (properties, "case_tables", 25),
 ):
     findings = Findings(engine=engine.__name__, target=name, folder=Path(sys.argv[1]))
     engine.try_many(name, inputs, 7, findings)

@@ -12,6 +12,7 @@ from rich.console import Console
 
 from fea.check.run import check_case
 from fea.claims.sources import check_claims
+from fea.outcomes.result import CheckResult
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import read_case, read_companion, read_text, validate
@@ -96,6 +97,11 @@ def _written(value: Any) -> str:
 
 
 @pytest.fixture(scope="module")
+def checked(hostile: tuple[Case, str]) -> CheckResult:
+    return check_case(hostile[0], name=hostile[1], fidelity="beam")
+
+
+@pytest.fixture(scope="module")
 def hostile(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, str]:
     """The owl wing with every free text hostile, and the path of its file."""
     tables = _tables()
@@ -134,10 +140,9 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, str]:
     return case, str(path)
 
 
-def test_the_report_shows_hostile_text_as_text(hostile: tuple[Case, str]) -> None:
-    result = check_case(hostile[0], name=hostile[1], fidelity="beam")
+def test_the_report_shows_hostile_text_as_text(checked: CheckResult) -> None:
     page = _Page()
-    page.feed(render(result, {}))
+    page.feed(render(checked, {}))
     assert "script" not in page.tags
     assert not [value for key, value in page.attributes if key.startswith("on")]
     for key, value in page.attributes:
@@ -155,19 +160,18 @@ def test_the_control_finds_a_script() -> None:
     assert any(key == "onerror" for key, _ in page.attributes)
 
 
-def test_json_and_terminal_show_hostile_text_as_text(hostile: tuple[Case, str]) -> None:
-    result = check_case(hostile[0], name=hostile[1], fidelity="beam")
-    record = json.loads(as_json(result))
+def test_json_and_terminal_show_hostile_text_as_text(hostile: tuple[Case, str], checked: CheckResult) -> None:
+    record = json.loads(as_json(checked))
     assert record["title"] == HOSTILE
     assert record["case"] == hostile[1]
     screen = io.StringIO()
-    print_result(result, Console(file=screen, width=10_000, force_terminal=True, color_system="truecolor"))
+    print_result(checked, Console(file=screen, width=10_000, force_terminal=True, color_system="truecolor"))
     assert "[red]x[/] [/nothing]" in screen.getvalue()
 
 
-def test_only_the_output_folder_is_written(hostile: tuple[Case, str], tmp_path: Path) -> None:
+def test_only_the_output_folder_is_written(checked: CheckResult, tmp_path: Path) -> None:
     inner = tmp_path / "inner"
-    write_report(check_case(hostile[0], name=hostile[1], fidelity="beam"), inner / "out")
+    write_report(checked, inner / "out")
     assert [p.name for p in tmp_path.iterdir()] == ["inner"]
     assert [p.name for p in inner.iterdir()] == ["out"]
 

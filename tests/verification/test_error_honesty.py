@@ -9,7 +9,6 @@ import pytest
 import solid_meshes
 from validation.test_cook import plane_stress
 
-from fea.check.run import check_case
 from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
 from fea.common.source import CONTACT
 from fea.common.verdict import Verdict
@@ -101,21 +100,14 @@ def test_contact_reaches_on_from_what_an_eye_bears():
 
 
 def test_band_of_a_pulled_arm_holds_contact():
-    result = check_case(arm_case.arm(part=arm_case.BAR, fillet=1.0, force=-1.0), fidelity="solid", threads=1)
-    link = result.load_cases["tip"].links["arm"]
+    link, _ = arm_case.checked(part=arm_case.BAR, fillet=1.0, force=-1.0)
     assert CONTACT in link.safety_factor.sources
     assert CONTACT not in link.displacement_max.sources
 
 
 @pytest.mark.parametrize("meshes", [1, 2])
 def test_sharp_edge_gets_no_factor_before_three_meshes(meshes):
-    result = check_case(
-        arm_case.arm(part=arm_case.BAR, fillet=0.0, force=-1.0),
-        fidelity="solid",
-        effort=Effort(max_meshes=meshes),
-        threads=1,
-    )
-    link, check = result.load_cases["tip"].links["arm"], result.load_cases["tip"].checks[0]
+    link, check = arm_case.checked(Effort(max_meshes=meshes), part=arm_case.BAR, fillet=0.0, force=-1.0)
     assert link.discretisation.status == "edge"
     assert link.safety_factor.unknowable
     assert link.von_mises_max.unknowable

@@ -1,24 +1,18 @@
 """No path through the program reports a number from an iteration that has not converged."""
 
+import tomllib
 from functools import partial
 
+import arm_case
 import pytest
+import rocker_case
 
 from fea.check.run import check_case
 from fea.motion.envelope import envelope_case
 from fea.refine.refinement import Effort
 from fea.solid import solve, two_level
 from geometry.base.errors import CannotRunError
-from loads.case.case import Case
-from loads.case.case_file import read_case
-
-NAME = "owl-wing-static"
-MOTION = ("drive.link=GF", "drive.joint=G", "motion.poses=3", "solid.mesh_size=3")
-
-
-@pytest.fixture
-def case() -> Case:
-    return read_case(NAME, MOTION)
+from loads.case.case_file import validate
 
 
 @pytest.fixture
@@ -34,9 +28,15 @@ def iterative(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return sizes
 
 
-@pytest.mark.parametrize("run", [partial(check_case, fidelity="solid"), envelope_case], ids=["check", "envelope"])
+@pytest.mark.parametrize(
+    ("case", "run"),
+    [
+        pytest.param(arm_case.arm(), partial(check_case, fidelity="solid"), id="check"),
+        pytest.param(validate(tomllib.loads(rocker_case.TOML)), envelope_case, id="envelope"),
+    ],
+)
 def test_an_iteration_without_convergence_ends_the_run(case, iterative, monkeypatch, run):
     monkeypatch.setattr(two_level, "MOST_ITERATIONS", 4)
-    with pytest.raises(CannotRunError, match=r"^\w\w: .*did not converge in 4 iterations.*choose a direct solver"):
-        run(case, name=NAME, threads=1, effort=Effort(max_meshes=1))
+    with pytest.raises(CannotRunError, match=r"^\w+: .*did not converge in 4 iterations.*choose a direct solver"):
+        run(case, threads=1, effort=Effort(max_meshes=1))
     assert len(iterative) == 1, "the first system that does not converge ends it"

@@ -5,11 +5,12 @@ import re
 from itertools import combinations
 
 import pytest
+import solved
 from pydantic import ValidationError
 
 import fea.claims.data
 from fea.claims.audit import Finding, Names, check_claim
-from fea.claims.sources import check_all, check_claims
+from fea.claims.sources import check_claims
 from geometry.base.errors import CaseError
 from geometry.mechanisms.ornithopter import motors
 from loads.case.case_file import read_case
@@ -299,10 +300,13 @@ def test_only_what_a_claim_asks_for_is_computed(case_file, monkeypatch):
 
 
 def test_a_source_and_its_cases():
-    whole, part = check_claims("owl-wing"), check_claims("owl-wing-static")
+    whole, part = solved.claims()["owl-wing"], check_claims("owl-wing-static", overrides=['pose.angle="230 deg"'])
     of_the_case = [result.claim.name for result in whole if result.claim.case == "owl-wing-static"]
     assert [result.claim.name for result in part] == of_the_case
     assert 100 < len(part) < len(whole)
+    # The override reaches them.
+    assert {result.claim.name: result for result in part}["pose.CD-text"].finding is Finding.DOES_NOT_HOLD
+    assert {result.claim.name: result for result in whole}["pose.CD-text"].finding is Finding.HOLDS
 
 
 def test_unknown_names_are_refused():
@@ -316,16 +320,9 @@ def test_unknown_names_are_refused():
         read_source("nobody")
 
 
-def test_an_override_reaches_the_claims_of_a_built_in_case():
-    named = {
-        result.claim.name: result for result in check_claims("owl-wing-static", overrides=['pose.angle="230 deg"'])
-    }
-    assert named["pose.CD-text"].finding is Finding.DOES_NOT_HOLD
-
-
-@pytest.fixture(scope="module")
+@pytest.fixture
 def found():
-    return check_all()
+    return solved.claims()
 
 
 def test_every_source_has_its_claims_under_names_of_their_own(found):

@@ -160,7 +160,7 @@ def test_flat_truss_up_to_its_limit_load(share: float) -> None:
     assert out.stable
 
 
-@pytest.mark.parametrize("share", [1.0001, 1.3, 2.0, 4.0, 10.0])
+@pytest.mark.parametrize("share", [1.0001, 1.3, 10.0])
 def test_snap_through_is_an_error_and_no_answer(share: float) -> None:
     with pytest.raises(CannotRunError, match=r"gives way at .* % of its load"):
         solve_large_displacement(toggle(share * LIMIT), 1)

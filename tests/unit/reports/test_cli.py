@@ -6,26 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import programs
 import pytest
-
-ALULA = [sys.executable, "-c", "from reports.commands.cli import main; main()"]
-
-
-def alula(*arguments: str, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
-    root = str(Path(__file__).parents[3])
-    return subprocess.run(
-        [*ALULA, *arguments],
-        cwd=cwd,
-        env={**os.environ, "PYTHONPATH": root, "OMP_NUM_THREADS": "1", **environment},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
 
 
 def test_cases_lists_the_owl_wing() -> None:
-    done = alula("cases")
+    done = programs.inside("cases")
     assert done.returncode == 0
     assert "owl-wing-static" in done.stdout
 
@@ -33,35 +19,34 @@ def test_cases_lists_the_owl_wing() -> None:
 def test_schema_is_a_json_schema() -> None:
     import jsonschema
 
-    schema = json.loads(alula("schema").stdout)
+    schema = json.loads(programs.inside("schema").stdout)
     jsonschema.Draft202012Validator.check_schema(schema)
     assert {"schema_version", "links", "joints", "load_cases"} <= set(schema["required"])
     assert schema["additionalProperties"] is False
 
 
 def test_statics_prints_the_published_system(tmp_path: Path) -> None:
-    done = alula("statics", "owl-wing-static", "--matrix", cwd=tmp_path)
+    done = programs.inside("statics", "owl-wing-static", "--matrix", folder=tmp_path)
     assert done.returncode == 0
     assert "15×15" in done.stdout
     assert "-130.58 N·mm" in done.stdout
     assert "AE Mz" in done.stdout
-    record = json.loads(alula("statics", "owl-wing-static", "--matrix", "--json").stdout)
+    record = json.loads(programs.inside("statics", "owl-wing-static", "--matrix", "--json").stdout)
     system = record["load_cases"]["weight"]["system"]
     assert len(system["matrix"]) == len(system["rows"]) == len(system["columns"]) == 15
 
 
 def test_the_beam_check_as_json() -> None:
-    done = alula("check", "owl-wing-static", "--fidelity", "beam", "--json")
+    done = programs.inside(*programs.BEAM, "--json")
     record = json.loads(done.stdout)
     assert done.returncode == {"pass": 0, "fail": 1, "undecided": 3}[record["verdict"]]
-    assert record["drive_torque"] == pytest.approx(-130.58, abs=5e-3)
-    assert record["links"]["AE"]["elements"] is None
+    assert record["links"]["a"]["elements"] is None
 
 
 def test_new_writes_a_case_that_checks_and_overwrites_nothing(tmp_path: Path) -> None:
-    assert alula("new", "four-bar.toml", cwd=tmp_path).returncode == 0
-    assert alula("statics", "four-bar.toml", cwd=tmp_path).returncode == 0
-    again = alula("new", "four-bar.toml", cwd=tmp_path)
+    assert programs.inside("new", "four-bar.toml", folder=tmp_path).returncode == 0
+    assert programs.inside("statics", "four-bar.toml", folder=tmp_path).returncode == 0
+    again = programs.inside("new", "four-bar.toml", folder=tmp_path)
     assert again.returncode == 2
     assert "exists" in again.stderr
 
@@ -81,7 +66,7 @@ def test_new_writes_a_case_that_checks_and_overwrites_nothing(tmp_path: Path) ->
     ],
 )
 def test_a_mistake_ends_with_status_2_and_says_why(arguments: list[str], words: list[str]) -> None:
-    done = alula(*arguments)
+    done = programs.inside(*arguments)
     assert done.returncode == 2
     assert done.stdout == ""
     assert "Traceback" not in done.stderr

@@ -5,12 +5,12 @@ from dataclasses import replace
 from importlib.resources import files
 
 import pytest
+import solved
 
-from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity
-from loads.case.case_file import read_case, read_text, validate
+from loads.case.case_file import read_text, validate
 from reports.page.coverage import not_covered
 from reports.page.html import render
 
@@ -19,9 +19,9 @@ def told(result):
     return dict(not_covered(result))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def wing():
-    return check_case(read_case("owl-wing-static"), name="owl-wing-static", fidelity="beam")
+    return solved.by_hand("owl-wing-static")
 
 
 def test_the_error_of_the_mesh_is_said_of_the_links_that_have_one(result):

@@ -1,26 +1,16 @@
 """``alula envelope`` as a user meets it."""
 
 import json
-import os
 import subprocess
-import sys
 from pathlib import Path
 
+import programs
 import pytest
 from rocker_case import TOML
 
-ROOT = Path(__file__).parents[3]
-
 
 def envelope(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", "from reports.commands.cli import main; main()", "envelope", *arguments],
-        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    return programs.inside("envelope", *arguments)
 
 
 @pytest.fixture(scope="module")

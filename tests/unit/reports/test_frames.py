@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import solved
 from edited_cases import edited
 from rich.console import Console
 
@@ -15,7 +16,7 @@ from fea.check.anchor import anchor_loads
 from fea.check.run import check_case
 from fea.common.band import Band
 from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, read_text, validate
+from loads.case.case_file import read_text, validate
 from reports.page.html import render
 from reports.tables.console import print_result
 from reports.tables.frames import frame_lines, frame_record
@@ -35,9 +36,9 @@ def section(result):
     return re.sub(r"\s+", " ", html.unescape(text))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def wing():
-    return checked()
+    return solved.by_hand(WING)
 
 
 def test_the_wings_page_sets_the_ways_to_hold_it_side_by_side(wing):
@@ -56,8 +57,7 @@ def test_the_wings_page_sets_the_ways_to_hold_it_side_by_side(wing):
 
 def test_a_published_displacement_stands_with_its_own_load_case_alone():
     """The source ran as-published; complete and planform are not its loads."""
-    case = read_case("owl-wing-flight")
-    result = check_case(case, name="owl-wing-flight", fidelity="beam")
+    result = solved.by_hand("owl-wing-flight")
     words = section(result)
     parts = re.split(r"Load case (as-published|complete|planform)", words)
     told = dict(zip(parts[1::2], parts[2::2], strict=True))

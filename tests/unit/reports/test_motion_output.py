@@ -3,10 +3,11 @@
 import csv
 import json
 import math
-import subprocess
-import sys
+import shutil
+from pathlib import Path
 
 import numpy as np
+import programs
 import pytest
 from PIL import Image
 
@@ -59,10 +60,7 @@ forces = [{ link = "block", at = "P", force = ["-5 N", "0 N"] }]
 
 
 def run(*arguments, cwd):
-    return subprocess.run(
-        [sys.executable, "-c", "from reports.commands.cli import main; main()", "motion", *arguments],
-        capture_output=True, text=True, cwd=cwd, timeout=120, check=False,
-    )  # fmt: skip
+    return programs.inside("motion", *arguments, folder=cwd)
 
 
 @pytest.fixture(scope="module")
@@ -156,24 +154,20 @@ def test_the_animation_moves_and_is_small(folder):
     assert all(frame[2, 2] == 255 for frame in frames)
 
 
-def test_a_second_run_replaces_the_first_and_nothing_else(folder):
-    home = folder.parents[1]
+def test_a_second_run_replaces_the_first_and_nothing_else(folder, tmp_path):
+    home = Path(shutil.copytree(folder.parents[1], tmp_path / "home"))
+    folder = home / "out" / "motion"
     (folder / "notes.txt").write_text("precious", encoding="utf-8")
     again = run("crank.toml", "-o", "out", "--json", "--set", "motion.poses=37", cwd=home)
     assert again.returncode == 0
     assert json.loads(again.stdout)["motion"]["poses"] == 37
     assert json.loads((folder / "result.json").read_text(encoding="utf-8"))["motion"]["poses"] == 37
     assert (folder / "notes.txt").read_text(encoding="utf-8") == "precious"
-    (folder / "notes.txt").unlink()
-    links = (folder / "links.csv").read_bytes()
     (folder / "links.csv").write_text("edited", encoding="utf-8")
     refused = run("crank.toml", "-o", "out", cwd=home)
     assert refused.returncode == 2
     assert "links.csv' is not, or no longer, what alula wrote there" in refused.stderr
     assert (folder / "links.csv").read_text(encoding="utf-8") == "edited"
-    (folder / "links.csv").write_bytes(links)
-    restored = run("crank.toml", "-o", "out", cwd=home)
-    assert restored.returncode == 0
 
 
 @pytest.mark.parametrize(
