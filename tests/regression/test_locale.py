@@ -43,7 +43,7 @@ def test_parts_are_exported_beside_such_a_path(tmp_path: Path) -> None:
     folder = tmp_path / "Teile für Ä 雪"
     folder.mkdir()
     scratch, case = tmp_path / "scratch ü", tmp_path / "Fälle.toml"
-    assert programs.run("new", str(case), scratch=scratch).returncode == 0
+    assert programs.inside("new", str(case)).returncode == 0
     done = programs.run("export", str(case), "--step", "-o", str(folder), scratch=scratch)
     assert done.returncode == 0, done.stderr
     assert len(list(folder.glob("*.step"))) == len(done.stdout.splitlines()) > 1

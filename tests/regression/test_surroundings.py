@@ -8,6 +8,7 @@ from pathlib import Path
 
 import programs
 import pytest
+import rocker_case
 
 STATICS = ("statics", "owl-wing-static")
 """It prints letters beyond ASCII."""
@@ -108,9 +109,10 @@ def test_names_beyond_ascii_in_a_locale_of_ascii(tmp_path: Path) -> None:
     assert done.returncode == 4
     assert done.stderr.startswith("alula: a name with '\\xc4' cannot be given to a file under this locale, whose enc")
     assert not (tmp_path / "teile").exists()
-    done = shell_in(tmp_path, '"$@"', "export", "four-bar-synthesis", "--step", "-o", "größe", **PLAIN)
+    (tmp_path / "größe.toml").write_text(rocker_case.TOML, encoding="utf-8")
+    done = shell_in(tmp_path, '"$@"', "export", "größe.toml", "--step", "-o", "größe", **PLAIN)
     assert done.returncode == 0, done.stderr
-    assert {"a.step", "b.step", "c.step"} == {path.name for path in (tmp_path / "größe").glob("[!.]*")}
+    assert [path.name for path in (tmp_path / "größe").glob("[!.]*")] == ["rocker.step"]
 
 
 @pytest.mark.parametrize("kind", ["folder", "pipe", "device"])
