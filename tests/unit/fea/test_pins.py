@@ -198,5 +198,5 @@ def test_a_thicker_pin_of_drawn_wire_is_weaker(diameter, least):
 
 
 def test_a_pin_thicker_than_any_wire_of_its_card_is_refused():
-    with pytest.raises(CaseError, match=r"^joints\.A\.pin_diameter: .*up to 11\.1\d* mm, not for 12 mm; make it"):
+    with pytest.raises(CaseError, match=r"^joints\.A\.pin_diameter: 12 mm is thicker than .*; set at most 11\.1\d* mm"):
         library()["steel-wire"].drawn("joints.A.pin_diameter", 12.0)
