@@ -18,16 +18,21 @@ _ROUNDING = 1e-10
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AnchorLoads:
-    """What the linkage does to the ground.
+    """What the linkage does to the ground; what rounding leaves of a force or a moment is zero.
 
-    joints    joint on the ground -> wrench (6,) on the ground about the joint [N, N mm], global axes; the reaction of
-              the drive torque, where it goes to the ground, is in the moment about z at the drive's joint
-    about     the joint about which ``total`` is taken
-    total     wrench (6,) of all joints together about that joint
-    deformed  True where the forces are those on the deformed shape
-    unstable  True where they are those of the undeformed pose, since the deformed shape has no stable equilibrium
-
-    What rounding leaves of a force or a moment is zero.
+    Attributes
+    ----------
+    joints : mapping of str to ndarray, shape (6,)
+        Joint on the ground -> wrench on the ground about the joint [N, N mm], global axes; the reaction of the drive
+        torque, where it goes to the ground, is in the moment about z at the drive's joint.
+    about : str
+        The joint about which ``total`` is taken.
+    total : ndarray, shape (6,)
+        Wrench of all joints together about that joint [N, N mm].
+    deformed : bool
+        True where the forces are those on the deformed shape.
+    unstable : bool
+        True where they are those of the undeformed pose, since the deformed shape has no stable equilibrium.
     """
 
     joints: Mapping[str, Real]
@@ -38,7 +43,16 @@ class AnchorLoads:
 
 
 def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
-    """Return what a load case asks of the ground, on the deformed shape where equilibrium was found there."""
+    """Return what a load case asks of the ground, on the deformed shape where equilibrium was found there.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    AnchorLoads
+    """
     moved = case.large_displacement.reactions
     reactions = moved or case.reactions
     joints = wrenches_on_ground(reactions)
@@ -77,7 +91,17 @@ def _rounded(wrench: Real, size: Real) -> Real:
 
 
 def wrenches_on_ground(reactions: Reactions) -> dict[str, Real]:
-    """Return the wrench (6,) on the ground about each of its joints, the drive torque's reaction included."""
+    """Return what acts on the ground at each of its joints, the drive torque's reaction included.
+
+    Parameters
+    ----------
+    reactions : Reactions
+
+    Returns
+    -------
+    dict of str to ndarray, shape (6,)
+        Joint -> wrench about it [N, N mm].
+    """
     linkage, drive = reactions.pose.linkage, reactions.drive
     found = {}
     for name, reaction in reactions.joints.items():

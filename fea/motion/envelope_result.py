@@ -24,9 +24,18 @@ Real = NDArray[np.float64]
 class VariantCurve:
     """The decisive stress over the motion under one model of pin pressure and one of torque transfer.
 
-    stress    (n,) largest of all nodes at each pose [MPa]; NaN where the pose was left out
-    node      (n,) where; -1 where the pose was left out
-    first     number of its first load in the link's ``UnitSolutions``
+    Attributes
+    ----------
+    span : Span
+        Loaded angle of the pin holes [degrees].
+    transfer : Transfer or None
+        None on a link without drive torque.
+    stress : ndarray, shape (n,)
+        Largest of all nodes at each pose [MPa]; NaN where the pose was left out.
+    node : ndarray of int, shape (n,)
+        Where; -1 where the pose was left out.
+    first : int
+        Number of its first load in the link's ``UnitSolutions``.
     """
 
     span: Span
@@ -45,13 +54,22 @@ class VariantCurve:
 class LinkFatigue:
     """Fatigue of a link under one load case, the motion repeated for ever.
 
-    location     (3,) of the critical node in the link's frame [mm]
-    history      (n,) its signed stress over the motion [MPa]
-    life         of the variant that governs
-    stress       band of the equivalent peak stress [MPa]
-    wanted       repetitions that are asked for
-    strength     peak stress borne for as many cycles [MPa]; None where the card does not tell
-    repetitions  band of the life; None where the card has no exponent
+    Attributes
+    ----------
+    location : ndarray, shape (3,)
+        Of the critical node in the link's frame [mm].
+    history : ndarray, shape (n,)
+        Its signed stress over the motion [MPa].
+    life : FatigueLife
+        Of the variant that governs.
+    stress : Band
+        The equivalent peak stress [MPa].
+    wanted : float
+        Repetitions that are asked for.
+    strength : float or None
+        Peak stress borne for as many cycles [MPa]; None where the card does not tell.
+    repetitions : Band or None
+        The life; None where the card has no exponent.
     """
 
     location: Real
@@ -67,10 +85,23 @@ class LinkFatigue:
 class LoadCaseEnvelope:
     """A link over the motion under one load case.
 
-    value, low, high  (n,) decisive stress at each pose and its band [MPa]; NaN where the pose was left out
-    stress, safety_factor  of the worst pose, with their bands over the whole motion
-    pose, location    when and where: number of the pose, place (3,) in the link's frame [mm]
-    discretisation    what the meshes leave open, judged at the worst pose of the first mesh; None for one mesh alone
+    Attributes
+    ----------
+    name : str
+    variants : tuple of VariantCurve
+    governing : VariantCurve
+        The one that the values come from.
+    value, low, high : ndarray, shape (n,)
+        Decisive stress at each pose and its band [MPa]; NaN where the pose was left out.
+    stress, safety_factor : Band
+        Of the worst pose, over the whole motion.
+    pose : int
+        Its number.
+    location : ndarray, shape (3,)
+        Where, in the link's frame [mm].
+    fatigue : LinkFatigue or None
+    discretisation : Discretisation or None
+        What the meshes leave open, judged at the worst pose of the first mesh; None for one mesh alone.
     """
 
     name: str
@@ -101,12 +132,31 @@ class LoadCaseEnvelope:
 class LinkEnvelope:
     """A link over the motion under every load case that loads it.
 
-    measure   the decisive stress: "von Mises" or "largest principal"
-    strength  what it is set against [MPa]
-    units, modes  unit loads, and solutions that span the motion's loads
-    solver, solver_reason, solver_error  name, why it was chosen, largest relative error of a solution (energy norm)
-    field, displacement  stress and displacements (nodes, 3) [mm] of the worst pose under the worst load case
-    no_fatigue  why there is no fatigue calculation; empty where there is one
+    Attributes
+    ----------
+    link : str
+    measure : str
+        The decisive stress: "von Mises" or "largest principal".
+    strength : float
+        What it is set against [MPa].
+    load_cases : mapping of str to LoadCaseEnvelope
+    elements, unknowns : int
+        Size of the finest mesh.
+    units, modes : int
+        Unit loads, and solutions that span the motion's loads.
+    solver, solver_reason : str
+        Its name, and why it was chosen.
+    solver_error : float
+        Largest relative error of a solution (energy norm).
+    reaction, imbalance : float
+        Largest reaction of the free body's supports and resultant of its loads, as shares of the load.
+    field : StressField
+        Of the worst pose under the worst load case.
+    displacement : ndarray, shape (nodes, 3)
+        In that pose [mm].
+    no_fatigue : str
+        Why there is no fatigue calculation; empty where there is one.
+    notes : tuple of str
     """
 
     link: str
@@ -137,11 +187,28 @@ class LinkEnvelope:
 class EnvelopeResult:
     """The envelope of a case.
 
-    angles       (n,) of the motion's coordinate [rad]
-    drive_angles (n,) of the driven link [rad]
-    evaluated    (n,) False where a pose was left out
-    idle         links on which nothing acts
-    checks       outcome of every check, for every link and load case
+    Attributes
+    ----------
+    name : str
+        What the case was called on the command line.
+    case : Case
+    moved : CaseMotion
+    drive : Drive
+    angles, drive_angles : ndarray, shape (n,)
+        Of the motion's coordinate, and of the driven link [rad].
+    evaluated : ndarray of bool, shape (n,)
+        False where a pose was left out.
+    links : mapping of str to LinkEnvelope
+    idle : tuple of str
+        Links on which nothing acts.
+    checks : tuple of CheckOutcome
+        For every link and load case.
+    verdict : Verdict
+        Over all checks.
+    warnings : tuple of str
+        One sentence each.
+    timings : mapping of str to float
+        Stage -> seconds.
     """
 
     name: str

@@ -25,14 +25,35 @@ LIFE_FACTOR = 4.0
 
 
 def signed_stress(stress: Real, *, brittle: bool) -> Real:
-    """Signed measure of stress (...) [MPa] of components (..., 6), as the module says."""
+    """Return the signed measure of stress, as the module says.
+
+    Parameters
+    ----------
+    stress : ndarray, shape (..., 6)
+        Components [MPa].
+    brittle : bool
+
+    Returns
+    -------
+    ndarray, shape (...)
+        [MPa]
+    """
     first, last = extreme_principal(stress)
     largest = np.where(np.abs(first) >= np.abs(last), first, last)
     return np.asarray(largest if brittle else np.copysign(von_mises(stress), largest))
 
 
 def turning_points(history: Real) -> Real:
-    """Peaks and valleys of a history (n,), its ends included."""
+    """Return peaks and valleys of a history, its ends included.
+
+    Parameters
+    ----------
+    history : ndarray, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (k,)
+    """
     values = history[np.concatenate([[True], np.diff(history) != 0.0])]
     if len(values) < 3:
         return np.asarray(values)
@@ -41,10 +62,19 @@ def turning_points(history: Real) -> Real:
 
 
 def rainflow(history: Real) -> Real:
-    """Count cycles: rows (k, 3) of range, mean and count (1 or ½), in the order in which they close.
+    """Count the cycles of a history.
 
     ASTM E1049-85, section 5.4.4: of the last three points the ranges Y (earlier) and X (later) are compared;
     X ≥ Y makes of Y a half cycle where it holds the first point, else a full one.
+
+    Parameters
+    ----------
+    history : ndarray, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (k, 3)
+        Range, mean and count (1 or ½) of each, in the order in which they close.
     """
     found: list[tuple[float, float, float]] = []
     points: list[float] = []
@@ -69,9 +99,18 @@ def rainflow(history: Real) -> Real:
 
 
 def repeated_cycles(history: Real) -> Real:
-    """Cycles (k, 3) of one repetition of a history (n,) that repeats for ever: range, mean and count.
+    """Count the cycles of one repetition of a history that repeats for ever.
 
     ASTM E1049-85, section 5.4.5: the history is begun at its largest value, so that every cycle closes.
+
+    Parameters
+    ----------
+    history : ndarray, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (k, 3)
+        Range, mean and count of each.
     """
     start = int(np.argmax(history))
     whole = np.concatenate([history[start:], history[: start + 1]])
@@ -84,10 +123,21 @@ def repeated_cycles(history: Real) -> Real:
 
 
 def reversed_amplitude(cycles: Real, ultimate: float) -> Real:
-    """Amplitudes (k,) [MPa] of reversed cycles that harm as much, by Goodman: σa / (1 − σm/Su).
+    """Return the amplitudes of reversed cycles that harm as much, by Goodman: σa / (1 − σm/Su).
 
-    A compressive mean counts as none; infinite where the mean reaches the ultimate strength (Shigley's
-    Mechanical Engineering Design, 10th ed., chapter 6).
+    A compressive mean counts as none (Shigley's Mechanical Engineering Design, 10th ed., chapter 6).
+
+    Parameters
+    ----------
+    cycles : ndarray, shape (k, 3)
+        Range, mean [MPa] and count of each.
+    ultimate : float
+        Strength Su [MPa].
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        [MPa]; infinite where the mean reaches the ultimate strength.
     """
     amplitude, mean = cycles[:, 0] / 2.0, np.maximum(cycles[:, 1], 0.0)
     with np.errstate(divide="ignore"):
@@ -95,10 +145,24 @@ def reversed_amplitude(cycles: Real, ultimate: float) -> Real:
 
 
 def equivalent_peak(cycles: Real, fatigue: Fatigue, ultimate: float | None) -> Real:
-    """Peak stresses (k,) [MPa] of cycles of the test's stress ratio R that harm as much as the given ones.
+    """Return the peak stresses of cycles of the test's stress ratio R that harm as much as the given ones.
 
     By the peak-stress rule the cycle's own peak, none where that is compressive. By Goodman, with the reversed
     amplitude σr: the σ at which σ (1 − R)/2 / (1 − σ (1 + R)/(2 Su)) = σr.
+
+    Parameters
+    ----------
+    cycles : ndarray, shape (k, 3)
+        Range, mean [MPa] and count of each.
+    fatigue : Fatigue
+        Of the material's card.
+    ultimate : float or None
+        Strength Su [MPa], which Goodman's rule needs.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        [MPa]
     """
     if fatigue.rule == "peak-stress":
         return np.maximum(cycles[:, 1] + cycles[:, 0] / 2.0, 0.0)
@@ -112,14 +176,37 @@ def equivalent_peak(cycles: Real, fatigue: Fatigue, ultimate: float | None) -> R
 
 
 def cycles_to_failure(stress: Real, fatigue: Fatigue) -> Real:
-    """N = N1 (σ/σ1)^(−exponent) for peak stresses (k,) of the test's stress ratio; infinite without stress."""
+    """Return N = N1 (σ/σ1)^(−exponent).
+
+    Parameters
+    ----------
+    stress : ndarray, shape (k,)
+        Peaks of cycles of the test's stress ratio [MPa].
+    fatigue : Fatigue
+        Of the material's card, with an exponent.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Infinite without stress.
+    """
     assert fatigue.exponent is not None
     with np.errstate(divide="ignore"):
         return np.asarray(fatigue.cycles * (stress / fatigue.stress) ** -fatigue.exponent)
 
 
 def missing_data(material: Material) -> str:
-    """What the card lacks for a fatigue calculation, in words; empty if nothing."""
+    """Say what the card lacks for a fatigue calculation.
+
+    Parameters
+    ----------
+    material : Material
+
+    Returns
+    -------
+    str
+        Empty if nothing.
+    """
     if material.fatigue is None:
         return "the material's card has no fatigue data; add [materials.<name>.fatigue] with stress, cycles and source"
     if material.fatigue.rule == "goodman" and material.ultimate_strength is None:
@@ -131,10 +218,16 @@ def missing_data(material: Material) -> str:
 class FatigueLife:
     """Fatigue at one place under a motion that repeats.
 
-    smallest, largest  of the signed stress [MPa]
-    cycles             rows (range, mean, count) of one repetition, the largest first, without the negligible ones
-    stress             peak stress of a cycle of the test's stress ratio that harms as much as the worst cycle [MPa]
-    repetitions        of the motion until Miner's sum is 1; None where the card has no exponent
+    Attributes
+    ----------
+    smallest, largest : float
+        Of the signed stress [MPa].
+    cycles : tuple of (float, float, float)
+        Range, mean and count of one repetition's, the largest first, without the negligible ones.
+    stress : float
+        Peak stress of a cycle of the test's stress ratio that harms as much as the worst cycle [MPa].
+    repetitions : float or None
+        Of the motion until Miner's sum is 1; None where the card has no exponent.
     """
 
     smallest: float
@@ -150,9 +243,18 @@ class FatigueLife:
 
 
 def fatigue_life(history: Real, material: Material) -> FatigueLife:
-    """Fatigue under repetitions of a closed history (n,) of the signed stress [MPa].
+    """Return the fatigue under repetitions of a closed history.
 
-    The card must be complete: see ``missing_data``.
+    Parameters
+    ----------
+    history : ndarray, shape (n,)
+        Of the signed stress [MPa].
+    material : Material
+        Whose card is complete: see ``missing_data``.
+
+    Returns
+    -------
+    FatigueLife
     """
     fatigue = material.fatigue
     assert fatigue is not None
@@ -175,9 +277,19 @@ def fatigue_life(history: Real, material: Material) -> FatigueLife:
 
 
 def strength_at(fatigue: Fatigue, cycles: float) -> float | None:
-    """Peak stress of the test's stress ratio [MPa] borne for so many cycles; None where the card does not tell.
+    """Return the peak stress of the test's stress ratio that is borne for so many cycles.
 
-    Without an exponent: the stated stress up to the stated cycles, unknown beyond.
+    Without an exponent it is the stated stress up to the stated cycles, unknown beyond.
+
+    Parameters
+    ----------
+    fatigue : Fatigue
+    cycles : float
+
+    Returns
+    -------
+    float or None
+        [MPa]; None where the card does not tell.
     """
     if fatigue.exponent is not None:
         return float(fatigue.stress * (cycles / fatigue.cycles) ** (-1.0 / fatigue.exponent))
