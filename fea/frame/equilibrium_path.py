@@ -41,10 +41,6 @@ class CorotationalSolution:
         What the nodes do to each element, global axes, moments about the nodes [N, N·mm].
     joint_wrenches : ndarray, shape (n, 6)
         What ties, guides and supports together do to the part of the frame at each node, global axes.
-    reactions : ndarray, shape (n, 6)
-        What supports and guides on the ground do to the frame; of tied nodes the one with most supports has it.
-    guide_forces : ndarray, shape (g,)
-        What each guide's carrier takes along its turned normal [N], or about axis x normal [N·mm].
     residual : float
         Largest force left over, over the sum of the loads (moments over the frame's size).
     stable : bool
@@ -57,8 +53,6 @@ class CorotationalSolution:
     rotations: Floats
     end_forces: Floats
     joint_wrenches: Floats
-    reactions: Floats
-    guide_forces: Floats
     residual: float
     stable: bool
 
@@ -346,19 +340,6 @@ class EquilibriumPath:
         np.add.at(joints, self.pairs, ends)
         for load in model.loads:
             joints[load.node] -= load.wrench
-        tied, grounded = joints.copy(), np.zeros_like(joints)
-        for guide, force in zip(model.guides, state.guide_forces, strict=True):
-            wrenches = force * self._gap(guide, state)[1].forces.reshape(2, 6)
-            for wrench, node in zip(wrenches, (guide.carrier, guide.pin), strict=True):
-                if node is not None:
-                    tied[node] += wrench
-                    if len(guide.nodes) == 1:
-                        grounded[node] -= wrench
-        reactions = np.zeros_like(joints)
-        np.add.at(reactions, self.chain.groups, tied)
-        supported = {int(self.chain.groups[s.node]) for s in model.supports}
-        reactions[[i for i in range(len(model.nodes)) if i not in supported]] = 0.0
-        reactions += grounded
         scaled = self.free(tangent)
         return CorotationalSolution(
             model=model,
@@ -366,8 +347,6 @@ class EquilibriumPath:
             rotations=state.rotations,
             end_forces=ends,
             joint_wrenches=joints,
-            reactions=reactions,
-            guide_forces=state.guide_forces,
             residual=self._measure(residual),
             stable=bool(np.linalg.eigvalsh((scaled + scaled.T) / 2.0).min(initial=1.0) > 0.0),
         )

@@ -40,14 +40,21 @@ class Step:
 class KinematicChain:
     """Unknowns of a frame in large displacement: three displacements per place at which nodes are tied, and the turns.
 
-    count         of the unknowns
-    is_turn       (count,) True where the unknown is a turn
-    groups        (n,) the root of each node's tree
-    translations  (n, 3) numbers of each node's displacements, -1 where held
-    nodes         steps of each node
+    Attributes
+    ----------
+    count : int
+        Of the unknowns.
+    is_turn : ndarray of bool, shape (count,)
+        True where the unknown is a turn.
+    translations : ndarray of int, shape (n, 3)
+        Numbers of each node's displacements, -1 where held.
+    nodes : list of list of Step
+        Steps of each node.
 
-    Raises ``CannotRunError`` for supports and ties that make no sense for finite turns, such as a
-    rotation held about one axis alone.
+    Raises
+    ------
+    CannotRunError
+        For supports and ties that make no sense for finite turns, such as a rotation held about one axis alone.
     """
 
     def __init__(self, model: FrameModel) -> None:
@@ -56,12 +63,12 @@ class KinematicChain:
         self._held = {(s.node, DOFS.index(d)) for s in model.supports for d in s.dofs}
         self.turns: list[bool] = []
         n = len(model.nodes)
-        self.groups = np.full(n, -1)
+        self._seen: set[int] = set()
         self.translations = self._translations()
         self.nodes: list[list[Step]] = [[] for _ in range(n)]
         supports = np.bincount([node for node, _ in self._held], minlength=n) if self._held else np.zeros(n)
         for root in sorted(range(n), key=lambda i: (-supports[i], i)):
-            if self.groups[root] < 0:
+            if root not in self._seen:
                 self._grow(root)
         self.count = len(self.turns)
         self.is_turn = np.array(self.turns, dtype=bool)
@@ -87,7 +94,7 @@ class KinematicChain:
 
     def _grow(self, root: int) -> None:
         """Number the tree of nodes tied to a root."""
-        self.groups[root] = root
+        self._seen.add(root)
         self.nodes[root] = self._own_turns(root)
         front = [root]
         while front:
@@ -96,8 +103,8 @@ class KinematicChain:
                 if parent not in tie.nodes:
                     continue
                 child = tie.nodes[1] if tie.nodes[0] == parent else tie.nodes[0]
-                if self.groups[child] < 0:
-                    self.groups[child] = root
+                if child not in self._seen:
+                    self._seen.add(child)
                     self.nodes[child] = self._tied(parent, child, tie.dofs)
                     front.append(child)
 

@@ -135,9 +135,14 @@ class FrameSystem:
     Unknown rotations are multiplied by the mean element length, natural moments divided by their element's length,
     so that all entries of the compatibility matrix are of order one.
 
-    labels   what moves with each unknown, for messages
-    unit     (k,) factor from the scaled unknowns to mm and rad
-    guide_unit  (g,) factor from the scaled forces of the guides to N or N·mm
+    Attributes
+    ----------
+    labels : list of str
+        What moves with each unknown, for messages.
+    unit : ndarray, shape (k,)
+        Factor from the scaled unknowns to mm and rad.
+    guide_unit : ndarray, shape (g,)
+        Factor from the scaled forces of the guides to N or N·mm.
     """
 
     def __init__(self, model: FrameModel) -> None:

@@ -102,9 +102,17 @@ class PardisoFactor(DirectFactor):
     Parameters and error numbers: Intel oneMKL Developer Reference, "pardiso" and "pardiso iparm Parameter".
     ``memory`` is what the analysis says that the factor takes [bytes].
 
-    memory_limit   bytes that the whole process may hold, by default what the system leaves
+    Parameters
+    ----------
+    K : SymmetricBlockMatrix
+        The system.
+    memory_limit : float or None, optional
+        Bytes that the whole process may hold, by default what the system leaves.
 
-    Raises ``CannotRunError`` after the analysis, which knows the factor's size, if it does not fit.
+    Raises
+    ------
+    CannotRunError
+        After the analysis, which knows the factor's size, if it does not fit.
     """
 
     name = "MKL PARDISO"

@@ -100,11 +100,11 @@ def test_large_displacement_keeps_pins_and_balance() -> None:
     assert out.displacements[tip, 2] == pytest.approx(0.0, abs=1e-9)
     linear = solve_frame(model).displacements[tip, 1] / 5
     assert out.displacements[tip, 1] / linear == pytest.approx(1.5, abs=0.05)
-    assert out.reactions[:, :2].sum(axis=0) == pytest.approx([0, 0.05], abs=1e-9)
+    assert out.joint_wrenches[:, :2].sum(axis=0) == pytest.approx([0, 0.05], abs=1e-9)
     # The drive torque is what the joint at G and the load, both where they are now, turn about A.
     place = model.nodes + out.displacements[: len(NAMES)]
-    moment = np.cross(place[tip], [0, -0.05, 0])[2] + np.cross(place[g], out.reactions[g, :3])[2]
-    assert out.reactions[NAMES.index("A"), 5] == pytest.approx(-moment, abs=1e-6)
+    moment = np.cross(place[tip], [0, -0.05, 0])[2] + np.cross(place[g], out.joint_wrenches[g, :3])[2]
+    assert out.joint_wrenches[NAMES.index("A"), 5] == pytest.approx(-moment, abs=1e-6)
 
 
 def test_wing_held_at_ae_reaches_a_limit_load_and_held_at_gf_does_not() -> None:

@@ -131,7 +131,7 @@ def test_links_balance_on_the_deformed_shape(make: Callable[[], Case], plane: bo
     place = turned_points(case, pose, frame, found.displacements)
     assert np.abs(found.displacements).max() > 0.1
     assert imbalance(reactions, loads, place) < 1e-7 * size
-    assert np.abs(found.reactions[:, :3].sum(axis=0) + sum(load.wrench[:3] for load in loads)).max() < 1e-7 * size
+    assert np.abs(found.joint_wrenches[:, :3].sum(axis=0) + sum(load.wrench[:3] for load in loads)).max() < 1e-7 * size
     for guide in found.model.guides:
         d = sum(sign * found.displacements[node] for node, sign in guide.nodes)
         turn = np.eye(3) if guide.carrier is None else found.rotations[guide.carrier]
