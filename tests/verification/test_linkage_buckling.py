@@ -109,7 +109,7 @@ def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, stat
     assert moved.share < 1e-3
     assert (moved.state, found.verdict) == (state, verdict)
     assert moved.buckling == pytest.approx(1.0 / share, rel=3e-3)
-    assert "the linear frame buckles at" in moved.sentence
+    assert "by linear theory the linkage buckles at" in moved.sentence
     assert f"buckling factor by linear theory is {moved.buckling:.3g}" in found.reason
     # Somewhere below the whole load where it became unstable on the way, else all of it.
     low = 0.0 if state == "unstable" else min(1.0, 1.0 / share / 3.0)
