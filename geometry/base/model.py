@@ -18,6 +18,22 @@ class CaseModel(BaseModel):
     )
 
 
+def refusal(rule: str) -> PydanticCustomError:
+    """Return the error by which a validator of a record refuses its input; a message puts the entry before it.
+
+    Parameters
+    ----------
+    rule : str
+        What is wrong, and the remedy.
+
+    Returns
+    -------
+    PydanticCustomError
+        To be raised.
+    """
+    return PydanticCustomError("rule", "{rule}", {"rule": rule})
+
+
 def _name(text: str) -> str:
     letters = all(c.isalnum() or c in "-_+ " for c in text)
     short = len(text) <= 64 and len(text.encode(errors="replace")) <= 200  # files are named after it

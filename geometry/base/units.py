@@ -15,6 +15,8 @@ from typing import Annotated, Any
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError, core_schema
 
+from geometry.base.model import refusal
+
 INTERNAL_UNITS = {
     "length": "mm",
     "area": "mm^2",
@@ -97,48 +99,25 @@ def parse(text: object, dimension: str) -> float:
     PydanticCustomError
         For anything but text made of one finite number and one unit of the dimension; a model adds the entry's name.
     """
-    example = EXAMPLES[dimension]
+    example = f'write for example "{EXAMPLES[dimension]}"'
     if isinstance(text, bool | int | float):
-        raise PydanticCustomError(
-            "missing_unit",
-            'the {dimension} needs its unit as text; write for example "{example}"',
-            {"dimension": dimension, "example": example},
-        )
+        raise refusal(f"the {dimension} needs its unit as text; {example}")
     if not isinstance(text, str):
-        raise PydanticCustomError(
-            "not_a_quantity",
-            'the {dimension} must be text with a number and a unit; write for example "{example}"',
-            {"dimension": dimension, "example": example},
-        )
+        raise refusal(f"the {dimension} must be text with a number and a unit; {example}")
     number, unit = _split(text)
     if number is None or not math.isfinite(number):
-        raise PydanticCustomError(
-            "not_a_quantity",
-            "the {dimension} must be one finite number and its unit; {remedy}",
-            {"dimension": dimension, "remedy": _comma_remedy(text) or f'write for example "{example}"'},
-        )
+        raise refusal(f"the {dimension} must be one finite number and its unit; {_comma_remedy(text) or example}")
     if not unit:
-        raise PydanticCustomError(
-            "missing_unit",
-            'the {dimension} needs its unit; write for example "{example}"',
-            {"dimension": dimension, "example": example},
-        )
+        raise refusal(f"the {dimension} needs its unit; {example}")
     conversion = _conversion(unit, dimension)
     if conversion is None:
-        raise PydanticCustomError(
-            "wrong_unit",
-            '"{unit}" is not a unit of {dimension}; write for example "{example}"',
-            {"unit": unit, "dimension": dimension, "example": example},
-        )
+        raise refusal(f'"{unit}" is not a unit of {dimension}; {example}')
     factor, offset = conversion
     value = number * factor + offset
     if value != 0.0 and not LEAST <= abs(value) <= LARGEST:
         limit, zero = (f"at most {LARGEST:g}", "") if abs(value) > LARGEST else (f"at least {LEAST:g}", ", or write 0")
-        raise PydanticCustomError(
-            "implausible",
-            "the {dimension} must be {limit} {unit} in size; check the number and its unit{zero}",
-            {"dimension": dimension, "limit": limit, "unit": INTERNAL_UNITS[dimension], "zero": zero},
-        )
+        size = f"{limit} {INTERNAL_UNITS[dimension]} in size"
+        raise refusal(f"the {dimension} must be {size}; check the number and its unit{zero}")
     return value
 
 

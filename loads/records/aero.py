@@ -16,10 +16,9 @@ from typing import Annotated, Literal
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name, Text
+from geometry.base.model import CaseModel, Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Area, Density, Force, Speed
 from loads.records.applied import LineLoad, PointLoad
 
@@ -62,7 +61,7 @@ class AirPatch(CaseModel):
     @model_validator(mode="after")
     def _place(self) -> "AirPatch":
         if (self.at is None) == (self.start is None) or (self.start is None) != (self.end is None):
-            raise PydanticCustomError("no_place", "state either the point 'at' or both 'start' and 'end'")
+            raise refusal("state either the point 'at' or both 'start' and 'end'")
         return self
 
 

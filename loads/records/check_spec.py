@@ -3,9 +3,8 @@
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
-from geometry.base.model import CaseModel, Name
+from geometry.base.model import CaseModel, Name, refusal
 from geometry.base.units import POSITIVE, AngularSpeed, Current, Length, Moment, Voltage
 
 
@@ -92,9 +91,7 @@ class MotorCheck(CaseModel):
     @model_validator(mode="after")
     def _line(self) -> "MotorCheck":
         if self.stall_torque is not None and self.no_load_speed is None:
-            raise PydanticCustomError(
-                "half_a_line", "stall_torque alone does not say how torque falls with speed; add no_load_speed"
-            )
+            raise refusal("stall_torque alone does not say how torque falls with speed; add no_load_speed")
         return self
 
     @property

@@ -5,9 +5,8 @@ from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, PlainValidator, WithJsonSchema
-from pydantic_core import PydanticCustomError
 
-from geometry.base.model import CaseModel, Name, Text
+from geometry.base.model import CaseModel, Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, parse
 from loads.records.aero import AirLoad
 from loads.text.shares import LoadScatter
@@ -20,9 +19,7 @@ def _moment(stated: object) -> tuple[float, float, float]:
     if not isinstance(stated, list | tuple):
         return 0.0, 0.0, parse(stated, "moment")
     if len(stated) != 3:
-        raise PydanticCustomError(
-            "not_a_moment", 'it must be one moment about z or three about x, y and z; write for example "130 N*mm"'
-        )
+        raise refusal('it must be one moment about z or three about x, y and z; write for example "130 N*mm"')
     x, y, z = (parse(component, "moment") for component in stated)
     return x, y, z
 

@@ -4,9 +4,8 @@ import math
 from typing import Annotated
 
 from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
-from geometry.base.model import CaseModel, Name
+from geometry.base.model import CaseModel, Name, refusal
 from geometry.base.units import Acceleration, Angle, AngularAcceleration, AngularSpeed, Length, Speed
 
 
@@ -49,44 +48,35 @@ class MotionSpec(CaseModel):
 
     @model_validator(mode="after")
     def _fits(self) -> "MotionSpec":
-        if self.turn + (self.range is not None) + (self.travel is not None) != 1:
-            raise PydanticCustomError(
-                "turn_or_range",
-                'it needs either turn = true or a range such as range = ["0 deg", "90 deg"] or '
-                'travel = ["0 mm", "10 mm"]; state one of them',
-            )
-        if self.turn and self.poses < 3:
-            raise PydanticCustomError(
-                "poses_of_a_turn",
-                "a full turn needs at least 3 poses, since its last pose is its first; write poses = 3 or more",
-            )
-        if (self.speed, self.acceleration) != (0.0, 0.0) and self.travel is not None:
-            raise PydanticCustomError(
-                "angular_speed_of_travel",
-                "a slider has no angular speed or acceleration; state travel_speed and travel_acceleration",
-            )
-        if (self.travel_speed, self.travel_acceleration) != (0.0, 0.0) and self.travel is None:
-            raise PydanticCustomError(
-                "speed_without_travel",
-                "travel_speed and travel_acceleration belong to the travel of a slider; state travel as well",
-            )
-        if self.ends is not None and math.isclose(*self.ends, abs_tol=1e-12):
-            what = "angle" if self.travel is None else "travel"
-            raise PydanticCustomError(
-                "empty_range", "it begins and ends at the same {what}; state two different ones", {"what": what}
-            )
-        speed, acceleration = self.rate
-        if self.ends is not None and speed < 0.0:
-            raise PydanticCustomError(
-                "speed_sign",
-                "the order of the ends gives the direction, so speed must not be negative; swap the ends",
-            )
-        if self.inertia and speed == 0.0 and acceleration == 0.0:
-            raise PydanticCustomError(
-                "no_speed", 'inertia = true needs a speed; state one, for example speed = "150 rpm"'
-            )
-        if speed == 0.0 and acceleration < 0.0:
-            raise PydanticCustomError(
-                "no_start", "without a speed the acceleration must be positive; state a speed, or change the sign"
-            )
+        slides, (speed, acceleration) = self.travel is not None, self.rate
+        angular = (self.speed, self.acceleration) != (0.0, 0.0)
+        along = (self.travel_speed, self.travel_acceleration) != (0.0, 0.0)
+        rules = {
+            'it needs either turn = true or a range such as range = ["0 deg", "90 deg"] or travel = ["0 mm", "10 mm"]; '
+            "state one of them": self.turn + (self.range is not None) + slides != 1,
+            "a full turn needs at least 3 poses, since its last pose is its first; write poses = 3 or more": (
+                self.turn and self.poses < 3
+            ),
+            "a slider has no angular speed or acceleration; state travel_speed and travel_acceleration": (
+                angular and slides
+            ),
+            "travel_speed and travel_acceleration belong to the travel of a slider; state travel as well": (
+                along and not slides
+            ),
+            f"it begins and ends at the same {'travel' if slides else 'angle'}; state two different ones": (
+                self.ends is not None and math.isclose(*self.ends, abs_tol=1e-12)
+            ),
+            "the order of the ends gives the direction, so speed must not be negative; swap the ends": (
+                self.ends is not None and speed < 0.0
+            ),
+            'inertia = true needs a speed; state one, for example speed = "150 rpm"': (
+                self.inertia and speed == 0.0 and acceleration == 0.0
+            ),
+            "without a speed the acceleration must be positive; state a speed, or change the sign": (
+                speed == 0.0 and acceleration < 0.0
+            ),
+        }
+        for rule, broken in rules.items():
+            if broken:
+                raise refusal(rule)
         return self

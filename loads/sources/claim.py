@@ -8,10 +8,9 @@ from importlib.resources import files
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, ValidationError
-from pydantic_core import PydanticCustomError
 
 from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name, Text
+from geometry.base.model import CaseModel, Name, Text, refusal
 from geometry.base.units import POSITIVE, Angle, AngularSpeed, Length
 from geometry.mechanisms.ornithopter import OrnithopterRules
 from loads.sources.expression import evaluate_number
@@ -83,9 +82,7 @@ def read_printed(text: str) -> Printed | None:
 
 def _claim_name(text: str) -> str:
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,79}", text):
-        raise PydanticCustomError(
-            "bad_name", "a claim's name is made of letters, digits, '.', '-', '_' and '+', at most 80; rename it"
-        )
+        raise refusal("a claim's name is made of letters, digits, '.', '-', '_' and '+', at most 80; rename it")
     return text
 
 
@@ -93,7 +90,7 @@ def _published(text: str) -> str:
     try:
         read_printed(text)
     except CaseError as error:
-        raise PydanticCustomError("not_printed", "{why}", {"why": str(error)}) from None
+        raise refusal(str(error)) from None
     return text
 
 

@@ -4,7 +4,8 @@ import re
 from typing import Annotated
 
 from pydantic import PlainValidator, WithJsonSchema
-from pydantic_core import PydanticCustomError
+
+from geometry.base.model import refusal
 
 LEAST_ACCURACY, LARGEST_ACCURACY = 0.001, 1.0
 LARGEST_LOAD = 10.0
@@ -31,9 +32,7 @@ def parse_accuracy(stated: object) -> float:
     """
     share = _share(stated)
     if share is None or not LEAST_ACCURACY <= share <= LARGEST_ACCURACY:
-        raise PydanticCustomError(
-            "not_an_accuracy", 'the accuracy must be a share from 0.1 % to 100 %; write for example "5 %" or 0.05'
-        )
+        raise refusal('the accuracy must be a share from 0.1 % to 100 %; write for example "5 %" or 0.05')
     return share
 
 
@@ -66,12 +65,10 @@ def parse_scatter(stated: object) -> tuple[float, float]:
     elif (share := _share(stated)) is not None:
         low, high = 1.0 - share, 1.0 + share
     if low is None or high is None or not 0.0 < low <= 1.0 <= high <= LARGEST_LOAD:
-        raise PydanticCustomError(
-            "not_a_scatter",
+        raise refusal(
             'the scatter must be one share below 100 %, such as "20 %", or the least and the largest load in shares of '
-            "the stated one, low above 0 and up to 100 %, high from 100 % up to {most}; "
-            'write for example { low = "90 %", high = "130 %" }',
-            {"most": f"{LARGEST_LOAD:.0%}"},
+            f"the stated one, low above 0 and up to 100 %, high from 100 % up to {LARGEST_LOAD:.0%}; "
+            'write for example { low = "90 %", high = "130 %" }'
         )
     return low, high
 
