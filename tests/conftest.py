@@ -29,7 +29,7 @@ def bodies_weighed_in_this_process():
 
     def run(task, *arguments, **limits):
         if task == "mass":
-            kind, result = mesh_worker.answer(task, pickle.loads(pickle.dumps(arguments)))
+            kind, result = mesh_worker._answer(task, *pickle.loads(pickle.dumps(arguments)))
             if kind == "done":
                 return result
         return child(task, *arguments, **limits)
