@@ -1,4 +1,4 @@
-"""Mechanisms with a name and closed forms of their own: four-bar, slider-crank, flapping wing, ornithopter.
+"""Mechanisms with a name and closed forms of their own: four-bar, flapping wing, ornithopter.
 
 Hands on their positions, speeds and design figures; the general solver does not know them.
 """

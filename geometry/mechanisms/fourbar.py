@@ -35,26 +35,6 @@ class FourBarPosition:
     """Angle between coupler and output link, in [0, π] (not folded to the acute angle)."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FourBarVelocity:
-    """Angular speeds in rad/s of coupler and output; masked as the position, and at dead points."""
-
-    position: FourBarPosition
-    omega2: FloatArray
-    omega3: FloatArray
-    omega4: FloatArray
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FourBarAcceleration:
-    """Angular accelerations in rad/s² of coupler and output; masked as the velocity."""
-
-    velocity: FourBarVelocity
-    alpha2: FloatArray
-    alpha3: FloatArray
-    alpha4: FloatArray
-
-
 @dataclass(frozen=True, kw_only=True)
 class DeadPoint:
     """A pose in which coupler and output are collinear: the input can go no further (rad)."""
@@ -132,10 +112,6 @@ class FourBar:
         """Grashof's sums, class and inversion, at the default tolerance."""
         return classify(a=self.a, b=self.b, c=self.c, d=self.d)
 
-    def scaled(self, factor: float) -> "FourBar":
-        """Return the same four-bar with all lengths times ``factor``."""
-        return FourBar(a=self.a * factor, b=self.b * factor, c=self.c * factor, d=self.d * factor)
-
     def driven_by_output(self) -> "FourBar":
         """Return the mirrored four-bar whose input is this one's output: its θ2 is π - θ4, its θ4 is π - θ2."""
         return FourBar(a=self.c, b=self.b, c=self.a, d=self.d)
@@ -148,10 +124,6 @@ class FourBar:
         # d - a cos θ2 without cancellation where the input pin comes near O4.
         dx = (self.d - self.a) + 2 * self.a * np.sin(theta2 / 2) ** 2
         return close_dyad(dx, -self.a * np.sin(theta2), self.b, self.c, 1 if branch == "open" else -1)
-
-    def gap(self, theta2: ArrayLike) -> FloatArray:
-        """Return by how much the loop stays open at each input angle (unit of the lengths; 0 where it closes)."""
-        return self._close(np.asarray(theta2, dtype=float), "open").gap
 
     def position(self, theta2: ArrayLike, *, branch: Branch = "open") -> FourBarPosition:
         """Return coupler and output angle for input angles of any shape (rad).
@@ -183,56 +155,6 @@ class FourBar:
         return (
             f"the four-bar cannot be assembled at input angle {angle:.4f}°: the loop stays open by {gap:.4g}; "
             f"keep the input within {spans}."
-        )
-
-    def pins(self, theta2: ArrayLike, *, branch: Branch = "open") -> tuple[FloatArray, FloatArray]:
-        """Return the pins A (input and coupler) and B (coupler and output), shape ``theta2.shape + (2,)``."""
-        position = self.position(theta2, branch=branch)
-        stack = np.stack if position.theta2.ndim == 0 else np.ma.stack
-        first = np.stack([self.a * np.cos(position.theta2), self.a * np.sin(position.theta2)], axis=-1)
-        second = stack([self.d + self.c * np.cos(position.theta4), self.c * np.sin(position.theta4)], axis=-1)
-        return first, np.asanyarray(second)
-
-    def velocity(self, theta2: ArrayLike, omega2: ArrayLike, *, branch: Branch = "open") -> FourBarVelocity:
-        """Return angular speeds for input speeds ω2 in rad/s that broadcast with θ2.
-
-        Norton, 5th ed., chapter 6. A single pose at a dead point raises CaseError; in arrays
-        such poses are masked.
-        """
-        theta2, omega2 = np.broadcast_arrays(np.asarray(theta2, dtype=float), np.asarray(omega2, dtype=float))
-        position = self.position(theta2, branch=branch)
-        alive, sine = _transmission_sine(position)
-        mask = _masker(alive)
-        t3, t4 = np.asarray(position.theta3), np.asarray(position.theta4)
-        omega3 = self.a * omega2 / self.b * np.sin(t4 - theta2) / -sine
-        omega4 = self.a * omega2 / self.c * np.sin(theta2 - t3) / sine
-        return FourBarVelocity(position=position, omega2=omega2, omega3=mask(omega3), omega4=mask(omega4))
-
-    def acceleration(
-        self, theta2: ArrayLike, omega2: ArrayLike, alpha2: ArrayLike = 0.0, *, branch: Branch = "open"
-    ) -> FourBarAcceleration:
-        """Return angular accelerations for input speeds ω2 (rad/s) and accelerations α2 (rad/s²).
-
-        Norton, 5th ed., chapter 7. All three arguments broadcast; dead points as in ``velocity``.
-        """
-        theta2, omega2, alpha2 = np.broadcast_arrays(
-            *(np.asarray(value, dtype=float) for value in (theta2, omega2, alpha2))
-        )
-        velocity = self.velocity(theta2, omega2, branch=branch)
-        alive, sine = _transmission_sine(velocity.position)
-        mask = _masker(alive)
-        t3, t4 = np.asarray(velocity.position.theta3), np.asarray(velocity.position.theta4)
-        w3, w4 = np.asarray(velocity.omega3), np.asarray(velocity.omega4)
-        A, B = self.c * np.sin(t4), self.b * np.sin(t3)
-        D, E = self.c * np.cos(t4), self.b * np.cos(t3)
-        C = self.a * (alpha2 * np.sin(theta2) + omega2**2 * np.cos(theta2)) + E * w3**2 - D * w4**2
-        F = self.a * (alpha2 * np.cos(theta2) - omega2**2 * np.sin(theta2)) - B * w3**2 + A * w4**2
-        determinant = self.b * self.c * sine
-        return FourBarAcceleration(
-            velocity=velocity,
-            alpha2=alpha2,
-            alpha3=mask((C * D - A * F) / determinant),
-            alpha4=mask((C * E - B * F) / determinant),
         )
 
     def dead_points(self) -> tuple[DeadPoint, ...]:
@@ -321,16 +243,3 @@ def _masker(valid: BoolArray) -> Callable[[FloatArray], FloatArray]:
         return np.ma.masked_array(np.asarray(values), mask=~valid)
 
     return mask
-
-
-def _transmission_sine(position: FourBarPosition) -> tuple[BoolArray, FloatArray]:
-    """Return where speeds are definite, and sin(θ4 - θ3) there (1 elsewhere, so that nothing divides by zero)."""
-    sine = np.sin(np.asarray(position.theta4) - np.asarray(position.theta3))
-    closes = ~np.ma.getmaskarray(position.theta3)
-    dead = np.abs(sine) < DEAD_POINT_SINE
-    if sine.ndim == 0 and dead:
-        raise CaseError(
-            f"the four-bar stands at a dead point at input angle {math.degrees(float(position.theta2)):.4f}°: coupler "
-            "and output are collinear and speeds have no definite value; drive it at another angle."
-        )
-    return np.asarray(closes & ~dead), np.where(dead, 1.0, sine)

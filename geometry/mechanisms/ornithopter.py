@@ -21,7 +21,6 @@ from geometry.base.model import CaseModel
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
 from geometry.linkage.dyad import FloatArray
 from geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
-from geometry.mechanisms.slider_crank import SliderCrank
 from geometry.parts.part import Bar, Body, Disc, Part, Pin, PlainEnd
 
 MARGIN = 0.2
@@ -264,10 +263,10 @@ class WingDrive:
     pivot_height: float
 
     def __post_init__(self) -> None:
-        if not self.slider_crank.full_turn:
+        if not self.rod > self.throw > 0:
             raise CaseError(
-                f"ornithopter rod = {self.rod:g} mm must be at least as long as the throw of {self.throw:g} mm, or the "
-                "crank cannot turn; lengthen the rod."
+                f"ornithopter rod = {self.rod:g} mm must be longer than the throw of {self.throw:g} mm, which must be "
+                "positive, or the crank cannot turn; lengthen the rod."
             )
         if not (math.isfinite(self.pivot_offset) and self.pivot_offset > 0 and math.isfinite(self.pivot_height)):
             raise CaseError(
@@ -275,24 +274,36 @@ class WingDrive:
                 "must be finite and lie beside the centre line; give a positive offset."
             )
 
-    @property
-    def slider_crank(self) -> SliderCrank:
-        """Crank, rod and sliding pin."""
-        return SliderCrank(a=self.throw, b=self.rod)
+    def motion(self, crank_angle: ArrayLike, speed: ArrayLike) -> WingMotion:
+        """Return the motion at constant crank speed.
 
-    def motion(self, crank_angle: ArrayLike, speed: ArrayLike, acceleration: ArrayLike = 0.0) -> WingMotion:
-        """Return the motion at crank angles (rad), speeds (rad/s) and accelerations (rad/s²) that broadcast.
+        The pin of a slider-crank in line, throw r and rod l, stands at d = r cos θ + w, w = √(l² - r² sin² θ). At the
+        height s = d - h over the pivots, tan φ = s/X, so φ' = X s'/(X² + s²) and
+        φ'' = X (s'' (X² + s²) - 2 s s'²)/(X² + s²)².
 
-        With the pin at the height s over the pivots, tan φ = s/X, so φ' = X s'/(X² + s²) and
-        φ'' = X (s'' (X² + s²) - 2 s s'²)/(X² + s²)²; s from the in-line slider-crank.
+        Parameters
+        ----------
+        crank_angle : array_like
+            From the centre line [rad].
+        speed : array_like
+            Of the crank [rad/s]; broadcasts with the angles.
+
+        Returns
+        -------
+        WingMotion
+            Pin and wing.
         """
-        pin = self.slider_crank.motion(crank_angle, speed, acceleration)
-        d, v, a = (np.asarray(values) for values in (pin.position.d, pin.d_dot, pin.d_ddot))
+        theta, omega = np.broadcast_arrays(np.asarray(crank_angle, dtype=float), np.asarray(speed, dtype=float))
+        along, across = self.throw * np.cos(theta), self.throw * np.sin(theta)
+        w = np.sqrt((self.rod - across) * (self.rod + across))
+        slope = -along * across / w  # dw/dθ
+        d, v = along + w, omega * (slope - across)
+        a = -(omega**2) * (along + (along**2 - across**2 + slope**2) / w)
         X, s = self.pivot_offset, d - self.pivot_height
         square = X * X + s * s
         reach = np.sqrt(square)
         return WingMotion(
-            crank_angle=pin.position.theta2,
+            crank_angle=theta,
             pin_height=d,
             pin_speed=v,
             pin_acceleration=a,
@@ -306,10 +317,9 @@ class WingDrive:
     def extremes(self, speed: float) -> WingExtremes:
         """Return the extremes over one turn at a constant crank speed (rad/s)."""
         motion = self.motion(np.arange(_SAMPLES) * (2 * np.pi / _SAMPLES), speed)
-        # The wing follows the pin, so its end positions are those of the slider-crank.
-        low, high = self.slider_crank.stroke_ends()
-        highest = math.atan2(high - self.pivot_height, self.pivot_offset)
-        lowest = math.atan2(low - self.pivot_height, self.pivot_offset)
+        # The wing follows the pin, whose end positions are those of crank and rod in line.
+        highest = math.atan2(self.rod + self.throw - self.pivot_height, self.pivot_offset)
+        lowest = math.atan2(self.rod - self.throw - self.pivot_height, self.pivot_offset)
         return WingExtremes(
             highest=highest,
             lowest=lowest,

@@ -81,25 +81,6 @@ class Synthesis:
     lock_ups: tuple[LockUp, ...]
     findings: tuple[SynthesisFinding, ...]
 
-    def findings_for(self, drive: Drive) -> tuple[SynthesisFinding, ...]:
-        """Return the findings that hold when this link is driven, those of any drive included."""
-        return tuple(finding for finding in self.findings if finding.drive in (None, drive))
-
-    def residual(self, theta: ArrayLike, psi: ArrayLike) -> FloatArray:
-        """Return K1 cos ψ - K2 cos θ + K3 - cos(θ - ψ), zero where a pair lies on the linkage (rad)."""
-        return freudenstein_residual(self.K, theta, psi)
-
-    def psi_at(self, theta: float) -> tuple[float, float]:
-        """Return ψ (rad) of both branches, open then crossed as seen from link b, at the angle θ of link b.
-
-        Raises CaseError where θ lies beyond the lock-up of link b.
-        """
-        turned = driven(self.four_bar, "b")
-        angle = theta + math.pi * self.b_turned
-        psi = [float(turned.position(angle, branch=branch).theta4) for branch in ("open", "crossed")]
-        opened, crossed = (float(wrap(value - math.pi * self.c_turned)) for value in psi)
-        return opened, crossed
-
 
 def freudenstein_residual(K: Sequence[float], theta: ArrayLike, psi: ArrayLike) -> FloatArray:
     """Return K1 cos ψ - K2 cos θ + K3 - cos(θ - ψ) for angles in rad of shapes that broadcast."""

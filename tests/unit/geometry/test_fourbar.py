@@ -25,7 +25,6 @@ def test_a_pose_that_does_not_assemble_says_by_how_much():
     # Input straight back: A lies 13.5 from O4, coupler and output reach 8.
     with pytest.raises(CaseError, match=r"180\.0000°: the loop stays open by 5\.5;"):
         TRIPLE_ROCKER.position(math.pi)
-    assert TRIPLE_ROCKER.gap(math.pi) == pytest.approx(5.5)
 
 
 def test_arrays_are_masked_where_the_loop_stays_open():
@@ -38,23 +37,6 @@ def test_arrays_are_masked_where_the_loop_stays_open():
     for values in (position.theta3, position.theta4, position.transmission):
         np.testing.assert_array_equal(~np.ma.getmaskarray(values), reachable)
         assert np.isfinite(np.asarray(values)).all()
-
-
-def test_shapes_follow_the_input():
-    theta2 = np.linspace(0, 6, 24).reshape(4, 6)
-    acceleration = CRANK_ROCKER.acceleration(theta2, 2.0, np.ones(6))
-    assert acceleration.alpha3.shape == acceleration.velocity.omega4.shape == (4, 6)
-    pin_a, pin_b = CRANK_ROCKER.pins(theta2)
-    assert pin_a.shape == pin_b.shape == (4, 6, 2)
-    assert CRANK_ROCKER.position(0.3).theta4.shape == ()
-
-
-def test_a_dead_point_has_no_speed():
-    theta2 = TRIPLE_ROCKER.dead_points()[0].theta2
-    TRIPLE_ROCKER.position(theta2)
-    with pytest.raises(CaseError, match="dead point"):
-        TRIPLE_ROCKER.velocity(theta2, 1.0)
-    assert np.ma.getmaskarray(TRIPLE_ROCKER.velocity([theta2], 1.0).omega4).all()
 
 
 def test_dead_points_close_the_loop_with_collinear_links():
@@ -113,9 +95,8 @@ def test_norton_quotient_vanishes_where_this_form_holds():
     theta2 = math.atan2(4.0, 3.0)
     K1, K2, K3 = bar.d / bar.a, bar.d / bar.c, (bar.a**2 - bar.b**2 + bar.c**2 + bar.d**2) / (2 * bar.a * bar.c)
     assert math.cos(theta2) - K1 - K2 * math.cos(theta2) + K3 == pytest.approx(0.0, abs=1e-15)
-    np.testing.assert_allclose(bar.pins(theta2, branch="open")[0], [3.0, 4.0], atol=1e-14)
-    ends = [bar.pins(theta2, branch=branch)[1] for branch in ("open", "crossed")]
-    assert min(float(np.hypot(*(end - [-2.0, 0.0]))) for end in ends) < 1e-14
+    ends = [bar.d + bar.c * np.exp(1j * bar.position(theta2, branch=branch).theta4) for branch in ("open", "crossed")]
+    assert min(abs(end + 2.0) for end in ends) < 1e-14
 
 
 def test_transmission_range_of_a_crank_rocker_lies_at_zero_and_half_turn():

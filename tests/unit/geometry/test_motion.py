@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from closed_forms import four_bar_motion, slider_crank_motion
 from motion_poses import (
     CRANK,
     four_bar_pose,
@@ -21,7 +22,6 @@ from geometry.linkage.continuation import DeadPointError
 from geometry.linkage.motion import solve_motion
 from geometry.linkage.pose import solve_pose
 from geometry.mechanisms.fourbar import FourBar
-from geometry.mechanisms.slider_crank import SliderCrank
 
 TURN = CRANK + np.linspace(0.0, 2.0 * math.pi, 97)
 WING = np.radians(np.linspace(228.15, 124.62, 97))
@@ -34,12 +34,12 @@ def turned(first, second):
 @pytest.mark.parametrize(("up", "branch"), [(True, "open"), (False, "crossed")])
 def test_four_bar_in_closed_form(up, branch):
     motion = solve_motion(four_bar_pose(up=up), TURN, speed=7.0, acceleration=-40.0)
-    exact = FourBar(a=40.0, b=120.0, c=80.0, d=100.0).acceleration(TURN, 7.0, -40.0, branch=branch)
-    assert turned(motion.angle("coupler"), exact.velocity.position.theta3) < 1e-10
-    assert turned(motion.angle("rocker"), exact.velocity.position.theta4) < 1e-10
+    exact = four_bar_motion(FourBar(a=40.0, b=120.0, c=80.0, d=100.0), TURN, 7.0, -40.0, branch=branch)
+    assert turned(motion.angle("coupler"), exact.theta3) < 1e-10
+    assert turned(motion.angle("rocker"), exact.theta4) < 1e-10
     for link, speed, acceleration in (
-        ("coupler", exact.velocity.omega3, exact.alpha3),
-        ("rocker", exact.velocity.omega4, exact.alpha4),
+        ("coupler", exact.omega3, exact.alpha3),
+        ("rocker", exact.omega4, exact.alpha4),
     ):
         np.testing.assert_allclose(motion.angular_speed(link), speed, rtol=0, atol=1e-10 * 7.0)
         np.testing.assert_allclose(motion.angular_acceleration(link), acceleration, rtol=0, atol=1e-10 * 49.0)
@@ -51,10 +51,9 @@ def test_slider_crank_in_closed_form():
     # Norton measures the rod from the block's pin to the crank's.
     block = motion.position("block", "C")
     height = 10.0
-    exact = SliderCrank(a=40.0, b=130.0, c=height)
-    found = [exact.motion(TURN, 7.0, 3.0, branch=branch) for branch in ("open", "crossed")]
-    one = min(found, key=lambda m: np.max(np.abs(m.position.d - block[:, 0])))
-    np.testing.assert_allclose(block[:, 0], one.position.d, atol=1e-9)
+    found = [slider_crank_motion(40.0, 130.0, height, TURN, 7.0, 3.0, branch=branch) for branch in ("open", "crossed")]
+    one = min(found, key=lambda m: np.max(np.abs(m.d - block[:, 0])))
+    np.testing.assert_allclose(block[:, 0], one.d, atol=1e-9)
     np.testing.assert_allclose(block[:, 1], height, atol=1e-12)
     np.testing.assert_allclose(motion.velocity("block", "C")[:, 0], one.d_dot, atol=1e-8)
     np.testing.assert_allclose(motion.linear_acceleration("block", "C")[:, 0], one.d_ddot, atol=1e-7)

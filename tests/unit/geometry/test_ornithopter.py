@@ -50,16 +50,16 @@ def test_bad_rules():
         OrnithopterRules(clearance="1 mm").dimensions()
     with pytest.raises(CaseError, match=r"below the pin diameter of 0\.4 mm"):
         OrnithopterRules(clearance="0.5 mm", pin_diameter="0.4 mm").dimensions()
-    with pytest.raises(CaseError, match="rod = 2 mm must be at least as long"):
+    with pytest.raises(CaseError, match="rod = 2 mm must be longer"):
         WingDrive(throw=3, rod=2, pivot_offset=7, pivot_height=10)
     with pytest.raises(CaseError, match="give a positive offset"):
         WingDrive(throw=3, rod=10, pivot_offset=0, pivot_height=10)
 
 
-@given(drives(), st.floats(-math.pi, math.pi), st.floats(-50, 50), st.floats(-500, 500))
-def test_the_mechanism_closes_and_its_motion_is_its_derivative(drive, angle, speed, acceleration):
+@given(drives(), st.floats(-math.pi, math.pi), st.floats(-50, 50))
+def test_the_mechanism_closes_and_its_motion_is_its_derivative(drive, angle, speed):
     """Positions against the constraints; speeds and accelerations by differentiating those on paper a second way."""
-    motion = drive.motion(angle, speed, acceleration)
+    motion = drive.motion(angle, speed)
     crank = drive.throw * np.array([-math.sin(angle), math.cos(angle)])  # from the crank's pivot, the line upwards
     pin = np.array([0.0, float(motion.pin_height)])
     assert math.dist(crank, pin) == pytest.approx(drive.rod, rel=1e-12)
@@ -69,7 +69,7 @@ def test_the_mechanism_closes_and_its_motion_is_its_derivative(drive, angle, spe
     np.testing.assert_allclose(seen, reach * np.array([-math.cos(phi), math.sin(phi)]), atol=1e-12 * drive.rod)
     # Rod of constant length: (pin - crank)·(their relative velocity) = 0, and its derivative.
     crank_v = speed * drive.throw * np.array([-math.cos(angle), -math.sin(angle)])
-    crank_a = acceleration * drive.throw * np.array([-math.cos(angle), -math.sin(angle)]) - speed**2 * crank
+    crank_a = -(speed**2) * crank
     rod, rod_v = pin - crank, np.array([0.0, float(motion.pin_speed)]) - crank_v
     rod_a = np.array([0.0, float(motion.pin_acceleration)]) - crank_a
     size = drive.rod * (np.abs(crank_v).max() + 1e-9)
@@ -90,10 +90,10 @@ def test_motion_agrees_with_differences():
     angle, step = np.linspace(0.0, 6.2, 50), 1e-5
 
     def state(t):
-        motion = DRIVE.motion(angle + 3.0 * t + 0.2 * t * t, 3.0 + 0.4 * t, 0.4)
+        motion = DRIVE.motion(angle + 3.0 * t, 3.0)
         return np.stack([motion.wing_angle, motion.pin_height]), np.stack([motion.wing_speed, motion.pin_speed])
 
-    now = DRIVE.motion(angle, 3.0, 0.4)
+    now = DRIVE.motion(angle, 3.0)
     (before, speed_before), (after, speed_after) = state(-step), state(step)
     np.testing.assert_allclose((after - before) / (2 * step), [now.wing_speed, now.pin_speed], atol=1e-8)
     np.testing.assert_allclose(
