@@ -104,8 +104,8 @@ def write_curves(result: EnvelopeResult, path: Path) -> None:
         f"{result.drive.link} angle [deg]": np.degrees(result.drive_angles),
     }
     header = ["load case", *angles]
-    for link, found in result.links.items():
-        header += [f"{link} {found.measure} stress{end} [MPa]" for end in ("", " low", " high")]
+    for link, envelope in result.links.items():
+        header += [f"{link} {envelope.measure} stress{end} [MPa]" for end in ("", " low", " high")]
         header += [f"{link} safety factor{end} [1]" for end in ("", " low", " high")]
         header += [f"{link} signed stress at the critical point [MPa]"]
     with path.open("w", encoding="utf-8", newline="") as stream:
@@ -113,8 +113,8 @@ def write_curves(result: EnvelopeResult, path: Path) -> None:
         writer.writerow(header)
         for name in result.case.load_cases:
             columns = list(angles.values())
-            for found in result.links.values():
-                columns += _columns(found, name, len(result.angles))
+            for envelope in result.links.values():
+                columns += _columns(envelope, name, len(result.angles))
             for row in np.column_stack(columns).tolist():
                 writer.writerow([name, *(f"{v:.9g}" if math.isfinite(v) else "" for v in row)])
 
@@ -122,11 +122,11 @@ def write_curves(result: EnvelopeResult, path: Path) -> None:
 def _columns(link: LinkEnvelope, load_case: str, count: int) -> list[Real]:
     if load_case not in link.load_cases:
         return [np.full(count, np.nan)] * 7
-    found = link.load_cases[load_case]
+    envelope = link.load_cases[load_case]
     with np.errstate(divide="ignore"):
-        factors = [link.strength / np.maximum(stress, 0.0) for stress in (found.value, found.high, found.low)]
-    history = np.full(count, np.nan) if found.fatigue is None else found.fatigue.history
-    return [found.value, found.low, found.high, *factors, history]
+        factors = [link.strength / np.maximum(stress, 0.0) for stress in (envelope.value, envelope.high, envelope.low)]
+    history = np.full(count, np.nan) if envelope.fatigue is None else envelope.fatigue.history
+    return [envelope.value, envelope.low, envelope.high, *factors, history]
 
 
 def as_json(result: EnvelopeResult) -> str:
@@ -156,7 +156,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         Angles in degrees; infinite and unknown numbers are None.
     """
     motion = result.moved.motion
-    found = {
+    envelope = {
         **result_stamp(),
         "case": result.name,
         "title": result.case.title,
@@ -179,14 +179,16 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         "warnings": list(result.warnings),
         "timings_s": dict(result.timings),
     }
-    return dict(finite(found, {}))
+    return dict(finite(envelope, {}))
 
 
 def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
     material = result.case.material_of(link.link)
     return entries(link, "measure strength elements unknowns imbalance notes") | {
         "worst_load_case": link.worst.name,
-        "load_cases": {name: _load_case_record(result, found, material) for name, found in link.load_cases.items()},
+        "load_cases": {
+            name: _load_case_record(result, envelope, material) for name, envelope in link.load_cases.items()
+        },
         "no_fatigue": link.no_fatigue or None,
         "unit_loads": link.units,
         "solutions": link.modes,
@@ -195,18 +197,18 @@ def _link_record(result: EnvelopeResult, link: LinkEnvelope) -> dict[str, Any]:
     }
 
 
-def _load_case_record(result: EnvelopeResult, found: LoadCaseEnvelope, material: Material) -> dict[str, Any]:
+def _load_case_record(result: EnvelopeResult, envelope: LoadCaseEnvelope, material: Material) -> dict[str, Any]:
     return {
-        **entries(found, "stress safety_factor"),
+        **entries(envelope, "stress safety_factor"),
         "at": {
-            "pose": found.pose,
-            "coordinate": math.degrees(float(result.angles[found.pose])),
-            "drive": drive_angle(result, found.pose),
-            "location": found.location.tolist(),
-            "pin_pressure_span": found.governing.span,
-            "transfer": found.governing.transfer,
+            "pose": envelope.pose,
+            "coordinate": math.degrees(float(result.angles[envelope.pose])),
+            "drive": drive_angle(result, envelope.pose),
+            "location": envelope.location.tolist(),
+            "pin_pressure_span": envelope.governing.span,
+            "transfer": envelope.governing.transfer,
         },
-        "fatigue": None if found.fatigue is None else _fatigue_record(found.fatigue, material),
+        "fatigue": None if envelope.fatigue is None else _fatigue_record(envelope.fatigue, material),
     }
 
 
@@ -321,13 +323,13 @@ def _links(result: EnvelopeResult, console: "Console") -> None:
         (
             name,
             load_case,
-            band(found.safety_factor),
-            (f"{link.measure} " if mixed else "") + number(found.stress.value, 3),
-            fixed(drive_angle(result, found.pose), 1),
-            ", ".join(fixed(float(v), 1) for v in found.location),
+            band(envelope.safety_factor),
+            (f"{link.measure} " if mixed else "") + number(envelope.stress.value, 3),
+            fixed(drive_angle(result, envelope.pose), 1),
+            ", ".join(fixed(float(v), 1) for v in envelope.location),
         )
         for name, link in result.links.items()
-        for load_case, found in link.load_cases.items()
+        for load_case, envelope in link.load_cases.items()
     ]
     say_table(console, columns, rows)
 
@@ -349,7 +351,7 @@ def _fatigue(links: Mapping[str, LinkEnvelope], console: "Console") -> None:
             "unknown, no exponent" if fatigue.repetitions is None else band(fatigue.repetitions, 2),
         )
         for name, link in links.items()
-        for load_case, found in link.load_cases.items()
-        if (fatigue := found.fatigue) is not None
+        for load_case, envelope in link.load_cases.items()
+        if (fatigue := envelope.fatigue) is not None
     ]
     say_table(console, columns, rows)

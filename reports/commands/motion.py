@@ -115,20 +115,18 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
 def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
     own = result.case.load_cases[load_case].speed
     speed = own if own != 0.0 else float(result.motion.speed[0])
-    found: dict[str, Any] = {"inertia": with_inertia(result.case, load_case)}
-    found |= {"speed_mm_per_s" if result.motion.slides else "speed_rad_per_s": speed}
-    found |= {f"drive_{result.effort[0]}": _extremes(result, result.torque[load_case])}
+    data: dict[str, Any] = {"inertia": with_inertia(result.case, load_case)}
+    data |= {"speed_mm_per_s" if result.motion.slides else "speed_rad_per_s": speed}
+    data |= {f"drive_{result.effort[0]}": _extremes(result, result.torque[load_case])}
     if not result.forces:
-        return found | {"joints": None}
+        return data | {"joints": None}
     solved = result.forces[load_case]
-    found["joints"] = {
-        joint: _extremes(result, np.linalg.norm(force, axis=1)) for joint, force in solved.forces.items()
-    }
+    data["joints"] = {joint: _extremes(result, np.linalg.norm(force, axis=1)) for joint, force in solved.forces.items()}
     if np.any(solved.motion.speed):
-        found["drive_power"] = _extremes(result, solved.drive_power / 1000.0)
+        data["drive_power"] = _extremes(result, solved.drive_power / 1000.0)
         scale = max(float(np.nanmax(np.abs(solved.drive_power), initial=0.0)), math.ulp(0.0))
-        found["energy_imbalance"] = float(np.nanmax(np.abs(solved.imbalance), initial=0.0)) / scale
-    return found
+        data["energy_imbalance"] = float(np.nanmax(np.abs(solved.imbalance), initial=0.0)) / scale
+    return data
 
 
 def _extremes(result: CaseMotion, values: Real) -> dict[str, Any]:
@@ -153,11 +151,11 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
     json : bool
         True to print JSON.
     """
-    found = record(result, name)
+    data = record(result, name)
     if json:
-        print(jsonlib.dumps(found, indent=2))
+        print(jsonlib.dumps(data, indent=2))
         return
-    motion, drive = found["motion"], found["drive"]
+    motion, drive = data["motion"], data["drive"]
     print(result.case.title)
     duration = "" if motion["duration"] is None else f", {motion['duration']:.4g} s"
     print(
@@ -181,7 +179,7 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         )
     if design := design_lines(result.case):
         print("\n" + "\n".join(design))
-    for load_case, row in found["load_cases"].items():
+    for load_case, row in data["load_cases"].items():
         speed = row.get("speed_mm_per_s", row.get("speed_rad_per_s"))
         at = f"{speed:.4g} mm/s" if result.motion.slides else f"{speed * 30.0 / math.pi:.4g} rpm"
         how = f"with inertia at {at}" if row["inertia"] else "without inertia"

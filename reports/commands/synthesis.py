@@ -76,26 +76,26 @@ def read_synthesis(points: Sequence[str], ground: str) -> Synthesis:
     return synthesise([pair.theta for pair in pairs], [pair.psi for pair in pairs], d)
 
 
-def record(found: Synthesis) -> dict[str, Any]:
+def record(synthesis: Synthesis) -> dict[str, Any]:
     """Return the synthesis as plain data.
 
     Parameters
     ----------
-    found : Synthesis
+    synthesis : Synthesis
 
     Returns
     -------
     dict
         Lengths in mm, angles in degrees from -180 to 180.
     """
-    bar, grashof = found.four_bar, found.four_bar.grashof
+    bar, grashof = synthesis.four_bar, synthesis.four_bar.grashof
     return {
         **result_stamp(),
         "units": {"length": "mm", "angle": "deg"},
-        "coefficients": {"K1": found.K[0], "K2": found.K[1], "K3": found.K[2]},
-        "condition": found.condition,
+        "coefficients": {"K1": synthesis.K[0], "K2": synthesis.K[1], "K3": synthesis.K[2]},
+        "condition": synthesis.condition,
         "lengths": entries(bar, "a b c d"),
-        "turned": {"b": found.b_turned, "c": found.c_turned},
+        "turned": {"b": synthesis.b_turned, "c": synthesis.c_turned},
         "grashof": entries(grashof, "satisfied relation inversion shortest_plus_longest other_two"),
         "points": [
             {
@@ -105,7 +105,7 @@ def record(found: Synthesis) -> dict[str, Any]:
                 "residual": point.residual,
                 "branches": dict(point.branches),
             }
-            for point in found.points
+            for point in synthesis.points
         ],
         "lock_ups": [
             {
@@ -115,72 +115,72 @@ def record(found: Synthesis) -> dict[str, Any]:
                 "psi": math.degrees(lock.psi),
                 "kind": lock.kind,
             }
-            for lock in found.lock_ups
+            for lock in synthesis.lock_ups
         ],
-        "findings": [entries(finding, "kind drive sentence") for finding in found.findings],
+        "findings": [entries(finding, "kind drive sentence") for finding in synthesis.findings],
     }
 
 
-def print_synthesis(found: Synthesis, *, json: bool) -> None:
+def print_synthesis(synthesis: Synthesis, *, json: bool) -> None:
     """Print the synthesis.
 
     Parameters
     ----------
-    found : Synthesis
+    synthesis : Synthesis
     json : bool
         True to print JSON.
     """
     if json:
-        print(jsonlib.dumps(record(found), indent=2, ensure_ascii=False))
+        print(jsonlib.dumps(record(synthesis), indent=2, ensure_ascii=False))
         return
-    unit, factor = _unit(found)
-    bar = found.four_bar
+    unit, factor = _unit(synthesis)
+    bar = synthesis.four_bar
     print("Four-bar through three precision points (Freudenstein)")
     print("  loop a·e^(jφ) + b·e^(jθ) − c·e^(jψ) − d = 0: φ turns with link a, θ with b, ψ with c")
-    print(f"  K1 = {found.K[0]:.6f}, K2 = {found.K[1]:.6f}, K3 = {found.K[2]:.6f}")
-    print(f"  condition number of the 3×3 system: {found.condition:.4g}")
+    print(f"  K1 = {synthesis.K[0]:.6f}, K2 = {synthesis.K[1]:.6f}, K3 = {synthesis.K[2]:.6f}")
+    print(f"  condition number of the 3×3 system: {synthesis.condition:.4g}")
     print("\nLink lengths")
     for name in "abcd":
         print(f"  {name} = {getattr(bar, name) / factor:.10g} {unit}")
     print("\nPrecision points [deg]; branch as seen from each link that may be driven")
     print(f"  {'':>3}{'θ':>10}{'ψ':>10}{'φ':>11}   {'a (φ)':<12}{'b (θ)':<12}{'c (ψ)':<12}")
-    for number, point in enumerate(found.points, start=1):
+    for number, point in enumerate(synthesis.points, start=1):
         angles = f"{math.degrees(point.theta):10.4f}{math.degrees(point.psi):10.4f}{math.degrees(point.phi):11.4f}"
         print(
             f"  {number:>3}{angles}   " + "".join(f"{point.branches[d] or 'dead point':<12}" for d in DRIVES).rstrip()
         )
-    if found.lock_ups:
+    if synthesis.lock_ups:
         print("\nLock-up poses [deg]: beyond them the driven link cannot turn")
         print(f"  {'driven':<10}{'φ':>11}{'θ':>11}{'ψ':>11}   other two links")
-        for lock in found.lock_ups:
+        for lock in synthesis.lock_ups:
             angles = "".join(f"{math.degrees(value):11.4f}" for value in (lock.phi, lock.theta, lock.psi))
             print(f"  {f'{lock.drive} ({_ANGLE[lock.drive]})':<10}{angles}   {lock.kind}")
     print("\nFindings")
-    for finding in found.findings:
+    for finding in synthesis.findings:
         if finding.kind != "lock-up":  # the table above says as much
-            print(f"  {finding.kind}: {_in_unit(finding.sentence, found)}")
+            print(f"  {finding.kind}: {_in_unit(finding.sentence, synthesis)}")
 
 
-def _unit(found: Synthesis) -> tuple[str, float]:
+def _unit(synthesis: Synthesis) -> tuple[str, float]:
     """Return the unit in which lengths are printed, and the mm in it."""
-    return ("m", 1000.0) if found.four_bar.d >= 1000.0 else ("mm", 1.0)
+    return ("m", 1000.0) if synthesis.four_bar.d >= 1000.0 else ("mm", 1.0)
 
 
-def _in_unit(text: str, found: Synthesis) -> str:
+def _in_unit(text: str, synthesis: Synthesis) -> str:
     """Name the unit of the sums in Grashof's sentence, which come in the unit of d."""
-    grashof = found.four_bar.grashof
-    unit, factor = _unit(found)
+    grashof = synthesis.four_bar.grashof
+    unit, factor = _unit(synthesis)
     for value in (grashof.shortest_plus_longest, grashof.other_two):
         text = text.replace(f"{value:.10g}", f"{value / factor:.10g} {unit}")
     return text
 
 
-def joints_at(found: Synthesis, point: PrecisionPoint) -> NDArray[np.float64]:
+def joints_at(synthesis: Synthesis, point: PrecisionPoint) -> NDArray[np.float64]:
     """Return the joints of the linkage at a precision point.
 
     Parameters
     ----------
-    found : Synthesis
+    synthesis : Synthesis
     point : PrecisionPoint
 
     Returns
@@ -188,40 +188,40 @@ def joints_at(found: Synthesis, point: PrecisionPoint) -> NDArray[np.float64]:
     array
         O2, A, B, O4 (4, 2) in the unit of d.
     """
-    bar = found.four_bar
-    psi = point.psi + math.pi * found.c_turned
+    bar = synthesis.four_bar
+    psi = point.psi + math.pi * synthesis.c_turned
     crank = bar.a * np.array([math.cos(point.phi), math.sin(point.phi)])
     output = np.array([bar.d + bar.c * math.cos(psi), bar.c * math.sin(psi)])
     return np.array([[0.0, 0.0], crank, output, [bar.d, 0.0]])
 
 
-def write_synthesis(found: Synthesis, folder: Path) -> None:
+def write_synthesis(synthesis: Synthesis, folder: Path) -> None:
     """Write ``result.json`` and ``linkage.png``.
 
     Parameters
     ----------
-    found : Synthesis
+    synthesis : Synthesis
     folder : Path
         An existing folder.
     """
-    text = jsonlib.dumps(record(found), indent=2, ensure_ascii=False)
+    text = jsonlib.dumps(record(synthesis), indent=2, ensure_ascii=False)
     (folder / "result.json").write_text(text + "\n", encoding="utf-8")
-    draw_linkage(found, folder / "linkage.png")
+    draw_linkage(synthesis, folder / "linkage.png")
 
 
-def draw_linkage(found: Synthesis, path: Path) -> None:
+def draw_linkage(synthesis: Synthesis, path: Path) -> None:
     """Draw the linkage at the three precision points, one below the other.
 
     Parameters
     ----------
-    found : Synthesis
+    synthesis : Synthesis
     path : Path
         File to write.
     """
     from matplotlib.figure import Figure
 
-    unit, factor = _unit(found)
-    shapes = [joints_at(found, point) / factor for point in found.points]
+    unit, factor = _unit(synthesis)
+    shapes = [joints_at(synthesis, point) / factor for point in synthesis.points]
     everything = np.concatenate(shapes)
     low, high = everything.min(axis=0), everything.max(axis=0)
     margin = 0.09 * float(np.max(high - low))
@@ -229,7 +229,7 @@ def draw_linkage(found: Synthesis, path: Path) -> None:
     panel = float(np.clip(8.0 * tall / width, 1.6, 6.0))
     figure = Figure(figsize=(9.0, 3 * (panel + 0.55) + 0.9), layout="constrained")
     for number, (axes, shape) in enumerate(zip(figure.subplots(3, 1, sharex=True), shapes, strict=True), start=1):
-        point = found.points[number - 1]
+        point = synthesis.points[number - 1]
         axes.set_aspect("equal")
         axes.set_xlim(low[0] - margin, high[0] + margin)
         axes.set_ylim(low[1] - margin, high[1] + margin)
