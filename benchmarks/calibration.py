@@ -5,7 +5,8 @@
 
 What the solids say is kept in ``benchmarks/results/calibration.json``, so that a better estimate needs no new solid.
 Every part is solved on one moderate mesh under some twenty load cases with every pin pressure and torque transfer.
-The largest von Mises and principal stress within each spot (``fea.beam.spots``) is divided by the spot's estimate.
+The largest von Mises and principal stress at each critical location (``fea.beam.critical_locations``) is divided by the
+estimate there.
 """
 
 import datetime
@@ -18,8 +19,8 @@ from pathlib import Path
 import numpy as np
 
 from fea.beam.calibration import proportions
+from fea.beam.critical_locations import critical_locations, displacement_estimate
 from fea.beam.cut_free import beam_loads
-from fea.beam.spots import displacement_estimate, spots
 from fea.beam.theory import BeamCheck, check_beam
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from fea.solid.solution import solve_solid
@@ -34,7 +35,7 @@ YOUNG = 2400.0
 MARGIN = 1.15
 """By which the measured least and largest factors are widened: one mesh, and few parts."""
 BEARS = 0.3
-"""A spot counts where it bears at least this share of the link's peak, by the solid or by hand."""
+"""A location counts where it bears at least this share of the link's peak, by the solid or by hand."""
 BEARS_AT_AN_END = 0.05
 """The same for loaded ends, which never bear much."""
 
@@ -187,10 +188,10 @@ def load_cases(body: Body) -> Iterator[LinkLoads]:
 
 
 def solids(body: Body, nu: float) -> dict[str, dict[str, list[float]]]:
-    """What the solid model alone says: load case -> spot -> its share of the peak and its least and largest stresses.
+    """What the solid model alone says: load case -> location -> its share of the peak, its least and largest stresses.
 
-    The five numbers of a spot are the largest share over the variants, then least and largest von Mises stress, then
-    least and largest principal stress [MPa]; those of "displacement" least and largest [mm].
+    The five numbers of a location are the largest share over the variants, then least and largest von Mises stress,
+    then least and largest principal stress [MPa]; those of "displacement" least and largest [mm].
     """
     mesh = mesh_body(body, SETTINGS)
     cases = list(load_cases(body))
@@ -206,31 +207,32 @@ def solids(body: Body, nu: float) -> dict[str, dict[str, list[float]]]:
         fields = [stress_field(solution.space, s.displacement, E=YOUNG, nu=nu) for s in found]
         peaks = [f.von_mises.max() for f in fields]
         other = np.ones(len(nodes), dtype=bool)
-        for spot in spots(body, loads, _beam(body, loads, nu)):
-            inside = other if spot.kind == "section" else (nodes[:, 0] >= spot.low) & (nodes[:, 0] <= spot.high)
+        for location in critical_locations(body, loads, _beam(body, loads, nu)):
+            near = (nodes[:, 0] >= location.low) & (nodes[:, 0] <= location.high)
+            inside = other if location.kind == "section" else near
             other = other & ~inside
             von = [float(f.von_mises[inside].max()) for f in fields]
             first = [float(f.principal[inside, 0].max()) for f in fields]
             share = max(v / p for v, p in zip(von, peaks, strict=True))
-            row[spot.name] = _rounded(share, min(von), max(von), min(first), max(first))
+            row[location.name] = _rounded(share, min(von), max(von), min(first), max(first))
     return kept
 
 
 def compare(body: Body, nu: float, kept: dict[str, dict[str, list[float]]]) -> list[dict]:
-    """Every spot of every load case: its share of the peak, and least and largest ratio of solid to estimate."""
+    """Every location of every load case: its share of the peak, and least and largest ratio of solid to estimate."""
     rows = []
     for loads in load_cases(body):
         beam, solid = _beam(body, loads, nu), kept[loads.name]
-        places = [spot for spot in spots(body, loads, beam) if spot.estimate > 0.0]
-        hand = max(spot.estimate for spot in places)
+        places = [location for location in critical_locations(body, loads, beam) if location.estimate > 0.0]
+        hand = max(location.estimate for location in places)
         line = (body.pins[0].x, body.pins[-1].x)
         moved = displacement_estimate(body, loads, beam, young=YOUNG, poisson=nu, line=line)
         of_all = {"case": loads.name, "kind": "displacement", "share": 1.0, "by_hand": 1.0}
         rows.append(of_all | {"von_mises": [value / moved for value in solid["displacement"]]})
-        for spot in places:
-            share, *stresses = solid[spot.name]
-            ratios = [value / spot.estimate for value in stresses]
-            row = {"case": loads.name, "kind": spot.kind, "share": share, "by_hand": spot.estimate / hand}
+        for location in places:
+            share, *stresses = solid[location.name]
+            ratios = [value / location.estimate for value in stresses]
+            row = {"case": loads.name, "kind": location.kind, "share": share, "by_hand": location.estimate / hand}
             rows.append(row | {"von_mises": ratios[:2], "principal": ratios[2:]})
     return rows
 
@@ -244,7 +246,7 @@ def _rounded(*values: float) -> list[float]:
 
 
 def factors(rows: list[dict], quantity: str) -> list[float]:
-    """Least, median and largest ratio of the spots that bear, the outer two widened by the margin."""
+    """Least, median and largest ratio of the locations that bear, the outer two widened by the margin."""
     bears = BEARS_AT_AN_END if rows[0]["kind"] == "end" else BEARS
     borne = [r for r in rows if r["share"] >= bears]
     by_hand = [r for r in rows if r["by_hand"] >= bears]
@@ -289,7 +291,7 @@ def table(shape: str, found: dict) -> str:
 
 
 HEADER = """\
-# Largest stress and displacement of solid models over the estimates of hand calculation (fea/beam/spots.py):
+# Largest stress and displacement of solids over the estimates of hand calculation (fea/beam/critical_locations.py):
 # [least, median, largest] per kind of place, the outer two widened by the margin; and the proportions measured.
 # Written by benchmarks/calibration.py; do not edit.
 

@@ -1,4 +1,4 @@
 """One link by hand: internal forces, section stress, stress concentrations, columns, calibrated factors.
 
-Hands on ``BeamCheck``, the spots that may bear a peak, and column factors.
+Hands on ``BeamCheck``, critical locations, where stress may peak, and column factors.
 """

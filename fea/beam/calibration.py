@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from fea.beam.spots import Kind
+from fea.beam.critical_locations import LocationKind
 from geometry.parts.body import patch_span
 from geometry.parts.eyes import eye_reach
 from geometry.parts.part import Body, Part
@@ -60,7 +60,7 @@ class Calibration:
     ranges : dict of str to Interval
         Proportion -> least and largest of the measured parts.
     von_mises : dict of Kind to Factors
-        Kind of spot and the factors of the largest stress there.
+        Kind of critical location and the factors of the largest stress there.
     principal : dict of Kind to Factors
         The same for the largest principal stress.
     displacement : Factors
@@ -72,8 +72,8 @@ class Calibration:
     cases: int
     margin: float
     ranges: Mapping[str, Interval]
-    von_mises: Mapping[Kind, Factors]
-    principal: Mapping[Kind, Factors]
+    von_mises: Mapping[LocationKind, Factors]
+    principal: Mapping[LocationKind, Factors]
     displacement: Factors
 
     def outside(self, body: Body, nu: float) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from fea.beam.calibration import Calibration, Factors, calibration_of, uncalibrated
-from fea.beam.spots import Spot, displacement_estimate, spots
+from fea.beam.critical_locations import CriticalLocation, critical_locations, displacement_estimate
 from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
@@ -26,10 +26,10 @@ Model = Literal["beam", "solid"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpotBand:
-    """A spot with the bounds of its largest von Mises and principal stress [MPa] by hand."""
+class LocationBand:
+    """A critical location with the bounds of its largest von Mises and principal stress [MPa] by hand."""
 
-    spot: Spot
+    location: CriticalLocation
     von_mises: Band
     principal: Band
 
@@ -38,14 +38,14 @@ class SpotBand:
 class HandBands:
     """Peaks of a link under one load case by calibrated hand calculation [MPa, mm].
 
-    spots     all places, the most stressed first
+    locations     all places, the most stressed first
     outside   why the calibration does not hold for this link; "" where it does. Then all bands are unknown
     """
 
     von_mises: Band
     principal: Band
     displacement: Band
-    spots: tuple[SpotBand, ...]
+    locations: tuple[LocationBand, ...]
     outside: str
 
     def deciding(self, *, brittle: bool) -> Band:
@@ -134,24 +134,24 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
     """Return the calibrated bands of a link under one load case."""
     body = task.body
     outside = uncalibrated(body, task.nu)
-    found: tuple[Spot, ...] = ()
+    found: tuple[CriticalLocation, ...] = ()
     if not outside:
         try:
-            found = spots(body, loads, beam)
+            found = critical_locations(body, loads, beam)
         except CannotRunError as error:
             outside = str(error)
     if outside:
         nothing = Band.unknown("hand calculation is not calibrated for this link")
-        return HandBands(von_mises=nothing, principal=nothing, displacement=nothing, spots=(), outside=outside)
+        return HandBands(von_mises=nothing, principal=nothing, displacement=nothing, locations=(), outside=outside)
     calibration = calibration_of(body.part)
     sources = (_source(calibration),)
     rows = [
-        SpotBand(
-            spot=spot,
-            von_mises=_at_spot(spot, calibration.von_mises[spot.kind], sources),
-            principal=_at_spot(spot, calibration.principal[spot.kind], sources),
+        LocationBand(
+            location=location,
+            von_mises=_at_location(location, calibration.von_mises[location.kind], sources),
+            principal=_at_location(location, calibration.principal[location.kind], sources),
         )
-        for spot in found
+        for location in found
     ]
     line = reference_line(body)
     moved = displacement_estimate(body, loads, beam, young=task.E, poisson=task.nu, line=line)
@@ -160,7 +160,7 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
         von_mises=Band.largest([row.von_mises for row in rows]),
         principal=Band.largest([row.principal for row in rows]),
         displacement=_band(moved, calibration.displacement, sources),
-        spots=tuple(rows),
+        locations=tuple(rows),
         outside="",
     )
 
@@ -197,10 +197,10 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
     if open_limit:
         return None, f"by hand {open_limit}, so finite elements decided"
     worst = max(range(len(hands)), key=lambda i: stresses[i].high)
-    band, spot = stresses[worst], hands[worst].spots[0].spot
+    band, location = stresses[worst], hands[worst].locations[0].location
     limits = ", ".join(map(_limit, task.stress_limits))
     ends = f"{band.low:.3g} and {band.high:.3g} MPa"
-    why = f"by hand the peak stress lies between {ends}, at most at {spot.name}"
+    why = f"by hand the peak stress lies between {ends}, at most at {location.name}"
     why += f", clear of the limit {limits} MPa" if limits else ""
     if task.displacement_limits:
         moved = Band.largest([hand.displacement for hand in hands])
@@ -238,12 +238,12 @@ def _source(calibration: Calibration) -> Source:
     return Source(kind=SourceKind.CALIBRATION, detail=detail)
 
 
-def _at_spot(spot: Spot, factors: Factors, sources: tuple[Source, ...]) -> Band:
-    """Band of a spot's stress; pin contact adds to what the solids of the calibration bore in their eyes."""
-    if spot.kind != "eye":
-        return _band(spot.estimate, factors, sources)
+def _at_location(location: CriticalLocation, factors: Factors, sources: tuple[Source, ...]) -> Band:
+    """Band of the stress at a critical location; pin contact adds to what solids of the calibration bore in eyes."""
+    if location.kind != "eye":
+        return _band(location.estimate, factors, sources)
     contact = replace(factors, high=factors.high / (1.0 - CONTACT_SHORTFALL))
-    return _band(spot.estimate, contact, (*sources, CONTACT))
+    return _band(location.estimate, contact, (*sources, CONTACT))
 
 
 def _band(estimate: float, factors: Factors, sources: tuple[Source, ...]) -> Band:

@@ -61,7 +61,7 @@ def _hand_result(
     x, worst = hand.worst
     if bands is not None and not bands.outside:
         von_mises, principal, moved = bands.von_mises, bands.principal, bands.displacement
-        x = max(bands.spots, key=lambda row: (row.principal if material.brittle else row.von_mises).high).spot.x
+        x = max(bands.locations, key=lambda row: (row.principal if material.brittle else row.von_mises).high).location.x
         notes: tuple[str, ...] = ()
     else:
         tension = max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0)

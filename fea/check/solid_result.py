@@ -14,7 +14,7 @@ from fea.outcomes.limits import displacement_limits, stress_limits
 from fea.outcomes.result import SolidResult, VariantPeak
 from fea.refine.convergence import GridConvergence
 from fea.refine.discretisation import discretisation_source, judged
-from fea.refine.link_series import CasePrecision, Quantity
+from fea.refine.link_series import CasePrecision, PeakQuantity
 from fea.refine.refinement import LinkTask, RefinedSolid
 from fea.refine.singular import LOADED
 from fea.solid.solution import SolidCase
@@ -79,7 +79,7 @@ def solid_result(
     )
     precision = judged(refined, worst, brittle=material.brittle)
 
-    def band(quantity: Quantity) -> Band:
+    def band(quantity: PeakQuantity) -> Band:
         every = [refined.precision[number] for number in solved]
         if not all(found.known(quantity) for found in every):
             return Band.unknown(NO_NUMBER)
@@ -132,7 +132,7 @@ def _edge_notes(refined: RefinedSolid, solved: Sequence[int]) -> tuple[str, ...]
 def _peak(variant: SolidCase, precision: CasePrecision) -> VariantPeak:
     """Peaks of one variant; NaN for one without limit, which no number stands for."""
 
-    def known(quantity: Quantity) -> float:
+    def known(quantity: PeakQuantity) -> float:
         return precision.series(quantity).value if precision.known(quantity) else math.nan
 
     return VariantPeak(

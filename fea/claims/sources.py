@@ -12,7 +12,7 @@ from fea.claims.data import Tree, case_tree, flapping_tree, system_tree
 from geometry.base.errors import CaseError
 from geometry.mechanisms.flapping import FlappingWing
 from loads.case.case_file import built_in_cases, read_case, read_companion
-from loads.sources.claim import Claim, Source, System, TableSystem, read_source, sources
+from loads.sources.claim import Claim, PublishedSource, System, TableSystem, read_source, sources
 
 _CELLS = {
     "ground_d_mm": ("ground", "", "mm"),
@@ -100,7 +100,9 @@ def _tree_of(
     return system_tree(system, fidelity=fidelity, threads=threads)
 
 
-def _check_source(source: Source, case: str | None, solve: Callable[..., Mapping[str, Any]]) -> list[ClaimResult]:
+def _check_source(
+    source: PublishedSource, case: str | None, solve: Callable[..., Mapping[str, Any]]
+) -> list[ClaimResult]:
     """Re-derive the claims of a source: all, or those of one case."""
     systems = {
         key: partial(solve, system) for key, system in source.systems.items() if not isinstance(system, TableSystem)

@@ -44,7 +44,7 @@ LEAST_FACTOR = 10.0
 """Factor to buckling or to a dead point below which equilibrium is sought on the deformed shape."""
 LEAST_LINEAR = 3.0
 """Buckling factor below which small faults of shape, which no frame knows, grow too much to be relied on."""
-SUBDIVISIONS = 2
+PATH_SUBDIVISIONS = 2
 LEAST_STEP = 1.0 / 512.0
 MOST_ITERATIONS = 15
 _ALONG = (0.25, 0.5, 0.75)
@@ -284,7 +284,7 @@ def _followed(frame: LinkageFrame, factor: float) -> CorotationalSolution:
     elements = tuple(replace(element, young=element.young / factor) for element in frame.model.elements)
     return solve_large_displacement(
         replace(frame.model, elements=elements),
-        SUBDIVISIONS,
+        PATH_SUBDIVISIONS,
         least_step=LEAST_STEP,
         most_iterations=MOST_ITERATIONS,
     )
@@ -317,7 +317,7 @@ def _deformed(
     lead = f"{lead}; on its deformed shape "
     try:
         found = solve_large_displacement(
-            frame.model, SUBDIVISIONS, least_step=LEAST_STEP, most_iterations=MOST_ITERATIONS
+            frame.model, PATH_SUBDIVISIONS, least_step=LEAST_STEP, most_iterations=MOST_ITERATIONS
         )
     except NoEquilibriumError as error:
         sentence = (

@@ -26,8 +26,8 @@ from fea.frame.linkage_frame import LinkageFrame, slot_normal
 from fea.frame.model import FrameModel
 from geometry.linkage.pose import Pose, constraint_jacobian, held_motion
 
-COARSE, FINE, NEAR = 2, 8, 30.0
-"""Elements per beam for the buckling factor, and the factor by the coarse ones below which the fine ones are used."""
+COARSE_SUBDIVISIONS, NEAR_BUCKLING = 2, 30.0
+"""Elements per beam for a first buckling factor, and the factor below which it is computed with ``SUBDIVISIONS``."""
 SNAP = 3.0 * math.sqrt(3.0)
 """Linear factor at which a shallow toggle snaps through."""
 
@@ -109,8 +109,8 @@ def linkage_factor(frame: LinkageFrame) -> float:
     float
         Infinite where it never does.
     """
-    factor = buckling_factor(frame.model, COARSE)
-    return buckling_factor(frame.model, FINE) if factor < NEAR else factor
+    factor = buckling_factor(frame.model, COARSE_SUBDIVISIONS)
+    return buckling_factor(frame.model) if factor < NEAR_BUCKLING else factor
 
 
 def dead_point_factor(frame: LinkageFrame, solution: FrameSolution) -> float:

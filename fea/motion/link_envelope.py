@@ -20,7 +20,7 @@ from fea.motion.unit_solutions import UnitSolutions, solve_units
 from fea.refine.convergence import ALONE
 from fea.refine.discretisation import Discretisation, discretisation_source, judged
 from fea.refine.error_estimate import estimate_error
-from fea.refine.link_series import Quantity
+from fea.refine.link_series import PeakQuantity
 from fea.refine.refinement import RefinedSolid
 from fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT
 from fea.solid.space import DisplacementSpace
@@ -193,7 +193,7 @@ class _Series:
             found._refined[case.span, case.transfer] = series.value
             found._size = min(found._size, series.sizes[0])
             if judgement.known and series.value > 0.0:
-                measure: Quantity = "principal" if material.brittle else "von_mises"
+                measure: PeakQuantity = "principal" if material.brittle else "von_mises"
                 ends = precise.low(measure) / series.value, precise.high(measure) / series.value
                 found.factors[case.span, case.transfer] = ends
         return found

@@ -24,7 +24,7 @@ FORMAL_ORDER = 2.0
 LEAST_ORDER, ABOVE_FORMAL = 0.5, 1.0
 """Least sensible order, and how far above the elements' own one may be: a higher one is an accidental agreement of the
 last two meshes. In a thin ring 16.98, 19.94, 20.15 MPa (order 5.5) went on to 21.72 and, on 123,000 elements, 21.82."""
-SAFETY, DOUBT = 1.25, 3.0
+SAFETY, WIDE_SAFETY = 1.25, 3.0
 """Factors on the extrapolated error where the observed order makes sense, and where it does not."""
 LEAST_RATIO = 1.15
 """Of the sizes of successive meshes: the order of meshes that are closer than this means nothing."""
@@ -48,7 +48,7 @@ the least band of one or two meshes, which have no order.
 Measured as the true error of the peak over that estimate, in cylinders under pressure and at holes in tension: 0 to
 1.8 where that error is below 15 %, up to 2.4 on meshes of 12 and 3.1 on one of 8 elements round a hole."""
 
-Kind = Literal["one mesh", "two meshes", "monotone", "irregular", "growing"]
+SeriesKind = Literal["one mesh", "two meshes", "monotone", "irregular", "growing"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +79,7 @@ class GridConvergence:
     sizes: tuple[float, ...]
     values: tuple[float, ...]
     order: float | None
-    kind: Kind
+    kind: SeriesKind
     factor: float
     low: float
     high: float
@@ -189,22 +189,22 @@ def grid_convergence(
 
 def _reach(
     h: Sequence[float], f: Sequence[float], estimate: float, formal_order: float, sharp: bool
-) -> tuple[float | None, Kind, float, float, float]:
+) -> tuple[float | None, SeriesKind, float, float, float]:
     """Return order, kind and factor of a series, its index, and the share of it by which its band reaches back."""
     if len(f) == 1:
         return None, "one mesh", ALONE, 0.0, 1.0
     step, ratio = f[-1] - f[-2], h[-2] / h[-1]
     if len(f) == 2:
-        return None, "two meshes", DOUBT, DOUBT * abs(step) / (math.pow(ratio, formal_order) - 1.0), 1.0
+        return None, "two meshes", WIDE_SAFETY, WIDE_SAFETY * abs(step) / (math.pow(ratio, formal_order) - 1.0), 1.0
     order = observed_order(h[-3:], f[-3:])
     if abs(step) > max(estimate, SIGNIFICANT * abs(f[-1])) and _rises(h, f) and (sharp or _rises(h[:-1], f[:-1])):
-        return order, "growing", DOUBT, math.inf, 1.0
+        return order, "growing", WIDE_SAFETY, math.inf, 1.0
     left = max(abs(step), abs(f[-2] - f[-3]) * _share(h, formal_order))
     if order is None or not LEAST_ORDER <= order <= formal_order + ABOVE_FORMAL:
-        index = DOUBT * left / (math.pow(max(ratio, NOISE_RATIO), formal_order) - 1.0)
+        index = WIDE_SAFETY * left / (math.pow(max(ratio, NOISE_RATIO), formal_order) - 1.0)
         # The limit of a slow series lies beyond its last value; a negative order is scatter, and tells no side.
         slow = order is not None and 0.0 <= order < LEAST_ORDER
-        return order, "irregular", DOUBT, index, BACKWARD if slow else 1.0
+        return order, "irregular", WIDE_SAFETY, index, BACKWARD if slow else 1.0
     if order > formal_order:
         return order, "monotone", SAFETY, SAFETY * left / (math.pow(ratio, formal_order) - 1.0), 1.0
     return order, "monotone", SAFETY, SAFETY * abs(step) / (math.pow(ratio, order) - 1.0), BACKWARD

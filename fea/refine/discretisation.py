@@ -9,8 +9,8 @@ from fea.refine.link_series import NOT_RESOLVED
 from fea.refine.refinement import MeshRecord, RefinedSolid
 from fea.refine.singular import LOADED, SharpPeak
 
-Status = Literal["converged", "decided", "far", "not reached", "unresolved", "edge", "singular", "growing"]
-UNKNOWN: tuple[Status, ...] = ("unresolved", "edge", "singular", "growing")
+MeshStatus = Literal["converged", "decided", "far", "not reached", "unresolved", "edge", "singular", "growing"]
+UNKNOWN: tuple[MeshStatus, ...] = ("unresolved", "edge", "singular", "growing")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -19,7 +19,7 @@ class Discretisation:
 
     Attributes
     ----------
-    status : Status
+    status : MeshStatus
         "converged": within the accuracy on at least three meshes; "decided": not that narrow, but the verdict is clear;
         "far": one mesh, every limit far away; "not reached": a limit of the run ended the refinement first. Without
         safety factor: "unresolved": the mesh is too coarse for any estimate; "edge": a sharp edge bears much and too
@@ -38,7 +38,7 @@ class Discretisation:
         Why refinement ended before its aim; "" where it did not.
     """
 
-    status: Status
+    status: MeshStatus
     accuracy: float
     stress: GridConvergence
     displacement: GridConvergence
@@ -149,12 +149,12 @@ def judged(refined: RefinedSolid, number: int, *, brittle: bool) -> Discretisati
     """
     case = refined.precision[number]
     stress = case.principal if brittle else case.von_mises
-    status: Status
-    if case.doubt == "coarse":
+    status: MeshStatus
+    if case.unreliable == "coarse":
         status = "unresolved"
     elif case.sharp is not None:
         status = "singular"
-    elif case.doubt == "edge":
+    elif case.unreliable == "edge":
         status = "edge"
     elif stress.kind == "growing":
         status = "growing"

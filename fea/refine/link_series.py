@@ -27,8 +27,8 @@ AROUND = 1.5
 """Radius about a peak, in sizes of the first mesh, in which a series measures its sizes and the next mesh is finer."""
 
 
-Quantity = Literal["von_mises", "principal", "displacement"]
-Doubt = Literal["", "coarse", "edge"]
+PeakQuantity = Literal["von_mises", "principal", "displacement"]
+Unreliable = Literal["", "coarse", "edge"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +85,7 @@ class CasePrecision:
         The stress where a sharp edge bears most; None without an edge that bears much.
     sharp : SharpPeak or None
         The singular peak that the case has there; None where there is none.
-    doubt : Doubt
+    unreliable : Doubt
         Why there is no band: "coarse" where the mesh resolves nothing; "edge" where a sharp edge bears much and the
         meshes do not tell yet whether its stress has a limit, which leaves displacements alone.
     in_contact : dict of Quantity to float
@@ -98,10 +98,10 @@ class CasePrecision:
     displacement: GridConvergence
     edge: GridConvergence | None
     sharp: SharpPeak | None
-    doubt: Doubt
-    in_contact: Mapping[Quantity, float]
+    unreliable: Unreliable
+    in_contact: Mapping[PeakQuantity, float]
 
-    def series(self, quantity: Quantity) -> GridConvergence:
+    def series(self, quantity: PeakQuantity) -> GridConvergence:
         """Return the series of a quantity.
 
         Parameters
@@ -117,7 +117,7 @@ class CasePrecision:
         found: GridConvergence = getattr(self, quantity)
         return found
 
-    def known(self, quantity: Quantity) -> bool:
+    def known(self, quantity: PeakQuantity) -> bool:
         """Return whether a number stands for the quantity.
 
         Parameters
@@ -130,11 +130,11 @@ class CasePrecision:
         bool
             False where no number stands for it.
         """
-        if self.doubt == "coarse" or self.series(quantity).kind == "growing":
+        if self.unreliable == "coarse" or self.series(quantity).kind == "growing":
             return False
-        return quantity == "displacement" or (self.sharp is None and self.doubt == "")
+        return quantity == "displacement" or (self.sharp is None and self.unreliable == "")
 
-    def low(self, quantity: Quantity) -> float:
+    def low(self, quantity: PeakQuantity) -> float:
         """Return the lower end of the band, not below zero.
 
         Parameters
@@ -149,7 +149,7 @@ class CasePrecision:
         """
         return max(self.series(quantity).low, 0.0) if self.known(quantity) else -math.inf
 
-    def high(self, quantity: Quantity) -> float:
+    def high(self, quantity: PeakQuantity) -> float:
         """Return the upper end of the band: of the meshes and, for what an eye bears, of pin contact on top.
 
         Parameters
@@ -304,19 +304,19 @@ def _case(
         displacement=_displacement(levels, number),
         edge=edge_series,
         sharp=sharp,
-        doubt=_doubt(levels, number, edge_series),
+        unreliable=_unreliable(levels, number, edge_series),
         in_contact=_in_contact(last, number, eyes),
     )
 
 
-def _doubt(levels: Sequence[Level], number: int, edge: GridConvergence | None) -> Doubt:
+def _unreliable(levels: Sequence[Level], number: int, edge: GridConvergence | None) -> Unreliable:
     # What the energies take off the estimate may be chance; what they add counts.
     if max(_energy_error(levels, number, len(levels)), levels[-1].figures[number].estimate.relative) > NOT_RESOLVED:
         return "coarse"
     return "edge" if edge is not None and edge.kind in ("one mesh", "two meshes", "growing") else ""
 
 
-def _in_contact(level: Level, number: int, eyes: Sequence[Eye]) -> dict[Quantity, float]:
+def _in_contact(level: Level, number: int, eyes: Sequence[Eye]) -> dict[PeakQuantity, float]:
     """Largest stresses in the eyes over what contact leaves of them, under the narrow pressure."""
     figures = level.figures[number]
     if figures.span != NARROW.span or not eyes:

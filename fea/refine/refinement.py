@@ -18,7 +18,7 @@ import numpy as np
 from fea.common.link_loads import LinkLoads
 from fea.refine.convergence import ALONE, FORMAL_ORDER, SERIES, GridConvergence
 from fea.refine.level import Level, level_of
-from fea.refine.link_series import CasePrecision, Eye, Quantity, energy_errors, goals, precision
+from fea.refine.link_series import CasePrecision, Eye, PeakQuantity, energy_errors, goals, precision
 from fea.refine.singular import NEARLY, element_exponents, loaded_edge
 from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, element_sizes, next_sizes, reduction
 from fea.solid.solution import SolidSolution, solve_solid
@@ -314,7 +314,7 @@ class _Link:
 
     def _settled(self) -> bool:
         """Whether nothing finer is needed."""
-        if any(p.doubt == "coarse" for p in self.precision):
+        if any(p.unreliable == "coarse" for p in self.precision):
             return False
         if len(self.levels) == 1:
             self.far = not self.effort.stated and self._far()
@@ -339,7 +339,7 @@ class _Link:
 
     def _limits(self) -> Iterable[tuple[float, float, float]]:
         """Ends of every band, and a limit that it must clear."""
-        stated: tuple[tuple[Quantity, tuple[tuple[float, float], ...]], ...] = (
+        stated: tuple[tuple[PeakQuantity, tuple[tuple[float, float], ...]], ...] = (
             (self._measure, self.task.stress_limits),
             ("displacement", self.task.displacement_limits),
         )

@@ -31,7 +31,7 @@ from geometry.base.errors import CannotRunError
 
 Method = Literal["pardiso", "superlu", "two-level"]
 DirectMethod = Literal["pardiso", "superlu"]
-LARGEST_POISSON_RATIO = 0.49
+LOCKING_POISSON_RATIO = 0.49
 """For the two-level cycle, which takes 2.7 times as many iterations there as at 0.38, and ever more beyond."""
 SLENDER = 60.0
 """Slenderness from which a factorisation is taken: linear elements bend so stiffly that the two-level cycle takes 52
@@ -243,9 +243,9 @@ def _chosen(
     # MKL PARDISO refuses what does not fit by itself, by its own count: the estimate is far too large here.
     if level.slenderness > SLENDER and (fits or direct == "pardiso"):
         return direct, f"{count}: the body is {level.slenderness:.0f} times as long as wide, where linear elements lock"
-    if level.nu > LARGEST_POISSON_RATIO:
+    if level.nu > LOCKING_POISSON_RATIO:
         memory.require(needed, _task(direct, K.size), limit)
-        return direct, f"ν = {level.nu:g} is above {LARGEST_POISSON_RATIO}, where linear elements lock"
+        return direct, f"ν = {level.nu:g} is above {LOCKING_POISSON_RATIO}, where linear elements lock"
     if not fits:
         iterated = two_level_memory(K, level, right_hand_sides, direct)
         if iterated > room:

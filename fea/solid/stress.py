@@ -119,7 +119,7 @@ class Peak:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SectionStress:
+class LinearisedStress:
     """Stress along x over one cross-section, as a beam has it [MPa].
 
     Attributes
@@ -205,7 +205,7 @@ class StressField:
         element, point = np.unravel_index(int(np.argmax(values)), values.shape)
         return Peak(value=float(values[element, point]), location=self.points[element, point].copy())
 
-    def section(self, *, x: float, half_length: float, half_y: float, half_z: float) -> SectionStress:
+    def section(self, *, x: float, half_length: float, half_y: float, half_z: float) -> LinearisedStress:
         """Fit a beam's stress to the recovered σxx on the outer surface of a slab.
 
         The fit σxx = (a + b y + c z) + (x' − x)(a' + b' y + c' z) by least squares over that surface is independent of
@@ -245,7 +245,7 @@ class StressField:
         rest = values - columns @ (fitted / scale)
         rms = np.sqrt((face.w[where] * rest**2).sum() / face.w[where].sum())
         largest = abs(fitted[0]) + max(abs(fitted[1]), abs(fitted[2]))
-        return SectionStress(
+        return LinearisedStress(
             x=x,
             axial=float(fitted[0]),
             bending_y=float(fitted[2]),

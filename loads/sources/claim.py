@@ -222,7 +222,7 @@ System = Annotated[
 ]
 
 
-class Source(CaseModel):
+class PublishedSource(CaseModel):
     """All claims of one source document, and what is needed to re-derive them."""
 
     title: Text
@@ -240,7 +240,7 @@ def sources() -> tuple[str, ...]:
     return tuple(sorted(f.name[:-5] for f in files("loads.sources").iterdir() if f.name.endswith(".toml")))
 
 
-def read_source(name: str) -> Source:
+def read_source(name: str) -> PublishedSource:
     """Read the claims of a source document that alula ships.
 
     Parameters
@@ -250,7 +250,7 @@ def read_source(name: str) -> Source:
 
     Returns
     -------
-    Source
+    PublishedSource
         Its claims and what is needed to re-derive them.
 
     Raises
@@ -262,6 +262,6 @@ def read_source(name: str) -> Source:
         raise CaseError(f"source '{printable(name)}' is unknown; choose one of {', '.join(sources())}")
     text = files("loads.sources").joinpath(f"{name}.toml").read_text(encoding="utf-8")
     try:
-        return Source.model_validate(tomllib.loads(text))
+        return PublishedSource.model_validate(tomllib.loads(text))
     except ValidationError as error:
-        raise CaseError(f"source '{name}': {sentence(error, Source)}") from None
+        raise CaseError(f"source '{name}': {sentence(error, PublishedSource)}") from None

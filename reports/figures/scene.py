@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.outcomes.result import SolidResult
-from fea.refine.discretisation import Discretisation, Status
+from fea.refine.discretisation import Discretisation, MeshStatus
 from fea.solid.stress import StressField
 from geometry.parts.material import stress_measure
 from geometry.parts.part import Section
@@ -15,7 +15,7 @@ from geometry.parts.part import Section
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]
 
-STATUS_NOTES: dict[Status, str] = {
+STATUS_NOTES: dict[MeshStatus, str] = {
     "singular": "singular at a sharp edge",
     "edge": "a sharp edge may be singular",
     "growing": "still growing with every mesh",

@@ -51,7 +51,7 @@ def test_elements_too_long_for_their_tube_get_no_band():
         solution, true = slender(2.0 * ratio)
         case, error = judged(solution, np.pi * 0.75 * 2.0 * ratio)
         assert 2.0 * solution.cases[0].strain_energy == pytest.approx((1.0 - lost) * true, rel=0.01)
-        assert case.doubt == ("" if known else "coarse")
+        assert case.unreliable == ("" if known else "coarse")
         assert (error < 0.3) == known
         for quantity in ("von_mises", "principal", "displacement"):
             assert case.known(quantity) == known

@@ -7,7 +7,7 @@ from fea.refine.discretisation import discretisation_source
 from geometry.base.errors import CannotRunError
 
 SIZES = (1.0, 0.6, 0.4)
-SAFETY, DOUBT = 1.25, 3.0  # Roache (1998), section 5.6: with an observed order and without
+SAFETY, WIDE_SAFETY = 1.25, 3.0  # Roache (1998), section 5.6: with an observed order and without
 FLOOR, CEILING, ALONE = 1.5, 3.0, 4.0  # multiples of the estimate, as docs/design.md states them
 
 
@@ -50,14 +50,14 @@ def test_order_above_the_elements_own_makes_the_band_symmetric():
 
 def test_oscillating_series_takes_the_large_factor():
     found = grid_convergence((0.9, 0.6, 0.4), [10.0, 10.4, 10.2], estimate=0.1)
-    assert (found.kind, found.factor, found.order) == ("irregular", DOUBT, None)
-    assert found.high - found.value == pytest.approx(DOUBT * 0.2 / (1.5**2 - 1.0))
+    assert (found.kind, found.factor, found.order) == ("irregular", WIDE_SAFETY, None)
+    assert found.high - found.value == pytest.approx(WIDE_SAFETY * 0.2 / (1.5**2 - 1.0))
     assert (found.multiple, found.rule) == (None, "factor 3")
 
 
 def test_slow_series_takes_the_large_factor():
     found = grid_convergence(SIZES, power(0.3, share=2.0), estimate=1.0)
-    assert (found.kind, found.factor) == ("irregular", DOUBT)
+    assert (found.kind, found.factor) == ("irregular", WIDE_SAFETY)
 
 
 def test_accidental_agreement_of_two_meshes_does_not_narrow_the_band():
@@ -72,7 +72,7 @@ def test_accidental_agreement_of_two_meshes_does_not_narrow_the_band():
 def test_two_meshes_take_the_large_factor_and_the_elements_order():
     found = grid_convergence((1.0, 0.5), [10.0, 11.0], estimate=0.1)
     assert (found.kind, found.order) == ("two meshes", None)
-    assert found.index == pytest.approx(DOUBT * 1.0 / 3.0 / 11.0)
+    assert found.index == pytest.approx(WIDE_SAFETY * 1.0 / 3.0 / 11.0)
     assert discretisation_source(found).text == "discretisation (two meshes, no observed order: factor 3)"
     least = grid_convergence((1.0, 0.5), [10.0, 11.0], estimate=0.5)
     assert least.high - least.value == pytest.approx(ALONE * 0.5)
@@ -108,7 +108,7 @@ def test_growing_number_has_no_limit():
 
 def test_away_from_edges_a_fourth_mesh_must_show_that_a_number_grows():
     three = grid_convergence(SIZES, [size**-0.4555 for size in SIZES], estimate=0.1)
-    assert (three.kind, three.factor) == ("irregular", DOUBT)
+    assert (three.kind, three.factor) == ("irregular", WIDE_SAFETY)
     assert three.suspect
     assert math.isfinite(three.high)
     sizes = (*SIZES, 0.27)
@@ -128,7 +128,7 @@ def test_away_from_edges_a_fourth_mesh_must_show_that_a_number_grows():
 )
 def test_small_steps_do_not_grow(values, estimate, true, sharp):
     found = grid_convergence((0.9, 0.6, 0.4), values, estimate=estimate, sharp=sharp)
-    assert (found.kind, found.factor) == ("irregular", DOUBT)
+    assert (found.kind, found.factor) == ("irregular", WIDE_SAFETY)
     assert found.low < true < found.high
 
 
@@ -147,7 +147,7 @@ def test_an_order_too_high_is_an_accident():
     """
     found = grid_convergence((1.661, 0.948, 0.632), (16.982, 19.942, 20.295), estimate=0.757)
     assert found.order > 3.0
-    assert (found.kind, found.factor) == ("irregular", DOUBT)
+    assert (found.kind, found.factor) == ("irregular", WIDE_SAFETY)
     assert found.low < 21.823 < found.high
 
 

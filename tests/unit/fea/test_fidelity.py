@@ -7,7 +7,7 @@ import eye_link
 import pytest
 
 from fea.beam.calibration import calibrations
-from fea.beam.spots import shoulder_factors, spots
+from fea.beam.critical_locations import critical_locations, shoulder_factors
 from fea.check.fidelity import decide, decided_by_hand, hand_bands
 from fea.check.run import check_case
 from fea.refine.refinement import START, Effort
@@ -61,10 +61,10 @@ def test_contact_widens_the_hand_bands_of_eyes_alone():
     task = eye_link.task()
     band = hand_bands(task, task.loads[0], eye_link.beam(task))
     factors = calibrations()["tube"].von_mises
-    assert sorted(row.spot.kind for row in band.spots) == ["eye", "eye", "eye", "section"]
-    for row in band.spots:
-        contact = 1.0 / (1.0 - CONTACT_SHORTFALL) if row.spot.kind == "eye" else 1.0
-        assert row.von_mises.high == pytest.approx(contact * factors[row.spot.kind].high * row.spot.estimate)
+    assert sorted(row.location.kind for row in band.locations) == ["eye", "eye", "eye", "section"]
+    for row in band.locations:
+        contact = 1.0 / (1.0 - CONTACT_SHORTFALL) if row.location.kind == "eye" else 1.0
+        assert row.von_mises.high == pytest.approx(contact * factors[row.location.kind].high * row.location.estimate)
 
 
 def test_a_limit_within_the_band_is_not_decided_by_hand():
@@ -106,7 +106,7 @@ def test_a_cross_hole_bears_the_handbooks_factors():
     task = eye_link.task()
     row = HoleRow(count=1, diameter="1 mm", first="20 mm", last="20 mm", along="y")
     beam = eye_link.beam(task)
-    [hole] = [s for s in spots(replace(task.body, holes=(row,)), task.loads[0], beam) if s.kind == "hole"]
+    [hole] = [s for s in critical_locations(replace(task.body, holes=(row,)), task.loads[0], beam) if s.kind == "hole"]
     r, h = 0.5, 0.2
     tension = 3.0 + (0.427 - 6.770 * r + 22.698 * r**2 - 16.670 * r**3) * h
     tension += (11.357 + 15.665 * r - 60.929 * r**2 + 41.501 * r**3) * h**2

@@ -16,7 +16,7 @@ from fea.frame.build import build_frame
 from fea.frame.corotational import solve_large_displacement
 from fea.frame.deformed_links import balanced, bent, in_slots
 from fea.frame.joint_forces import joint_forces
-from fea.frame.large_displacement import LARGE, LEAST_FACTOR, SUBDIVISIONS, examine, span
+from fea.frame.large_displacement import LARGE, LEAST_FACTOR, PATH_SUBDIVISIONS, examine, span
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.parts.part import Pin
 from loads.case.case_file import read_case
@@ -203,7 +203,7 @@ def test_links_carry_what_the_deformed_frame_says(load):
     found, loads = examined(case)
     assert found.state == "deformed"
     frame = build_frame(case, case.solve_pose(), loads, held=case.pinned_drive)
-    solution = solve_large_displacement(frame.model, SUBDIVISIONS, least_step=1 / 512)
+    solution = solve_large_displacement(frame.model, PATH_SUBDIVISIONS, least_step=1 / 512)
     assert found.reactions.drive_torque == pytest.approx(solution.joint_wrenches[frame.points["GF", "G"], 5], rel=1e-6)
     checked = 0
     for link, acting in found.links.items():
@@ -212,7 +212,7 @@ def test_links_carry_what_the_deformed_frame_says(load):
         forces = internal_forces(on_axis)
         own = [i for i, e in enumerate(frame.model.elements) if e.nodes[0] in [n for _, n in frame.stations[link]]]
         for (x, _), element in zip(frame.stations[link][:-1], own, strict=True):
-            expected = solution.end_forces[element * SUBDIVISIONS, 0]
+            expected = solution.end_forces[element * PATH_SUBDIVISIONS, 0]
             got = forces.at(x, "after")
             # The chord is turned against the element, and twisted: lengths of vectors are compared.
             assert np.linalg.norm(got[3:]) == pytest.approx(np.linalg.norm(expected[3:]), rel=6e-3, abs=0.1), (link, x)

@@ -24,11 +24,11 @@ from geometry.parts.body import extent, patch_span
 from geometry.parts.eyes import eye_reach
 from geometry.parts.part import Body, HoleRow, Pin
 
-Kind = Literal["eye", "hole", "end", "section"]
+LocationKind = Literal["eye", "hole", "end", "section"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spot:
+class CriticalLocation:
     """A place of a link and the estimate of the largest von Mises stress there.
 
     Attributes
@@ -47,7 +47,7 @@ class Spot:
         By hand [MPa].
     """
 
-    kind: Kind
+    kind: LocationKind
     name: str
     x: float
     low: float
@@ -55,8 +55,8 @@ class Spot:
     estimate: float
 
 
-def spots(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[Spot, ...]:
-    """Return every spot of a link under one load case.
+def critical_locations(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[CriticalLocation, ...]:
+    """Return every critical location of a link under one load case.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def spots(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[Spot, ...]:
 
     Returns
     -------
-    tuple of Spot
+    tuple of CriticalLocation
         Eyes, holes, loaded ends; what lies between as one, the last.
 
     Raises
@@ -85,11 +85,12 @@ def spots(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[Spot, ...]:
         low, high = patch_span(body, place)
         force = float(np.linalg.norm(end.wrench[:3]))
         stress = _largest(beam, low, high) + force / (place.patch * body.part.section.width)
-        found.append(Spot(kind="end", name=f"the loaded end at {end.name}", x=end.point[0], low=low, high=high,
-                          estimate=stress))  # fmt: skip
+        found.append(CriticalLocation(kind="end", name=f"the loaded end at {end.name}", x=end.point[0], low=low,
+                                      high=high, estimate=stress))  # fmt: skip
     between = max((_largest(beam, low, high) for low, high in _gaps(found, first, last)), default=0.0)
     middle = (first + last) / 2.0
-    return (*found, Spot(kind="section", name="the plain section", x=middle, low=first, high=last, estimate=between))
+    rest = CriticalLocation(kind="section", name="the plain section", x=middle, low=first, high=last, estimate=between)
+    return (*found, rest)
 
 
 def displacement_estimate(
@@ -200,10 +201,10 @@ def forces_at(beam: BeamCheck, x: float, side: Side = "after") -> NDArray[np.flo
     return np.asarray(beam.forces.at(x, side)) if inside else np.zeros(6)
 
 
-def _gaps(found: list[Spot], first: float, last: float) -> Iterator[tuple[float, float]]:
-    """Stretches between the spots."""
+def _gaps(found: list[CriticalLocation], first: float, last: float) -> Iterator[tuple[float, float]]:
+    """Stretches between the locations."""
     reach = first
-    for low, high in sorted((spot.low, spot.high) for spot in found):
+    for low, high in sorted((location.low, location.high) for location in found):
         if low > reach:
             yield reach, low
         reach = max(reach, high)
@@ -219,7 +220,7 @@ def _largest(beam: BeamCheck, low: float, high: float) -> float:
     return max(equivalent_stress(beam.section, forces, beam.poisson) for forces in found)
 
 
-def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> Spot:
+def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> CriticalLocation:
     part, (first, last) = body.part, extent(body)
     reach = eye_reach(body, pin)
     load = next(p for p in loads.pins if p.name == pin.name)
@@ -230,7 +231,7 @@ def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> Spot:
     sides: tuple[tuple[float, Side], ...] = ((pin.x - reach, "after"), (pin.x + reach, "before"))
     found += [_junction(body, forces_at(beam, x, side), beam.poisson) for x, side in sides if first < x < last]
     far = reach + part.section.width / 2.0
-    return Spot(kind="eye", name=f"the eye at {pin.name}", x=pin.x, low=pin.x - far, high=pin.x + far,
+    return CriticalLocation(kind="eye", name=f"the eye at {pin.name}", x=pin.x, low=pin.x - far, high=pin.x + far,
                 estimate=max(found))  # fmt: skip
 
 
@@ -270,7 +271,7 @@ def _bore(
     return float(pushed + n + in_plane + out_of_plane + twisted + sheared)
 
 
-def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> Spot:
+def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> CriticalLocation:
     """Stress at the rim of a cross hole: N and M with the handbook's factors on the gross section, shear with 4.
 
     The shear of V is that where the hole opens: on a tube the wall's mean at the neutral axis, 4V/3A (1+m+m²)/(1+m²)
@@ -299,5 +300,5 @@ def _hole(body: Body, row: HoleRow, number: int, x: float, beam: BeamCheck) -> S
         transverse = rim_shear(section, beam.poisson)[1 if row.along == "y" else 0] * abs(shear)
     rim = tension * abs(n) / section.area + bending * abs(opened) * at_rim + 4.0 * (stress.torsion + transverse)
     estimate = max(rim, stress.equivalent, abs(n) / section.area + abs(across) * aside + rim / 3.0)
-    return Spot(kind="hole", name=f"hole at x = {x:g} mm of row {number + 1}", x=x, low=x - row.diameter,
+    return CriticalLocation(kind="hole", name=f"hole at x = {x:g} mm of row {number + 1}", x=x, low=x - row.diameter,
                 high=x + row.diameter, estimate=float(estimate))  # fmt: skip

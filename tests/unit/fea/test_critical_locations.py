@@ -6,7 +6,7 @@ import eye_link
 import numpy as np
 import pytest
 
-from fea.beam.spots import _bore, displacement_estimate
+from fea.beam.critical_locations import _bore, displacement_estimate
 from fea.common.link_loads import PinLoad
 from geometry.parts.part import Bar, Body, Pin
 
