@@ -305,16 +305,20 @@ def _cantilever(case: Case, title: str) -> CantileverCheck:
     return uniform_cantilever(hand.load, hand.length, part.section, strength)
 
 
+def _of(titles: Sequence[str]) -> str:
+    return f"load case{'s' if len(titles) > 1 else ''} {', '.join(titles)}"
+
+
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
     found = unusual_materials(case)
     for model, reason in dict.fromkeys((f.model, f.reason) for f in statics.forces.values()):
         if model != PINNED_STATICS:
             titles = [title for title, f in statics.forces.items() if (f.model, f.reason) == (model, reason)]
-            found.append(f"load case {', '.join(titles)}: {reason}, so the joint forces are those of a {model}")
+            found.append(f"{_of(titles)}: {reason}, so the joint forces are those of a {model}")
     said = dict.fromkeys(what.sentence for what in moved.values() if what.state != "small")
     for sentence in said:
         titles = [title for title, what in moved.items() if what.sentence == sentence]
-        found.append(f"load case {', '.join(titles)}: {sentence}")
+        found.append(f"{_of(titles)}: {sentence}")
     found += [
         f"load case {title}: {sentence}"
         for title in case.load_cases
@@ -331,6 +335,6 @@ def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplac
         if distance < NEAR_DEAD_POINT:
             found.append(
                 f"the pose is close to a dead point of {what} (smallest singular value {distance:.2g}): "
-                "small errors of length and angle change the joint forces much"
+                "small errors of length and angle change the joint forces considerably"
             )
     return found

@@ -290,7 +290,7 @@ def system_tree(system: System, *, fidelity: str = "solid", threads: int = 2) ->
         return _ornithopter(system)
     if isinstance(system, SynthesisSystem):
         return _synthesis(synthesise(system.theta, system.psi, system.d))
-    raise CaseError("a table of designs is no system that a path can name; name one of its rows")
+    raise CaseError("a path cannot name a table of designs; name one of its rows")
 
 
 def flapping_tree(wing: FlappingWing) -> Tree:

@@ -17,13 +17,13 @@ class SourceKind(StrEnum):
     LOAD = "scatter of the load"
     STRENGTH = "scatter of the strength"
     MODULUS = "scatter of the modulus"
-    GROWTH = "growth out of proportion to the load"
-    IMPERFECTION = "small faults of shape"
+    GROWTH = "nonlinear growth with the load"
+    IMPERFECTION = "geometric imperfection"
     PATH = "path to the deformed shape"
     RESTRAINT = "restraint by the neighbouring links"
     SNAP_THROUGH = "snap-through of a shallow toggle"
     EYES = "flexibility of eyes, bores and holes"
-    EYE_SHARING = "how the two eyes share and bear the couple of the joint force"
+    EYE_SHARING = "load sharing between the two eyes of a pin"
     FLYWHEEL = "energy that a flywheel stores"
 
 

@@ -183,15 +183,15 @@ def _warnings(case: Case, moved: CaseMotion, evaluated: NDArray[np.bool_], growt
     if moved.dead_points:
         at = ", ".join(f"{math.degrees(angle):.2f}" for angle in moved.dead_points)
         found.append(
-            f"the driven link {moved.drive.link} turns back at {at} deg of {moved.motion.coordinate}, so it cannot "
-            f"drive the linkage through there; {left_out} of {len(evaluated)} poses are left out, where the torque is "
-            f"more than {growth:g} times what it would be at the best leverage"
+            f"the driven link {moved.drive.link} has a dead point at {at} deg of {moved.motion.coordinate}; "
+            f"{left_out} of {len(evaluated)} poses are left out, where the drive torque is more than {growth:g} times "
+            "that at the best leverage"
         )
     elif left_out:
-        found.append(f"{left_out} of {len(evaluated)} poses are left out, since no drive torque holds them")
+        found.append(f"{left_out} of {len(evaluated)} poses are left out, since no drive torque balances them")
     others = [name for name, check in case.all_checks.items() if not isinstance(check, FOLLOWED)]
     if others:
-        found.append(f"checks {', '.join(others)} are about single poses or the motor: alula check decides them")
+        found.append(f"checks {', '.join(others)} concern single poses or the motor: use alula check for them")
     if case.large_displacement != "off":
-        found.append("links are taken as rigid in the motion: equilibrium is that of the undeformed linkage")
+        found.append("links are rigid in the motion: equilibrium is that of the undeformed linkage")
     return found

@@ -94,7 +94,7 @@ def link_envelope(
     )
     _balanced(solved)
     peaks = (principal_peaks if material.brittle else von_mises_peaks)(solved.stress, solved.combination)
-    lacking = missing_data(material) if fatigue else "it was not asked for"
+    lacking = missing_data(material) if fatigue else "it was not requested"
     if not lacking and not evaluated.all():
         lacking = "poses near a dead point are left out, so the stress history is not closed"
     poses = int(evaluated.sum())

@@ -360,7 +360,7 @@ def column_outcome(
     band = load_scatter(case, title).inverse.on(band)
     pins = " and ".join(f"{x:.4g}" for x in found.outermost)
     held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
-    load = f"up to {found.compression:.3g} N compress it{where}, and {band.value:.3g} times that buckle it, {held}"
+    load = f"largest compression {found.compression:.3g} N{where}; buckling at {band.value:.3g} times that, {held}"
     outcome = CheckOutcome.of(NAME, Subject.link(link), title, Quantity.BUCKLING_FACTOR, band, 1.0, load)
     return outcome.because(load + _judgement(outcome, moved))
 
@@ -368,16 +368,16 @@ def column_outcome(
 def _judgement(outcome: CheckOutcome, moved: LargeDisplacement | None) -> str:
     band, verdict = outcome.value, outcome.verdict
     if verdict is Verdict.FAIL:
-        return f", {band.high:.3g} times where its joints hold it as well as they can, so it buckles"
+        return f", and at {band.high:.3g} times with the stiffest joints, so it buckles"
     if verdict is Verdict.UNDECIDED and band.value < 1.0:
-        return f"; stiffer neighbours and a drive may hold it, up to {band.high:.3g} times"
+        return f"; stiffer joints can raise this to {band.high:.3g} times"
     if verdict is Verdict.UNDECIDED:
-        return f"; within {LEAST_LINEAR:g} times the load, small faults of shape grow too much"
+        return f"; within {LEAST_LINEAR:g} times the load, geometric imperfections grow too much"
     if band.value < LEAST_FACTOR and moved is not None and moved.state == "small":
-        return f"; in the linkage, which buckles at {moved.buckling:.3g} times the load, bending grows little"
+        return f"; the linkage buckles at {moved.buckling:.3g} times its load, so bending grows little"
     if band.value < LEAST_FACTOR and (moved is None or moved.state in ("deformed", "off", "unknown")):
         times = 1.0 / (1.0 - 1.0 / band.value)
-        return f"; bending grows to up to {times:.3g} times that of linear theory, which its stress and deflection hold"
+        return f"; bending is up to {times:.3g} times that of linear theory; stress and deflection include this"
     return ""
 
 

@@ -139,7 +139,7 @@ def _with_meshes(outcome: CheckOutcome, meshes: Discretisation | None) -> CheckO
     if meshes is not None and outcome.value.unknowable:
         return outcome.because(meshes.sentence)
     if meshes is not None and outcome.verdict is Verdict.UNDECIDED and meshes.stopped:
-        return outcome.because(f"{outcome.reason}; the meshes were refined no further since {meshes.stopped}")
+        return outcome.because(f"{outcome.reason}; refinement ended because {meshes.stopped}")
     return outcome
 
 
@@ -150,7 +150,7 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
     """
     link, point = case.displaced_point(name, check)
     displacement, factor, value = moved.points.get((link, point)), moved.factor, Band.unknown()
-    why = f"the frame does not tell how far it moves: {moved.sentence}"
+    why = f"the frame gives no displacement: {moved.sentence}"
     if displacement is not None and moved.state in ("small", "deformed", "off"):
         size = float(np.linalg.norm(displacement))
         near = factor is not None and factor < SNAP
@@ -159,7 +159,7 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
         else:
             far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
             what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
-            why = f"the linear frame {what}, so it does not hold; take large_displacement = off out of the case"
+            why = f"the linear frame {what}, so it is not valid; remove large_displacement = off from the case"
     subject = Subject.point(point, link)
     found = CheckOutcome.of(name, subject, title, Quantity.DISPLACEMENT, value, check.maximum, why)
     if why:

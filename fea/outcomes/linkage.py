@@ -48,7 +48,7 @@ def linkage_outcomes(
     if moved.followed:
         yield _followed(title, moved, beyond_strength(beams))
     elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
-        how = f"all links together become unstable at {value:.3g} times the load by linear theory"
+        how = f"the linkage becomes unstable at {value:.3g} times its load by linear theory"
         if least < value:
             how = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
         found = by_linear_theory(case, title, least, value, how)
@@ -96,7 +96,7 @@ def by_linear_theory(
     if found.verdict is Verdict.FAIL:
         return found.because(f"{how}, so the linkage gives way")
     if found.verdict is Verdict.UNDECIDED:
-        return found.because(f"{how}; a linkage may snap through at {least / SNAP:.3g} times the load: {remedy}")
+        return found.because(f"{how}; it may snap through at {least / SNAP:.3g} times its load: {remedy}")
     if least < LEAST_FACTOR:
         return found.because(f"{how}; displacements are up to {growth(least):.3g} times those of linear theory")
     return found
@@ -138,5 +138,5 @@ def _followed(title: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome
     found = CheckOutcome.of(NAME, LINKAGE, title, Quantity.LOAD_SHARE, moved.held_band, 1.0)
     open_end = f"; {found.reason}" if found.verdict is Verdict.UNDECIDED else ""
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
-    informs = f"; for information, its buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
+    informs = f"; the buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
     return found.because(moved.sentence + open_end + informs + beyond)

@@ -140,8 +140,8 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
         if check.stall_torque is not None:
             mean, most = line_share(torque, speed, times, check.stall_torque, check.no_load_speed)
             reason = (
-                f"at the worst place the drive asks for {most:.3g} of the motor's torque at that speed, on average for "
-                f"{mean:.3g} of its power; stall torque {check.stall_torque:.3g} N·mm, straight down to {free:.4g} rpm"
+                f"the drive needs at most {most:.3g} of the motor's torque at that speed, on average {mean:.3g} of its "
+                f"power; stall torque {check.stall_torque:.3g} N·mm, falling linearly to zero at {free:.4g} rpm"
             )
             value = Band(value=most, low=mean, high=most, sources=SOURCES)
             yield outcome(Quantity.TORQUE_SHARE, value, 1.0, reason)
@@ -151,8 +151,8 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
             min(abs(_mean(torque, times)), float(np.abs(torque).max())),
         )
         reason = (
-            f"the drive torque is {effective:.3g} N·mm as a root mean square and {mean:.3g} N·mm on average, which a "
-            f"flywheel would leave, against {check.rated_torque:.3g} N·mm rated"
+            f"the drive torque is {effective:.3g} N·mm (root mean square), with an ideal flywheel {mean:.3g} N·mm; the "
+            f"rated torque is {check.rated_torque:.3g} N·mm"
         )
         value = Band(value=effective, low=min(mean, effective), high=effective, sources=SOURCES)
         yield outcome(Quantity.DRIVE_TORQUE, value, check.rated_torque, reason)
@@ -173,13 +173,13 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
     value = Band(value=found.peak_power, low=found.mean_power, high=found.peak_power, sources=SOURCES)
     outcome = CheckOutcome.of(name, Subject.link(laden.drive.link), title, Quantity.DRIVE_POWER, value, limit)
     side = {
-        Verdict.PASS: "the motor's output covers its peak",
-        Verdict.FAIL: "the motor's output stays below its mean",
-        Verdict.UNDECIDED: "the motor covers its mean but not its peak, so a flywheel decides",
+        Verdict.PASS: "the motor's output covers the peak",
+        Verdict.FAIL: "the motor's output is below the mean",
+        Verdict.UNDECIDED: "the motor's output covers the mean but not the peak, so a flywheel decides",
     }[outcome.verdict]
     reason = (
-        f"the drive asks for {found.peak_torque:.3g} N·mm and {found.peak_power:.3g} W at most, "
-        f"{found.mean_power:.3g} W on average; {side}, "
+        f"the drive needs at most {found.peak_torque:.3g} N·mm and {found.peak_power:.3g} W, "
+        f"on average {found.mean_power:.3g} W; {side}, "
         f"{check.voltage:g} V × {check.current * 1e3:g} mA × {check.efficiency:g} = {limit:.3g} W"
     )
     if case.load_cases[title].carried and case.carried:
@@ -187,7 +187,7 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
         factor = largest_factor(bare, solved.drive_power - bare, 1000.0 * limit)
         carried = 1e6 * sum(mass.mass for mass in case.carried)
         if 0.0 < factor < math.inf:
-            reason += f"; it drives up to {factor * carried:.3g} g of carried mass, where {carried:.3g} g are carried"
+            reason += f"; it can drive {factor * carried:.3g} g of carried mass (now {carried:.3g} g)"
     return outcome.because(reason)
 
 

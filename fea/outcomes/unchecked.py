@@ -10,7 +10,7 @@ Strength = type[SafetyFactorCheck] | type[SustainedCheck]
 
 
 def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, SustainedCheck)) -> tuple[str, ...]:
-    """Return what is not checked, each in a few words with the reason: ``thigh, no part``.
+    """Return what is not checked, each in a few words with the reason: ``thigh (no part)``.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Sus
     -------
     tuple of str
     """
-    found = [f"{link}, no part" for link in case.linkage.moving if link not in case.checked_links]
+    found = [f"{link} (no part)" for link in case.linkage.moving if link not in case.checked_links]
     stressed: set[str] = set()
     pinned: set[str] = set()
     for check in case.all_checks.values():
@@ -32,12 +32,12 @@ def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Sus
             stressed.update(check.links or case.checked_links)
     left = [link for link in case.checked_links if link not in stressed]
     if left:
-        found.append(f"stress of {', '.join(left)}, no check of it")
+        found.append(f"stress of {', '.join(left)} (no check)")
     pins = [name for name, joint in case.joints.items() if joint.type != "slider"]
     loose = [name for name in pins if name not in pinned]
     if loose:
         which = "pins" if loose == pins else f"pin{'s' if len(loose) > 1 else ''} {', '.join(loose)}"
-        found.append(f"{which}, no check of {'them' if len(loose) > 1 else 'it'}")
+        found.append(f"{which} (no check)")
     return tuple(found)
 
 

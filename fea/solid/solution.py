@@ -120,8 +120,8 @@ def require_compressible(nu: float) -> None:
     """
     if nu > LARGEST_POISSON_RATIO:
         raise CaseError(
-            f"poissons_ratio: it is {nu:g}, but displacements alone hold no solid model above {LARGEST_POISSON_RATIO}, "
-            "where the material hardly changes its volume; state a lower one or check with fidelity beam"
+            f"poissons_ratio: it is {nu:g}, but solid models need at most {LARGEST_POISSON_RATIO}, since displacement "
+            "elements lock in nearly incompressible material; state a lower value or use --fidelity beam"
         )
 
 

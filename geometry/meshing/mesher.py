@@ -66,7 +66,7 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
         area or the volume is off by more than the elements' chord error.
     """
     first: CoarseMeshError | None = None
-    allowed = settings.chord_error  # what the size asked for may miss, finer ones may too
+    allowed = settings.chord_error  # error allowed for the requested size, and for finer ones
     for attempt in range(ATTEMPTS):
         try:
             mesh = _mesh(gmsh, solid, settings, allowed)
@@ -77,7 +77,7 @@ def mesh_solid(gmsh: Any, solid: Solid, settings: MeshSettings) -> TaggedMesh:
                 raise
             break
         else:
-            note = f"meshed with {FINER**attempt:.2g} times the size that was asked for, since with that {first}"
+            note = f"meshed with {FINER**attempt:.2g} times the requested size, because with that {first}"
             return mesh if first is None else replace(mesh, notes=(*mesh.notes, note))
     raise CannotRunError(f"{first}, and finer sizes fail as well; change the part's dimensions a little")
 

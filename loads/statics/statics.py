@@ -287,7 +287,7 @@ def refuse_dead_point(system: System, drive: Drive | None) -> None:
     if smallest < NEARLY_SINGULAR:
         who = f"driven link '{drive.link}'" if drive else "structure"
         raise CaseError(
-            f"pose: it stands at (or within a hair of) a dead point of the {who}: the smallest singular value of "
+            f"pose: it is at, or next to, a dead point of the {who}: the smallest singular value of "
             f"the scaled equilibrium matrix is {smallest:.2g}, below {NEARLY_SINGULAR:g}, so joint forces would grow "
             "without bound; change the pose or drive another link"
         )

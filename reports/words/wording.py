@@ -245,7 +245,7 @@ def not_checked(what: tuple[str, ...]) -> str:
 def _headline(result: CheckResult) -> str:
     checks = checks_of(result)
     if not checks:
-        return "Undecided: the case asks for no check."
+        return "Undecided: the case contains no check."
     count = len(checks)
     if result.verdict is Verdict.PASS:
         kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"

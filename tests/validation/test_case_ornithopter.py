@@ -168,7 +168,7 @@ def test_the_motor_covers_weight_and_inertia(case) -> None:
     assert set(outcomes) == set(case.load_cases)
     assert all(outcome.verdict is Verdict.PASS for found in outcomes.values() for outcome in found)
     for load_case in ("wings-10", "wings-12"):
-        assert "of carried mass, where 0.2 g are carried" in outcomes[load_case][0].reason
+        assert "of carried mass (now 0.2 g)" in outcomes[load_case][0].reason
     assert "carried mass" not in outcomes["fast"][0].reason
 
 

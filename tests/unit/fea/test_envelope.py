@@ -355,7 +355,7 @@ def test_a_dead_point_of_the_drive_leaves_the_verdict_open(path):
     found = envelope_case(case, threads=1, effort=Effort(max_meshes=1))
     assert found.verdict is Verdict.UNDECIDED
     assert 0 < found.evaluated.sum() < 25
-    assert any("turns back at" in warning for warning in found.warnings)
+    assert any("has a dead point at" in warning for warning in found.warnings)
     assert "dead point" in found.checks[0].reason
     assert found.links["rocker"].no_fatigue
     assert np.isnan(found.links["rocker"].worst.value[~found.evaluated]).all()

@@ -16,7 +16,7 @@ from reports.words.wording import headline
 STRENGTH = {"type": "safety-factor", "minimum": 0.01}
 PINS = {"type": "pins", "minimum": 0.01}
 STIFF = {"type": "displacement", "maximum": "1 m"}
-NO_PINS = "pins, no check of them"
+NO_PINS = "pins (no check)"
 
 
 def starter(checks, *bare):
@@ -32,23 +32,23 @@ def starter(checks, *bare):
     ("checks", "bare", "left_out"),
     [
         ({"a": STRENGTH, "b": PINS}, (), ()),
-        ({"a": STRENGTH, "b": PINS}, ("coupler",), ("coupler, no part",)),
-        ({}, ("coupler",), ("coupler, no part", NO_PINS)),
-        ({"a": STRENGTH | {"links": ["rocker"]}, "b": PINS}, (), ("stress of crank, coupler, no check of it",)),
+        ({"a": STRENGTH, "b": PINS}, ("coupler",), ("coupler (no part)",)),
+        ({}, ("coupler",), ("coupler (no part)", NO_PINS)),
+        ({"a": STRENGTH | {"links": ["rocker"]}, "b": PINS}, (), ("stress of crank, coupler (no check)",)),
         (
             {"a": STRENGTH | {"links": ["rocker"]}, "b": STRENGTH | {"links": ["crank"]}, "c": PINS},
             (),
-            ("stress of coupler, no check of it",),
+            ("stress of coupler (no check)",),
         ),
-        ({"a": STIFF, "b": PINS}, (), ("stress of crank, coupler, rocker, no check of it",)),
+        ({"a": STIFF, "b": PINS}, (), ("stress of crank, coupler, rocker (no check)",)),
         ({"a": STRENGTH}, (), (NO_PINS,)),
-        ({"a": STRENGTH, "b": PINS | {"joints": ["A", "B", "O4"]}}, (), ("pin O2, no check of it",)),
-        ({"a": STRENGTH, "b": PINS | {"joints": ["A", "B"]}}, (), ("pins O2, O4, no check of them",)),
+        ({"a": STRENGTH, "b": PINS | {"joints": ["A", "B", "O4"]}}, (), ("pin O2 (no check)",)),
+        ({"a": STRENGTH, "b": PINS | {"joints": ["A", "B"]}}, (), ("pins O2, O4 (no check)",)),
         # a pin between two links without part cannot be checked: it is named as well
         (
             {"a": STRENGTH, "b": PINS},
             ("crank", "coupler"),
-            ("crank, no part", "coupler, no part", "pins O2, A, no check of them"),
+            ("crank (no part)", "coupler (no part)", "pins O2, A (no check)"),
         ),
     ],
 )
@@ -59,13 +59,13 @@ def test_what_is_left_out(checks, bare, left_out):
 def test_a_sustained_check_looks_at_stress_but_not_in_an_envelope():
     lasting = starter({}).model_copy(update={"checks": {"long": SustainedCheck(type="sustained")}})
     assert unchecked(lasting) == (NO_PINS,)
-    assert unchecked(lasting, (SafetyFactorCheck,)) == ("stress of crank, coupler, rocker, no check of it", NO_PINS)
+    assert unchecked(lasting, (SafetyFactorCheck,)) == ("stress of crank, coupler, rocker (no check)", NO_PINS)
 
 
 def test_verdict_and_record_name_a_link_without_part():
     result = check_case(starter({"a": STRENGTH, "b": PINS}, "coupler"), fidelity="beam")
-    assert headline(result).endswith(" Not checked: coupler, no part.")
-    assert result_record(result)["not_checked"] == ["coupler, no part"]
+    assert headline(result).endswith(" Not checked: coupler (no part).")
+    assert result_record(result)["not_checked"] == ["coupler (no part)"]
 
 
 def test_nothing_is_said_where_all_is_checked():

@@ -211,7 +211,7 @@ def test_a_mesh_that_is_none_of_the_shape_is_made_anew_and_finer() -> None:
     end = PlainEnd(name="H", x=53.784431159501935, patch=3.861622932258501)
     first = MeshSettings(size=0.6, bore_elements=10, hole_elements=6, turn_elements=6, fillet_size=1.2, growth=1.0)
     mesh = mesh_body(Body(part=part, pins=pins, ends=(end,), holes=()), first)
-    assert re.search(r"meshed with 0\.\d+ times the size that was asked for, since .* in the mesh, but", mesh.notes[-1])
+    assert re.search(r"meshed with 0\.\d+ times the requested size, because .* in the mesh, but", mesh.notes[-1])
     assert volumes_and_moments(mesh.points, mesh.cells)[0].sum() == pytest.approx(mesh.volume, rel=5e-3)
 
 

@@ -102,8 +102,8 @@ def test_the_bands_are_told_check_by_check(wing):
     start = words.index("Sources of error in the band of each check:")
     told = words[start : start + 1000]
     assert "strength: nothing (beam theory without stress concentration)." in told
-    assert "pins: how the two eyes share and bear the couple of the joint force." in told
-    assert re.search("buckling: .*small faults of shape,? .*restraint by the neighbouring links", told)
+    assert "pins: load sharing between the two eyes of a pin." in told
+    assert re.search("buckling: .*geometric imperfection,? .*restraint by the neighbouring links", told)
 
 
 def test_forces_of_the_undeformed_pose_are_called_so(wing):

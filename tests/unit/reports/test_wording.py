@@ -60,7 +60,7 @@ def test_the_headline_of_a_pass_names_the_check_nearest_to_its_limit(result):
     assert wording.headline(result) == (
         "Pass: all 20 checks keep their limits over the whole error band. Closest to its limit: safety factor of "
         f"link AE under load case weight, {beams.safety_factor.value:.2f}; limit ≥ 3. "
-        "Not checked: pins, no check of them."
+        "Not checked: pins (no check)."
     )
 
 
@@ -141,4 +141,4 @@ def test_a_linkage_that_gives_way_comes_first_with_its_share_of_the_load(result,
 def test_nothing_checked_is_undecided(result):
     empty = {name: replace(case, checks=()) for name, case in result.load_cases.items()}
     text = wording.headline(replace(result, load_cases=empty, verdict=Verdict.UNDECIDED))
-    assert text.startswith("Undecided: the case asks for no check.")
+    assert text.startswith("Undecided: the case contains no check.")
