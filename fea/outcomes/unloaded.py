@@ -127,9 +127,7 @@ def nothing_acts(title: str, size: float) -> str:
     str
     """
     why = "its loads cancel where they act, or pass by every link with a part" if size else "it states no load"
-    return (
-        f"nothing acts inside any link under load case '{title}' ({why}), so its checks cannot decide; add a load"
-    )
+    return f"nothing acts inside any link under load case '{title}' ({why}), so its checks cannot decide; add a load"
 
 
 def undecided(

@@ -33,24 +33,24 @@ SetOption = Annotated[
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
 ThreadsOption = Annotated[
     int,
-    typer.Option(min=1, max=256, help="Threads that each library may use, and child processes that may run at once."),
+    typer.Option(min=1, max=256, help="Threads per library, and child processes at a time."),
 ]
 MemoryOption = Annotated[
     str | None,
     typer.Option(
-        help='Memory that the solver\'s process may hold, such as "4 GB"; without it: what the system leaves.',
+        help='Memory limit, such as "4 GB"; default: the free memory of the system.',
         show_default=False,
     ),
 ]
 AccuracyOption = Annotated[
     str | None,
     typer.Option(
-        help='Error of the meshes to reach in every link, such as "5 %"; without it: a clear verdict or 5 %.',
+        help='Discretisation error to reach in every link, such as "5 %"; default: a clear verdict, or 5 %.',
         show_default=False,
     ),
 ]
-UnknownsOption = Annotated[int, typer.Option(min=1000, help="Largest system that is solved to reach the accuracy.")]
-TimeOption = Annotated[float, typer.Option(min=0.0, help="Seconds after which no finer mesh is begun.")]
+UnknownsOption = Annotated[int, typer.Option(min=1000, help="Largest number of unknowns of a refined mesh.")]
+TimeOption = Annotated[float, typer.Option(min=0.0, help="Time after which no finer mesh is started [s].")]
 
 
 def main() -> NoReturn:
@@ -95,12 +95,12 @@ def check(
         bool,
         typer.Option(
             "--second-opinion",
-            help="Write a CalculiX deck of each link and, where ccx is installed, set its answer beside ours "
-            "(every link as a solid, unless --fidelity says otherwise).",
+            help="Write a CalculiX deck of each link; if ccx is installed, run it and compare the results "
+            "(with every link as a solid, unless --fidelity is given).",
         ),
     ] = False,
 ) -> None:
-    """Check a case and end in a verdict."""
+    """Check a case: pose, joint forces, stress, verdict."""
     from fea.check.run import check_case, effort_of
     from loads.case.case_file import read_case
     from reports.page.folder import report_names
@@ -110,7 +110,7 @@ def check(
     from reports.words.limits import limited
 
     if second_opinion and fidelity == "auto":
-        fidelity = "solid"  # a link that beam theory decides has no mesh that CalculiX could be given
+        fidelity = "solid"  # a link that hand calculation decides has no mesh for CalculiX
     with limited(threads, memory), ExitStack() as scratch:
         parsed = read_case(case, overrides or ())
         refuse_unusable(output, "check", report_names(parsed))
@@ -138,7 +138,7 @@ def statics(
     json: JsonOption = False,
     overrides: SetOption = None,
 ) -> None:
-    """Solve the pose and the joint reactions alone."""
+    """Solve pose and joint forces only."""
     from fea.check.run import solve_case_statics
     from loads.case.case_file import read_case
     from reports.commands.statics import print_statics
@@ -158,7 +158,7 @@ def motion(
     overrides: SetOption = None,
     threads: ThreadsOption = 2,
 ) -> None:
-    """Move a linkage: directions, paths, joint forces and drive torque over its range."""
+    """Analyse a motion: link directions, paths, joint forces and drive torque."""
     from loads.case.case_file import read_case
     from loads.states.case_motion import solve_case_motion
     from reports.commands.motion import print_motion, write_motion
@@ -191,13 +191,13 @@ def envelope(
         float | None,
         typer.Option(
             min=1.0,
-            help="How often the motion is to be borne, for fatigue; the cycles of the material's card when left out.",
+            help="Repetitions of the motion for fatigue; default: the cycles of the material card.",
             show_default=False,
         ),
     ] = None,
     growth: Annotated[
         float,
-        typer.Option(min=1.0, help="Growth of the drive torque towards a dead point, beyond which poses are left out."),
+        typer.Option(min=1.0, help="Growth of the drive torque towards a dead point above which poses are left out."),
     ] = 20.0,
     threads: ThreadsOption = 2,
     memory: MemoryOption = None,
@@ -205,7 +205,7 @@ def envelope(
     max_unknowns: UnknownsOption = 600_000,
     time_limit: TimeOption = 600.0,
 ) -> None:
-    """Check every link over the whole motion: least safety factor, where and when, and fatigue."""
+    """Check every link over the whole motion: least safety factor and fatigue."""
     from fea.check.run import effort_of
     from fea.motion.envelope import envelope_case
     from loads.case.case_file import read_case
@@ -237,7 +237,7 @@ def claims(
     case: Annotated[
         str | None,
         typer.Argument(
-            help="Path to a case file, or the name of a built-in case or source document; all sources when left out.",
+            help="Path to a case file, or the name of a built-in case or source document; default: all sources.",
             show_default=False,
         ),
     ] = None,
@@ -251,7 +251,7 @@ def claims(
     threads: ThreadsOption = 2,
     memory: MemoryOption = None,
 ) -> None:
-    """Re-derive published figures and say which of them hold."""
+    """Re-derive published figures and report which of them hold."""
     from fea.claims.sources import check_all, check_claims
     from geometry.base.errors import CaseError
     from loads.sources.claim import read_source, sources
@@ -259,7 +259,7 @@ def claims(
     from reports.words.limits import limited
 
     if case is None and overrides:
-        raise CaseError("--set: no case is named whose entries could be set anew; name one")
+        raise CaseError("--set: it needs a case; name one")
     with limited(threads, memory):
         if case is None:
             found = check_all(fidelity=fidelity, threads=threads)
@@ -283,7 +283,7 @@ def synth(
         list[str] | None,
         typer.Option(
             "--point",
-            help='A precision point "theta, psi"; give three. Left out: those of Arango and Hurtado, '
+            help='A precision point "theta, psi"; give three. Default: those of Arango and Hurtado, '
             '"0 deg, 30 deg", "20 deg, 110 deg", "5 deg, 130 deg".',
         ),
     ] = None,
@@ -294,7 +294,7 @@ def synth(
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """Synthesise a four-bar through three precision points, and name its defects."""
+    """Synthesise a four-bar through three precision points, and report its defects."""
     from reports.commands.synthesis import PUBLISHED_POINTS, print_synthesis, read_synthesis, write_synthesis
     from reports.page.output import refuse_unusable, write_folder
 
@@ -340,7 +340,7 @@ def new(
         with path.open("x", encoding="utf-8") as stream:
             stream.write(text)
     except FileExistsError:
-        raise CaseError(f"'{path}' exists; choose another name, so that nothing is lost") from None
+        raise CaseError(f"'{path}' exists, and existing files are not overwritten; choose another name") from None
     except OSError as error:
         if path.is_file():
             path.unlink()  # half of it
@@ -362,7 +362,7 @@ def export(
     from reports.page.output import EXPORT, refuse_unusable, write_folder
 
     if not step:
-        raise CaseError("export: name a format; STEP is the one there is: add --step")
+        raise CaseError("export: no format is given; add --step")
     parsed = read_case(case, overrides or ())
     bodies = {link: parsed.body(link) for link in parsed.checked_links}
     refuse_unusable(output, EXPORT, step_names(bodies))
@@ -372,7 +372,7 @@ def export(
 
 
 def _show(result: Any, as_json: Callable[[Any], str] | None, show: Callable[[Any, "Console"], None]) -> None:
-    """Print a result, as JSON or for people: before its folder is written, so that a full disk keeps no verdict."""
+    """Print a result before its folder is written, so that a full disk does not hide the verdict."""
     if as_json is not None:
         print(as_json(result), flush=True)
     else:

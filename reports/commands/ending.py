@@ -1,4 +1,4 @@
-"""How the program ends: every way has its exit status and at most one sentence on standard error."""
+"""The end of the program: an exit status and at most one sentence on standard error."""
 
 import codecs
 import contextlib
@@ -15,7 +15,7 @@ from geometry.base.errors import AlulaError
 INTERRUPTED = 130
 CRASHED = 4
 PIPE_CLOSED = 141
-"""As the shell says of a program that ends since nobody reads on: 128 and the number of SIGPIPE."""
+"""As in a shell: 128 and the number of SIGPIPE."""
 
 
 def run(app: Callable[[], object]) -> NoReturn:
@@ -59,7 +59,7 @@ def run(app: Callable[[], object]) -> NoReturn:
         if os.environ.get("ALULA_TRACEBACK"):
             raise
         _stop(
-            f"a name with {error.object[error.start : error.end]!a} cannot be given to a file under this locale, whose "
+            f"a name with {error.object[error.start : error.end]!a} cannot be a file name in this locale, whose "
             f"encoding is {error.encoding}; set LC_ALL=C.UTF-8",
             CRASHED,
         )
@@ -67,7 +67,7 @@ def run(app: Callable[[], object]) -> NoReturn:
         if os.environ.get("ALULA_TRACEBACK"):
             raise
         _stop(
-            f"a fault of alula's own, not of the case: {type(error).__name__}: {error}; "
+            f"internal error of alula, not of the case: {type(error).__name__}: {error}; "
             "set ALULA_TRACEBACK=1 to see where, and please report it",
             CRASHED,
         )

@@ -150,13 +150,13 @@ def _refuse_in_the_way(target: Path, command: str, names: Iterable[str]) -> None
         path = target / name
         if not _stands_in_folders(target, name):
             raise CaseError(
-                f"output: a folder is needed at '{path.parent}', and something else is there; rename it or choose "
-                "another folder for the output"
+                f"output: '{path.parent}' must be a folder, but is something else; rename it or choose another "
+                "folder for the output"
             )
         if os.path.lexists(path) and not (name in left and _is(path, left[name])):
             raise CaseError(
-                f"output: '{path}' is not, or no longer, what alula wrote there; rename it or choose another folder, "
-                "so that it is not lost"
+                f"output: '{path}' was not written by alula, or was edited since, and is not overwritten; rename it or "
+                "choose another folder"
             )
 
 

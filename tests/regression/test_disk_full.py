@@ -71,7 +71,7 @@ def test_a_file_in_the_way_is_refused_before_anything_is_solved(tmp_path: Path, 
     assert done.returncode == 2
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1, done.stderr  # not a word of progress
-    assert f"'{tmp_path / name}' is not, or no longer, what alula wrote there" in done.stderr
+    assert f"'{tmp_path / name}' was not written by alula, or was edited since" in done.stderr
     assert (tmp_path / name).read_text() == "mine"
 
 

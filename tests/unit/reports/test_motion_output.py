@@ -169,7 +169,7 @@ def test_a_second_run_replaces_the_first_and_nothing_else(folder, tmp_path, monk
     (folder / "links.csv").write_text("edited", encoding="utf-8")
     refused = run("crank.toml", "-o", "out", cwd=home)
     assert refused.returncode == 2
-    assert "links.csv' is not, or no longer, what alula wrote there" in refused.stderr
+    assert "links.csv' was not written by alula, or was edited since" in refused.stderr
     assert (folder / "links.csv").read_text(encoding="utf-8") == "edited"
 
 

@@ -85,7 +85,7 @@ def test_parts_of_another_case_stay(tmp_path: Path) -> None:
     write_folder(tmp_path, EXPORT, fill({"crank.step": "four-bar"}))
     write_folder(tmp_path, EXPORT, fill({"AE.step": "owl again"}))
     assert files_of(tmp_path) == {"AE.step": "owl again", "GF.step": "in CAD", "crank.step": "four-bar"}
-    with pytest.raises(CaseError, match=r"GF\.step' is not, or no longer, what alula wrote there"):
+    with pytest.raises(CaseError, match=r"GF\.step' was not written by alula, or was edited since"):
         write_folder(tmp_path, EXPORT, fill({"GF.step": "owl again"}))
 
 
@@ -266,7 +266,7 @@ def test_what_cannot_be_taken_back_at_once_is_taken_back_by_the_next_run(
     monkeypatch.undo()
     (out / folder).mkdir(exist_ok=True)
     (out / name).write_text("mine")
-    with pytest.raises(CaseError, match="is not, or no longer, what alula wrote there"):
+    with pytest.raises(CaseError, match="was not written by alula, or was edited since"):
         refuse_unusable(out, "check")
     assert files_of(out) == before | {name: "mine"}
 
