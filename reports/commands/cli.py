@@ -152,7 +152,7 @@ def motion(
     case: CaseArgument,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder in whose subfolder motion/ tables, figures and the animation go."),
+        typer.Option("-o", "--output", help="Folder; tables, figures and the animation go to its subfolder motion."),
     ] = None,
     json: JsonOption = False,
     overrides: SetOption = None,
@@ -182,7 +182,7 @@ def envelope(
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", help="Folder in whose subfolder envelope/ result.json, curves, pictures and VTU files go."
+            "-o", "--output", help="Folder; result.json, curves, pictures and VTU files go to its subfolder envelope."
         ),
     ] = None,
     json: JsonOption = False,
@@ -290,7 +290,7 @@ def synth(
     ground: Annotated[str, typer.Option("--ground", help="Length d of the ground link.")] = "10 m",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder in whose subfolder synth/ result.json and the drawing go."),
+        typer.Option("-o", "--output", help="Folder; result.json and the drawing go to its subfolder synth."),
     ] = None,
     json: JsonOption = False,
 ) -> None:
