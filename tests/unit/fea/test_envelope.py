@@ -444,7 +444,7 @@ def test_console_names_link_angle_and_verdict(result):
     assert result.verdict.value.upper() in text
     assert "25 of 25 poses" in text
     assert "at crank" in text
-    assert "shortens a life by a factor of 1.6" in " ".join(text.split())
+    assert "shortens the life by a factor of 1.6" in " ".join(text.split())
 
 
 def test_the_figure_is_drawn_over_the_coordinate_where_the_drive_turns_back(result):
