@@ -21,7 +21,6 @@ NOT_YET = (
     "fea/common",
     "fea/motion",
     "geometry/linkage",
-    "geometry/mechanisms",
     "loads/states",
     "loads/statics",
 )

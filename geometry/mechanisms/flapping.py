@@ -31,55 +31,97 @@ OUTER_WING_OFFSET = math.radians(100)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FlappingPose:
-    """One side over the crank angles: angles in rad (left side in the mirror), points in mm, shape (..., 2)."""
+    """One side over the crank angles: angles in rad (left side in the mirror), points in mm, shape (..., 2).
+
+    Attributes
+    ----------
+    theta2 : ndarray
+        Crank angle, the same for both sides.
+    theta3 : ndarray
+        Coupler angle.
+    beta : ndarray
+        Rocker (oscillation) angle, of the direction from B to O4, in which the inner wing goes on.
+    psi : ndarray
+        Angle between coupler and rocker (transmission angle), in [0, π].
+    phi : ndarray
+        Angle from the outer to the inner wing, ψ - 100°.
+    lambda_ : ndarray
+        Angle of the outer wing to the horizontal, β - φ.
+    crank_pin : ndarray
+        Place of the crank pin A, in the frame of the whole mechanism.
+    coupler_pin : ndarray
+        B, in the frame of the whole mechanism.
+    """
 
     theta2: FloatArray
-    """Crank angle, the same for both sides."""
     theta3: FloatArray
-    """Coupler angle."""
     beta: FloatArray
-    """Rocker (oscillation) angle, of the direction from B to O4, in which the inner wing goes on."""
     psi: FloatArray
-    """Angle between coupler and rocker (transmission angle), in [0, π]."""
     phi: FloatArray
-    """Angle from the outer to the inner wing, ψ - 100°."""
     lambda_: FloatArray
-    """Angle of the outer wing to the horizontal, β - φ."""
     crank_pin: FloatArray
     coupler_pin: FloatArray
-    """B, in the frame of the whole mechanism."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PublishedMetrics:
-    """The metrics as the source's program defines them (rad), over 361 crank positions."""
+    """The metrics as the source's program defines them (rad), over 361 crank positions.
+
+    Attributes
+    ----------
+    phase_lag : float
+        |Σβ_left - Σβ_right|; the sums over a turn cancel but for the crank angle 0, which is counted twice.
+    oscillation : float
+        max β + |min β|.
+    asymmetry : float
+        ((max ψ - 90°) + (90° - min ψ)) / 2.
+    """
 
     phase_lag: float
-    """|Σβ_left - Σβ_right|; the sums over a turn cancel but for the crank angle 0, which is counted twice."""
     oscillation: float
-    """max β + |min β|."""
     asymmetry: float
-    """((max ψ - 90°) + (90° - min ψ)) / 2."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FlappingMetrics:
-    """The metrics as their names say (rad)."""
+    """The metrics as their names say (rad).
+
+    Attributes
+    ----------
+    phase_lag : float
+        Largest crank angle between the reversals of the two sides: the time by which one wing lags.
+    side_difference : float
+        Largest difference between the rocker angles of the two sides over the turn.
+    mean_side_difference : float
+        Mean size of that difference over the turn.
+    side_difference_at_zero : float
+        The same at crank angle 0, which is the published phase lag.
+    oscillation : float
+        max β - min β, from the poses in which crank and coupler are collinear.
+    beta_min : float
+        Least rocker angle.
+    beta_max : float
+        Greatest rocker angle.
+    asymmetry : float
+        Largest deviation of the transmission angle from 90°.
+    transmission_min : float
+        Least transmission angle.
+    transmission_max : float
+        Greatest transmission angle.
+    lambda_min : float
+        Least angle of the outer wing.
+    lambda_max : float
+        Greatest angle of the outer wing.
+    """
 
     phase_lag: float
-    """Largest crank angle between the reversals of the two sides: the time by which one wing lags."""
     side_difference: float
-    """Largest difference between the rocker angles of the two sides over the turn."""
     mean_side_difference: float
-    """Mean size of that difference over the turn."""
     side_difference_at_zero: float
-    """The same at crank angle 0, which is the published phase lag."""
     oscillation: float
-    """max β - min β, from the poses in which crank and coupler are collinear."""
     beta_min: float
     beta_max: float
     asymmetry: float
-    """Largest deviation of the transmission angle from 90°."""
     transmission_min: float
     transmission_max: float
     lambda_min: float
@@ -88,7 +130,17 @@ class FlappingMetrics:
 
 @dataclass(frozen=True, kw_only=True)
 class Criterion:
-    """One design criterion of the source and whether the design meets it."""
+    """One design criterion of the source and whether the design meets it.
+
+    Attributes
+    ----------
+    name : str
+        Name of the criterion.
+    fulfilled : bool
+        Whether the design meets it.
+    sentence : str
+        Value and limit in words.
+    """
 
     name: str
     fulfilled: bool
@@ -97,15 +149,27 @@ class Criterion:
 
 @dataclass(frozen=True, kw_only=True)
 class FlappingWing:
-    """A flapping wing; lengths in mm. Raises CaseError for lengths that are not positive or never close."""
+    """A flapping wing; lengths in mm. Raises CaseError for lengths that are not positive or never close.
+
+    Attributes
+    ----------
+    crank : float
+        Length of the crank.
+    coupler : float
+        Length of the coupler.
+    rocker : float
+        Length of the rocker.
+    width : float
+        x of the right rocker's pivot.
+    height : float
+        y of both rockers' pivots.
+    """
 
     crank: float
     coupler: float
     rocker: float
     width: float
-    """x of the right rocker's pivot."""
     height: float
-    """y of both rockers' pivots."""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.width) and self.width > 0):
@@ -135,7 +199,18 @@ class FlappingWing:
         return self.four_bar.input_range().full_turn
 
     def scaled(self, factor: float) -> "FlappingWing":
-        """Return the same design with all lengths times ``factor``."""
+        """Return the same design at another size.
+
+        Parameters
+        ----------
+        factor : float
+            By which all lengths are multiplied.
+
+        Returns
+        -------
+        FlappingWing
+            The scaled wing.
+        """
         return FlappingWing(
             crank=self.crank * factor,
             coupler=self.coupler * factor,
@@ -145,11 +220,28 @@ class FlappingWing:
         )
 
     def pose(self, theta2: ArrayLike, side: Side = "right") -> FlappingPose:
-        """Return one side's angles and pins for crank angles of any shape (rad, from +x).
+        """Return one side's angles and pins.
 
         B lies to the left of the line from the crank pin to the right pivot, and mirrored on the left side: that is
         the root with the larger y wherever the crank pin stays inside of the pivots, and it does not jump where
-        the crank is longer than x. Raises CaseError where a side cannot be assembled at some of the angles.
+        the crank is longer than x.
+
+        Parameters
+        ----------
+        theta2 : array_like
+            Crank angles of any shape, from +x [rad].
+        side : {"right", "left"}
+            Side of the wing.
+
+        Returns
+        -------
+        FlappingPose
+            The poses.
+
+        Raises
+        ------
+        CaseError
+            Where the side cannot be assembled at some of the angles.
         """
         theta2 = np.asarray(theta2, dtype=float)
         mirror = 1.0 if side == "right" else -1.0

@@ -26,18 +26,41 @@ An exact dead point computes to some 1e-8, the square root of the rounding error
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FourBarPosition:
-    """Link angles in rad, in the shape of the input angles; masked where the loop does not close."""
+    """Link angles in rad, in the shape of the input angles; masked where the loop does not close.
+
+    Attributes
+    ----------
+    theta2 : ndarray
+        Input angles.
+    theta3 : ndarray
+        Coupler angles.
+    theta4 : ndarray
+        Output angles.
+    transmission : ndarray
+        Angle between coupler and output link, in [0, π] (not folded to the acute angle).
+    """
 
     theta2: FloatArray
     theta3: FloatArray
     theta4: FloatArray
     transmission: FloatArray
-    """Angle between coupler and output link, in [0, π] (not folded to the acute angle)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class DeadPoint:
-    """A pose in which coupler and output are collinear: the input can go no further (rad)."""
+    """A pose in which coupler and output are collinear: the input can go no further (rad).
+
+    Attributes
+    ----------
+    theta2 : float
+        Input angle.
+    theta3 : float
+        Coupler angle.
+    theta4 : float
+        Output angle.
+    kind : Literal[extended, folded]
+        Whether coupler and output lie stretched or folded.
+    """
 
     theta2: float
     theta3: float
@@ -47,17 +70,38 @@ class DeadPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class TurningRange:
-    """How far a link can turn; intervals run counter-clockwise, in rad."""
+    """How far a link can turn; intervals run counter-clockwise, in rad.
+
+    Attributes
+    ----------
+    full_turn : bool
+        Whether it turns fully.
+    intervals : tuple[tuple[float, float], ...]
+        The whole turn is (-π, π); a lower end lies in [-π, π], an upper end above it.
+    dead_points : tuple[float, ...]
+        Angles at which it stops.
+    change_points : tuple[float, ...]
+        Angles at which the links become collinear without stopping: there the branches meet.
+    """
 
     full_turn: bool
     intervals: tuple[tuple[float, float], ...]
-    """The whole turn is (-π, π); a lower end lies in [-π, π], an upper end above it."""
     dead_points: tuple[float, ...]
     change_points: tuple[float, ...]
-    """Angles at which the links become collinear without stopping: there the branches meet."""
 
     def interval_of(self, angle: float) -> int | None:
-        """Return the index of the interval that holds this angle (rad, any turn), or None."""
+        """Return the interval that holds an angle.
+
+        Parameters
+        ----------
+        angle : float
+            Angle of any turn [rad].
+
+        Returns
+        -------
+        int or None
+            Index of the interval, if any.
+        """
         slack = 1e-12  # rounding must not put an end outside its own interval
         for index, (low, high) in enumerate(self.intervals):
             if (angle - low + slack) % (2 * math.pi) <= high - low + 2 * slack:
@@ -67,7 +111,15 @@ class TurningRange:
 
 @dataclass(frozen=True, kw_only=True)
 class TransmissionRange:
-    """Extremes of the angle between coupler and output over the input's whole range (rad, in [0, π])."""
+    """Extremes of the angle between coupler and output over the input's whole range (rad, in [0, π]).
+
+    Attributes
+    ----------
+    minimum : float
+        Least angle.
+    maximum : float
+        Greatest angle.
+    """
 
     minimum: float
     maximum: float
@@ -84,6 +136,17 @@ class FourBar:
 
     Raises CaseError for a length that is not positive and finite, and where the longest link exceeds
     the other three together.
+
+    Attributes
+    ----------
+    a : float
+        Length of the input.
+    b : float
+        Length of the coupler.
+    c : float
+        Length of the output.
+    d : float
+        Length of the ground.
     """
 
     a: float
@@ -126,12 +189,25 @@ class FourBar:
         return close_dyad(dx, -self.a * np.sin(theta2), self.b, self.c, 1 if branch == "open" else -1)
 
     def position(self, theta2: ArrayLike, *, branch: Branch = "open") -> FourBarPosition:
-        """Return coupler and output angle for input angles of any shape (rad).
+        """Return coupler and output angles, in a form without quotients.
 
-        ``open`` is the minus sign of Norton's equation for θ4 (chapter 4): the pin B lies to the left of the line from
-        the input pin A to O4, and stays there for as long as the linkage does not pass a dead point. Norton,
-        5th ed., chapter 4, in a form without quotients. A single angle at which the
-        loop does not close raises CaseError; in arrays such angles are masked.
+        Parameters
+        ----------
+        theta2 : array_like
+            Input angles of any shape [rad].
+        branch : {"open", "crossed"}
+            Open is the minus sign of Norton's equation for θ4: the pin B lies to the left of the line from the input
+            pin A to O4, and stays there for as long as the linkage does not pass a dead point.
+
+        Returns
+        -------
+        FourBarPosition
+            The angles, masked in arrays where the loop does not close.
+
+        Raises
+        ------
+        CaseError
+            Where it does not close at a single angle.
         """
         theta2 = np.asarray(theta2, dtype=float)
         dyad = self._close(theta2, branch)
@@ -220,7 +296,18 @@ class FourBar:
         return TransmissionRange(minimum=float(low), maximum=float(high))
 
     def branch_of(self, theta2: float, theta3: float) -> Branch | None:
-        """Tell the branch of a pose from its input and coupler angle (rad); None at a dead point."""
+        """Tell the branch of a pose.
+
+        Parameters
+        ----------
+        theta2, theta3 : float
+            Input and coupler angle [rad].
+
+        Returns
+        -------
+        str or None
+            "open" or "crossed"; None at a dead point.
+        """
         dx, dy = self.d - self.a * math.cos(theta2), -self.a * math.sin(theta2)
         reach = math.hypot(dx, dy)
         cross = dx * math.sin(theta3) - dy * math.cos(theta3)

@@ -18,19 +18,34 @@ _TRIPLE_ROCKER = {"ground": "RRR1", "input": "RRR2", "coupler": "RRR3", "output"
 
 @dataclass(frozen=True, kw_only=True)
 class Grashof:
-    """Grashof's sums and the class that follows; sums in the unit of the lengths."""
+    """Grashof's sums and the class that follows; sums in the unit of the lengths.
+
+    Attributes
+    ----------
+    shortest : str
+        Name of the shortest link.
+    longest : str
+        Name of the longest link.
+    shortest_plus_longest : float
+        Sum of their lengths.
+    other_two : float
+        Sum of the other two lengths.
+    relation : str
+        ``less``, ``equal`` or ``greater``: shortest plus longest against the other two.
+    inversion : str
+        crank-rocker, double-crank, double-rocker, rocker-crank, change point, parallelogram, kite, rhombus or triple-
+        rocker.
+    barker : str
+        Barker's code for the same (C. R. Barker 1985; Norton, 5th ed., chapter 2).
+    """
 
     shortest: str
     longest: str
     shortest_plus_longest: float
     other_two: float
     relation: str
-    """``less``, ``equal`` or ``greater``: shortest plus longest against the other two."""
     inversion: str
-    """crank-rocker, double-crank, double-rocker, rocker-crank, change point, parallelogram, kite,
-    rhombus or triple-rocker."""
     barker: str
-    """Barker's code for the same (C. R. Barker 1985; Norton, 5th ed., chapter 2)."""
 
     @property
     def satisfied(self) -> bool:
@@ -52,12 +67,26 @@ class Grashof:
 
 
 def classify(*, a: float, b: float, c: float, d: float, tolerance: float = EQUALITY_TOLERANCE) -> Grashof:
-    """Classify a four-bar with input a, coupler b, output c and ground d (positive lengths of one unit).
+    """Classify a four-bar.
 
-    s + l < p + q: Grashof, the inversion named after the shortest link; equality within ``tolerance``
-    times the sum of all lengths: special Grashof (change point); else triple-rocker, Barker's code after
-    the longest link. Source: R. L. Norton, Design of Machinery, 5th ed., chapter 2 (the Grashof
-    condition and Barker's classification).
+    s + l < p + q: Grashof, the inversion named after the shortest link; equality: special Grashof (change point); else
+    triple-rocker, Barker's code after the longest link.
+
+    Parameters
+    ----------
+    a, b, c, d : float
+        Positive lengths of input, coupler, output and ground, of one unit.
+    tolerance : float
+        Difference of the sums that counts as none, over the sum of all lengths.
+
+    Returns
+    -------
+    Grashof
+        Sums and class.
+
+    References
+    ----------
+    R. L. Norton, Design of Machinery, 5th ed., chapter 2 (the Grashof condition and Barker's classification).
     """
     lengths = dict(zip(_LINKS, (a, b, c, d), strict=True))
     order = sorted(_LINKS, key=lambda link: lengths[link])

@@ -74,26 +74,56 @@ def _motor_name(value: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class OrnithopterDimensions:
-    """What the rules yield, in mm; the source's own names in brackets."""
+    """What the rules yield, in mm; the source's own names in brackets.
+
+    Attributes
+    ----------
+    pivot_offset : float
+        X = throw / tan(wing angle).
+    slot_reach : float
+        [ranura] = throw / sin(wing angle): from the pivot to the pin in the wing's end positions.
+    pin_diameter : float
+        Diameter of the pins.
+    hole_diameter : float
+        Diameter of the holes.
+    thick_wall : float
+        Around holes of base and crank: 0.5 + clearance/2.
+    thin_wall : float
+        Around holes of cover and wing lever: 0.5 - clearance/2.
+    crank_disc_radius : float
+        Radius of the crank disc [mxmv].
+    motor_half_width : float
+        Half the width of the motor [mxmt].
+    body_half_width : float
+        Half the width of the body [cbct].
+    link_length : float
+        Of the movement link (connecting rod); also the height of the pivots over the crank.
+    pivot_height : float
+        Height of the wing pivots over the crank.
+    base_width : float
+        Width of the base.
+    base_height : float
+        Height of the base.
+    gear_thickness : float
+        Thickness of the crank disc.
+    crank_pin_height : float
+        Height of the crank pin.
+    link_thickness : float
+        Thickness of the connecting rod.
+    lever_thickness : float
+        Thickness of the wing lever: the height of the motor's shaft.
+    """
 
     pivot_offset: float
-    """X = throw / tan(wing angle)."""
     slot_reach: float
-    """[ranura] = throw / sin(wing angle): from the pivot to the pin in the wing's end positions."""
     pin_diameter: float
     hole_diameter: float
     thick_wall: float
-    """Around holes of base and crank: 0.5 + clearance/2."""
     thin_wall: float
-    """Around holes of cover and wing lever: 0.5 - clearance/2."""
     crank_disc_radius: float
-    """[mxmv]"""
     motor_half_width: float
-    """[mxmt]"""
     body_half_width: float
-    """[cbct]"""
     link_length: float
-    """Of the movement link (connecting rod); also the height of the pivots over the crank."""
     pivot_height: float
     base_width: float
     base_height: float
@@ -101,7 +131,6 @@ class OrnithopterDimensions:
     crank_pin_height: float
     link_thickness: float
     lever_thickness: float
-    """The height of the motor's shaft."""
 
 
 class OrnithopterRules(CaseModel):
@@ -158,6 +187,16 @@ class OrnithopterRules(CaseModel):
         The crank is a disc with the shaft's hole and the pin's; rod and lever are flat bars with eyes, the lever with
         the slot of the rod's pin. Of the source are the thicknesses, holes, walls about them, the disc's radius and
         the pin's travel in the slot; ``MARGIN``, ``NECK``, ``STUB``, ``SOCKET``, ``FILLET`` and ``RING`` are assumed.
+
+        Parameters
+        ----------
+        material : str
+            Name of their material.
+
+        Returns
+        -------
+        dict of str to Body
+            Bodies by name.
         """
         sizes, hole = self.dimensions(), self.dimensions().hole_diameter
 
@@ -218,26 +257,70 @@ def variants() -> dict[str, OrnithopterRules]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WingMotion:
-    """Pin and wing over the crank angle, all of one shape; both wings move alike, in the mirror."""
+    """Pin and wing over the crank angle, all of one shape; both wings move alike, in the mirror.
+
+    Attributes
+    ----------
+    crank_angle : ndarray
+        From the centre line, 0 with the crank pin nearest to the wings (rad).
+    pin_height : ndarray
+        Of the sliding pin over the crank's axis, mm.
+    pin_speed : ndarray
+        Its speed [mm/s].
+    pin_acceleration : ndarray
+        Its acceleration [mm/s²].
+    slot_position : ndarray
+        Of the pin in the slot, from the wing's pivot, mm.
+    slot_speed : ndarray
+        Speed of the pin along the slot [mm/s].
+    wing_angle : ndarray
+        Of the slot to the horizontal, positive where the pin stands above the pivots, rad.
+    wing_speed : ndarray
+        Angular speed of the wing [rad/s].
+    wing_acceleration : ndarray
+        Angular acceleration of the wing [rad/s²].
+    """
 
     crank_angle: FloatArray
-    """From the centre line, 0 with the crank pin nearest to the wings (rad)."""
     pin_height: FloatArray
-    """Of the sliding pin over the crank's axis, mm."""
     pin_speed: FloatArray
     pin_acceleration: FloatArray
     slot_position: FloatArray
-    """Of the pin in the slot, from the wing's pivot, mm."""
     slot_speed: FloatArray
     wing_angle: FloatArray
-    """Of the slot to the horizontal, positive where the pin stands above the pivots, rad."""
     wing_speed: FloatArray
     wing_acceleration: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
 class WingExtremes:
-    """Extremes over one turn of the crank at constant speed (rad, rad/s, rad/s²; pin mm/s, mm/s²)."""
+    """Extremes over one turn of the crank at constant speed (rad, rad/s, rad/s²; pin mm/s, mm/s²).
+
+    Attributes
+    ----------
+    highest : float
+        Greatest wing angle.
+    lowest : float
+        Least wing angle.
+    stroke : float
+        Their difference.
+    fastest_up : float
+        Greatest wing speed.
+    fastest_down : float
+        Least wing speed.
+    greatest_acceleration : float
+        Greatest wing acceleration.
+    least_acceleration : float
+        Least wing acceleration.
+    pin_speed_up : float
+        Greatest speed of the pin.
+    pin_speed_down : float
+        Least speed of the pin.
+    pin_acceleration_max : float
+        Greatest acceleration of the pin.
+    pin_acceleration_min : float
+        Least acceleration of the pin.
+    """
 
     highest: float
     lowest: float
@@ -254,11 +337,22 @@ class WingExtremes:
 
 @dataclass(frozen=True, kw_only=True)
 class WingDrive:
-    """Crank, rod and wing pivots, in mm. Raises CaseError where the crank cannot turn fully."""
+    """Crank, rod and wing pivots, in mm. Raises CaseError where the crank cannot turn fully.
+
+    Attributes
+    ----------
+    throw : float
+        Radius of the crank pin.
+    rod : float
+        Length of the rod between the pins.
+    pivot_offset : float
+        Of the wing pivots beside the centre line.
+    pivot_height : float
+        Of the wing pivots over the crank.
+    """
 
     throw: float
     rod: float
-    """Between the pins."""
     pivot_offset: float
     pivot_height: float
 
@@ -315,7 +409,18 @@ class WingDrive:
         )
 
     def extremes(self, speed: float) -> WingExtremes:
-        """Return the extremes over one turn at a constant crank speed (rad/s)."""
+        """Return the extremes over one turn at constant crank speed.
+
+        Parameters
+        ----------
+        speed : float
+            Of the crank [rad/s].
+
+        Returns
+        -------
+        WingExtremes
+            Wing and pin.
+        """
         motion = self.motion(np.arange(_SAMPLES) * (2 * np.pi / _SAMPLES), speed)
         # The wing follows the pin, whose end positions are those of crank and rod in line.
         highest = math.atan2(self.rod + self.throw - self.pivot_height, self.pivot_offset)

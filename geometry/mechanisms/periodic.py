@@ -6,10 +6,20 @@ from geometry.linkage.dyad import FloatArray
 
 
 def periodic_maximum(values: FloatArray) -> float:
-    """Return the maximum of a smooth periodic function from even samples of one period, shape (n,).
+    """Return the maximum of a smooth periodic function.
 
     The greatest sample is refined by the parabola through it and its neighbours: the error falls with the
     fourth power of the spacing, that of the sample itself with the second.
+
+    Parameters
+    ----------
+    values : ndarray
+        Even samples (n,) of one period.
+
+    Returns
+    -------
+    float
+        The maximum.
     """
     at = int(np.argmax(values))
     before, top, after = values[at - 1], values[at], values[(at + 1) % values.size]
@@ -18,5 +28,16 @@ def periodic_maximum(values: FloatArray) -> float:
 
 
 def periodic_minimum(values: FloatArray) -> float:
-    """Return the minimum, as ``periodic_maximum`` returns the maximum."""
+    """Return the minimum, as ``periodic_maximum`` returns the maximum.
+
+    Parameters
+    ----------
+    values : ndarray
+        Even samples (n,) of one period.
+
+    Returns
+    -------
+    float
+        The minimum.
+    """
     return -periodic_maximum(-values)

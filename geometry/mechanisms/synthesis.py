@@ -32,58 +32,122 @@ _ILL_CONDITION = 1e6
 
 @dataclass(frozen=True, kw_only=True)
 class SynthesisFinding:
-    """A property of the synthesised linkage that its user must know, in one plain sentence."""
+    """A property of the synthesised linkage that its user must know, in one plain sentence.
+
+    Attributes
+    ----------
+    kind : str
+        ``conditioning``, ``sign``, ``grashof``, ``branch-defect``, ``order-defect``, ``circuit-defect``, ``lock-up``.
+    drive : Drive, optional
+        The driven link that the finding holds for; None where it holds for any.
+    sentence : str
+        What was found, in words.
+    """
 
     kind: str
-    """``conditioning``, ``sign``, ``grashof``, ``branch-defect``, ``order-defect``, ``circuit-defect``, ``lock-up``."""
     drive: Drive | None
-    """The driven link that the finding holds for; None where it holds for any."""
     sentence: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class LockUp:
-    """A pose beyond which a driven link cannot turn (rad)."""
+    """A pose beyond which a driven link cannot turn (rad).
+
+    Attributes
+    ----------
+    drive : Drive
+        The driven link.
+    phi : float
+        Angle of link a.
+    theta : float
+        Angle of link b.
+    psi : float
+        Angle of link c.
+    kind : Literal[extended, folded]
+        Whether the two links that are not driven lie stretched or folded in it.
+    """
 
     drive: Drive
     phi: float
     theta: float
     psi: float
     kind: Literal["extended", "folded"]
-    """Whether the two links that are not driven lie stretched or folded in it."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PrecisionPoint:
-    """A precision point and the link angles in it (rad); residual of Freudenstein's equation."""
+    """A precision point and the link angles in it (rad); residual of Freudenstein's equation.
+
+    Attributes
+    ----------
+    theta : float
+        Angle of link b.
+    psi : float
+        Angle of link c.
+    phi : float
+        Angle of link a.
+    residual : float
+        Of Freudenstein's equation.
+    branches : dict[Drive, Branch, optional]
+        Branch seen from each driven link; None at a dead point of that drive.
+    """
 
     theta: float
     psi: float
     phi: float
     residual: float
     branches: dict[Drive, Branch | None]
-    """Branch seen from each driven link; None at a dead point of that drive."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Synthesis:
-    """A synthesised four-bar; lengths in the unit of d, angles in rad."""
+    """A synthesised four-bar; lengths in the unit of d, angles in rad.
+
+    Attributes
+    ----------
+    K : tuple[float, float, float]
+        Coefficients of Freudenstein's equation.
+    condition : float
+        2-norm condition number of the 3×3 system.
+    four_bar : FourBar
+        The four-bar.
+    b_turned : bool
+        K1 < 0: the length b came out negative, so its link stands at θ + 180°.
+    c_turned : bool
+        K2 < 0: the length c came out negative, so its link stands at ψ + 180°.
+    points : tuple[PrecisionPoint, PrecisionPoint, PrecisionPoint]
+        The precision points.
+    lock_ups : tuple[LockUp, ...]
+        Where a driven link stops.
+    findings : tuple[SynthesisFinding, ...]
+        What its user must know.
+    """
 
     K: tuple[float, float, float]
     condition: float
-    """2-norm condition number of the 3×3 system."""
     four_bar: FourBar
     b_turned: bool
-    """K1 < 0: the length b came out negative, so its link stands at θ + 180°."""
     c_turned: bool
-    """K2 < 0: the length c came out negative, so its link stands at ψ + 180°."""
     points: tuple[PrecisionPoint, PrecisionPoint, PrecisionPoint]
     lock_ups: tuple[LockUp, ...]
     findings: tuple[SynthesisFinding, ...]
 
 
 def freudenstein_residual(K: Sequence[float], theta: ArrayLike, psi: ArrayLike) -> FloatArray:
-    """Return K1 cos ψ - K2 cos θ + K3 - cos(θ - ψ) for angles in rad of shapes that broadcast."""
+    """Return K1 cos ψ - K2 cos θ + K3 - cos(θ - ψ), zero where a pair lies on the linkage.
+
+    Parameters
+    ----------
+    K : sequence of float
+        The three coefficients.
+    theta, psi : array_like
+        Angles of links b and c, of shapes that broadcast [rad].
+
+    Returns
+    -------
+    ndarray
+        Residuals.
+    """
     theta, psi = np.asarray(theta, dtype=float), np.asarray(psi, dtype=float)
     return np.asarray(K[0] * np.cos(psi) - K[1] * np.cos(theta) + K[2] - np.cos(theta - psi))
 
@@ -93,6 +157,18 @@ def driven(four_bar: FourBar, drive: Drive) -> FourBar:
 
     For ``b`` the first two vectors of the loop change places, so the input angle is θ. For ``c`` the
     four-bar is mirrored, so that its input angle is π - ψ, its coupler angle -θ and its output angle π - φ.
+
+    Parameters
+    ----------
+    four_bar : FourBar
+        The synthesised four-bar.
+    drive : {"a", "b", "c"}
+        The link that is turned.
+
+    Returns
+    -------
+    FourBar
+        The same linkage, its links renamed.
     """
     if drive == "a":
         return four_bar
@@ -100,11 +176,27 @@ def driven(four_bar: FourBar, drive: Drive) -> FourBar:
 
 
 def synthesise(theta: Sequence[float], psi: Sequence[float], d: float) -> Synthesis:
-    """Find the four-bar of ground length d whose links b and c stand at three pairs of angles (rad).
+    """Find the four-bar whose links b and c stand at three pairs of angles.
 
     Solves the 3×3 system [cos ψ, -cos θ, 1] K = cos(θ - ψ) and takes b = d/K1, c = d/K2, a² = b² + c² + d² - 2bcK3.
-    Raises CaseError for other than three pairs, a d that is not positive, a singular system (with the
-    reason), or a link of infinite length.
+
+    Parameters
+    ----------
+    theta, psi : sequence of float
+        Three angles each, of links b and c [rad].
+    d : float
+        Length of the ground link.
+
+    Returns
+    -------
+    Synthesis
+        The four-bar, in the unit of d, and its defects.
+
+    Raises
+    ------
+    CaseError
+        For other than three pairs, a d that is not positive, a singular system (with the reason), or a link of
+        infinite length.
     """
     angles, outputs = np.asarray(theta, dtype=float), np.asarray(psi, dtype=float)
     if angles.shape != (3,) or outputs.shape != (3,) or not np.isfinite([angles, outputs]).all():
