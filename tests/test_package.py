@@ -1,18 +1,26 @@
 """The wheel holds ``alula.py`` and the four packages with their data alone, and its command runs from any folder."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 import sysconfig
 import tomllib
 import zipfile
+from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
+from test_layers import imported
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("geometry", "loads", "fea", "reports")
+
+
+def canonical(name: str) -> str:
+    """Return the name of a distribution as registries compare it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def run(*command: str | Path, cwd: Path) -> str:
@@ -87,6 +95,27 @@ def test_the_installed_packages_are_those_of_the_wheel(installed, tmp_path):
     assert Path(files[0]).name == "alula.py"
     assert [Path(file).parent.name for file in files[1:]] == list(PACKAGES)
     assert all(Path(file).is_relative_to(installed) for file in files)
+
+
+def test_what_is_installed_is_what_the_metadata_says(installed, tmp_path):
+    """Every package that alula needs is there in a version that fits, and every one that it imports is declared."""
+    python = installed / "bin" / "python"
+    assert "No broken requirements" in run(sys.executable, "-m", "pip", "--python", python, "check", cwd=tmp_path)
+    script = "from importlib.metadata import distribution\nprint(*distribution('alula').requires, sep='\\n')"
+    stated = run(python, "-c", script, cwd=tmp_path).splitlines()
+    declared = {canonical(re.split(r"[^\w.-]", line)[0]) for line in stated if "extra ==" not in line}
+    optional = {canonical(re.split(r"[^\w.-]", line)[0]) for line in stated if 'extra == "pardiso"' in line}
+    owners = packages_distributions()
+    modules = {
+        name.partition(".")[0]
+        for package in PACKAGES
+        for file in (ROOT / package).rglob("*.py")
+        for _, name in imported(file.read_text(encoding="utf-8"))
+    }
+    foreign = modules - sys.stdlib_module_names - set(PACKAGES)
+    needed = {canonical(name) for module in foreign for name in owners[module][:1]}
+    assert needed <= declared | optional
+    assert declared <= needed
 
 
 def test_the_command_runs_from_another_folder(installed, tmp_path):
