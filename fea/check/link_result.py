@@ -19,7 +19,7 @@ IDLE = DecidedLink(decision=Decision(model="beam", why="nothing acts on it", nex
 
 
 def link_result(
-    case: Case, link: str, title: str, hand: LinkByHand, decided: DecidedLink | None, uneven: Growths
+    case: Case, link: str, load_case: str, hand: LinkByHand, decided: DecidedLink | None, uneven: Growths
 ) -> LinkResult:
     """Return what a load case does to a link.
 
@@ -27,8 +27,8 @@ def link_result(
     ----------
     case : Case
     link : str
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     hand : LinkByHand
     decided : DecidedLink or None
         None where nothing acts on the link under any load case.
@@ -37,14 +37,14 @@ def link_result(
     """
     decided, material = decided or IDLE, case.material_of(link)
     result: LinkResult
-    if decided.solid is not None and any(one.load == title for one in decided.solid.solution.cases):
+    if decided.solid is not None and any(one.load == load_case for one in decided.solid.solution.cases):
         why, solid = decided.decision.why, decided.solid
-        result = solid_result(case, link, title, hand.check, solid, why=why, remarks=hand.remarks)
+        result = solid_result(case, link, load_case, hand.check, solid, why=why, remarks=hand.remarks)
     else:
-        bands = None if decided.solid is not None else decided.hands.get(title)
+        bands = None if decided.solid is not None else decided.hands.get(load_case)
         result = _hand_result(link, material, hand, bands, decided.decision)
-    load = load_scatter(case, title).times(uneven.stress.get(link, Scatter()))
-    bent = load_scatter(case, title).times(uneven.displacement.get(link, Scatter()))
+    load = load_scatter(case, load_case).times(uneven.stress.get(link, Scatter()))
+    bent = load_scatter(case, load_case).times(uneven.displacement.get(link, Scatter()))
     return replace(
         result,
         von_mises_max=load.on(result.von_mises_max),

@@ -41,7 +41,7 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
 
 
 def solid_result(
-    case: Case, link: str, title: str, beam: BeamCheck, refined: RefinedSolid, *, why: str, remarks: Sequence[str]
+    case: Case, link: str, load_case: str, beam: BeamCheck, refined: RefinedSolid, *, why: str, remarks: Sequence[str]
 ) -> SolidResult:
     """Return the result of a link under a load case that was solved.
 
@@ -49,8 +49,8 @@ def solid_result(
     ----------
     case : Case
     link : str
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     beam : BeamCheck
         The hand calculation.
     refined : RefinedSolid
@@ -61,7 +61,7 @@ def solid_result(
         What the reader must know, besides what model and meshes have to say.
     """
     material, solid = case.material_of(link), refined.solution
-    solved = [number for number, found in enumerate(solid.cases) if found.load == title]
+    solved = [number for number, found in enumerate(solid.cases) if found.load == load_case]
     stated = case.drive.transfer if case.drive else None
     own = [number for number in solved if solid.cases[number].transfer in (None, stated)]
 

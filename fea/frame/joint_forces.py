@@ -105,7 +105,7 @@ def _redundant(case: Case, pose: Pose) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Held:
+class WayToHold:
     """How far a point moves with the linkage held in one way.
 
     Attributes
@@ -125,7 +125,7 @@ class Held:
         return float(np.linalg.norm(self.displacement))
 
 
-def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[Held, ...]:
+def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[WayToHold, ...]:
     """Return how far the point that the case names moves: held at each link on the ground, and bonded all over.
 
     Linear frames in the pose as it stands.
@@ -141,7 +141,7 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[Held, .
 
     Returns
     -------
-    tuple of Held
+    tuple of WayToHold
         One per way; none where the case does not ask.
     """
     asked = case.ways_to_hold
@@ -162,5 +162,5 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[Held, .
     for name, drive, bonded in ways:
         frame = build_frame(case, pose, loads, held=drive, bonded=bonded)
         moved = frame.at_points(solve_frame(frame.model).displacements)
-        found.append(Held(name=name, displacement=moved[asked.link, asked.at]))
+        found.append(WayToHold(name=name, displacement=moved[asked.link, asked.at]))
     return tuple(found)

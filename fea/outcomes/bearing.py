@@ -62,15 +62,15 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
 
 
 def bearing_outcome(
-    case: Case, title: str, name: str, check: BearingCheck, joint: str, force: float, growth: Scatter | None = None
+    case: Case, load_case: str, name: str, check: BearingCheck, joint: str, force: float, growth: Scatter | None = None
 ) -> CheckOutcome:
     """Return the outcome of one joint: that of its softer or thinner eye.
 
     Parameters
     ----------
     case : Case
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     name : str
         Of the check.
     check : BearingCheck
@@ -89,7 +89,7 @@ def bearing_outcome(
     CaseError
         For a joint without pin diameter.
     """
-    load = load_scatter(case, title).times(growth or Scatter())
+    load = load_scatter(case, load_case).times(growth or Scatter())
     eye, factor = weakest_eye(case, name, joint, force, load)
-    found = CheckOutcome.of(name, Subject.pin(joint), title, Quantity.SAFETY_FACTOR, factor, check.limit)
+    found = CheckOutcome.of(name, Subject.pin(joint), load_case, Quantity.SAFETY_FACTOR, factor, check.limit)
     return found.because(f"bearing on the eye of {eye}: {found.reason}")

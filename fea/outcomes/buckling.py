@@ -299,15 +299,15 @@ def holding(case: Case, link: str) -> Holding:
 
 
 def buckling_outcomes(
-    case: Case, title: str, beams: Mapping[str, BeamCheck], moved: LargeDisplacement
+    case: Case, load_case: str, beams: Mapping[str, BeamCheck], moved: LargeDisplacement
 ) -> Iterator[CheckOutcome]:
     """Yield the outcome of every link that is compressed under a load case.
 
     Parameters
     ----------
     case : Case
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     beams : mapping of str to BeamCheck
         Link -> its hand calculation.
     moved : LargeDisplacement
@@ -318,12 +318,12 @@ def buckling_outcomes(
     """
     for link, beam in beams.items():
         if (found := column(case, link, beam)) is not None:
-            outcome = column_outcome(case, title, link, found, moved)
+            outcome = column_outcome(case, load_case, link, found, moved)
             yield outcome.because(outcome.reason + beyond_strength({link: beam}))
 
 
 def column_outcome(
-    case: Case, title: str, link: str, found: Column, moved: LargeDisplacement | None = None, where: str = ""
+    case: Case, load_case: str, link: str, found: Column, moved: LargeDisplacement | None = None, where: str = ""
 ) -> CheckOutcome:
     """Return the outcome of a link in compression.
 
@@ -332,8 +332,8 @@ def column_outcome(
     Parameters
     ----------
     case : Case
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     link : str
     found : Column
     moved : LargeDisplacement, optional
@@ -357,11 +357,11 @@ def column_outcome(
             Source(kind=SourceKind.RESTRAINT),
         ),
     )
-    band = load_scatter(case, title).inverse.on(band)
+    band = load_scatter(case, load_case).inverse.on(band)
     pins = " and ".join(f"{x:.4g}" for x in found.outermost)
     held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
     load = f"largest compression {found.compression:.3g} N{where}; buckling at {band.value:.3g} times that, {held}"
-    outcome = CheckOutcome.of(NAME, Subject.link(link), title, Quantity.BUCKLING_FACTOR, band, 1.0, load)
+    outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, load)
     return outcome.because(load + _judgement(outcome, moved))
 
 

@@ -29,7 +29,7 @@ from loads.records.check_spec import (
 
 def outcomes(
     case: Case,
-    title: str,
+    load_case: str,
     links: Mapping[str, LinkResult],
     pins: Mapping[str, PinStress],
     moved: LargeDisplacement,
@@ -42,8 +42,8 @@ def outcomes(
     Parameters
     ----------
     case : Case
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     links : mapping of str to LinkResult
     pins : mapping of str to PinStress
         Of every joint whose pin a check asks for.
@@ -64,23 +64,27 @@ def outcomes(
     for name, check in case.all_checks.items():
         if isinstance(check, PinCheck):
             found += [
-                pin_outcome(case, title, name, check, joint, pins[joint], (uneven or {}).get(joint))
+                pin_outcome(case, load_case, name, check, joint, pins[joint], (uneven or {}).get(joint))
                 for joint in check.joints or case.pinned_joints
             ]
         elif isinstance(check, DisplacementCheck) and check.at is not None:
-            found.append(_point(case, name, check, title, moved))
+            found.append(_point(case, name, check, load_case, moved))
         elif not isinstance(check, MotorCheck | BearingCheck):
-            found += [_link(case, name, check, title, links[link]) for link in check.links or case.checked_links]
+            found += [_link(case, name, check, load_case, links[link]) for link in check.links or case.checked_links]
     beams = {link: result.beam for link, result in links.items()}
-    return (*found, *linkage_outcomes(case, title, moved, beams))
+    return (*found, *linkage_outcomes(case, load_case, moved, beams))
 
 
 def _link(
-    case: Case, name: str, check: SafetyFactorCheck | DisplacementCheck | SustainedCheck, title: str, result: LinkResult
+    case: Case,
+    name: str,
+    check: SafetyFactorCheck | DisplacementCheck | SustainedCheck,
+    load_case: str,
+    result: LinkResult,
 ) -> CheckOutcome:
     material, meshes = case.material_of(result.link), result.discretisation if isinstance(result, SolidResult) else None
     if isinstance(check, SafetyFactorCheck):
-        outcome = safety_factor_outcome(case, name, check, title, result.link, result.safety_factor, meshes)
+        outcome = safety_factor_outcome(case, name, check, load_case, result.link, result.safety_factor, meshes)
     else:
         quantity, limit, value = Quantity.DEFLECTION, 0.0, result.displacement_max
         if isinstance(check, SustainedCheck):
@@ -88,7 +92,7 @@ def _link(
             quantity, limit, value = Quantity.SUSTAINED_STRESS, material.sustained_stress, result.decisive
         else:
             limit = check.maximum
-        outcome = CheckOutcome.of(name, Subject.link(result.link), title, quantity, value, limit)
+        outcome = CheckOutcome.of(name, Subject.link(result.link), load_case, quantity, value, limit)
         outcome = _with_meshes(outcome, meshes)
     if not result.decided_by and outcome.verdict is not Verdict.UNDECIDED and result.beam.worst.equivalent > 0.0:
         return outcome.left_open(result.why)
@@ -99,7 +103,7 @@ def safety_factor_outcome(
     case: Case,
     name: str,
     check: SafetyFactorCheck,
-    title: str,
+    load_case: str,
     link: str,
     factor: Band,
     meshes: Discretisation | None,
@@ -112,8 +116,8 @@ def safety_factor_outcome(
     name : str
         Of the check.
     check : SafetyFactorCheck
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     link : str
     factor : Band
         Of one pose, or the least of a motion.
@@ -130,7 +134,7 @@ def safety_factor_outcome(
         Where neither check nor material states a limit.
     """
     limit = least_safety_factor(name, check.minimum, case.material_of(link), link)
-    outcome = CheckOutcome.of(name, Subject.link(link), title, Quantity.SAFETY_FACTOR, factor, limit)
+    outcome = CheckOutcome.of(name, Subject.link(link), load_case, Quantity.SAFETY_FACTOR, factor, limit)
     return _with_meshes(outcome, meshes)
 
 
@@ -143,7 +147,7 @@ def _with_meshes(outcome: CheckOutcome, meshes: Discretisation | None) -> CheckO
     return outcome
 
 
-def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: LargeDisplacement) -> CheckOutcome:
+def _point(case: Case, name: str, check: DisplacementCheck, load_case: str, moved: LargeDisplacement) -> CheckOutcome:
     """Outcome of how far a point of the linkage moves, by the frame: linear, or on the deformed shape where that rules.
 
     Its band is that of ``_point_band``.
@@ -155,13 +159,13 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
         size = float(np.linalg.norm(displacement))
         near = factor is not None and factor < SNAP
         if moved.followed or not (near or size > LARGE * moved.span):
-            value, why = _point_band(case, title, moved, link, point, size), ""
+            value, why = _point_band(case, load_case, moved, link, point, size), ""
         else:
             far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
             what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
             why = f"the linear frame {what}, so it is not valid; remove large_displacement = off from the case"
     subject = Subject.point(point, link)
-    found = CheckOutcome.of(name, subject, title, Quantity.DISPLACEMENT, value, check.maximum, why)
+    found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, value, check.maximum, why)
     if why:
         return found
     shape = "on its deformed shape" if moved.followed else "by linear theory"
@@ -169,7 +173,7 @@ def _point(case: Case, name: str, check: DisplacementCheck, title: str, moved: L
     return found.because("; ".join([f"by the frame of the linkage, {shape}: {found.reason}", *notes]))
 
 
-def _point_band(case: Case, title: str, moved: LargeDisplacement, link: str, point: str, size: float) -> Band:
+def _point_band(case: Case, load_case: str, moved: LargeDisplacement, link: str, point: str, size: float) -> Band:
     """Band of how far a point moves: eyes, bores and holes (``fea.frame.displacement_band``), the moduli, and the load.
 
     The linear answer may grow as a toggle does (``fea.frame.stability``); on the deformed shape equilibrium is sought
@@ -177,7 +181,7 @@ def _point_band(case: Case, title: str, moved: LargeDisplacement, link: str, poi
     """
     assert moved.frame is not None
     assert moved.solution is not None
-    load, frame = load_scatter(case, title), moved.frame
+    load, frame = load_scatter(case, load_case), moved.frame
     materials = [case.material_of(other) for other in case.checked_links]
     ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
     linear = float(np.linalg.norm(moved.solution.displacements[frame.points[link, point], :3]))

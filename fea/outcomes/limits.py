@@ -87,7 +87,7 @@ def displacement_limits(case: Case, link: str) -> tuple[Ends, ...]:
 
 def _widest_load(case: Case) -> Scatter:
     """Return the widest scatter of any load case: a link's meshes serve all of them."""
-    every = [load_scatter(case, title) for title in case.load_cases]
+    every = [load_scatter(case, load_case) for load_case in case.load_cases]
     return Scatter(low=min(one.low for one in every), high=max(one.high for one in every))
 
 

@@ -26,15 +26,15 @@ NO_EQUILIBRIUM = "the linkage gives way, so the number is that of the undeformed
 
 
 def linkage_outcomes(
-    case: Case, title: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]
+    case: Case, load_case: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]
 ) -> Iterator[CheckOutcome]:
     """Yield the one outcome of the linkage as a whole; none where its frame never buckles.
 
     Parameters
     ----------
     case : Case
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     moved : LargeDisplacement
         What became of it.
     beams : mapping of str to BeamCheck
@@ -46,17 +46,17 @@ def linkage_outcomes(
     """
     value, least = moved.buckling, moved.factor
     if moved.followed:
-        yield _followed(title, moved, beyond_strength(beams))
+        yield _followed(load_case, moved, beyond_strength(beams))
     elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
         how = f"the linkage becomes unstable at {value:.3g} times its load by linear theory"
         if least < value:
             how = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
-        found = by_linear_theory(case, title, least, value, how)
+        found = by_linear_theory(case, load_case, least, value, how)
         yield found.because(found.reason + beyond_strength(beams))
 
 
 def by_linear_theory(
-    case: Case, title: str, least: float, factor: float, how: str, remedy: str = "follow its deformed shape"
+    case: Case, load_case: str, least: float, factor: float, how: str, remedy: str = "follow its deformed shape"
 ) -> CheckOutcome:
     """Return the outcome of the linkage by its linear frame.
 
@@ -65,8 +65,8 @@ def by_linear_theory(
     Parameters
     ----------
     case : Case
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     least : float
         The lesser of ``factor`` and the factor on the displacements that takes the linkage to a dead point.
     factor : float
@@ -91,8 +91,8 @@ def by_linear_theory(
             Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high"),
         ),
     )
-    band = load_scatter(case, title).inverse.on(band)
-    found = CheckOutcome.of(BUCKLING, LINKAGE, title, Quantity.BUCKLING_FACTOR, band, 1.0, how)
+    band = load_scatter(case, load_case).inverse.on(band)
+    found = CheckOutcome.of(BUCKLING, LINKAGE, load_case, Quantity.BUCKLING_FACTOR, band, 1.0, how)
     if found.verdict is Verdict.FAIL:
         return found.because(f"{how}, so the linkage gives way")
     if found.verdict is Verdict.UNDECIDED:
@@ -133,9 +133,9 @@ def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
     return outcome.because(f"{outcome.reason}; {NO_EQUILIBRIUM}")
 
 
-def _followed(title: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome:
+def _followed(load_case: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome:
     """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
-    found = CheckOutcome.of(NAME, LINKAGE, title, Quantity.LOAD_SHARE, moved.held_band, 1.0)
+    found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, moved.held_band, 1.0)
     open_end = f"; {found.reason}" if found.verdict is Verdict.UNDECIDED else ""
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
     informs = f"; the buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""

@@ -193,15 +193,15 @@ def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinS
 
 
 def pin_outcome(
-    case: Case, title: str, name: str, check: PinCheck, joint: str, stress: PinStress, growth: Scatter | None = None
+    case: Case, load_case: str, name: str, check: PinCheck, joint: str, stress: PinStress, growth: Scatter | None = None
 ) -> CheckOutcome:
     """Return the outcome of a joint's pin.
 
     Parameters
     ----------
     case : Case
-    title : str
-        The load case.
+    load_case : str
+        Its name.
     name : str
         Of the check.
     check : PinCheck
@@ -222,6 +222,6 @@ def pin_outcome(
     """
     material, subject = case.pin_material(joint), Subject.pin(joint)
     limit = least_safety_factor(name, check.minimum, material, str(subject))
-    equivalent = load_scatter(case, title).times(growth or Scatter()).on(stress.equivalent)
+    equivalent = load_scatter(case, load_case).times(growth or Scatter()).on(stress.equivalent)
     factor = strength_scatter(material).on(equivalent.inverse(material.allowable))
-    return CheckOutcome.of(name, subject, title, Quantity.SAFETY_FACTOR, factor, limit)
+    return CheckOutcome.of(name, subject, load_case, Quantity.SAFETY_FACTOR, factor, limit)

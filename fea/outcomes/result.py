@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fea.beam.theory import BeamCheck, CantileverCheck
 from fea.common.band import Band
 from fea.common.verdict import LINKAGE, CheckOutcome, Verdict
-from fea.frame.joint_forces import Held, JointForces
+from fea.frame.joint_forces import JointForces, WayToHold
 from fea.frame.large_displacement import LargeDisplacement
 from fea.outcomes.opinion import SecondOpinion
 from fea.outcomes.pins import PinStress
@@ -209,7 +209,7 @@ class LoadCaseResult:
         Each a ``HandResult`` or a ``SolidResult``.
     pins : mapping of str to PinStress
         Of every joint whose pin a check asks for.
-    ways_to_hold : tuple of Held
+    ways_to_hold : tuple of WayToHold
         Displacement of the point that the case names, for every way to hold the linkage.
     checks : tuple of CheckOutcome
     """
@@ -219,7 +219,7 @@ class LoadCaseResult:
     large_displacement: LargeDisplacement
     links: Mapping[str, LinkResult]
     pins: Mapping[str, PinStress]
-    ways_to_hold: tuple[Held, ...]
+    ways_to_hold: tuple[WayToHold, ...]
     checks: tuple[CheckOutcome, ...]
 
     @property
