@@ -173,3 +173,9 @@ def bar(
         return named
 
     return _tagged(points, cells, curved, [(0.0, 0.0, hole), (length, 0.0, hole)], pick)
+
+
+def scikit_fem_mesh(space):
+    """The mesh of a displacement space as scikit-fem's ``MeshTet1`` or ``MeshTet2``."""
+    kind = MeshTet1 if space.order == 1 else MeshTet2
+    return kind(np.ascontiguousarray(space.nodes.T), np.ascontiguousarray(space.cells[:, :4].T))

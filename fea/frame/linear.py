@@ -58,8 +58,6 @@ class FrameSolution:
         Largest force left over at a node or in the balance of the whole frame, over the sum of loads.
     condition : float
         1-norm condition number of the scaled equations (estimated).
-    redundancy : int
-        Degree of static indeterminacy; 0 where equilibrium alone gives all forces.
     """
 
     model: FrameModel
@@ -71,7 +69,6 @@ class FrameSolution:
     guide_forces: Floats
     residual: float
     condition: float
-    redundancy: int
 
     def beam_loads(self, i: int) -> BeamLoads:
         """Return all that acts on the beam of an element, in local axes with x = 0 at its first end.
@@ -221,7 +218,6 @@ def _collect(system: FrameSystem, q: Floats, u: Floats, condition: float) -> Fra
         guide_forces=guide_forces,
         residual=_residual(model, left_over.reshape(n, 6), reactions + grounded),
         condition=condition,
-        redundancy=len(q) - len(u),
     )
 
 

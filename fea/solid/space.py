@@ -39,8 +39,6 @@ class DisplacementSpace:
         Nodes of all boundary faces, counter-clockwise seen from outside.
     surfaces : dict of str to ndarray of int
         Name and indices of the faces in ``boundary``.
-    from_point : ndarray of int, shape (points,)
-        Node of every point of the ``TaggedMesh``; -1 where it has none.
     """
 
     nodes: NDArray[np.float64]
@@ -49,7 +47,6 @@ class DisplacementSpace:
     curved: NDArray[np.bool_]
     boundary: NDArray[np.int64]
     surfaces: Mapping[str, NDArray[np.int64]]
-    from_point: NDArray[np.int64]
 
     @property
     def order(self) -> int:
@@ -67,13 +64,6 @@ class DisplacementSpace:
         from skfem.element import ElementTetP1, ElementTetP2
 
         return ElementTetP1() if self.order == 1 else ElementTetP2()
-
-    def scikit_fem_mesh(self) -> Any:
-        """Return the same mesh as scikit-fem's ``MeshTet1`` or ``MeshTet2``."""
-        from skfem import MeshTet1, MeshTet2
-
-        corners = np.ascontiguousarray(self.cells[:, :4].T)
-        return (MeshTet1 if self.order == 1 else MeshTet2)(np.ascontiguousarray(self.nodes.T), corners)
 
     def faces(self, *names: str) -> NDArray[np.int64]:
         """Return the nodes of the boundary faces of the named surfaces together.
@@ -161,7 +151,6 @@ def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace
         curved=curved,
         boundary=boundary,
         surfaces=_named(boundary, {name: from_point[t] for name, t in mesh.surfaces.items()}, len(used)),
-        from_point=from_point,
     )
 
 

@@ -37,7 +37,6 @@ def test_cantilever_bends_about_the_axis_that_its_load_asks_for() -> None:
     assert out.displacements[1, 2] == pytest.approx(2 * 60**3 / (3 * 2400 * BAR.i_y) + shear, rel=1e-12)
     assert out.displacements[1, 4] == pytest.approx(-2 * 60**2 / (2 * 2400 * BAR.i_y), rel=1e-12)
     assert out.reactions[0] == pytest.approx([0, 0, -2, 0, 120, 0])
-    assert out.redundancy == 0
     turned = solve_frame(replace(CANTILEVER, loads=(load(1, 0, 2.0),)))
     assert turned.displacements[1, 1] == pytest.approx(2 * 60**3 / (3 * 2400 * BAR.i_z) + shear, rel=1e-12)
     assert turned.reactions[0] == pytest.approx([0, -2, 0, 0, 0, -120])
@@ -87,7 +86,6 @@ def test_an_end_on_a_pin_carries_no_moment() -> None:
     g_area = TUBE.shear_coefficient(0.35) * 2400 / 2.7 * TUBE.area
     alpha = 3 * 2400 * TUBE.i_z / (g_area * 300**2)
     assert out.reactions[0, 5] == pytest.approx(0.1 * 300**2 / 8 / (1 + alpha), rel=1e-10)
-    assert out.redundancy == 5  # eleven reactions, six equations
 
 
 def test_pin_tie_passes_moments_in_the_plane_of_the_linkage_only() -> None:
