@@ -191,7 +191,7 @@ def test_the_frame_of_the_same_flanks_buckles_where_the_column_does() -> None:
     """Held at its ends instead of in its slot; so thick that it buckles in its plane. The frame has shear as well."""
     case = slotted_lever(first=12.0, last=66.0, at=39.0, force=0.0, pull=-1.0, thickness=30.0)
     frame = frame_of(case)
-    tip = Support(node=frame.points["lever", "H"], dofs=frozenset({"uy", "uz", "rx"}))
+    tip = Support(node=frame.points["lever", "H"], dofs=frozenset({"uy", "uz", "rx", "ry"}))
     model = replace(frame.model, guides=(), supports=(*frame.model.supports, tip))
     column, _ = compressed(12.0, 66.0, thickness=30.0)
     found = buckling_factor(model, 8)
