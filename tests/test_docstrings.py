@@ -20,7 +20,6 @@ NOT_YET = (
     "fea/check",
     "fea/common",
     "fea/motion",
-    "geometry/linkage",
     "loads/states",
     "loads/statics",
 )

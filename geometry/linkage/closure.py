@@ -33,6 +33,11 @@ class LoopClosure:
     Unknowns are ``[angles of the moving links, travels in the slots]`` in the order of
     ``linkage.moving`` and ``slots``; equations are real and imaginary parts of each loop, then one
     fixed angle per slider.
+
+    Attributes
+    ----------
+    linkage : Linkage
+        The linkage.
     """
 
     linkage: Linkage
@@ -111,7 +116,18 @@ class LoopClosure:
         return tuple(n for n in self.linkage.joints if n not in self._tree.values())
 
     def loop_path(self, closing: str) -> tuple[str, ...]:
-        """Names of the joints round the loop that a joint closes."""
+        """Names of the joints round the loop that a joint closes.
+
+        Parameters
+        ----------
+        closing : str
+            Name of the joint that closes the loop.
+
+        Returns
+        -------
+        tuple of str
+            Names of joints.
+        """
 
         def to_ground(link: str) -> list[str]:
             path = []
@@ -188,28 +204,100 @@ class LoopClosure:
         return np.asarray(out)
 
     def positions(self, q: Real) -> Complex:
-        """Every point of ``point_names`` in global axes [mm], as x + iy."""
+        """Every point of ``point_names`` in global axes [mm], as x + iy.
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+
+        Returns
+        -------
+        ndarray
+            x + iy of the points (..., points) [mm].
+        """
         return self._evaluate(self._point_rows, q)
 
     def velocities(self, q: Real, qdot: Real) -> Complex:
-        """Velocity of every point [mm/s]."""
+        """Velocity of every point [mm/s].
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+        qdot : ndarray
+            Rates of the unknowns (..., unknowns) [rad/s, mm/s].
+
+        Returns
+        -------
+        ndarray
+            Velocities (..., points) [mm/s].
+        """
         return np.asarray((self._derivative(self._point_rows, q) @ qdot[..., None])[..., 0])
 
     def accelerations(self, q: Real, qdot: Real, qddot: Real) -> Complex:
-        """Acceleration of every point [mm/s²]."""
+        """Acceleration of every point [mm/s²].
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+        qdot : ndarray
+            Rates of the unknowns (..., unknowns) [rad/s, mm/s].
+        qddot : ndarray
+            Second rates of the unknowns (..., unknowns) [rad/s², mm/s²].
+
+        Returns
+        -------
+        ndarray
+            Accelerations (..., points) [mm/s²].
+        """
         linear = (self._derivative(self._point_rows, q) @ qddot[..., None])[..., 0]
         return np.asarray(linear + self._quadratic(self._point_rows, q, qdot))
 
     def origins(self, q: Real) -> Complex:
-        """Origin of every moving link's frame in global axes [mm]."""
+        """Origin of every moving link's frame in global axes [mm].
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+
+        Returns
+        -------
+        ndarray
+            x + iy of the origins (..., moving links) [mm].
+        """
         return self._evaluate(np.array([self._origins[n] for n in self.linkage.moving]), q)
 
     def residual(self, q: Real) -> Real:
-        """Closure equations (..., equations): mm for loops, longest link times rad for sliders."""
+        """Closure equations (..., equations): mm for loops, longest link times rad for sliders.
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+
+        Returns
+        -------
+        ndarray
+            Residuals (..., equations) [mm].
+        """
         return np.concatenate([_split(self._evaluate(self._loop_rows, q)), self._slider_errors(q)], axis=-1)
 
     def jacobian(self, q: Real) -> Real:
-        """Exact derivative of ``residual`` by the unknowns: (..., equations, unknowns)."""
+        """Exact derivative of ``residual`` by the unknowns: (..., equations, unknowns).
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+
+        Returns
+        -------
+        ndarray
+            Matrices (..., equations, unknowns).
+        """
         loops = self._derivative(self._loop_rows, q)
         rows = np.concatenate([loops.real, loops.imag], axis=-2)
         slider = np.zeros((*q.shape[:-1], len(self.sliders), self.unknowns))
@@ -217,7 +305,20 @@ class LoopClosure:
         return np.concatenate([rows, slider], axis=-2)
 
     def quadratic(self, q: Real, qdot: Real) -> Real:
-        """The part of the residual's second time derivative that is quadratic in the speeds."""
+        """The part of the residual's second time derivative that is quadratic in the speeds.
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+        qdot : ndarray
+            Rates of the unknowns (..., unknowns) [rad/s, mm/s].
+
+        Returns
+        -------
+        ndarray
+            Terms (..., equations).
+        """
         loops = _split(self._quadratic(self._loop_rows, q, qdot))
         return np.concatenate([loops, np.zeros((*q.shape[:-1], len(self.sliders)))], axis=-1)
 

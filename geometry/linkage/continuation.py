@@ -16,14 +16,12 @@ Newton; it is halved until prediction and correction agree and the determinant k
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geometry.base.errors import CannotRunError, CaseError
-from geometry.linkage.closure import LoopClosure
-from geometry.linkage.pose import CLOSED
+from geometry.linkage.driven import DrivenClosure
 
 Real = NDArray[np.float64]
 
@@ -34,14 +32,10 @@ _AGREEMENT = 1e-3
 _SHARE = 0.1
 _ROUNDING = 1e-12
 """Agreement [rad] that is not asked for in steps so short that rounding is all that is left."""
-_SETTLED = 1e-8
-"""Newton's last step [rad]: the next one would be some 1e-16, since it converges quadratically."""
 _PROBE = 1e-4
 """Distance [rad] from a stop at which branches are told apart; nearer to it rates are lost in rounding."""
 _BLOCK = 1024
 """Poses refined at once, so that the arrays stay in the processor's cache."""
-_RANK_TOLERANCE = 1e-12
-"""Singular values of the scaled Jacobian below this share of the largest count as zero."""
 
 
 class DeadPointError(CaseError):
@@ -52,105 +46,20 @@ class DeadPointError(CaseError):
         self.angle = angle
 
 
-@dataclass(frozen=True)
-class DrivenClosure:
-    """The loop closure with the angle of one moving link prescribed, or (``slides``) the travel of a slider or slot."""
-
-    closure: LoopClosure
-    coordinate: str
-    slides: bool = False
-
-    @cached_property
-    def column(self) -> int:
-        """Column of the driven angle or travel among the unknowns."""
-        moving = self.closure.linkage.moving
-        return len(moving) + self.closure.slots.index(self.coordinate) if self.slides else moving.index(self.coordinate)
-
-    @property
-    def size(self) -> float:
-        """Size by which the driven unknown is measured: 1 rad, or the longest link [mm]."""
-        return float(self.sizes[self.column])
-
-    def told(self, value: float) -> str:
-        """Return a driven angle or travel for people."""
-        return f"{_plain(value)} mm" if self.slides else f"{_plain(math.degrees(value))} deg"
-
-    @cached_property
-    def _free(self) -> NDArray[np.intp]:
-        return np.delete(np.arange(self.closure.unknowns), self.column)
-
-    @cached_property
-    def sizes(self) -> Real:
-        """Size (unknowns,) by which each unknown is measured: 1 rad, or the longest link for travels [mm]."""
-        moving = len(self.closure.linkage.moving)
-        sizes = np.ones(self.closure.unknowns)
-        sizes[moving:] = self.closure.linkage.longest
-        return sizes
-
-    def jacobian(self, q: Real) -> Real:
-        """Jacobian (..., equations, unknowns) without dimensions."""
-        return np.asarray(self.closure.jacobian(q) * (self.sizes / self.closure.linkage.longest))
-
-    def gaps(self, q: Real) -> Real:
-        """Closure residual (..., equations) as a share of the longest link."""
-        return np.asarray(self.closure.residual(q) / self.closure.linkage.longest)
-
-    def _solve(self, matrix: Real, rhs: Real) -> Real:
-        """Rates or steps (..., unknowns) of all unknowns, the driven one's zero."""
-        held = matrix[..., self._free]
-        if held.shape[-1] == held.shape[-2]:
-            found = np.linalg.solve(held, rhs[..., None])[..., 0]
-        else:  # more equations than unknowns, but not independent: a redundant linkage that moves
-            found = (np.linalg.pinv(held, rcond=_RANK_TOLERANCE) @ rhs[..., None])[..., 0]
-        out = np.zeros((*rhs.shape[:-1], self.closure.unknowns))
-        out[..., self._free] = found * self.sizes[self._free]
-        return out
-
-    def coefficients(self, q: Real) -> tuple[Real, Real]:
-        """First and second derivatives (..., unknowns) of all unknowns by the driven angle.
-
-        Raises ``numpy.linalg.LinAlgError`` exactly at a dead point.
-        """
-        matrix = self.jacobian(q)
-        first = self._solve(matrix, -matrix[..., self.column]) / self.size
-        first[..., self.column] = 1.0
-        quadratic = self.closure.quadratic(q, first) / self.closure.linkage.longest
-        return first, self._solve(matrix, -quadratic)
-
-    def correct(self, q: Real, iterations: int = 8) -> tuple[Real, bool]:
-        """Newton from ``q`` (..., unknowns) with the driven angle held; also tell whether all poses settled."""
-        for _ in range(iterations):
-            step = self._solve(self.jacobian(q), -self.gaps(q))
-            q = q + step
-            size = float(np.max(np.abs(step / self.sizes), initial=0.0))
-            if not size < 1.0:
-                return q, False
-            if size <= _SETTLED:
-                return q, bool(np.max(np.abs(self.gaps(q)), initial=0.0) <= CLOSED)
-        return q, False
-
-    def complement(self, q: Real) -> Real:
-        """Orthonormal directions (equations, n) that no motion of the free unknowns reaches."""
-        held = self.jacobian(q)[..., self._free]
-        if held.shape[0] <= held.shape[1]:
-            return np.zeros((held.shape[0], 0))
-        left, _, _ = np.linalg.svd(held)
-        return np.asarray(left[:, held.shape[1] :])
-
-    def orientation(self, q: Real, complement: Real) -> float:
-        """Sign of the determinant of the free columns, squared up by ``complement`` where equations are redundant."""
-        held = np.hstack([self.jacobian(q)[..., self._free], complement])
-        return float(np.sign(np.linalg.det(held)))
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Track:
     """One branch as a chain of nodes, dense enough to interpolate between them.
 
-    angles  (k,) rising driven angles [rad]
-    q       (k, unknowns)
-    first   (k, unknowns) derivatives by the driven angle
-    second  (k, unknowns) second derivatives
+    Attributes
+    ----------
+    driven : DrivenClosure
+        The driven closure.
+    angles : ndarray
+        Rising driven angles (k,) [rad], or travels [mm].
+    q : ndarray
+        Unknowns (k, unknowns).
+    first, second : ndarray
+        Their derivatives by the driven angle (k, unknowns).
     """
 
     driven: DrivenClosure
@@ -160,7 +69,18 @@ class Track:
     second: Real
 
     def at(self, angles: ArrayLike) -> Real:
-        """Return the unknowns (n, unknowns) at driven angles (n,) [rad] within the track, closed to rounding."""
+        """Return the unknowns (n, unknowns) at driven angles (n,) [rad] within the track, closed to rounding.
+
+        Parameters
+        ----------
+        angles : array_like
+            Driven angles (n,) [rad], or travels [mm].
+
+        Returns
+        -------
+        ndarray
+            Unknowns (n, unknowns).
+        """
         wanted = np.asarray(angles, dtype=float)
         out = np.empty((len(wanted), self.q.shape[1]))
         for i in range(0, len(wanted), _BLOCK):
@@ -198,7 +118,26 @@ class Track:
 def follow(driven: DrivenClosure, start: Real, low: float, high: float) -> Track:
     """Follow the branch of the closed pose ``start`` (unknowns,) until it covers driven angles low to high [rad].
 
-    Raises ``DeadPointError`` (a ``CaseError``) where the branch ends before, naming the angle.
+    Parameters
+    ----------
+    driven : DrivenClosure
+        The driven closure.
+    start : ndarray
+        Unknowns (unknowns,) of a closed pose.
+    low : float
+        Least driven angle [rad], or travel [mm].
+    high : float
+        Greatest driven angle [rad], or travel [mm].
+
+    Returns
+    -------
+    Track
+        The branch.
+
+    Raises
+    ------
+    DeadPointError
+        Where the branch ends before, naming the angle.
     """
     back = _chain(driven, start, low)
     ahead = _chain(driven, start, high)
@@ -300,7 +239,3 @@ def _error(driven: DrivenClosure, angle: float, end: float, what: str) -> DeadPo
         f"{'travel' if driven.slides else 'angle'} or drive another link",
         angle,
     )
-
-
-def _plain(value: float) -> str:
-    return f"{round(value, 6) + 0.0:.6f}".rstrip("0").rstrip(".")

@@ -14,22 +14,42 @@ CLOSURE_TOLERANCE = 1e-12
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Dyad:
-    """Directions of the two bars; angles in rad, all arrays of one shape."""
+    """Directions of the two bars; angles in rad, all arrays of one shape.
+
+    Attributes
+    ----------
+    first : ndarray
+        Direction of the first bar, from its outer pin to the common pin, in (-π, π].
+    second : ndarray
+        Direction of the second bar, from its outer pin to the common pin, in (-π, π].
+    between : ndarray
+        Angle between the bars at the common pin, in [0, π].
+    gap : ndarray
+        Distance by which the bars fail to meet; 0 where they meet.
+    closes : BoolArray
+        Where the bars meet in a definite direction; elsewhere the angles are those of the nearest pose.
+    """
 
     first: FloatArray
-    """Direction of the first bar, from its outer pin to the common pin, in (-π, π]."""
     second: FloatArray
-    """Direction of the second bar, from its outer pin to the common pin, in (-π, π]."""
     between: FloatArray
-    """Angle between the bars at the common pin, in [0, π]."""
     gap: FloatArray
-    """Distance by which the bars fail to meet; 0 where they meet."""
     closes: BoolArray
-    """Where the bars meet in a definite direction; elsewhere the angles are those of the nearest pose."""
 
 
 def wrap(angle: ArrayLike) -> FloatArray:
-    """Bring angles in rad into (-π, π]."""
+    """Bring angles in rad into (-π, π].
+
+    Parameters
+    ----------
+    angle : array_like
+        Angle of any turn [rad].
+
+    Returns
+    -------
+    ndarray
+        Angles [rad].
+    """
     angle = np.asarray(angle, dtype=float)
     return np.asarray(angle - 2 * np.pi * np.ceil((angle - np.pi) / (2 * np.pi)))
 
@@ -41,6 +61,20 @@ def triangle_angle(p: ArrayLike, q: ArrayLike, opposite: ArrayLike) -> FloatArra
     factored, loses no digits in needle-shaped triangles, where arccos of the law of cosines loses half
     (W. Kahan, Miscalculating Area and Angles of a Needle-like Triangle, 2014). Sides that do
     not form a triangle give the nearest flat one, 0 or π.
+
+    Parameters
+    ----------
+    p : array_like
+        A side.
+    q : array_like
+        The other side of the angle.
+    opposite : array_like
+        The third side, opposite of the angle.
+
+    Returns
+    -------
+    ndarray
+        Angles [rad].
     """
     p, q, r = (np.asarray(side, dtype=float) for side in (p, q, opposite))
     numerator = (r - np.abs(p - q)) * (r + np.abs(p - q))
@@ -54,6 +88,24 @@ def close_dyad(dx: ArrayLike, dy: ArrayLike, first: float, second: float, side: 
     ``side`` is +1 when the common pin lies to the left of that vector and -1 when it lies to the right.
     Equivalent to R. L. Norton, Design of Machinery, 5th ed., chapter 4, without their
     quotient by 2A, which vanishes in regular poses. Shapes of ``dx`` and ``dy`` broadcast.
+
+    Parameters
+    ----------
+    dx : array_like
+        Vector over which the dyad closes, along x.
+    dy : array_like
+        The same along y.
+    first : float
+        Length of the first bar.
+    second : float
+        Length of the second bar.
+    side : int
+        1 where the common pin lies to the left of that vector, -1 where it lies to the right.
+
+    Returns
+    -------
+    Dyad
+        The closed dyad.
     """
     dx, dy = np.asarray(dx, dtype=float), np.asarray(dy, dtype=float)
     reach = np.hypot(dx, dy)

@@ -70,8 +70,18 @@ class Joint(CaseModel):
 class Linkage:
     """Links and joints that fit together.
 
-    Raises ``CaseError`` for unknown names, no or several ground links, a moving link without joint, or links that hang
-    together with nothing.
+    Attributes
+    ----------
+    links : mapping of str to Link
+        Links by name.
+    joints : mapping of str to Joint
+        Joints by name.
+
+    Raises
+    ------
+    CaseError
+        For unknown names, no or several ground links, a moving link without joint, or links without connection to the
+        ground.
     """
 
     links: Mapping[str, Link]
@@ -143,13 +153,48 @@ class Linkage:
         return 3 * (len(self.links) - 1) - 2 * (len(self.joints) - half) - half
 
     def joint_points(self, name: str) -> tuple[str, str]:
-        """Names of the two points that a joint brings together, on its first and its second link."""
+        """Names of the two points that a joint brings together, on its first and its second link.
+
+        Parameters
+        ----------
+        name : str
+            Name of the joint.
+
+        Returns
+        -------
+        tuple of str
+            Names of points.
+        """
         return self.joints[name].points or (name, name)
 
     def joints_of(self, link: str) -> tuple[str, ...]:
-        """Names of the joints on a link."""
+        """Names of the joints on a link.
+
+        Parameters
+        ----------
+        link : str
+            Name of the link.
+
+        Returns
+        -------
+        tuple of str
+            Names of joints.
+        """
         return tuple(name for name, joint in self.joints.items() if link in joint.links)
 
     def point_of(self, joint: str, link: str) -> str:
-        """Name of the point at which a joint sits on a link."""
+        """Name of the point at which a joint sits on a link.
+
+        Parameters
+        ----------
+        joint : str
+            Name of the joint.
+        link : str
+            Name of the link.
+
+        Returns
+        -------
+        str
+            Name of the point.
+        """
         return self.joint_points(joint)[self.joints[joint].links.index(link)]

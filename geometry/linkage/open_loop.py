@@ -24,6 +24,20 @@ def open_loop(closure: LoopClosure, free: NDArray[np.bool_], attempts: Sequence[
     which a loop can be left while all loops before it (and the fixed angles of sliders) are closed.
     ``attempts`` are (unknowns,) vectors from which the search starts; only the ``free`` unknowns (a
     mask) move.
+
+    Parameters
+    ----------
+    closure : LoopClosure
+        The loop closure.
+    free : ndarray
+        Mask (unknowns,) of the unknowns that may move.
+    attempts : sequence of ndarray
+        Unknowns (unknowns,) from which the search starts.
+
+    Returns
+    -------
+    tuple, optional
+        Name of the joint, and the gap [mm].
     """
     count = len(closure.loops)
     takes_part = closure.jacobian(attempts[0])[:, free] != 0.0

@@ -1,0 +1,218 @@
+"""A linkage in one position, and how far that is from a dead point."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.closure import LoopClosure
+from geometry.linkage.linkage import Linkage
+
+Real = NDArray[np.float64]
+
+CLOSED = 1e-10
+"""Largest closure residual of an assembled pose, as a share of the longest link."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pose:
+    """A linkage in one position.
+
+    Attributes
+    ----------
+    linkage : Linkage
+        The linkage.
+    q : ndarray
+        Angles of the moving links [rad] and travels in the slots [mm] (unknowns,).
+    coordinate : str, optional
+        The link whose angle fixes the pose; None where nothing moves.
+    residual : float
+        Largest closure residual as a share of the longest link.
+    slides : bool
+        Whether the coordinate is a slider or slot, whose travel fixes the pose.
+    """
+
+    linkage: Linkage
+    q: Real
+    coordinate: str | None
+    residual: float
+    slides: bool = False
+
+    @cached_property
+    def closure(self) -> LoopClosure:
+        """The loop equations that the pose fulfils."""
+        return LoopClosure(self.linkage)
+
+    @cached_property
+    def angles(self) -> Mapping[str, float]:
+        """Direction of every link's x axis [rad]."""
+        moving = self.linkage.moving
+        return dict(zip(moving, map(float, self.q[: len(moving)]), strict=True)) | {self.linkage.ground: 0.0}
+
+    @cached_property
+    def origins(self) -> Mapping[str, Real]:
+        """Origin of every link's frame in global axes [mm]."""
+        origins = self.closure.origins(self.q)
+        found = {name: np.array([z.real, z.imag]) for name, z in zip(self.linkage.moving, origins, strict=True)}
+        return found | {self.linkage.ground: np.zeros(2)}
+
+    @cached_property
+    def _positions(self) -> Mapping[tuple[str, str], Real]:
+        values = self.closure.positions(self.q)
+        return {key: np.array([z.real, z.imag]) for key, z in zip(self.closure.point_names, values, strict=True)}
+
+    @cached_property
+    def travels(self) -> Mapping[str, float]:
+        """Travel of the pin in every slot and slider [mm]."""
+        return dict(zip(self.closure.slots, map(float, self.q[len(self.linkage.moving) :]), strict=True))
+
+    @property
+    def held(self) -> float:
+        """Angle [rad] or travel [mm] of the coordinate; 0 where nothing moves."""
+        if self.coordinate is None:
+            return 0.0
+        return self.travels[self.coordinate] if self.slides else self.angles[self.coordinate]
+
+    def position(self, link: str, point: str) -> Real:
+        """Position of a link's point in global axes (2,) [mm].
+
+        Parameters
+        ----------
+        link : str
+            Name of the link.
+        point : str
+            Name of the point.
+
+        Returns
+        -------
+        ndarray
+            Places, (2,) of a pose or (n, 2) of a motion [mm].
+        """
+        return self._positions[link, point]
+
+    @cached_property
+    def points(self) -> Mapping[str, Real]:
+        """Every point by name; ``link.point`` where links have different points of one name."""
+        named: dict[str, Real] = {}
+        for (link, point), here in self._positions.items():
+            twins = [p for (_, other), p in self._positions.items() if other == point]
+            same = all(np.linalg.norm(p - here) <= 1e-9 * self.linkage.longest for p in twins)
+            named[point if same else f"{link}.{point}"] = here
+        return named
+
+    def rotation(self, link: str) -> Real:
+        """Matrix (2, 2) that turns vectors of the link's frame into global axes.
+
+        Parameters
+        ----------
+        link : str
+            Name of the link.
+
+        Returns
+        -------
+        ndarray
+            Matrix (2, 2).
+        """
+        c, s = math.cos(self.angles[link]), math.sin(self.angles[link])
+        return np.array([[c, -s], [s, c]])
+
+    def dead_point_distance(self, driven: str, *, slides: bool = False) -> float:
+        """How far the pose is from a dead point of the given driven link (0 at the dead point).
+
+        Smallest singular value of the scaled constraint Jacobian with that link held: coordinates
+        are (x, y, L phi) of every moving link with L the longest link, so all entries are pure
+        numbers. Where it vanishes the linkage moves although the link is held. With ``slides`` it
+        is a slider or slot of that name that is held.
+
+        Parameters
+        ----------
+        driven : str
+            Name of the driven link, slider or slot.
+        slides : bool
+            Whether the name is that of a slider or slot.
+
+        Returns
+        -------
+        float
+            The distance, without unit.
+        """
+        matrix = np.vstack([constraint_jacobian(self), held_motion(self, driven, slides=slides)])
+        return float(np.linalg.svd(matrix, compute_uv=False)[-1])
+
+
+def held_motion(pose: Pose, driven: str, *, slides: bool) -> Real:
+    """Row (coordinates,) that holds a link's angle or, with ``slides``, the slider or slot of that name.
+
+    Parameters
+    ----------
+    pose : Pose
+        The pose.
+    driven : str
+        Name of the link, slider or slot.
+    slides : bool
+        Whether the name is that of a slider or slot.
+
+    Returns
+    -------
+    ndarray
+        Row (coordinates,).
+    """
+    return _joint_motion(pose, driven)[0] if slides else _held(pose.linkage, driven)
+
+
+def constraint_jacobian(pose: Pose) -> Real:
+    """Jacobian of all joint constraints by (x, y, L phi) of every moving link, without dimensions.
+
+    Rows: two per revolute joint (x, y), one per pin in slot (normal), two per slider (normal and
+    angle). García de Jalón & Bayo, Kinematic and Dynamic Simulation of Multibody Systems, 1994,
+    section 2.3 (reference-point coordinates).
+
+    Parameters
+    ----------
+    pose : Pose
+        The pose.
+
+    Returns
+    -------
+    ndarray
+        Matrix (constraints, coordinates).
+    """
+    linkage = pose.linkage
+    rows: list[Real] = []
+    for name, joint in linkage.joints.items():
+        along, across, turn = _joint_motion(pose, name)
+        rows += [along, across] if joint.type == "revolute" else [across]
+        if joint.type == "slider":
+            rows.append(turn)
+    return np.array(rows)
+
+
+def _joint_motion(pose: Pose, name: str) -> tuple[Real, Real, Real]:
+    """Motion of a joint's second link against its first: along and across its direction, and turning.
+
+    Rows (coordinates,) by (x, y, L phi) of every moving link; along x and y for a revolute joint.
+    """
+    linkage, joint = pose.linkage, pose.linkage.joints[name]
+    at = pose.position(joint.links[1], linkage.joint_points(name)[1])
+    relative, turn = np.zeros((2, 3 * len(linkage.moving))), np.zeros(3 * len(linkage.moving))
+    for link, sign in zip(joint.links, (-1.0, 1.0), strict=True):
+        if link != linkage.ground:
+            k = 3 * linkage.moving.index(link)
+            arm = at - pose.origins[link]
+            relative[:, k : k + 2] = sign * np.eye(2)
+            relative[:, k + 2] = sign * np.array([-arm[1], arm[0]]) / linkage.longest
+            turn[k + 2] = sign
+    if joint.type == "revolute":
+        return relative[0], relative[1], turn
+    along = pose.angles[joint.links[0]] + joint.direction
+    c, s = math.cos(along), math.sin(along)
+    return np.array([c, s]) @ relative, np.array([-s, c]) @ relative, turn
+
+
+def _held(linkage: Linkage, link: str) -> Real:
+    row = np.zeros(3 * len(linkage.moving))
+    row[3 * linkage.moving.index(link) + 2] = 1.0
+    return row
