@@ -27,7 +27,14 @@ Model = Literal["beam", "solid"]
 
 @dataclass(frozen=True, kw_only=True)
 class LocationBand:
-    """A critical location with the bounds of its largest von Mises and principal stress [MPa] by hand."""
+    """A critical location with the bounds of its stress by hand.
+
+    Attributes
+    ----------
+    location : CriticalLocation
+    von_mises, principal : Band
+        Largest von Mises and largest principal stress [MPa].
+    """
 
     location: CriticalLocation
     von_mises: Band
@@ -36,10 +43,18 @@ class LocationBand:
 
 @dataclass(frozen=True, kw_only=True)
 class HandBands:
-    """Peaks of a link under one load case by calibrated hand calculation [MPa, mm].
+    """Peaks of a link under one load case by calibrated hand calculation.
 
-    locations     all places, the most stressed first
-    outside   why the calibration does not hold for this link; "" where it does. Then all bands are unknown
+    Attributes
+    ----------
+    von_mises, principal : Band
+        Largest von Mises and largest principal stress [MPa].
+    displacement : Band
+        The largest [mm].
+    locations : tuple of LocationBand
+        All places, the most stressed first.
+    outside : str
+        Why the calibration does not hold for this link; "" where it does. Then all bands are unknown.
     """
 
     von_mises: Band
@@ -49,15 +64,32 @@ class HandBands:
     outside: str
 
     def deciding(self, *, brittle: bool) -> Band:
-        """The stress that counts: the principal one of brittle materials."""
+        """Return the stress that counts: the principal one of brittle materials.
+
+        Parameters
+        ----------
+        brittle : bool
+
+        Returns
+        -------
+        Band
+            [MPa]
+        """
         return self.principal if brittle else self.von_mises
 
 
 @dataclass(frozen=True, kw_only=True)
 class Decision:
-    """Which model decided a link under all load cases, why, and what a solid would have cost ("" where it ran).
+    """Which model decided a link under all load cases, and why.
 
-    The model is "" where hand calculation was asked for and cannot decide.
+    Attributes
+    ----------
+    model : {"beam", "solid", ""}
+        "" where hand calculation was asked for and cannot decide.
+    why : str
+        For people.
+    next_cost : str
+        What a solid would have cost; "" where it ran.
     """
 
     model: Model | Literal[""]
@@ -69,8 +101,13 @@ class Decision:
 class DecidedLink:
     """The decision on one link, and what it stands on.
 
-    hands   load case -> bands by hand; empty where none were asked for
-    solid   the link's solutions; None where hand calculation decided
+    Attributes
+    ----------
+    decision : Decision
+    hands : mapping of str to HandBands
+        Load case -> bands by hand; empty where none were asked for.
+    solid : RefinedSolid or None
+        The link's solutions; None where hand calculation decided.
     """
 
     decision: Decision
@@ -88,11 +125,32 @@ def decide(
     threads: int | None = None,
     progress: Progress = lambda message: None,
 ) -> dict[str, DecidedLink]:
-    """Decide every link by hand where that can, else by a solid; ``fidelity`` "solid" takes solids at once.
+    """Decide every link by hand where that can, else by a solid.
 
-    tasks    of the links on which something acts; ``beams`` link -> load case -> its hand calculation
+    Parameters
+    ----------
+    tasks : mapping of str to LinkTask
+        Of the links on which something acts.
+    beams : mapping of str to mapping of str to BeamCheck
+        Link -> load case -> its hand calculation.
+    start : MeshSettings
+        Of the first mesh of a solid.
+    effort : Effort
+        Accuracy of the solids and what it may cost; where it is stated, solids are taken at once.
+    fidelity : {"auto", "solid"}
+        "solid" takes solids at once.
+    threads : int, optional
+    progress : callable
 
-    Raises what ``refine_links`` raises.
+    Returns
+    -------
+    dict of str to DecidedLink
+        In the order of ``tasks``.
+
+    Raises
+    ------
+    CannotRunError
+        Where a mesh or a solution fails.
     """
     hands: dict[str, dict[str, HandBands]] = {}
     reasons: dict[str, str] = {}
@@ -116,7 +174,15 @@ def decide(
 def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck]) -> DecidedLink:
     """Return what a link is by hand alone, where that was asked for; without decision where it has no bands.
 
-    beams   load case -> its hand calculation
+    Parameters
+    ----------
+    task : LinkTask
+    beams : mapping of str to BeamCheck
+        Load case -> its hand calculation.
+
+    Returns
+    -------
+    DecidedLink
     """
     hands = _hands(task, beams)
     outside = next((hand.outside for hand in hands.values() if hand.outside), "")
@@ -131,7 +197,19 @@ def _hands(task: LinkTask, beams: Mapping[str, BeamCheck]) -> dict[str, HandBand
 
 
 def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
-    """Return the calibrated bands of a link under one load case."""
+    """Return the calibrated bands of a link under one load case.
+
+    Parameters
+    ----------
+    task : LinkTask
+    loads : LinkLoads
+    beam : BeamCheck
+        The hand calculation of these loads.
+
+    Returns
+    -------
+    HandBands
+    """
     body = task.body
     outside = uncalibrated(body, task.nu)
     found: tuple[CriticalLocation, ...] = ()
@@ -166,7 +244,20 @@ def hand_bands(task: LinkTask, loads: LinkLoads, beam: BeamCheck) -> HandBands:
 
 
 def undecided(task: LinkTask, stresses: Sequence[Band], displacements: Sequence[Band]) -> str:
-    """Say which limit lies in a band of any load case; "" where all limits are clear of all bands."""
+    """Say which limit lies in a band of any load case.
+
+    Parameters
+    ----------
+    task : LinkTask
+        Its limits.
+    stresses, displacements : sequence of Band
+        Of every load case [MPa], [mm].
+
+    Returns
+    -------
+    str
+        "" where all limits are clear of all bands.
+    """
     for what, unit, bands, limits in (
         ("peak stress", "MPa", stresses, task.stress_limits),
         ("displacement", "mm", displacements, task.displacement_limits),
@@ -188,7 +279,19 @@ def _limit(ends: tuple[float, float]) -> str:
 
 
 def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decision | None, str]:
-    """Return the decision if hand calculation makes it, else None and why not."""
+    """Return the decision if hand calculation makes it.
+
+    Parameters
+    ----------
+    task : LinkTask
+    hands : sequence of HandBands
+        Of every load case.
+
+    Returns
+    -------
+    tuple of (Decision or None, str)
+        Why there is none, where hand calculation cannot decide.
+    """
     for hand in hands:
         if hand.outside:
             return None, f"hand calculation is not calibrated for this link: {hand.outside}"
@@ -219,7 +322,17 @@ SECONDS = 1.0e-3
 
 
 def expected_elements(body: Body) -> int:
-    """Estimate of the elements of a link's first mesh, to two digits: per width of its length, per eye and per hole."""
+    """Estimate the elements of a link's first mesh: per width of its length, per eye and per hole.
+
+    Parameters
+    ----------
+    body : Body
+
+    Returns
+    -------
+    int
+        To two digits.
+    """
     first, last = extent(body)
     width = min(body.part.section.width, body.part.section.height)
     plain = last - first - sum(2.0 * eye_reach(body, pin) for pin in body.pins)

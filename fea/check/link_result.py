@@ -34,6 +34,10 @@ def link_result(
         None where nothing acts on the link under any load case.
     uneven : Growths
         What grows out of proportion to the scattered load.
+
+    Returns
+    -------
+    HandResult or SolidResult
     """
     decided, material = decided or IDLE, case.material_of(link)
     result: LinkResult

@@ -25,7 +25,19 @@ NO_NUMBER = "no mesh tells what it is"
 
 
 def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
-    """Return what is to be solved for a link under all its load cases, and the limits that its numbers must clear."""
+    """Return what is to be solved for a link under all its load cases, and the limits that its numbers must clear.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    loads : sequence of LinkLoads
+        One record per load case.
+
+    Returns
+    -------
+    LinkTask
+    """
     material, body = case.material_of(link), case.body(link)
     return LinkTask(
         body=body,
@@ -47,10 +59,8 @@ def solid_result(
 
     Parameters
     ----------
-    case : Case
-    link : str
-    load_case : str
-        Its name.
+    case, link, load_case
+        The load case of a link.
     beam : BeamCheck
         The hand calculation.
     refined : RefinedSolid
@@ -59,6 +69,10 @@ def solid_result(
         Why a solid decides the link, for people.
     remarks : sequence of str
         What the reader must know, besides what model and meshes have to say.
+
+    Returns
+    -------
+    SolidResult
     """
     material, solid = case.material_of(link), refined.solution
     solved = [number for number, found in enumerate(solid.cases) if found.load == load_case]

@@ -282,17 +282,15 @@ def holding(case: Case, link: str) -> Holding:
     off = on_arms | {name for name, point in joints.items() if abs(places[point][1]) > slack}
     plain = [foot[name] for name in joints if name not in carried | on_arms] or list(foot.values())
     first, last = min(plain), max(plain)
-    driven = case.drive is not None and case.drive.link == link
-    drive = {case.drive.joint} if case.drive is not None and driven else set()
+    drive = {case.drive.joint} if case.drive is not None and case.drive.link == link else set()
     # A pin that holds the link off its axis may keep its angle, held by other pins as well.
     fixed = {name for name in joints if bonded and linkage.joints[name].type == "revolute"}
-    kept = fixed | drive | off
     slides = {name for name in carried if linkage.joints[name].type == "slider"}
     alone = {first, last} if bonded else {foot[name] for name in drive & set(joints)}
     return Holding(
         outermost=(first, last) if last - first > slack else (first,),
         in_plane=None if carried else tuple(sorted(set(foot.values()))),
-        kept=tuple(sorted({foot[name] for name in kept & set(joints)})),
+        kept=tuple(sorted({foot[name] for name in (fixed | drive | off) & set(joints)})),
         across=None if slides else tuple(sorted({foot[name] for name in set(joints) - carried})) or None,
         alone=tuple(sorted(alone)),
     )
@@ -345,14 +343,13 @@ def column_outcome(
     -------
     CheckOutcome
     """
-    material = case.material_of(link)
-    moduli = (material.youngs_modulus, *(material.youngs_modulus_range or ()))
+    compliance = compliance_scatter(case.material_of(link))
     band = Band(
         value=found.value,
-        low=min(moduli) / material.youngs_modulus * found.least / LEAST_LINEAR,
-        high=max(moduli) / material.youngs_modulus * found.most,
+        low=found.least / LEAST_LINEAR / compliance.high,
+        high=found.most / compliance.low,
         sources=(
-            *compliance_scatter(material).sources,
+            *compliance.sources,
             Source(kind=SourceKind.IMPERFECTION, detail="bending that grows with compression"),
             Source(kind=SourceKind.RESTRAINT),
         ),
