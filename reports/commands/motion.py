@@ -1,4 +1,4 @@
-"""What ``alula motion`` prints and writes: a summary, tables and figures of a case's motion."""
+"""Output of ``alula motion``: summary, tables and figures of a case's motion."""
 
 import csv
 import json as jsonlib

@@ -1,4 +1,4 @@
-"""What ``alula synth`` prints and draws: a synthesised four-bar, its precision points, and its defects."""
+"""Output of ``alula synth``: a synthesised four-bar, its precision points and its defects."""
 
 import json as jsonlib
 import math

@@ -87,7 +87,7 @@ class View:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scene:
-    """What the plot of one link shows, in the frame of the link.
+    """Surface, stress and views of the plot of one link, in the frame of the link.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ class ClaimsReport:
 
     @property
     def headline(self) -> str:
-        """How many figures there are of each finding."""
+        """Number of figures of each finding, in one sentence."""
         return count(self.result)
 
     @property

@@ -1,4 +1,4 @@
-"""``report.html``: one file that holds everything, pictures included, and loads nothing from elsewhere."""
+"""``report.html``: one file with all text and pictures, which loads nothing from elsewhere."""
 
 import base64
 import math
@@ -56,7 +56,7 @@ _PROPERTIES = (
 
 
 def _claims(result: CheckResult) -> dict[str, Any] | None:
-    """Findings on what the source of a case published; None where it published nothing that is entered."""
+    """Return the findings on published figures of a case; None where there are none."""
     if not result.case.claims and result.name not in built_in_cases():
         return None
     found = _findings(result.name)
@@ -155,7 +155,7 @@ def data_uri(picture: bytes) -> str:
 
 
 def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
-    """What the bands in the table of checks hold: name of the check -> each kind of source once, without particulars.
+    """Return the kinds of sources of error in the bands: name of the check -> each kind once, without particulars.
 
     A check without any width stands there only where its values say why.
     """
@@ -173,7 +173,7 @@ def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
 
 
 def _reasons(result: CheckResult) -> list[str]:
-    """What each check says beyond its row, which has value, limit and verdict; "" where it says no more."""
+    """Return the reason of each check; "" where its row of value, limit and verdict says the same."""
     return [
         ""
         if check.quantity is not Quantity.DRIVE_POWER
@@ -196,7 +196,7 @@ def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
 
 
 def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[str, Any]:
-    """What the page tells of one link, under the load case that stresses it most."""
+    """Return the entries of one link under its governing load case."""
     worst: LoadCaseResult = worst_load_case(result, name)
     found: LinkResult = worst.links[name]
     return {
@@ -217,7 +217,7 @@ def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[
 
 
 def _model(found: LinkResult) -> str:
-    """What gave the numbers of a link; beam theory has calibrated bands where it decides."""
+    """Return the model of a link's numbers; beam theory that decides is called hand calculation."""
     if isinstance(found, SolidResult):
         return "Solid model"
     return "Hand calculation" if found.decided_by else "Beam theory"
