@@ -77,7 +77,7 @@ def test_the_readme_counts_as_the_page_does(request):
     ("arguments", "sentence"),
     [
         (("nobody",), "no such file or built-in case"),
-        (("--set", "a=1"), "no case is named"),
+        (("--set", "a=1"), "it needs a case"),
         (("owl-wing", "--fidelity", "x"), "fidelity: 'x' is unknown"),
     ],
 )
