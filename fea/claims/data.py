@@ -27,8 +27,9 @@ from geometry.base.errors import CannotRunError, CaseError
 from geometry.mechanisms.flapping import FlappingWing
 from geometry.mechanisms.fourbar import FourBar
 from geometry.mechanisms.grashof import Grashof
-from geometry.mechanisms.ornithopter import OrnithopterDimensions, WingDrive
+from geometry.mechanisms.ornithopter import OrnithopterDimensions
 from geometry.mechanisms.synthesis import Synthesis, synthesise
+from geometry.mechanisms.wing_drive import WingDrive
 from loads.case.case import Case
 from loads.case.case_file import read_case, read_companion
 from loads.sources.claim import (

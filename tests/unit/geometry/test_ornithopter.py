@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from geometry.base.errors import CaseError
-from geometry.mechanisms.ornithopter import OrnithopterRules, WingDrive, motors
+from geometry.mechanisms.ornithopter import OrnithopterRules, motors
 from geometry.mechanisms.periodic import periodic_maximum, periodic_minimum
+from geometry.mechanisms.wing_drive import WingDrive
 
 DRIVE = OrnithopterRules().drive()
 
