@@ -8,7 +8,7 @@ from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
 
-from fea.common.verdict import Verdict
+from fea.common.verdict import Subject, Verdict
 from reports.tables.console import print_result
 from reports.words.terminal import KEPT, say, say_table
 
@@ -83,7 +83,7 @@ def test_a_check_is_told_in_full(result, width):
     case = result.load_cases["weight"]
     links = dict(case.links)
     links = {f"{LONG}-{name}": replace(link, link=f"{LONG}-{name}") for name, link in links.items()}
-    checks = tuple(replace(check, link=f"{LONG}-{check.link}") for check in case.checks)
+    checks = tuple(replace(check, subject=Subject.link(f"{LONG}-{check.link}")) for check in case.checks)
     told = replace(result, load_cases={"weight": replace(case, links=links, checks=checks)})
     for terminal in (True, False):
         out = console(width, terminal=terminal)
