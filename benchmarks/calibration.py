@@ -238,7 +238,7 @@ def compare(body: Body, nu: float, kept: dict[str, dict[str, list[float]]]) -> l
 
 
 def _beam(body: Body, loads: LinkLoads, nu: float) -> BeamCheck:
-    return check_beam(beam_loads(loads, body, 1e-9, None), body.part.section, 1.0, nu)
+    return check_beam(beam_loads(loads, body, 1e-9), body.part.section, 1.0, nu)
 
 
 def _rounded(*values: float) -> list[float]:

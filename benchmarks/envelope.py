@@ -103,7 +103,7 @@ def _runs(case: Case, link: str, sizes: Sequence[float], threads: int) -> list[d
                 E=material.youngs_modulus,
                 nu=material.poissons_ratio,
                 density=material.density,
-                loads=[history.at(0)],
+                loads=[history.chosen(0)],
                 line=(first, last),
                 laws=[WIDE],
                 transfers=["eye-faces"],
@@ -117,6 +117,7 @@ def _runs(case: Case, link: str, sizes: Sequence[float], threads: int) -> list[d
             result = link_envelope(
                 displacement_space(mesh),  # noqa: B023
                 link=link,
+                body=case.body(link),
                 material=material,
                 histories=[history],
                 evaluated=np.ones(history.poses, dtype=np.bool_),

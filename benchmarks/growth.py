@@ -74,7 +74,7 @@ def envelope(scale: float) -> dict[str, Any]:
             E=material.youngs_modulus,
             nu=material.poissons_ratio,
             density=material.density,
-            loads=[history.at(0)],
+            loads=[history.chosen(0)],
             line=line,
             laws=[WIDE],
             transfers=["eye-faces"],
@@ -86,6 +86,7 @@ def envelope(scale: float) -> dict[str, Any]:
         link_envelope(
             displacement_space(mesh),
             link=LINK,
+            body=body,
             material=material,
             histories=[history],
             evaluated=np.ones(history.poses, dtype=np.bool_),

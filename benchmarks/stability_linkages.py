@@ -17,7 +17,7 @@ from geometry.mechanisms.grashof import classify
 from geometry.mechanisms.synthesis import synthesise
 from loads.case.case_file import read_case
 from loads.records.applied import Load, PointLoad
-from loads.states.inertia import acting_loads
+from loads.states.actions import acting_loads
 from loads.states.masses import part_mass
 from loads.statics import statics
 from loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions, solve_statics
@@ -72,14 +72,14 @@ def _six_bar() -> Iterator[Found]:
     moved = solve_motion(pose, [dead])
     column = moved.linkage.moving.index("AE")
     held = solve_statics(
-        moved.pose(0), Drive(link="GF", joint="G"), acting_loads(case, load_case, moved.pose(0), masses)
+        moved.pose(0), Drive(link="GF", joint="G"), acting_loads(case, load_case, moved.pose(0).placement, masses)
     )
     limit = held.drive_torque / float(moved.second[0, column])
     for side in (1.0, -1.0):
         for distance in DECADES:
             delta = math.radians(side * distance)
             here = solve_motion(pose, [dead + delta]).pose(0)
-            loads = acting_loads(case, load_case, here, masses)
+            loads = acting_loads(case, load_case, here.placement, masses)
             found, seconds = timed(lambda h=here, x=loads: solve_statics(h, Drive(link="AE", joint="A"), x), 3)
             yield side * distance, found, abs(found.drive_torque * delta / limit - 1.0), seconds
 

@@ -56,4 +56,4 @@ def task(limit: float = 10.0, *, stretch: float = 1.0, holes: tuple[HoleRow, ...
 
 def beam(what: LinkTask) -> BeamCheck:
     """Hand calculation of its one load case."""
-    return check_beam(beam_loads(what.loads[0], what.body, what.density, None), what.body.part.section, 1.0)
+    return check_beam(beam_loads(what.loads[0], what.body, what.density), what.body.part.section, 1.0)

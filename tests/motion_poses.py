@@ -6,9 +6,11 @@ import numpy as np
 from planar_linkages import OPEN_WING, four_bar, joint, link, quick_return, scotch_yoke, six_bar, slider_crank
 
 from geometry.linkage.linkage import Linkage
+from geometry.linkage.motion import Motion
 from geometry.linkage.pose import Pose, solve_pose
-from loads.records.applied import BodyForce, LineLoad, PointLoad
-from loads.states.actions import PartMass, StatedLoad
+from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
+from loads.states.actions import inertia_loads
+from loads.states.kinetostatics import Kinetostatics, energies, solve_kinetostatics, torque_by_virtual_work
 from loads.statics.statics import Drive
 
 CRANK = math.radians(40.0)
@@ -82,29 +84,32 @@ def masses_of(pose: Pose) -> dict[str, PartMass]:
     }
 
 
-def weights_of(pose: Pose) -> list[StatedLoad]:
+def weights_of(pose: Pose) -> list[Load]:
     """The weight of those masses, along a slanted direction so that both axes count [mm/s²]."""
     gravity = np.array([1200.0, -9700.0, 0.0])
-    return [
-        StatedLoad(load=BodyForce(link=name, mass=own.mass, centroid=own.centroid, acceleration=gravity))
-        for name, own in masses_of(pose).items()
-    ]
+    return [BodyForce(link=name, mass=own, specific_force=gravity) for name, own in masses_of(pose).items()]
 
 
-def forces_of(pose: Pose) -> list[StatedLoad]:
+def forces_of(pose: Pose) -> list[Load]:
     """Every kind of load on every moving link, in global axes and in the link's."""
-    found: list[StatedLoad] = []
+    found: list[Load] = []
     for i, name in enumerate(pose.linkage.moving):
         point = list(pose.linkage.links[name].points)[-1]
         wrench = np.array([1.0 - i, 0.7 + 0.2 * i, 0.3, 0.0, 0.0, 5.0 * i - 3.0])
-        line = LineLoad(
-            link=name,
-            start=3.0,
-            end=21.0,
-            at_start=np.array([0.02, -0.05, 0.0]),
-            at_end=np.array([-0.01, 0.03 * i, 0.0]),
-        )
+        ends = np.array([[0.02, -0.05, 0.0], [-0.01, 0.03 * i, 0.0]])
         for axes in ("global", "link"):
-            found.append(StatedLoad(load=PointLoad(link=name, point=point, wrench=wrench), axes=axes))
-            found.append(StatedLoad(load=line, axes=axes))
+            found.append(PointLoad(link=name, point=point, wrench=wrench, axes=axes))
+            found.append(LineLoad(link=name, start=3.0, end=21.0, at_start=ends[0], at_end=ends[1], axes=axes))
     return found
+
+
+def kinetostatics(motion: Motion, drive: Drive | None, loads, masses=None) -> Kinetostatics:
+    """Joint forces over a motion under loads and weights, with the inertia of the masses."""
+    own = masses or {}
+    inertia = inertia_loads(motion.placement, own, np.zeros(3))
+    return solve_kinetostatics(motion, drive, [*loads, *inertia], energies(motion.placement, loads, own))
+
+
+def virtual_work(motion: Motion, drive: Drive, loads, masses=None) -> np.ndarray:
+    """Drive torque of the same by virtual work."""
+    return torque_by_virtual_work(motion, drive, [*loads, *inertia_loads(motion.placement, masses or {}, np.zeros(3))])

@@ -1,14 +1,13 @@
 """A flat bar under every kind of load at once over a full turn, for the tests of unit loads."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from fea.motion.link_history import LineHistory, LinkHistory
+from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from fea.solid.quadrature import volume_quadrature
 from geometry.parts.part import Bar, Body, Pin, PlainEnd
-from loads.states.actions import PartMass
+from loads.records.applied import BodyForce, LineLoad, PartMass
 
 L, RHO, POSES = 20.0, 1.2e-9, 24
 TURN = np.linspace(0.0, 2.0 * math.pi, POSES, endpoint=False)
@@ -51,14 +50,47 @@ def history(space, **changes):
     arm = first * spread + length**2 * (q0 + 2.0 * q1) / 6.0
     force = -(at_b[:, 0] + 1j * at_b[:, 1] + end[:, 0] + 1j * end[:, 1] + inert + spread)
     torque = torque + L * at_b[:, 1] + 26.5 * end[:, 1] + end[:, 2] + arm.imag
-    made = LinkHistory(
-        load_case="turn",
-        body=BODY,
-        pins={"A": np.column_stack([force.real, force.imag, np.zeros(POSES)]), "B": at_b},
-        couples={"A": -torque},
-        ends={"T": end},
-        lines=(LineHistory(first=first, last=last, intensity=line),),
-        acceleration=acceleration,
-        mass=mass,
+    parts = {
+        "pins": {"A": np.column_stack([force.real, force.imag, np.zeros(POSES)]), "B": at_b},
+        "couples": {"A": -torque},
+        "ends": {"T": end},
+        "lines": (line,),
+        "mass": mass,
+    } | changes
+    mass = parts["mass"]
+    return LinkLoads(
+        name="turn",
+        link="bar",
+        pins=tuple(
+            PinLoad(name=pin.name, centre=np.tile([pin.x, 0.0, 0.0], (POSES, 1)), diameter=pin.diameter, wrench=six(w))
+            for pin, w in zip(BODY.pins, parts["pins"].values(), strict=True)
+        ),
+        couples=tuple(DriveCouple(pin=pin, torque=torque) for pin, torque in parts["couples"].items()),
+        ends=tuple(
+            EndLoad(name=name, point=np.array([26.5, 0.0, 0.0]), wrench=six(w)) for name, w in parts["ends"].items()
+        ),
+        lines=tuple(
+            LineLoad(link="bar", start=first, end=last, at_start=three(q[:, 0]), at_end=three(q[:, 1]), axes="link")
+            for q in parts["lines"]
+        ),
+        inertia=None
+        if mass is None
+        else BodyForce(
+            link="bar",
+            mass=mass,
+            specific_force=three(acceleration[:, :2]),
+            angular_acceleration=rate,
+            angular_speed_squared=square,
+            axes="link",
+        ),
     )
-    return replace(made, **changes)
+
+
+def six(planar):
+    """Fx, Fy and Mz (n, 3) as (n, 6)."""
+    return np.asarray(planar) @ np.eye(6)[[0, 1, 5]]
+
+
+def three(planar):
+    """Vectors of the plane (n, 2) as (n, 3)."""
+    return np.asarray(planar) @ np.eye(3)[:2]

@@ -7,122 +7,135 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam import loads as beam
-from fea.common.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
+from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from geometry.base.errors import CaseError
-from geometry.linkage.pose import Pose
+from geometry.linkage.placement import Placement
 from geometry.parts.body import extent, hand_section
 from geometry.parts.part import Body, Pin
-from loads.records import applied
-from loads.states.actions import PartMass
-from loads.statics.statics import Reactions
+from loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, rotated, shifted, turned
+from loads.statics.statics import Equilibrium
 
 Real = NDArray[np.float64]
 
-
-def link_axes(pose: Pose, link: str) -> Real:
-    """Return the link's x, y, z in global axes, as columns (3, 3)."""
-    axes = np.eye(3)
-    axes[:2, :2] = pose.rotation(link)
-    return axes
+ACROSS_SLOT = np.array([0.0, 1.0, 0.0, 1.0, 0.0, 0.0])
+"""Components of a wrench that a pin in a slot along x carries: across it, and about it."""
 
 
 def link_loads(
     name: str,
     link: str,
     body: Body,
-    reactions: Reactions,
-    loads: Sequence[applied.Load],
+    reactions: Equilibrium,
+    loads: Sequence[Load],
     axes: Real | None = None,
 ) -> LinkLoads:
-    """Everything that acts on a link in a load case called ``name``: a balanced set.
+    """Return all that acts on a link in a load case: a balanced set, at one pose or at n.
 
     Forces at a pin are taken together as one wrench of the pin; the drive torque stays apart,
-    since it enters the part in a way of its own. ``axes`` (3, 3), as columns in global ones, are those in
-    which all is given: the link's own in the pose when left out.
+    since it enters the part in a way of its own.
+
+    Parameters
+    ----------
+    name, link : str
+        The load case and the link.
+    body : Body
+        The link's body.
+    reactions : Equilibrium
+        What the joints carry.
+    loads : sequence of Load
+        All else that acts on the links, at the same poses.
+    axes : array (3, 3), optional
+        Axes in which all is given, as columns in global ones; the link's own when left out.
     """
-    pose = reactions.pose
-    turn = (link_axes(pose, link) if axes is None else axes).T
-
-    def local(vector: Real) -> Real:
-        return np.concatenate([turn @ part for part in vector.reshape(-1, 3)])
-
+    place = reactions.placement
+    turn = (place.axes(link) if axes is None else axes).swapaxes(-1, -2)
     wrenches: dict[str, Real] = {}
-    for point, wrench in reactions.on_link(link):
-        wrenches[point] = wrenches.get(point, np.zeros(6)) + local(wrench)
     lines: list[LineLoad] = []
-    bodies: list[BodyLoad] = []
+    inertia: BodyForce | None = None
+    for point, wrench in reactions.on_link(link):
+        wrenches[point] = wrenches.get(point, np.zeros(6)) + rotated(turn, wrench)
     for load in loads:
         if load.link != link:
             continue
-        if isinstance(load, applied.PointLoad):
-            wrenches[load.point] = wrenches.get(load.point, np.zeros(6)) + local(load.wrench)
-        elif isinstance(load, applied.LineLoad):
-            intensity = np.array([local(load.at_start), local(load.at_end)])
-            lines.append(LineLoad(first=load.start, last=load.end, intensity=intensity))
+        own = in_axes(load, "link", place) if axes is None else turned(in_axes(load, "global", place), turn)
+        if isinstance(own, PointLoad):
+            wrenches[own.point] = wrenches.get(own.point, np.zeros(6)) + own.wrench
+        elif isinstance(own, LineLoad):
+            lines.append(own)
         else:
-            bodies.append(
-                BodyLoad(
-                    specific_force=local(load.acceleration),
-                    about=np.array([*load.centroid, 0.0]),
-                    angular_acceleration=load.angular_acceleration,
-                    angular_speed=load.angular_speed,
-                )
-            )
-    torque = reactions.torque_on(link)
-    drive = reactions.drive
+            inertia = own
+    nothing = np.zeros((*place.shape, 6))
+    drive, torque = reactions.drive, np.asarray(reactions.torque_on(link), dtype=float)[()]
     return LinkLoads(
         name=name,
-        pins=tuple(_pin_load(pose, link, pin, wrenches.get(pin.name, np.zeros(6))) for pin in body.pins),
+        link=link,
+        pins=tuple(_pin_load(place, link, pin, wrenches.get(pin.name, nothing), axes is None) for pin in body.pins),
         couples=(
-            (DriveCouple(pin=pose.linkage.point_of(drive.joint, link), torque=torque),) if drive and torque else ()
+            (DriveCouple(pin=place.linkage.point_of(drive.joint, link), torque=torque),)
+            if drive is not None and np.any(torque)
+            else ()
         ),
         ends=tuple(
             EndLoad(name=end.name, point=np.array([end.x, 0.0, 0.0]), wrench=wrenches[end.name])
             for end in body.ends
             if end.name in wrenches
         ),
-        bodies=tuple(bodies),
         lines=tuple(lines),
+        inertia=inertia,
     )
 
 
-def _pin_load(pose: Pose, link: str, pin: Pin, wrench: Real) -> PinLoad:
-    """Return the load of a pin from its wrench (6,) about its point; in a slot, the wrench about where it stands."""
+def _pin_load(place: Placement, link: str, pin: Pin, wrench: Real, own_axes: bool) -> PinLoad:
+    """Load of a pin from its wrench (..., 6) about its point; in a slot, the wrench about where it stands.
+
+    A pin free to slide and turn pushes across its slot alone: what rounding leaves of the rest is zero.
+    """
+    centre = np.zeros((*place.shape, 3))
+    centre[..., 0], centre[..., 1] = pin.x, pin.y
     if pin.slot == 0.0:
-        return PinLoad(name=pin.name, centre=np.array([pin.x, pin.y, 0.0]), diameter=pin.diameter, wrench=wrench)
-    centre = np.array([slot_place(pose, link, pin), pin.y, 0.0])
-    point = np.array([*pose.linkage.links[link].points[pin.name], 0.0])
-    moved = np.concatenate([wrench[:3], wrench[3:] - np.cross(centre - point, wrench[:3])])
-    return PinLoad(name=pin.name, centre=centre, diameter=pin.pin_diameter, wrench=moved, slotted=True)
+        return PinLoad(name=pin.name, centre=centre, diameter=pin.diameter, wrench=wrench)
+    centre[..., 0] = slot_place(place, link, pin)
+    x, y = place.linkage.links[link].points[pin.name]
+    about = shifted(wrench, np.array([x, y, 0.0]) - centre)
+    held = about * ACROSS_SLOT if own_axes else about
+    return PinLoad(name=pin.name, centre=centre, diameter=pin.pin_diameter, wrench=held, slotted=True)
 
 
-def slot_place(pose: Pose, link: str, pin: Pin) -> float:
-    """Return the x at which a pin stands in its slot, in the link's frame [mm]; ``CaseError`` where it ends before."""
-    linkage = pose.linkage
+def slot_place(place: Placement, link: str, pin: Pin) -> Real:
+    """Return the x (...) at which a pin stands in its slot, in the link's frame [mm].
+
+    Parameters
+    ----------
+    place : Placement
+        Where the links stand.
+    link : str
+        The link with the slot.
+    pin : Pin
+        The slot.
+
+    Raises
+    ------
+    CaseError
+        Where the slot ends before.
+    """
+    linkage = place.linkage
     joint = next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name)
     other = linkage.joints[joint].links[1]
-    place = pose.rotation(link).T @ (pose.position(other, linkage.point_of(joint, other)) - pose.origins[link])
-    return float(in_slot(pin, place[:1], link)[0])
+    arm = place.position(other, linkage.point_of(joint, other)) - place.origin(link)
+    return in_slot(pin, np.asarray((np.conj(place.direction(link)) * arm).real), link)
 
 
 def in_slot(pin: Pin, x: Real, link: str) -> Real:
-    """Return places x (n,), held to the slot's ends within rounding; ``CaseError`` where one lies beyond them."""
+    """Return places x (...) in a slot, held to its ends within rounding; ``CaseError`` where one lies beyond them."""
     low, high = pin.span
     slack = 1e-6 * pin.slot
     if x.min() < low - slack or x.max() > high + slack:
-        beyond = x[np.argmax(np.abs(x - pin.x))]
+        beyond = np.ravel(x)[np.argmax(np.abs(x - pin.x))]
         raise CaseError(
             f"links.{link}.slots.{pin.name}: its pin stands at x = {beyond:.6g} mm, but the slot runs from {low:g} to "
             f"{high:g} mm; lengthen the slot"
         )
     return np.asarray(np.clip(x, low, high))
-
-
-def _per_mass(load: BodyLoad, x: float) -> Real:
-    """Force per mass (3,) of a body load at the station x of the axis, the centroid's height taken as the axis."""
-    along = x - load.about[0]
-    turning = np.array([load.angular_speed**2 * along, -load.angular_acceleration * along, 0.0])
-    return np.asarray(load.specific_force + turning)
 
 
 def _on_beam(pin: PinLoad, foot: tuple[float, float] | None) -> beam.PointLoad:
@@ -151,12 +164,21 @@ def _eyes(body: Body, density: float, per_length: float) -> list[tuple[float, fl
     return found
 
 
-def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | None) -> beam.BeamLoads:
-    """The same loads on the link's axis.
+def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
+    """Return the loads of one pose on the link's axis.
 
-    A body force is spread along the tube or bar between the link's ends by its mass per length
-    (``density`` in tonne/mm³); what an eye adds stands as a point load at its pin, and what holes and
-    fillets change of the mass, or of its centroid, as one at each end.
+    A body force is spread along the tube or bar between the link's ends by its mass per length; what an eye adds
+    stands as a point load at its pin, and what holes and fillets change of the mass, or of its centroid, as one at
+    each end.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+        At one pose.
+    body : Body
+        The link's body.
+    density : float
+        Of its material [tonne/mm³].
     """
     feet = {pin.name: pin.foot for pin in body.pins}
     points = [_on_beam(pin, feet[pin.name]) for pin in loads.pins]
@@ -166,10 +188,15 @@ def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | No
         points.append(beam.PointLoad(point=centres[couple.pin], wrench=wrench))
     points += [beam.PointLoad(point=end.point, wrench=end.wrench) for end in loads.ends]
     lines = [
-        beam.LineLoad(start=line.first, end=line.last, first=line.intensity[0], last=line.intensity[1])
-        for line in loads.lines
+        beam.LineLoad(start=line.start, end=line.end, first=line.at_start, last=line.at_end) for line in loads.lines
     ]
-    if loads.bodies and mass is not None:
+    if loads.inertia is not None:
+        force, mass = loads.inertia, loads.inertia.mass
+        height = float(mass.centroid[1])  # of the field that is taken for the axis
+
+        def per_mass(x: float) -> Real:
+            return force.per_mass(np.array([x, height, 0.0]))
+
         first, last = extent(body)
         per_length = hand_section(body).area * density
         lumps = _eyes(body, density, per_length)
@@ -178,19 +205,16 @@ def beam_loads(loads: LinkLoads, body: Body, density: float, mass: PartMass | No
         moment -= sum(x * lump for x, lump in lumps)
         at_last = (moment - excess * first) / (last - first)
         lumps += [(first, excess - at_last), (last, at_last)]
-        for load in loads.bodies:
-            ends = [_per_mass(load, x) for x in (first, last)]
-            lines.append(beam.LineLoad(start=first, end=last, first=per_length * ends[0], last=per_length * ends[1]))
-            for x, lump in lumps:
-                wrench = np.concatenate([lump * _per_mass(load, x), np.zeros(3)])
-                points.append(beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=wrench))
-            # The centroid's distance from the axis is felt as a moment, and so is the width of eyes and tube.
-            off_axis = np.cross([0.0, mass.centroid[1], 0.0], mass.mass * load.specific_force)
-            spread = per_length * (last - first) ** 3 / 12.0
-            on_line = spread + per_length * (last - first) * ((first + last) / 2.0 - mass.centroid[0]) ** 2
-            on_line += sum(lump * (x - mass.centroid[0]) ** 2 for x, lump in lumps)
-            off_axis[2] -= (mass.inertia - on_line) * load.angular_acceleration
-            points.append(
-                beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=np.concatenate([np.zeros(3), off_axis]))
-            )
+        ends = [per_length * per_mass(x) for x in (first, last)]
+        lines.append(beam.LineLoad(start=first, end=last, first=ends[0], last=ends[1]))
+        for x, lump in lumps:
+            wrench = np.concatenate([lump * per_mass(x), np.zeros(3)])
+            points.append(beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=wrench))
+        # The centroid's distance from the axis is felt as a moment, and so is the width of eyes and tube.
+        off_axis = np.cross([0.0, height, 0.0], mass.mass * per_mass(mass.centroid[0]))
+        spread = per_length * (last - first) ** 3 / 12.0
+        on_line = spread + per_length * (last - first) * ((first + last) / 2.0 - mass.centroid[0]) ** 2
+        on_line += sum(lump * (x - mass.centroid[0]) ** 2 for x, lump in lumps)
+        off_axis[2] -= (mass.inertia - on_line) * force.angular_acceleration
+        points.append(beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=np.concatenate([np.zeros(3), off_axis])))
     return beam.BeamLoads(points=tuple(points), lines=tuple(lines))

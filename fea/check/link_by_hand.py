@@ -1,6 +1,6 @@
 """What acts on one link cut free, with the growth of its bending, and its hand calculation."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from fea.beam.cut_free import beam_loads, link_loads
@@ -16,7 +16,6 @@ from fea.outcomes.unloaded import load_size, without_rounding
 from geometry.parts.body import hand_section, reference_line
 from loads.case.case import Case
 from loads.records.applied import Load
-from loads.states.actions import PartMass
 from loads.statics.statics import Reactions
 
 
@@ -43,25 +42,35 @@ def cut_link(
     moved: LargeDisplacement,
     reactions: Reactions,
     loads: Sequence[Load],
-    masses: Mapping[str, PartMass],
 ) -> LinkLoads:
     """Return what acts on a link, with the growth of its bending that the frame's answer leaves out.
 
     On a deformed shape that is the bending between loaded places; where no frame told that it is small, all of it.
+
+    Parameters
+    ----------
+    case, link, title
+        The case, the link and the load case.
+    moved : LargeDisplacement
+        The frame's answer.
+    reactions : Reactions
+        What the joints carry.
+    loads : sequence of Load
+        All else that acts.
     """
     deformed, longest = moved.links.get(link), case.linkage.longest
     found = deformed or link_loads(title, link, case.body(link), reactions, loads)
     found = without_rounding(found, load_size(loads, longest), longest)
     if deformed is None and moved.state not in ("off", "unknown"):
         return found
-    return second_order_loads(case, link, found, masses.get(link), stays=deformed is not None)
+    return second_order_loads(case, link, found, stays=deformed is not None)
 
 
-def link_by_hand(case: Case, link: str, loads: LinkLoads, masses: Mapping[str, PartMass]) -> LinkByHand:
+def link_by_hand(case: Case, link: str, loads: LinkLoads) -> LinkByHand:
     """Return the hand calculation of a link under what acts on it."""
     material, body = case.material_of(link), case.body(link)
     section = hand_section(body)
-    acting = beam_loads(loads, body, material.density, masses.get(link))
+    acting = beam_loads(loads, body, material.density)
     check = check_beam(acting, section, material.allowable, material.poissons_ratio)
     bent = deflection(
         check.forces,

@@ -19,7 +19,6 @@ from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import Load
-from loads.states.actions import PartMass
 from loads.statics.statics import Reactions
 
 SOURCES = (Source(kind=SourceKind.GROWTH, detail="of bending under compression and of joint forces"),)
@@ -47,7 +46,6 @@ def growths(
     title: str,
     pose: Pose,
     loads: Sequence[Load],
-    masses: Mapping[str, PartMass],
     moved: LargeDisplacement,
     reactions: Reactions,
     hands: Mapping[str, LinkByHand],
@@ -60,7 +58,7 @@ def growths(
     if low == high or moved.state not in ("deformed", "off", "unknown"):
         return Growths()
     plain = _numbers(hands, moved.reactions or reactions)
-    least, most = (_at(case, title, pose, loads, masses, factor) for factor in (low, high))
+    least, most = (_at(case, title, pose, loads, factor) for factor in (low, high))
     found = []
     for i, kind in enumerate(plain):
         # Displacement is in proportion to load over modulus, which its own scatter holds.
@@ -87,18 +85,17 @@ def _at(
     title: str,
     pose: Pose,
     loads: Sequence[Load],
-    masses: Mapping[str, PartMass],
     factor: float,
 ) -> _Numbers | None:
     """Numbers of the load case where load over modulus is ``factor`` times its own; None where nothing holds it."""
     soft = _softened(case, title, factor)
     try:
         forces = joint_forces(soft, pose, loads)
-        moved = examine(soft, title, forces, loads, masses)
+        moved = examine(soft, title, forces, loads)
         if moved.gives_way:
             return None
-        cut = {link: cut_link(soft, link, title, moved, forces.reactions, loads, masses) for link in soft.checked_links}
-        hands = {link: link_by_hand(soft, link, what, masses) for link, what in cut.items()}
+        cut = {link: cut_link(soft, link, title, moved, forces.reactions, loads) for link in soft.checked_links}
+        hands = {link: link_by_hand(soft, link, what) for link, what in cut.items()}
     except (CaseError, CannotRunError):
         return None
     return _numbers(hands, moved.reactions or forces.reactions)

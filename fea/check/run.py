@@ -33,12 +33,11 @@ from geometry.base.errors import CaseError
 from geometry.linkage.pose import NEAR_DEAD_POINT, Pose
 from loads.case.case import Case
 from loads.case.case_file import read_companion
-from loads.records.applied import Load
+from loads.records.applied import Load, PartMass
 from loads.records.check_spec import BearingCheck, MotorCheck, PinCheck
 from loads.sources.published_statics import StaticsAudit, audit
-from loads.states.actions import PartMass, needs_masses
-from loads.states.inertia import acting_loads
-from loads.states.masses import part_mass
+from loads.states.actions import acting_loads, needs_masses, placed
+from loads.states.masses import part_masses
 from loads.statics.statics import Reactions
 from loads.text.shares import parse_accuracy
 
@@ -102,11 +101,11 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     Raises ``CaseError`` for a pose that cannot be assembled or has no single equilibrium.
     """
     pose = case.solve_pose()
-    masses = {}
-    if needs_masses(case):
-        for link in case.checked_links:
-            masses[link] = part_mass(case, link)
-    loads = {title: acting_loads(case, load_case, pose, masses) for title, load_case in case.load_cases.items()}
+    masses = part_masses(case) if needs_masses(case) else {}
+    loads = {
+        title: acting_loads(case, load_case, placed(pose, load_case.speed), masses)
+        for title, load_case in case.load_cases.items()
+    }
     forces = {title: joint_forces(case, pose, loads[title]) for title in loads}
     found = None
     if case.published_statics is not None:
@@ -135,17 +134,17 @@ class _LoadCase:
 
     @classmethod
     def of(cls, statics: CaseStatics, title: str, moved: LargeDisplacement) -> "_LoadCase":
-        case, masses, loads = statics.case, statics.masses, statics.loads[title]
+        case, loads = statics.case, statics.loads[title]
         reactions = statics.reactions[title]
-        cut = {link: cut_link(case, link, title, moved, reactions, loads, masses) for link in case.checked_links}
-        hands = {link: link_by_hand(case, link, acting, masses) for link, acting in cut.items()}
+        cut = {link: cut_link(case, link, title, moved, reactions, loads) for link in case.checked_links}
+        hands = {link: link_by_hand(case, link, acting) for link, acting in cut.items()}
         return cls(
             statics=statics,
             title=title,
             moved=moved,
             cut=cut,
             hands=hands,
-            uneven=growths(case, title, statics.pose, loads, masses, moved, reactions, hands),
+            uneven=growths(case, title, statics.pose, loads, moved, reactions, hands),
             size=load_size(loads, case.linkage.longest),
         )
 
@@ -227,10 +226,7 @@ def check_case(
     clock = _Clock()
     statics = solve_case_statics(case, name)
     clock("pose and statics")
-    moved = {
-        title: examine(case, title, forces, statics.loads[title], statics.masses)
-        for title, forces in statics.forces.items()
-    }
+    moved = {title: examine(case, title, forces, statics.loads[title]) for title, forces in statics.forces.items()}
     clock("frames")
     by_title = {title: _LoadCase.of(statics, title, what) for title, what in moved.items()}
     clock("hand calculations")

@@ -21,11 +21,11 @@ from fea.beam.cut_free import beam_loads
 from fea.beam.flanks import flanks_of
 from fea.beam.piecewise import Piecewise, Side
 from fea.beam.theory import internal_forces
-from fea.common.link_loads import LineLoad, LinkLoads
+from fea.common.link_loads import LinkLoads
 from fea.outcomes.buckling import columns, holding
 from geometry.parts.body import hand_section
 from loads.case.case import Case
-from loads.states.actions import PartMass
+from loads.records.applied import LineLoad
 
 Real = NDArray[np.float64]
 
@@ -47,14 +47,21 @@ class Bend:
     stretches: Sequence[Stretch] = ()
 
 
-def second_order_loads(case: Case, link: str, loads: LinkLoads, mass: PartMass | None, *, stays: bool) -> LinkLoads:
+def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) -> LinkLoads:
     """Return the loads of a link with what its bending under compression adds.
 
-    stays   True where all loaded places stand where the loads have them, as on the deformed shape of a frame; else the
-            outermost pins stay, or the joint of the drive holds the link and its angle and the others move with it
+    Parameters
+    ----------
+    case, link
+        The case and the link.
+    loads : LinkLoads
+        At one pose.
+    stays : bool
+        True where all loaded places stand where the loads have them, as on the deformed shape of a frame; else the
+        outermost pins stay, or the joint of the drive holds the link and its angle and the others move with it.
     """
     body, material = case.body(link), case.material_of(link)
-    forces = internal_forces(beam_loads(loads, body, material.density, mass))
+    forces = internal_forces(beam_loads(loads, body, material.density))
     section, young = hand_section(body), material.youngs_modulus
     planes = [Bend(stiffness=young * inertia, stretches=soft) for inertia, soft in columns(section, flanks_of(body))]
     on_arms = {pin.name for pin in body.pins if pin.foot is not None}
@@ -125,7 +132,7 @@ def _bowed(
     pins = [replace(pin, wrench=pin.wrench + extra.pop(float(pin.centre[0]), none)) for pin in loads.pins]
     rest = [replace(end, wrench=end.wrench + extra.pop(float(end.point[0]), none)) for end in loads.ends]
     lines = [
-        LineLoad(first=float(a), last=float(b), intensity=q)
+        LineLoad(link=loads.link, start=float(a), end=float(b), at_start=q[0], at_end=q[1], axes="link")
         for a, b, q in zip(nodes[:-1], nodes[1:], intensity, strict=True)
         if np.any(q != 0.0)
     ]

@@ -1,81 +1,159 @@
-"""What acts on one link as a solid, in the link's own frame: the input of ``solve_solid``."""
+"""All that acts on a link that is cut free, in the link's axes, at one pose or at n.
 
-from dataclasses import dataclass
+The input of hand calculation, of solid models and of envelopes. A leading axis of the arrays counts the poses where
+there are several.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loads.records.applied import BodyForce, LineLoad, chosen, shifted
+
+Real = NDArray[np.float64]
+ALONG = np.array([1.0, 0.0, 0.0])
+"""The axis of a link, in its own axes."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PinLoad:
-    """What the pin in the hole at ``name`` does to the link.
+    """What the pin in a hole or slot does to the link.
 
-    centre     (3,) point on the pin's axis at the link's mid-plane [mm]
-    diameter   of the hole; of the pin where it stands in a slot [mm]
-    wrench     (6,) Fx, Fy, Fz [N] and Mx, My, Mz [N mm] about ``centre``; Mz enters like a drive couple
-    slotted    True for a pin in a slot along x, which can neither push along x nor turn the link
+    Attributes
+    ----------
+    name : str
+        Of the hole.
+    centre : array (..., 3)
+        Point on the pin's axis at the link's mid-plane [mm].
+    diameter : float
+        Of the hole; of the pin where it stands in a slot [mm].
+    wrench : array (..., 6)
+        Fx, Fy, Fz [N] and Mx, My, Mz [N mm] about ``centre``; Mz enters like a drive couple.
+    slotted : bool
+        True for a pin in a slot along x, which can neither push along x nor turn the link.
     """
 
+    VECTORS: ClassVar[tuple[str, ...]] = ("centre", "wrench")
+    SCALARS: ClassVar[tuple[str, ...]] = ()
     name: str
-    centre: NDArray[np.float64]
+    centre: Real
     diameter: float
-    wrench: NDArray[np.float64]
+    wrench: Real
     slotted: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DriveCouple:
-    """A torque [N mm] about z, counter-clockwise positive, on the link at the pin ``pin``."""
+    """A torque (...) [N mm] about z, counter-clockwise positive, on the link at the pin ``pin``."""
 
+    VECTORS: ClassVar[tuple[str, ...]] = ()
+    SCALARS: ClassVar[tuple[str, ...]] = ("torque",)
     pin: str
-    torque: float
+    torque: Any
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EndLoad:
-    """A wrench (6,) [N, N mm] about ``point`` (3,) [mm], spread over the patch ``end:<name>``."""
+    """A wrench (..., 6) [N, N mm] about ``point`` (3,) [mm], spread over the patch ``end:<name>``."""
 
+    VECTORS: ClassVar[tuple[str, ...]] = ("wrench",)
+    SCALARS: ClassVar[tuple[str, ...]] = ()
     name: str
-    point: NDArray[np.float64]
-    wrench: NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class BodyLoad:
-    """Weight and inertia: force per mass s − α ẑ × r + ω² r, with r from ``about`` normal to z.
-
-    specific_force         (3,) s = g − a, gravity less the acceleration of ``about`` [mm/s²]
-    about                  (3,) a point of the link [mm]
-    angular_acceleration   α about z [rad/s²]
-    angular_speed          ω about z [rad/s]
-    """
-
-    specific_force: NDArray[np.float64]
-    about: NDArray[np.float64]
-    angular_acceleration: float = 0.0
-    angular_speed: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LineLoad:
-    """A load spread along the link's axis (y = z = 0) between two stations, varying linearly between them.
-
-    first, last   stations [mm], first < last
-    intensity     (2, 3) force per length at the first and at the last station [N/mm]
-    """
-
-    first: float
-    last: float
-    intensity: NDArray[np.float64]
+    point: Real
+    wrench: Real
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LinkLoads:
-    """All loads of one load case on one link; together they must balance."""
+    """All loads of one load case on one link; together they must balance.
+
+    Attributes
+    ----------
+    name, link : str
+        Of the load case and the link.
+    pins, couples, ends
+        What joints and stated loads do to the link.
+    lines : tuple of LineLoad
+        Spread loads, in the link's axes.
+    inertia : BodyForce, optional
+        Weight and inertia, in the link's axes; None where the link counts as massless.
+    """
 
     name: str
+    link: str = ""
     pins: tuple[PinLoad, ...] = ()
     couples: tuple[DriveCouple, ...] = ()
     ends: tuple[EndLoad, ...] = ()
-    bodies: tuple[BodyLoad, ...] = ()
     lines: tuple[LineLoad, ...] = ()
+    inertia: BodyForce | None = None
+
+    @property
+    def poses(self) -> int:
+        """Number of poses, where there is an axis of them."""
+        return len(self.pins[0].wrench)
+
+    @property
+    def wrenches(self) -> tuple[tuple[Real, Real], ...]:
+        """(place (..., 3), wrench (..., 6) about it) of pins and ends."""
+        return (*((pin.centre, pin.wrench) for pin in self.pins), *((end.point, end.wrench) for end in self.ends))
+
+    def chosen(self, poses: Any) -> "LinkLoads":
+        """Return the loads at one or some of the poses alone.
+
+        Parameters
+        ----------
+        poses : int, slice, numbers or mask (n,)
+            Which poses; for a single number the result has no axis of poses.
+        """
+        return replace(
+            self,
+            pins=tuple(chosen(pin, poses) for pin in self.pins),
+            couples=tuple(chosen(couple, poses) for couple in self.couples),
+            ends=tuple(chosen(end, poses) for end in self.ends),
+            lines=tuple(chosen(line, poses) for line in self.lines),
+            inertia=None if self.inertia is None else chosen(self.inertia, poses),
+        )
+
+    def parts(self) -> list[Real]:
+        """Wrench (..., 6) of every load about the origin of the link's frame."""
+        found = [shifted(wrench, place) for place, wrench in self.wrenches]
+        for couple in self.couples:
+            torque = np.asarray(couple.torque, dtype=float)
+            found.append(torque[..., None] * np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]))
+        found += [line.about_origin(ALONG) for line in self.lines]
+        if self.inertia is not None:
+            found.append(shifted(self._on_mass, np.array([*self.inertia.mass.centroid, 0.0])))
+        return found
+
+    @property
+    def _on_mass(self) -> Real:
+        """Weight and inertia (..., 6) about the centroid."""
+        assert self.inertia is not None
+        return self.inertia.at_centroid(np.array([*self.inertia.mass.centroid, 0.0]))
+
+    def resultant(self) -> Real:
+        """Return the sum (..., 6) of all loads about the origin of the link's frame: zero where they balance."""
+        return np.asarray(sum(self.parts(), np.zeros(6)))
+
+    def size(self, length: float) -> Real:
+        """Return the sum (...) of all forces, and of all moments over a length [N]: what a resultant is compared with.
+
+        Parameters
+        ----------
+        length : float
+            Such as the link's [mm].
+        """
+        total = np.zeros(())
+        for wrench in [w for _, w in self.wrenches]:
+            total = total + np.linalg.norm(wrench[..., :3], axis=-1) + np.linalg.norm(wrench[..., 3:], axis=-1) / length
+        for couple in self.couples:
+            total = total + np.abs(couple.torque) / length
+        for line in self.lines:
+            ends = np.linalg.norm([line.at_start, line.at_end], axis=-1)
+            total = total + ends.mean(axis=0) * (line.end - line.start)
+        if self.inertia is not None:
+            force = self._on_mass
+            total = total + np.linalg.norm(force[..., :3], axis=-1) + np.abs(force[..., 5]) / length
+        return np.asarray(total)

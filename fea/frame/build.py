@@ -10,10 +10,11 @@ from fea.beam.flanks import Flanks, flanks_of
 from fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
 from fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from geometry.base.errors import CaseError
+from geometry.linkage.placement import vector
 from geometry.linkage.pose import Pose
 from geometry.parts.part import Section
 from loads.case.case import Case
-from loads.records.applied import BodyForce, LineLoad, Load, PointLoad, shifted
+from loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, shifted
 from loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
@@ -59,6 +60,7 @@ def build_frame(
             "links: none has a part, so no stiffness is known, which bonded joints, redundant linkages and loads out "
             "of the plane need; give the links parts"
         )
+    loads = tuple(in_axes(load, "global", pose.placement) for load in loads)
     builder = _Builder(case, pose, loads)
     supports, ties, guides = [], [], []
     places = np.array(builder.places)
@@ -84,7 +86,7 @@ def build_frame(
         pose=pose,
         held=held,
         bonded=bonded,
-        loads=tuple(loads),
+        loads=loads,
         model=FrameModel(
             nodes=places,
             elements=tuple(builder.elements),
@@ -252,12 +254,14 @@ class _Builder:
         stations = self.stations[link]
         start, end = stations[0][0], stations[-1][0]
         middle, length = (start + end) / 2.0, end - start
-        slope = 6.0 * (load.centroid[0] - middle) / length
-        ends = [load.mass / length * (1.0 + s * slope) * load.acceleration for s in (-1.0, 1.0)]
+        (centroid, height), place = load.mass.centroid, self.pose.placement
+        slope = 6.0 * (centroid - middle) / length
+        force = load.mass.mass * load.per_mass(vector(place.direction(link) * complex(centroid, height)))
+        ends = [force / length * (1.0 + s * slope) for s in (-1.0, 1.0)]
         line = LineLoad(link=link, start=start, end=end, at_start=ends[0], at_end=ends[1])
         solid = [s for s in stations if not any(slot.first < s[0] < slot.last for slot in slots)]
-        _, node = min(solid, key=lambda station: abs(station[0] - load.centroid[0]))
-        missing = load.resultant(self.pose) - line.resultant(self.pose)
+        _, node = min(solid, key=lambda station: abs(station[0] - centroid))
+        missing = load.resultant(place) - line.resultant(place)
         arm = np.array([*self.pose.origins[link], 0.0]) - self.places[node]
         self.node_loads.append(NodeLoad(node=node, wrench=shifted(missing, arm)))
         return line
@@ -279,7 +283,7 @@ class _Builder:
         for load in loads:
             if not isinstance(load, PointLoad):
                 arm = np.array([*self.pose.origins[link], 0.0]) - place
-                self.node_loads.append(NodeLoad(node=node, wrench=shifted(load.resultant(self.pose), arm)))
+                self.node_loads.append(NodeLoad(node=node, wrench=shifted(load.resultant(self.pose.placement), arm)))
 
     def _stiff(self, a: int, b: int) -> None:
         links = self.case.checked_links

@@ -14,7 +14,6 @@ from fea.frame.linkage_frame import LinkageFrame
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Body
 from loads.records.applied import Load, shifted
-from loads.states.actions import PartMass
 from loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
@@ -159,7 +158,7 @@ def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
     )
 
 
-def balanced(loads: LinkLoads, mass: PartMass | None, whole: float = 0.0) -> LinkLoads:
+def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
     """Return the loads of a link with what they leave unbalanced taken by the pin with the largest force, in no slot.
 
     Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Where all on the link
@@ -169,8 +168,6 @@ def balanced(loads: LinkLoads, mass: PartMass | None, whole: float = 0.0) -> Lin
     ----------
     loads : LinkLoads
         Of one link.
-    mass : PartMass or None
-        Of the link.
     whole : float, optional
         Sum of all loads on the linkage [N].
 
@@ -184,29 +181,10 @@ def balanced(loads: LinkLoads, mass: PartMass | None, whole: float = 0.0) -> Lin
     CannotRunError
         Where more than ``LARGEST_SHIFT`` of the link's load is unbalanced.
     """
-    total = np.zeros(6)
-    acting = [(p.centre, p.wrench) for p in loads.pins] + [(e.point, e.wrench) for e in loads.ends]
-    reach = max(float(np.linalg.norm(place - acting[0][0])) for place, _ in acting)
-    size = 0.0
-    for place, wrench in acting:
-        total += shifted(wrench, place)
-        size += float(np.linalg.norm(wrench[:3]))
-    for couple in loads.couples:
-        total[5] += couple.torque
-    for line in loads.lines:
-        length = line.last - line.first
-        force = line.intensity.mean(axis=0) * length
-        first, last = line.intensity
-        moment = length * (line.first * (first + last) / 2.0 + length * (first + 2.0 * last) / 6.0)
-        total[:3] += force
-        total[3:] += np.cross([1.0, 0.0, 0.0], moment)
-        size += float(np.linalg.norm(force))
-    for body in loads.bodies:
-        if mass is not None:
-            force = np.concatenate([mass.mass * body.specific_force, np.zeros(3)])
-            force[5] = -mass.inertia * body.angular_acceleration
-            total += shifted(force, body.about)
-            size += float(np.linalg.norm(force[:3]))
+    places = [place for place, _ in loads.wrenches]
+    reach = max(float(np.linalg.norm(place - places[0])) for place in places)
+    total = loads.resultant()
+    size = sum(float(np.linalg.norm(part[:3])) for part in loads.parts())
     if size <= NOTHING * whole:
         return replace(
             loads,

@@ -87,7 +87,7 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
             reason="all loads act in the linkage's plane, where equilibrium alone gives the forces",
         )
     if not bonded:
-        refuse_dead_point(assemble(pose, case.pinned_drive, ()), case.pinned_drive)
+        refuse_dead_point(assemble(pose.placement, case.pinned_drive, ()), case.pinned_drive)
     frame = build_frame(case, pose, loads, held=case.pinned_drive, bonded=bonded)
     solution = solve_frame(frame.model)
     return JointForces(
@@ -100,7 +100,7 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
 
 
 def _redundant(case: Case, pose: Pose) -> bool:
-    rows, columns = assemble(pose, case.pinned_drive, ()).matrix.shape
+    rows, columns = assemble(pose.placement, case.pinned_drive, ()).matrix.shape
     return bool(columns > rows)
 
 

@@ -33,7 +33,6 @@ from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import Load
-from loads.states.actions import PartMass
 from loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
@@ -150,7 +149,6 @@ def examine(
     title: str,
     forces: JointForces,
     loads: Sequence[Load],
-    masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
     """Solve the linear frame of a load case and, where it moves far or may give way, its deformed shape.
 
@@ -164,8 +162,6 @@ def examine(
         Joint forces in the pose as it stands.
     loads : sequence of Load
         That act on the links, global axes.
-    masses : dict of str to PartMass
-        Link and its mass.
 
     Returns
     -------
@@ -219,7 +215,7 @@ def examine(
     scatter = slack.times(load_scatter(case, title))
     if scatter.high * linear <= LARGE * size and min(factor, near) >= LEAST_FACTOR * scatter.high:
         return small
-    found = _deformed(case, title, frame, small, loads, masses)
+    found = _deformed(case, title, frame, small, loads)
     return replace(found, held_band=_held_band(frame, found, scatter))
 
 
@@ -296,7 +292,6 @@ def _deformed(
     frame: LinkageFrame,
     small: LargeDisplacement,
     loads: Sequence[Load],
-    masses: Mapping[str, PartMass],
 ) -> LargeDisplacement:
     assert small.buckling is not None
     if small.share > LARGE:
@@ -340,7 +335,6 @@ def _deformed(
         links={
             link: balanced(
                 on_deformed_shape(frame, found, reactions, link, title, case.body(link), loads),
-                masses.get(link),
                 frame.model.load_scale,
             )
             for link in case.checked_links

@@ -125,7 +125,7 @@ class LinkageFrame:
             joints[name] = JointReaction(
                 joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=self._arm(name, shape)
             )
-        system = assemble(self.pose, self.held, self.loads)
+        system = assemble(self.pose.placement, self.held, self.loads)
         value = {f"R{name}{axis}": joints[name].wrench[k] for name in joints for k, axis in enumerate("xy")}
         for name in joints:
             value[f"N{name}"] = float(slot_normal(self.pose, name) @ joints[name].wrench[:3])
@@ -149,7 +149,7 @@ class LinkageFrame:
 
     def _arm(self, name: str, shape: Real) -> Real:
         """From the point of a joint's first link to its pin (3,), with the nodes displaced by ``shape`` (n, 3)."""
-        linkage, arm = self.pose.linkage, travelled(self.pose, name)
+        linkage, arm = self.pose.linkage, travelled(self.pose.placement, name)
         if linkage.joints[name].type == "revolute":
             return arm
         first, second = linkage.joints[name].links
@@ -190,11 +190,11 @@ def out_of_plane(loads: Sequence[Load]) -> bool:
     """
     for load in loads:
         if isinstance(load, PointLoad):
-            found = load.wrench[2:5]
+            found = load.wrench[..., 2:5]
         elif isinstance(load, LineLoad):
-            found = np.array([load.at_start[2], load.at_end[2]])
+            found = np.array([load.at_start[..., 2], load.at_end[..., 2]])
         else:
-            found = load.acceleration[2:]
+            found = load.specific_force[..., 2]
         if np.any(found != 0.0):
             return True
     return False

@@ -9,17 +9,18 @@ from numpy.typing import NDArray
 from fea.beam.column_factor import AxialForce
 from fea.beam.cut_free import beam_loads
 from fea.check.second_order import second_order_loads
-from fea.common.link_loads import BodyLoad, LinkLoads
+from fea.common.link_loads import LinkLoads
 from fea.frame.large_displacement import LEAST_FACTOR
-from fea.motion.link_history import LineHistory, LinkHistory
+from fea.motion.unit_loads import unit_forces
 from fea.outcomes.buckling import NO_COMPRESSION, ColumnFactors, link_factors
 from geometry.parts.body import hand_section
 from loads.case.case import Case
+from loads.records.applied import LineLoad
 
 Real = NDArray[np.float64]
 
 
-def factors_over_motion(case: Case, link: str, history: LinkHistory) -> ColumnFactors:
+def factors_over_motion(case: Case, link: str, history: LinkLoads) -> ColumnFactors:
     """Return the buckling factors of a link at every pose; infinite where nothing compresses it."""
     largest, force = axial_compression(case, link, history)
     found = link_factors(case, link, hand_section(case.body(link)), force)
@@ -28,7 +29,7 @@ def factors_over_motion(case: Case, link: str, history: LinkHistory) -> ColumnFa
     return ColumnFactors(value=value, least=least, most=most)
 
 
-def with_second_order(case: Case, link: str, history: LinkHistory, evaluated: NDArray[np.bool_]) -> LinkHistory:
+def with_second_order(case: Case, link: str, history: LinkLoads, evaluated: NDArray[np.bool_]) -> LinkLoads:
     """Return a history with what bending under compression adds, at the evaluated poses near to buckling.
 
     As ``fea.check.second_order`` does for one pose: on the outermost pins, or as a cantilever where the drive holds the
@@ -38,24 +39,26 @@ def with_second_order(case: Case, link: str, history: LinkHistory, evaluated: ND
     near = np.flatnonzero(evaluated & (np.minimum(found.value, found.least) < LEAST_FACTOR))
     if not near.size:
         return history
-    pins = {name: wrench.copy() for name, wrench in history.pins.items()}
-    ends = {name: wrench.copy() for name, wrench in history.ends.items()}
+    pins, ends = ([load.wrench.copy() for load in loads] for loads in (history.pins, history.ends))
     lines: dict[tuple[float, float], Real] = {}
-    for pose in near:
-        loads = history.at(int(pose))
-        grown = second_order_loads(case, link, loads, history.mass, stays=False)
-        for pin, before in zip(grown.pins, loads.pins, strict=True):
-            pins[pin.name][pose] += (pin.wrench - before.wrench)[[0, 1, 5]]
-        for end, plain in zip(grown.ends, loads.ends, strict=True):
-            ends[end.name][pose] += (end.wrench - plain.wrench)[[0, 1, 5]]
+    for pose in near.tolist():
+        loads = history.chosen(pose)
+        grown = second_order_loads(case, link, loads, stays=False)
+        for own, (_, wrench) in zip((*pins, *ends), grown.wrenches, strict=True):
+            own[pose] = wrench
         for line in grown.lines[len(loads.lines) :]:
-            own = lines.setdefault((line.first, line.last), np.zeros((history.poses, 2, 2)))
-            own[pose] += line.intensity[:, :2]
-    more = tuple(LineHistory(first=a, last=b, intensity=q) for (a, b), q in lines.items())
-    return replace(history, pins=pins, ends=ends, lines=(*history.lines, *more))
+            ends_of_line = lines.setdefault((line.start, line.end), np.zeros((2, history.poses, 3)))
+            ends_of_line[:, pose] += line.at_start, line.at_end
+    more = [LineLoad(link=link, start=a, end=b, at_start=q[0], at_end=q[1], axes="link") for (a, b), q in lines.items()]
+    return replace(
+        history,
+        pins=tuple(replace(pin, wrench=wrench) for pin, wrench in zip(history.pins, pins, strict=True)),
+        ends=tuple(replace(end, wrench=wrench) for end, wrench in zip(history.ends, ends, strict=True)),
+        lines=(*history.lines, *more),
+    )
 
 
-def axial_compression(case: Case, link: str, history: LinkHistory) -> tuple[Real, AxialForce]:
+def axial_compression(case: Case, link: str, history: LinkLoads) -> tuple[Real, AxialForce]:
     """Return the largest compression (P,) [N] along a link, and the compression all along it.
 
     With point loads F at stations and line loads q between them the compression at x is ΣF + ∫q dx over all that acts
@@ -65,7 +68,7 @@ def axial_compression(case: Case, link: str, history: LinkHistory) -> tuple[Real
     points, lines = _axial_loads(case, link, history)
     breaks = sorted({x for x, _ in points} | {x for line in lines for x in line[:2]})
     poses = history.poses
-    size = np.max([np.linalg.norm(load[:, :2], axis=1) for load in (*history.pins.values(), *history.ends.values())], 0)
+    size = np.max([np.linalg.norm(wrench[:, :3], axis=1) for _, wrench in history.wrenches], axis=0)
     before, largest, values = np.zeros(poses), np.zeros(poses), []
     for start, end in itertools.pairwise(breaks):
         before = before + sum((force for x, force in points if x == start), np.zeros(poses))
@@ -82,28 +85,23 @@ def axial_compression(case: Case, link: str, history: LinkHistory) -> tuple[Real
 Line = tuple[float, float, Real, Real]
 
 
-def _axial_loads(case: Case, link: str, history: LinkHistory) -> tuple[list[tuple[float, Real]], list[Line]]:
+def _axial_loads(case: Case, link: str, history: LinkLoads) -> tuple[list[tuple[float, Real]], list[Line]]:
     """Forces along the axis (x, (P,)) and line loads (first x, last x, (P,) there and there); as ``cut_free`` does."""
-    body = history.body
+    body, material = case.body(link), case.material_of(link)
     points = [
-        (pin.x if pin.foot is None else pin.foot[0], history.pins[pin.name][:, 0])
-        for pin in body.pins
+        (pin.x if pin.foot is None else pin.foot[0], load.wrench[:, 0])
+        for pin, load in zip(body.pins, history.pins, strict=True)
         if not pin.slot  # a pin in a slot pushes across it alone
     ]
-    points += [(end.x, history.ends[end.name][:, 0]) for end in body.ends if end.name in history.ends]
-    lines = [(line.first, line.last, line.intensity[:, 0, 0], line.intensity[:, 1, 0]) for line in history.lines]
-    density = case.material_of(link).density
-    for i, unit in enumerate(np.eye(4)):
+    points += [(float(end.point[0]), end.wrench[:, 0]) for end in history.ends]
+    lines = [(line.start, line.end, line.at_start[:, 0], line.at_end[:, 0]) for line in history.lines]
+    if history.inertia is None:
+        return points, lines
+    own = history.inertia
+    amounts = (*own.specific_force[:, :2].T, own.angular_acceleration, own.angular_speed_squared)
+    for unit, times in zip(unit_forces(own.mass), amounts, strict=True):
         # A unit of each of what moves mass, spread over the beam as for one pose.
-        body_load = BodyLoad(
-            specific_force=np.array([unit[0], unit[1], 0.0]),
-            about=np.zeros(3),
-            angular_acceleration=float(unit[2]),
-            angular_speed=float(unit[3]),
-        )
-        alone = LinkLoads(name=history.load_case, pins=(), bodies=(body_load,))
-        acting = beam_loads(alone, body, density, history.mass)
-        times = history.acceleration[:, i]
+        acting = beam_loads(LinkLoads(name=history.name, inertia=unit), body, material.density)
         points += [(float(p.point[0]), p.wrench[0] * times) for p in acting.points]
         lines += [(line.start, line.end, line.first[0] * times, line.last[0] * times) for line in acting.lines]
     return points, lines

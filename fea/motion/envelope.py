@@ -2,9 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from fea.motion.link_envelope import link_envelope
-from fea.motion.link_history import LinkHistory, link_histories
+from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import linkage_outcomes
 from fea.outcomes.linkage import unless_it_gives_way
 from fea.outcomes.unchecked import unusual_materials
@@ -81,8 +80,11 @@ def envelope_case(
             "another link or allow a larger growth"
         )
     sizes = {title: stated_size(case, title) for title in case.load_cases}
-    acting = partial(_acts, sizes=sizes, length=case.linkage.longest, evaluated=evaluated)
-    histories = {link: tuple(filter(acting, link_histories(moved, link))) for link in case.checked_links}
+    length = case.linkage.longest
+    histories = {
+        link: tuple(h for h in link_histories(moved, link) if acts(h.chosen(evaluated), sizes[h.name], length))
+        for link in case.checked_links
+    }
     loaded = {
         link: tuple(with_second_order(case, link, history, evaluated) for history in found)
         for link, found in histories.items()
@@ -95,6 +97,7 @@ def envelope_case(
             return link_envelope(
                 space,
                 link=link,
+                body=case.body(link),
                 material=case.material_of(link),
                 histories=loaded[link],
                 evaluated=evaluated,
@@ -116,7 +119,7 @@ def envelope_case(
     for link, found in loaded.items():
         progress(f"Finding the worst poses of {link} ...")
         first = over_motion(link, displacement_space(meshes[link]), fatigue=False)
-        at_worst = [h.at(first.load_cases[h.load_case].pose) for h in found]
+        at_worst = [h.chosen(first.load_cases[h.name].pose) for h in found]
         tasks[link] = link_task(case, link, at_worst)
         require_compressible(tasks[link].nu)
     timings["worst poses"], begin = time.perf_counter() - begin, time.perf_counter()
@@ -130,7 +133,7 @@ def envelope_case(
     timings["motion of the solids"] = time.perf_counter() - begin
     checks = [*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, loaded, evaluated)]
     checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
-    idle = set(case.load_cases) - {history.load_case for found in loaded.values() for history in found}
+    idle = set(case.load_cases) - {history.name for found in loaded.values() for history in found}
     for title in (title for title in case.load_cases if title in idle):
         forces = {name: np.linalg.norm(f[evaluated], axis=1).max() for name, f in moved.forces[title].forces.items()}
         of_idle = [*(check for check in checks if check.load_case == title), *unloaded_links(case, title)]
@@ -156,12 +159,6 @@ def envelope_case(
     )
 
 
-def _acts(history: LinkHistory, *, sizes: Mapping[str, float], length: float, evaluated: NDArray[np.bool_]) -> bool:
-    """Return True if anything acts on a link at some pose that counts."""
-    size = sizes[history.load_case]
-    return any(acts(history.at(pose), size, length) for pose in np.flatnonzero(evaluated).tolist())
-
-
 def evaluated_poses(moved: CaseMotion, growth: float = TORQUE_GROWTH) -> NDArray[np.bool_]:
     """Poses (n,) whose stress means something.
 
@@ -171,7 +168,7 @@ def evaluated_poses(moved: CaseMotion, growth: float = TORQUE_GROWTH) -> NDArray
     """
     good = np.ones(len(moved.motion.angles), dtype=np.bool_)
     for solved in moved.forces.values():
-        good &= np.isfinite(solved.torque)
+        good &= np.isfinite(solved.drive_torque)
         if moved.dead_points:
             good &= solved.leverage * growth >= solved.leverage.max()
     return good

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
+from fea.common.link_loads import LinkLoads
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
-from fea.motion.link_history import LinkHistory
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.buckling import column_outcome, first_largest, worst_column
 from fea.outcomes.judge import safety_factor_outcome
@@ -108,14 +108,14 @@ def _joints(
 
 
 def column_outcomes(
-    moved: CaseMotion, loaded: Mapping[str, Sequence[LinkHistory]], evaluated: NDArray[np.bool_]
+    moved: CaseMotion, loaded: Mapping[str, Sequence[LinkLoads]], evaluated: NDArray[np.bool_]
 ) -> Iterator[CheckOutcome]:
     """Yield the least buckling factor of every link that is compressed at some pose, and where it is.
 
     Parameters
     ----------
     moved : CaseMotion
-    loaded : mapping of str to sequence of LinkHistory
+    loaded : mapping of str to sequence of LinkLoads
         Link -> what acts on it, one record per load case.
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
@@ -127,7 +127,7 @@ def column_outcomes(
             column = worst_column(moved.case, link, compression, factors, evaluated)
             if column is not None:
                 where = f" at {_when(moved, column.pose)}"
-                outcome = column_outcome(moved.case, history.load_case, link, column, where=where)
+                outcome = column_outcome(moved.case, history.name, link, column, where=where)
                 yield _complete(outcome, evaluated)
 
 

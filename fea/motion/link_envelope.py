@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
+from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, strength_scatter
 from fea.common.source import Source, SourceKind, distinct, pin_sources
 from fea.motion.critical import critical_nodes
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import fatigue_life, missing_data, strength_at
-from fea.motion.link_history import LinkHistory
 from fea.motion.peaks import Peaks, principal_peaks, von_mises_peaks
-from fea.motion.unit_loads import TRANSFERS, load_scale, unit_loads
+from fea.motion.unit_loads import TRANSFERS, unit_loads
 from fea.motion.unit_solutions import UnitSolutions, solve_units
 from fea.refine.convergence import ALONE
 from fea.refine.discretisation import Discretisation, discretisation_source, judged
@@ -29,6 +29,7 @@ from fea.solid.supports import LineReference
 from fea.solid.traction import Transfer
 from geometry.base.errors import CannotRunError
 from geometry.parts.material import Material, stress_measure
+from geometry.parts.part import Body
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw, Span
 
 Real = NDArray[np.float64]
@@ -47,8 +48,9 @@ def link_envelope(
     space: DisplacementSpace,
     *,
     link: str,
+    body: Body,
     material: Material,
-    histories: Sequence[LinkHistory],
+    histories: Sequence[LinkLoads],
     evaluated: NDArray[np.bool_],
     stated: Transfer | None,
     returns: bool,
@@ -72,13 +74,13 @@ def link_envelope(
     Raises ``CannotRunError`` for loads that do not balance, supports that react, or a failing solver.
     """
     chosen = [history.chosen(evaluated) for history in histories]
-    units = unit_loads(space, chosen, density=material.density)
+    units = unit_loads(space, body, chosen, density=material.density)
     size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
     names: list[tuple[int, PressureLaw, Transfer | None]] = []
     columns, scales = [], []
     for i, history in enumerate(chosen):
-        torque = any(np.any(t != 0.0) for t in (*history.couples.values(), *(p[:, 2] for p in history.pins.values())))
-        scale = load_scale(history, size)
+        torque = bool(history.couples) or any(np.any(pin.wrench[:, 5] != 0.0) for pin in history.pins)
+        scale = history.size(size)
         for law in LAWS:
             for transfer in TRANSFERS if torque else (None,):
                 names.append((i, law, transfer))
@@ -105,19 +107,19 @@ def link_envelope(
             for number, (case, law, transfer) in enumerate(names)
             if case == i
         ]
-        series = _Series.of(refined, history.load_case, material)
-        load_case = _load_case(space.nodes, history.load_case, material, variants, stated, series)
+        series = _Series.of(refined, history.name, material)
+        load_case = _load_case(space.nodes, history.name, material, variants, stated, series)
         if load_case.known and series.was_not_refined_for(load_case.governing):
             load_case = _estimated(load_case, solved, material, evaluated)
-        load = (scatter or {}).get(history.load_case, Scatter())
+        load = (scatter or {}).get(history.name, Scatter())
         load_case = _scattered(load_case, material, load)
         if not lacking and load_case.known:
             varied = _fatigue(solved, material, load_case, stated, series, returns, repetitions, load)
             load_case = replace(load_case, fatigue=varied)
-        found[history.load_case] = load_case
+        found[history.name] = load_case
     worst = min(found.values(), key=lambda load_case: load_case.severity)
     number = worst.governing.first + int(np.count_nonzero(evaluated[: worst.pose]))
-    pins = histories[0].body.pins
+    pins = body.pins
     raw = solved.field(number)
     return LinkEnvelope(
         link=link,

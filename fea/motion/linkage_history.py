@@ -12,15 +12,15 @@ from fea.frame.stability import dead_point_factor, linkage_factor
 from fea.outcomes.linkage import by_linear_theory
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
+from loads.records.applied import chosen
 from loads.states.case_motion import CaseMotion
-from loads.states.inertia import acting_loads
 
 
 def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterator[CheckOutcome]:
     """Yield an outcome for every load case under which the linkage may give way at a pose that was looked at.
 
     Looked at are the pose next to a dead point of the driven link and that of the largest drive torque.
-    By the rule of single poses (``fea.outcomes.linkage``). Inertia is that of a constant speed.
+    By the rule of single poses (``fea.outcomes.linkage``).
 
     Parameters
     ----------
@@ -36,13 +36,13 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         for i in np.flatnonzero(evaluated)
     }
     nearest = min(poses, key=lambda i: moved.drive.dead_point_distance(poses[i]))
-    for title, load_case in case.load_cases.items():
+    for title, acting in moved.loads.items():
         found = []
         hardest = max(poses, key=lambda i: abs(float(moved.torque[title][i])))
         for i in dict.fromkeys((nearest, hardest)):
             pose = poses[i]
             try:
-                loads = acting_loads(case, load_case, pose, moved.masses)
+                loads = [chosen(load, i) for load in acting]
                 frame = build_frame(case, pose, loads, held=moved.drive)
                 factor = linkage_factor(frame)
                 found.append((min(factor, dead_point_factor(frame, solve_frame(frame.model))), factor, i))

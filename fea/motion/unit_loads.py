@@ -21,8 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import BodyLoad, LineLoad
-from fea.motion.link_history import LinkHistory
+from fea.common.link_loads import LinkLoads, PinLoad
 from fea.motion.slot_units import SlotUnits, places_for, unit_pushes
 from fea.solid.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
 from fea.solid.slot_traction import DEGREE
@@ -37,9 +36,9 @@ from fea.solid.traction import (
     wrench_density,
 )
 from geometry.base.errors import CannotRunError
-from geometry.parts.part import Pin
+from geometry.parts.part import Body, Pin
+from loads.records.applied import BodyForce, LineLoad, PartMass
 from loads.records.bearing import NARROW, WIDE, PressureLaw
-from loads.states.actions import PartMass
 
 Real = NDArray[np.float64]
 
@@ -49,6 +48,8 @@ turns fully, as the largest difference of the peak stress from the pressure's ow
 8 0.17 and 0.63 %, to 10 0.20 and 1.13 %, to 12 0.12 and 0.36 %, to 16 0.05 and 0.09 %. Since only the span of the
 motion's loads is solved for, these took 38, 45, 48 and 50 solutions."""
 TRANSFERS: tuple[Transfer, ...] = ("eye-faces", "bore-shear")
+IN_PLANE = [0, 1, 5]
+"""Components of a wrench that act in the linkage's plane."""
 
 
 def fourier_coefficients(law: PressureLaw, highest: int = HIGHEST_ORDER) -> Real:
@@ -139,81 +140,95 @@ class UnitLoads:
         """Number of unit loads."""
         return len(self.local)
 
-    def coefficients(self, history: LinkHistory, law: PressureLaw, transfer: Transfer | None) -> Real:
-        """What multiplies each unit load (units, n) at the poses of a history.
+    def coefficients(self, loads: LinkLoads, law: PressureLaw, transfer: Transfer | None) -> Real:
+        """Return what multiplies each unit load (units, n) at n poses.
 
-        transfer  of the torques; any where none acts
+        Parameters
+        ----------
+        loads : LinkLoads
+            On the link at the n poses.
+        law : PressureLaw
+            How a pin presses in its hole.
+        transfer : str, optional
+            Of the torques; any where none acts.
         """
-        found = np.zeros((self.count, history.poses))
-        for name, loads in history.pins.items():
-            if name in self.pins:
-                units = self.pins[name]
-                pressure, force = units.coefficients(loads[:, :2], law)
+        found = np.zeros((self.count, loads.poses))
+        for pin in loads.pins:
+            if pin.name in self.pins:
+                units = self.pins[pin.name]
+                pressure, force = units.coefficients(pin.wrench[:, :2], law)
                 orders = units.cosine.stop - units.cosine.start
                 found[units.cosine], found[units.sine] = pressure[:orders], pressure[orders:]
                 found[units.force] = force
-        for name, slot in self.slots.items():
-            pushed, rigid = slot.coefficients(history.pins[name][:, 1], history.places[name], law)
-            for side, push in pushed.items():
-                found[slot.pushes[law.span, side]] = push
-            found[slot.rigid] = rigid
-        for name, torque in _torques(history).items():
+            elif pin.name in self.slots:
+                slot = self.slots[pin.name]
+                pushed, rigid = slot.coefficients(pin.wrench[:, 1], pin.centre[:, 0], law)
+                for side, push in pushed.items():
+                    found[slot.pushes[law.span, side]] = push
+                found[slot.rigid] = rigid
+        for name, torque in _torques(loads).items():
             if np.any(torque != 0.0):
                 found[self.couples[name, transfer or TRANSFERS[0]]] += torque
-        for name, loads in history.ends.items():
-            found[self.ends[name]] += loads.T
-        for line in history.lines:
-            found[self.lines[line.first, line.last]] += line.intensity.reshape(history.poses, 4).T
-        if self.inertia is not None and history.mass is not None:
-            found[self.inertia] += history.acceleration.T
+        for end in loads.ends:
+            found[self.ends[end.name]] += end.wrench[:, IN_PLANE].T
+        for line in loads.lines:
+            found[self.lines[line.start, line.end]] += np.hstack([line.at_start[:, :2], line.at_end[:, :2]]).T
+        if self.inertia is not None and loads.inertia is not None:
+            own = loads.inertia
+            found[self.inertia] += np.vstack(
+                [own.specific_force[:, :2].T, own.angular_acceleration, own.angular_speed_squared]
+            )
         return found
 
 
-def load_scale(history: LinkHistory, size: float) -> Real:
-    """Sum of all forces, and of all moments over the link's size [mm], at every pose (n,) [N]."""
-    total = np.zeros(history.poses)
-    for loads in (*history.pins.values(), *history.ends.values()):
-        total += np.hypot(loads[:, 0], loads[:, 1]) + np.abs(loads[:, 2]) / size
-    for torque in history.couples.values():
-        total += np.abs(torque) / size
-    for line in history.lines:
-        total += np.linalg.norm(line.intensity, axis=2).mean(axis=1) * (line.last - line.first)
-    if history.mass is not None:
-        sx, sy, rate, square = history.acceleration.T
-        total += history.mass.mass * np.abs(sx + 1j * sy + (square - 1j * rate) * complex(*history.mass.centroid))
-        total += history.mass.inertia * np.abs(rate) / size
-    return total
-
-
 def unit_loads(
-    space: DisplacementSpace, histories: Sequence[LinkHistory], *, density: float, highest: int = HIGHEST_ORDER
+    space: DisplacementSpace,
+    body: Body,
+    histories: Sequence[LinkLoads],
+    *,
+    density: float,
+    highest: int = HIGHEST_ORDER,
 ) -> UnitLoads:
-    """Build the unit loads of which the histories of one link are made up.
+    """Build the unit loads of which the loads of one link over a motion are made up.
 
-    density   of the material [tonne/mm³]: how weight and inertia are spread over the volume, whose resultants
-              are then brought to those of the history's mass
-    highest   order of the pressure's Fourier series
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Of the link's mesh.
+    body : Body
+        The link's body.
+    histories : sequence of LinkLoads
+        At the poses of the motion, one record per load case.
+    density : float
+        Of the material [tonne/mm³]: how weight and inertia are spread over the volume, whose resultants are then
+        brought to those of the link's mass.
+    highest : int
+        Order of the pressure's Fourier series.
 
-    Raises ``CannotRunError`` for a surface that the mesh lacks or meshes too coarsely.
+    Raises
+    ------
+    CannotRunError
+        For a surface that the mesh lacks or meshes too coarsely.
     """
     build = _Builder(space)
     pins, slots = {}, {}
-    for pin in histories[0].body.pins:
-        if any(np.any(history.pins[pin.name][:, :2] != 0.0) for history in histories):
+    for pin in body.pins:
+        own = [load for history in histories for load in history.pins if load.name == pin.name]
+        if any(np.any(load.wrench[:, :2] != 0.0) for load in own):
             if pin.slot > 0.0:
-                slots[pin.name] = build.slot(pin, histories)
+                slots[pin.name] = build.slot(pin, own)
             else:
                 pins[pin.name] = build.pin(pin, highest)
-    centres = {pin.name: np.array([pin.x, pin.y, 0.0]) for pin in histories[0].body.pins}
+    centres = {pin.name: np.array([pin.x, pin.y, 0.0]) for pin in body.pins}
     couples = {}
     for name in dict.fromkeys(pin for h in histories for pin, torque in _torques(h).items() if np.any(torque != 0.0)):
         for transfer in TRANSFERS:
             couples[name, transfer] = build.couple(name, centres[name], transfer)
-    points = {end.name: np.array([end.x, 0.0, 0.0]) for end in histories[0].body.ends}
-    ends = {name: build.end(name, points[name]) for name in dict.fromkeys(n for h in histories for n in h.ends)}
-    stations = dict.fromkeys((line.first, line.last) for h in histories for line in h.lines)
+    points = {end.name: end.point for history in histories for end in history.ends}
+    ends = {name: build.end(name, point) for name, point in points.items()}
+    stations = dict.fromkeys((line.start, line.end) for h in histories for line in h.lines)
     lines = {between: build.line(*between) for between in stations}
-    mass = next((history.mass for history in histories if history.mass is not None), None)
+    mass = next((history.inertia.mass for history in histories if history.inertia is not None), None)
     inertia = None if mass is None else build.inertia(mass, density)
     vectors = build.matrix()
     motions = rigid_motions(space.nodes, np.zeros(3)).reshape(6, -1)
@@ -231,11 +246,11 @@ def unit_loads(
     )
 
 
-def _torques(history: LinkHistory) -> dict[str, Real]:
+def _torques(loads: LinkLoads) -> dict[str, Real]:
     """All torques about pins (n,): of the drive, and of joints and loads that turn."""
-    found = {name: loads[:, 2] for name, loads in history.pins.items()}
-    for name, torque in history.couples.items():
-        found[name] = found[name] + torque
+    found = {pin.name: pin.wrench[:, 5] for pin in loads.pins}
+    for couple in loads.couples:
+        found[couple.pin] = found[couple.pin] + couple.torque
     return found
 
 
@@ -297,11 +312,11 @@ class _Builder:
             wrench=wrench,
         )
 
-    def slot(self, pin: Pin, histories: Sequence[LinkHistory]) -> SlotUnits:
+    def slot(self, pin: Pin, loads: Sequence[PinLoad]) -> SlotUnits:
         """Pushes of a pin on the flanks of its slot, freed of their resultants, and the tractions that deliver them."""
         wall, middle = surface_quadrature(self._space, f"bore:{pin.name}", degree=DEGREE), np.array([pin.x, pin.y, 0.0])
-        forces = np.concatenate([history.pins[pin.name][:, 1] for history in histories])
-        travel = np.concatenate([history.places[pin.name] for history in histories])[forces != 0.0]
+        forces = np.concatenate([load.wrench[:, 1] for load in loads])
+        travel = np.concatenate([load.centre[:, 0] for load in loads])[forces != 0.0]
         rigid = [self._vector(wall, wrench_density(wall, middle, np.eye(6)[i])) for i in (1, 5)]
         pushes, places = {}, {}
         for law in (WIDE, NARROW):
@@ -326,39 +341,37 @@ class _Builder:
     def end(self, name: str, point: Real) -> slice:
         """Fx, Fy and Mz on a plain end."""
         patch = surface_quadrature(self._space, f"end:{name}")
-        units = np.eye(6)[[0, 1, 5]]
+        units = np.eye(6)[IN_PLANE]
         return self._add(*(self._vector(patch, wrench_density(patch, point, unit)) for unit in units))
 
     def line(self, first: float, last: float) -> slice:
         """Unit intensity along x and y at the first station, then at the last."""
         found = []
-        for station in (0, 1):
-            for axis in (0, 1):
-                intensity = np.zeros((2, 3))
-                intensity[station, axis] = 1.0
-                load = LineLoad(first=first, last=last, intensity=intensity)
-                found.append(self._vector(self.volume, line_density(self.volume, load)))
+        for unit in np.eye(6)[[0, 1, 3, 4]]:
+            load = LineLoad(link="", start=first, end=last, at_start=unit[:3], at_end=unit[3:], axes="link")
+            found.append(self._vector(self.volume, line_density(self.volume, load)))
         return self._add(*found)
 
     def inertia(self, mass: PartMass, density: float) -> slice:
         """Unit specific forces along x and y, unit angular acceleration, unit squared angular speed."""
-        origin, (x, y) = np.zeros(3), mass.centroid
-        about_origin = mass.inertia + mass.mass * (x**2 + y**2)
-        fields = (
-            (_inertia((1.0, 0.0)), mass.mass * np.array([1.0, 0.0, 0.0, 0.0, 0.0, -y])),
-            (_inertia((0.0, 1.0)), mass.mass * np.array([0.0, 1.0, 0.0, 0.0, 0.0, x])),
-            (_inertia(rate=1.0), np.array([mass.mass * y, -mass.mass * x, 0.0, 0.0, 0.0, -about_origin])),
-            (_inertia(speed=1.0), mass.mass * np.array([x, y, 0.0, 0.0, 0.0, 0.0])),
-        )
-        found = []
-        for load, target in fields:
+        origin, found = np.zeros(3), []
+        for load in unit_forces(mass):
             spread = body_density(self.volume, load, density)
-            missing = target - self.volume.wrench(spread, origin)
+            missing = LinkLoads(name="", inertia=load).resultant() - self.volume.wrench(spread, origin)
             found.append(self._vector(self.volume, spread + wrench_density(self.volume, origin, missing)))
         return self._add(*found)
 
 
-def _inertia(force: tuple[float, float] = (0.0, 0.0), rate: float = 0.0, speed: float = 0.0) -> BodyLoad:
-    return BodyLoad(
-        specific_force=np.array([*force, 0.0]), about=np.zeros(3), angular_acceleration=rate, angular_speed=speed
+def unit_forces(mass: PartMass) -> tuple[BodyForce, ...]:
+    """Return unit specific forces along x and y, unit angular acceleration and unit squared angular speed."""
+    return tuple(
+        BodyForce(
+            link="",
+            mass=mass,
+            specific_force=np.array([*unit[:2], 0.0]),
+            angular_acceleration=unit[2],
+            angular_speed_squared=unit[3],
+            axes="link",
+        )
+        for unit in np.eye(4)
     )

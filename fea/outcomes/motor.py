@@ -127,7 +127,7 @@ def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[
 
 def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iterator[CheckOutcome]:
     solved, times, link = moved.forces[title], _times(moved, title), moved.drive.link
-    torque, speed = solved.torque, solved.motion.angular_speed(link)
+    torque, speed = solved.drive_torque, solved.motion.angular_speed(link)
 
     def outcome(quantity: Quantity, value: Band, limit: float, reason: str) -> CheckOutcome:
         return CheckOutcome.of(name, Subject.link(link), title, quantity, value, limit, reason)
@@ -168,7 +168,7 @@ def _times(moved: CaseMotion, title: str) -> Real:
 
 def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMotion, empty: CaseMotion) -> CheckOutcome:
     solved, times = laden.forces[title], _times(laden, title)
-    found = demand(solved.drive_power, solved.torque, times)
+    found = demand(solved.drive_power, solved.drive_torque, times)
     limit = check.output_power
     value = Band(value=found.peak_power, low=found.mean_power, high=found.peak_power, sources=SOURCES)
     outcome = CheckOutcome.of(name, Subject.link(laden.drive.link), title, Quantity.DRIVE_POWER, value, limit)

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
-from fea.common.link_loads import LineLoad, LinkLoads
+from fea.common.link_loads import LinkLoads
 from fea.common.verdict import CheckOutcome, Quantity, Subject
 from fea.outcomes.limits import least_safety_factor
 from loads.case.case import Case
-from loads.records.applied import BodyForce, Load, PointLoad
+from loads.records.applied import BodyForce, LineLoad, Load, PointLoad
 from loads.records.check_spec import SafetyFactorCheck
 from loads.states.actions import stated_loads
 
@@ -51,13 +51,14 @@ def load_size(loads: Iterable[Load], length: float) -> float:
 
 
 def acts(loads: LinkLoads, size: float, length: float) -> bool:
-    """Return True if anything but rounding acts on a link.
+    """Return True if anything but rounding acts on a link, at any of the poses.
 
     Parameters
     ----------
     loads : LinkLoads
+        On the link, at one pose or at n.
     size : float
-        Of the loads that the load case states [N].
+        Of the stated loads [N], beside which rounding is rounding.
     length : float
         By which moments are divided [mm].
 
@@ -65,10 +66,14 @@ def acts(loads: LinkLoads, size: float, length: float) -> bool:
     -------
     bool
     """
-    inert = (np.any(b.specific_force) or b.angular_speed or b.angular_acceleration for b in loads.bodies)
-    wrenches = [p.wrench for p in loads.pins] + [e.wrench for e in loads.ends]
-    found = [_size(wrench, length) for wrench in wrenches] + [abs(c.torque) / length for c in loads.couples]
-    return any(inert) or max([*found, _spread(loads.lines)], default=0.0) > SHARE * size
+    force = loads.inertia
+    if force is not None and any(
+        np.any(values) for values in (force.specific_force, force.angular_acceleration, force.angular_speed_squared)
+    ):
+        return True
+    found = [_size(wrench, length) for _, wrench in loads.wrenches]
+    found += [float(np.max(np.abs(couple.torque))) / length for couple in loads.couples]
+    return max([*found, _spread(loads.lines)], default=0.0) > SHARE * size
 
 
 def without_rounding(loads: LinkLoads, size: float, length: float) -> LinkLoads:
@@ -88,27 +93,28 @@ def without_rounding(loads: LinkLoads, size: float, length: float) -> LinkLoads:
     """
     if acts(loads, size, length):
         return loads
-    pins = tuple(replace(pin, wrench=np.zeros(6)) for pin in loads.pins)
-    ends = tuple(replace(end, wrench=np.zeros(6)) for end in loads.ends)
-    return LinkLoads(name=loads.name, pins=pins, ends=ends)
+    pins = tuple(replace(pin, wrench=np.zeros_like(pin.wrench)) for pin in loads.pins)
+    ends = tuple(replace(end, wrench=np.zeros_like(end.wrench)) for end in loads.ends)
+    return replace(loads, pins=pins, ends=ends, couples=(), lines=(), inertia=None)
 
 
 def _size(wrench: Real, length: float) -> float:
-    return max(float(np.linalg.norm(wrench[:3])), float(np.linalg.norm(wrench[3:])) / length)
+    """Largest force [N] or moment over a length of a wrench (..., 6) at any pose."""
+    return float(
+        max(np.linalg.norm(wrench[..., :3], axis=-1).max(), np.linalg.norm(wrench[..., 3:], axis=-1).max() / length)
+    )
 
 
 def _spread(lines: Sequence[LineLoad]) -> float:
     """Return the largest force [N] that spread loads leave between two neighbouring ends, added where they overlap."""
-    ends = sorted({x for line in lines for x in (line.first, line.last)})
+    stations = sorted({x for line in lines for x in (line.start, line.end)})
     largest = 0.0
-    for start, end in itertools.pairwise(ends):
-        total = np.zeros((2, 3))
-        for line in lines:
-            if line.first <= start and end <= line.last:
-                for row, x in enumerate((start, end)):
-                    share = (x - line.first) / (line.last - line.first)
-                    total[row] += (1.0 - share) * line.intensity[0] + share * line.intensity[1]
-        largest = max(largest, (end - start) * float(np.linalg.norm(total, axis=1).max()))
+    for start, end in itertools.pairwise(stations):
+        over = [line for line in lines if line.start <= start and end <= line.end]
+        for x in (start, end):
+            shares = [(x - line.start) / (line.end - line.start) for line in over]
+            total = sum(((1.0 - s) * q.at_start + s * q.at_end for s, q in zip(shares, over, strict=True)), np.zeros(3))
+            largest = max(largest, (end - start) * float(np.linalg.norm(total, axis=-1).max()))
     return largest
 
 
@@ -195,5 +201,4 @@ def stated_size(case: Case, title: str) -> float:
     float
         [N]
     """
-    stated = stated_loads(case, case.load_cases[title], {})
-    return load_size((one.load for one in stated), case.linkage.longest)
+    return load_size(stated_loads(case, case.load_cases[title]), case.linkage.longest)

@@ -107,13 +107,13 @@ class LoadVectors:
         total = sum(float(np.linalg.norm(w[:3]) + np.linalg.norm(w[3:]) / self._size) for w in wrenches)
         total += sum(abs(c.torque) / self._size for c in case.couples)
         for line in case.lines:
-            total += float(np.linalg.norm(line.intensity, axis=1).mean()) * (line.last - line.first)
-        for body in case.bodies:
-            force = np.linalg.norm(body_density(self._volume, body, self._density), axis=2)
+            total += float(np.linalg.norm([line.at_start, line.at_end], axis=1).mean()) * (line.end - line.start)
+        if case.inertia is not None:
+            force = np.linalg.norm(body_density(self._volume, case.inertia, self._density), axis=2)
             total += float((self._volume.w * force).sum())
         if total == 0.0:
             raise CannotRunError(f"load case '{case.name}' puts no load on the link; leave it out")
-        return total
+        return float(total)
 
     def _pins(self, case: LinkLoads, law: PressureLaw) -> NDArray[np.float64]:
         """Load vector (3n,) of the pins' pressures and thrusts."""
@@ -148,8 +148,8 @@ class LoadVectors:
         for end in case.ends:
             patch = self._surface(f"end:{end.name}")
             load += patch.load_vector(wrench_density(patch, end.point, end.wrench), count)
-        for body in case.bodies:
-            load += self._volume.load_vector(body_density(self._volume, body, self._density), count)
+        if case.inertia is not None:
+            load += self._volume.load_vector(body_density(self._volume, case.inertia, self._density), count)
         for line in case.lines:
             load += self._volume.load_vector(line_density(self._volume, line), count)
         return load

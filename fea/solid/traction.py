@@ -10,9 +10,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import BodyLoad, LineLoad, PinLoad
+from fea.common.link_loads import ALONG, PinLoad
 from fea.solid.quadrature import Quadrature, SurfaceQuadrature
 from geometry.base.errors import CannotRunError
+from loads.records.applied import BodyForce, LineLoad
 from loads.records.bearing import PressureLaw
 
 Transfer = Literal["eye-faces", "bore-shear"]
@@ -169,14 +170,14 @@ def couple_traction(surface: SurfaceQuadrature, centre: NDArray[np.float64], tor
     return np.asarray(density + wrench_density(surface, centre, target - surface.wrench(density, centre)))
 
 
-def body_density(volume: Quadrature, load: BodyLoad, density: float) -> Density:
+def body_density(volume: Quadrature, load: BodyForce, density: float) -> Density:
     """Return the weight and inertia per volume of a body.
 
     Parameters
     ----------
     volume : Quadrature
         Of the link.
-    load : BodyLoad
+    load : BodyForce
         Weight and inertia.
     density : float
         Of the material [tonne/mm³].
@@ -186,9 +187,7 @@ def body_density(volume: Quadrature, load: BodyLoad, density: float) -> Density:
     ndarray, shape (k, q, 3)
         Force per volume [N/mm³].
     """
-    arm = (volume.x - load.about) * np.array([1.0, 1.0, 0.0])
-    swirl = np.cross(np.array([0.0, 0.0, load.angular_acceleration]), arm)
-    return np.asarray(density * (load.specific_force - swirl + load.angular_speed**2 * arm))
+    return np.asarray(density * load.per_mass(volume.x))
 
 
 def line_density(volume: Quadrature, load: LineLoad) -> Density:
@@ -209,9 +208,9 @@ def line_density(volume: Quadrature, load: LineLoad) -> Density:
     ndarray, shape (k, q, 3)
         Force per volume [N/mm³].
     """
-    length = load.last - load.first
+    length = load.end - load.start
     x = volume.x[..., 0]
-    place = (x - load.first) / length
+    place = (x - load.start) / length
     inside = (place >= 0.0) & (place < 1.0)
     element = volume.measure / len(volume.w)
     slices = int(np.clip(length / (2.0 * element ** (1.0 / 3.0)), 1, 40))
@@ -219,16 +218,13 @@ def line_density(volume: Quadrature, load: LineLoad) -> Density:
     held = np.bincount(number[inside], weights=volume.w[inside], minlength=slices)
     if not (held > 0.0).all():
         raise CannotRunError(
-            f"a load spread from x = {load.first:g} mm to {load.last:g} mm lies partly outside of the link"
+            f"a load spread from x = {load.start:g} mm to {load.end:g} mm lies partly outside of the link"
         )
     weight = np.where(inside, length / slices / held[number], 0.0)
     share = place[..., None]
-    density = weight[..., None] * ((1.0 - share) * load.intensity[0] + share * load.intensity[1])
-    origin = np.array([load.first, 0.0, 0.0])
-    force = length * (load.intensity[0] + load.intensity[1]) / 2.0
-    arm = np.array([length**2 / 6.0, 0.0, 0.0])
-    moment = np.cross(arm, load.intensity[0] + 2.0 * load.intensity[1])
-    missing = np.concatenate([force, moment]) - volume.wrench(density, origin)
+    density = weight[..., None] * ((1.0 - share) * load.at_start + share * load.at_end)
+    origin = np.zeros(3)
+    missing = load.about_origin(ALONG) - volume.wrench(density, origin)
     return np.asarray(density + wrench_density(volume, origin, missing, weight))
 
 

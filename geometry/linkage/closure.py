@@ -255,6 +255,10 @@ class LoopClosure:
         linear = (self._derivative(self._point_rows, q) @ qddot[..., None])[..., 0]
         return np.asarray(linear + self._quadratic(self._point_rows, q, qdot))
 
+    @cached_property
+    def _origin_rows(self) -> Complex:
+        return np.array([self._origins[n] for n in self.linkage.moving])
+
     def origins(self, q: Real) -> Complex:
         """Origin of every moving link's frame in global axes [mm].
 
@@ -268,7 +272,37 @@ class LoopClosure:
         ndarray
             x + iy of the origins (..., moving links) [mm].
         """
-        return self._evaluate(np.array([self._origins[n] for n in self.linkage.moving]), q)
+        return self._evaluate(self._origin_rows, q)
+
+    def origin_velocities(self, q: Real, qdot: Real) -> Complex:
+        """Velocity of every moving link's origin.
+
+        Parameters
+        ----------
+        q, qdot : ndarray
+            Unknowns (..., unknowns) and their rates [1/s].
+
+        Returns
+        -------
+        ndarray
+            Velocities of the origins (..., moving links) [mm/s].
+        """
+        return np.asarray((self._derivative(self._origin_rows, q) @ qdot[..., None])[..., 0])
+
+    def origin_accelerations(self, q: Real, qdot: Real, qddot: Real) -> Complex:
+        """Acceleration of every moving link's origin.
+
+        Parameters
+        ----------
+        q, qdot, qddot : ndarray
+            Unknowns (..., unknowns), their rates [1/s] and second rates [1/s²].
+
+        Returns
+        -------
+        ndarray
+            Accelerations of the origins (..., moving links) [mm/s²].
+        """
+        return self.origin_velocities(q, qddot) + self._quadratic(self._origin_rows, q, qdot)
 
     def residual(self, q: Real) -> Real:
         """Closure equations (..., equations): mm for loops, longest link times rad for sliders.

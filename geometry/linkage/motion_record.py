@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.linkage.closure import LoopClosure
 from geometry.linkage.continuation import Track
 from geometry.linkage.linkage import Linkage
+from geometry.linkage.placement import Placement
 from geometry.linkage.pose_record import Pose
 
 Real = NDArray[np.float64]
@@ -62,6 +63,16 @@ class Motion:
     def closure(self) -> LoopClosure:
         """The loop equations that every pose fulfils."""
         return self.track.driven.closure
+
+    @cached_property
+    def placement(self) -> Placement:
+        """Where the links stand at every pose, and how they move."""
+        return Placement(closure=self.closure, q=self.q, qdot=self.qdot, qddot=self.qddot)
+
+    @cached_property
+    def virtual(self) -> Placement:
+        """The poses with derivatives by the coordinate for rates, as virtual work asks for."""
+        return Placement(closure=self.closure, q=self.q, qdot=self.first)
 
     @property
     def slides(self) -> bool:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geometry.linkage.closure import LoopClosure
 from geometry.linkage.linkage import Linkage
+from geometry.linkage.placement import Placement
 
 Real = NDArray[np.float64]
 
@@ -45,6 +46,11 @@ class Pose:
     def closure(self) -> LoopClosure:
         """The loop equations that the pose fulfils."""
         return LoopClosure(self.linkage)
+
+    @cached_property
+    def placement(self) -> Placement:
+        """Where the links stand, at rest."""
+        return Placement(closure=self.closure, q=self.q)
 
     @cached_property
     def angles(self) -> Mapping[str, float]:

@@ -1,13 +1,37 @@
-"""Loads on links as plain records: forces at points, forces spread along a link, body forces."""
+"""Loads on links as plain records: forces at points, forces spread along a link, weight and inertia.
 
-from dataclasses import dataclass
+Every record serves one pose or n of them, along a leading axis of its arrays, in global axes or in its link's own.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.linkage.pose import Pose
+from geometry.linkage.placement import Placement, vector
 
 Real = NDArray[np.float64]
+Axes = Literal["global", "link"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartMass:
+    """Mass of a link.
+
+    Attributes
+    ----------
+    mass : float
+        [tonne]
+    centroid : array (2,)
+        In the link's frame [mm].
+    inertia : float
+        Moment of inertia about the centroid and the axis z, in which the linkage moves [tonne mm²].
+    """
+
+    mass: float
+    centroid: np.ndarray[tuple[int], np.dtype[np.float64]]
+    inertia: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,123 +41,294 @@ class PointLoad:
     Attributes
     ----------
     link, point : str
-        Their names.
-    wrench : array (6,)
-        Fx, Fy, Fz [N], Mx, My, Mz [N mm] about the point, in global axes.
+        Where it acts.
+    wrench : array (..., 6)
+        Fx, Fy, Fz [N] and Mx, My, Mz [N mm] about the point.
+    axes : str
+        Axes of the components: "global", or "link" for a load that turns with its link.
     """
 
+    VECTORS: ClassVar[tuple[str, ...]] = ("wrench",)
+    SCALARS: ClassVar[tuple[str, ...]] = ()
     link: str
     point: str
     wrench: Real
+    axes: Axes = "global"
 
-    def resultant(self, pose: Pose) -> Real:
-        """Sum the load.
+    def resultant(self, place: Placement) -> Real:
+        """Return the wrench about the origin of the link's frame, in global axes.
 
         Parameters
         ----------
-        pose : Pose
-            Where the links are.
+        place : Placement
+            Where the links stand.
 
         Returns
         -------
-        array (6,)
-            Wrench about the origin of the link's frame, in global axes [N, N mm].
+        array (..., 6)
+            [N, N mm]
         """
-        arm = pose.position(self.link, self.point) - pose.origins[self.link]
-        return shifted(self.wrench, np.array([*arm, 0.0]))
+        return shifted(in_axes(self, "global", place).wrench, vector(place.arm(self.link, self.point)))
 
 
 @dataclass(frozen=True, kw_only=True)
 class LineLoad:
-    """A force spread along the axis of a link between two stations.
+    """A force spread along the axis of a link (y = z = 0), linear between two stations.
 
     Attributes
     ----------
     link : str
-        Name of the link.
+        On which it acts.
     start, end : float
-        Stations x in the link's frame [mm], start < end.
-    at_start, at_end : array (3,)
-        Force per length at the two stations in global axes [N/mm], linear between them.
+        Stations, x in the link's frame [mm], start < end.
+    at_start, at_end : array (..., 3)
+        Force per length there [N/mm].
+    axes : str
+        Axes of the components, as for ``PointLoad``.
     """
 
+    VECTORS: ClassVar[tuple[str, ...]] = ("at_start", "at_end")
+    SCALARS: ClassVar[tuple[str, ...]] = ()
     link: str
     start: float
     end: float
     at_start: Real
     at_end: Real
+    axes: Axes = "global"
 
-    def resultant(self, pose: Pose) -> Real:
-        """Sum the load.
+    @property
+    def force(self) -> Real:
+        """Its whole force (..., 3) [N]."""
+        return np.asarray(0.5 * (self.end - self.start) * (self.at_start + self.at_end))
+
+    @property
+    def first_moment(self) -> Real:
+        """Integral (..., 3) of x times the force per length [N mm]."""
+        length = self.end - self.start
+        return np.asarray(self.start * self.force + length**2 * (self.at_start + 2.0 * self.at_end) / 6.0)
+
+    def about_origin(self, along: Real) -> Real:
+        """Return the wrench (..., 6) about the origin of the link's frame.
 
         Parameters
         ----------
-        pose : Pose
-            Where the links are.
+        along : array (..., 3)
+            The link's x, in the axes of the components.
 
         Returns
         -------
-        array (6,)
-            Wrench about the origin of the link's frame, in global axes [N, N mm].
+        array (..., 6)
+            [N, N mm]
         """
-        length = self.end - self.start
-        total = 0.5 * length * (self.at_start + self.at_end)
-        first = length * (
-            self.start * (self.at_start + self.at_end) / 2 + length * (self.at_start + 2 * self.at_end) / 6
-        )
-        axis = np.array([*pose.rotation(self.link)[:, 0], 0.0])
-        return np.concatenate([total, np.cross(axis, first)])
+        none = np.zeros(self.first_moment.shape)
+        moment = shifted(np.concatenate([self.first_moment, none], axis=-1), along)[..., 3:]
+        return np.concatenate([np.broadcast_to(self.force, moment.shape), moment], axis=-1)
+
+    def resultant(self, place: Placement) -> Real:
+        """Return the wrench about the origin of the link's frame, in global axes.
+
+        Parameters
+        ----------
+        place : Placement
+            Where the links stand.
+
+        Returns
+        -------
+        array (..., 6)
+            [N, N mm]
+        """
+        line = in_axes(self, "global", place)
+        return line.about_origin(vector(place.direction(self.link)))
 
 
 @dataclass(frozen=True, kw_only=True)
 class BodyForce:
-    """A force proportional to mass, such as a part's own weight.
+    """Weight and inertia of a link: force per mass s - α z × r + ω² r, at r from the origin of the link's frame.
 
     Attributes
     ----------
     link : str
-        Name of the link.
-    mass : float
-        Mass [tonne].
-    centroid : array (2,)
-        In the link's frame [mm].
-    acceleration : array (3,)
-        Force per mass at the centroid in global axes [mm/s²]: g itself for weight.
-    angular_speed, angular_acceleration : float
-        Of the link [rad/s, rad/s²]; where stated, the force per mass varies as - alpha z x r + omega^2 r with r from
-        the centroid.
-    inertia : float
-        Moment of inertia about the centroid and z [tonne mm²].
+        On which it acts.
+    mass : PartMass
+        On which it acts there.
+    specific_force : array (..., 3)
+        s, gravity less the acceleration of the origin of the link's frame [mm/s²].
+    angular_acceleration : array (...)
+        α about z [rad/s²].
+    angular_speed_squared : array (...)
+        ω² [rad²/s²].
+    axes : str
+        Axes of the components, as for ``PointLoad``.
     """
 
+    VECTORS: ClassVar[tuple[str, ...]] = ("specific_force",)
+    SCALARS: ClassVar[tuple[str, ...]] = ("angular_acceleration", "angular_speed_squared")
     link: str
-    mass: float
-    centroid: Real
-    acceleration: Real
-    angular_speed: float = 0.0
-    angular_acceleration: float = 0.0
-    inertia: float = 0.0
+    mass: PartMass
+    specific_force: Real
+    angular_acceleration: Real | float = 0.0
+    angular_speed_squared: Real | float = 0.0
+    axes: Axes = "global"
 
-    def resultant(self, pose: Pose) -> Real:
-        """Sum the load.
+    def per_mass(self, at: Real) -> Real:
+        """Return the force per mass (..., 3) [mm/s²].
 
         Parameters
         ----------
-        pose : Pose
-            Where the links are.
+        at : array (..., 3)
+            Places of the link, from the origin of its frame in the axes of the components [mm].
 
         Returns
         -------
-        array (6,)
-            Wrench about the origin of the link's frame, in global axes [N, N mm].
+        array (..., 3)
+            [mm/s²]
         """
-        moment = np.array([0.0, 0.0, -self.inertia * self.angular_acceleration])
-        force = np.concatenate([self.mass * self.acceleration, moment])
-        arm = pose.rotation(self.link) @ self.centroid
-        return shifted(force, np.array([*arm, 0.0]))
+        x, y, rate, square = at[..., 0], at[..., 1], self.angular_acceleration, self.angular_speed_squared
+        turning = np.stack([square * x + rate * y, square * y - rate * x, np.zeros(np.shape(square * x))], axis=-1)
+        return np.asarray(self.specific_force + turning)
+
+    def at_centroid(self, arm: Real) -> Real:
+        """Return the wrench (..., 6) on the mass about its centroid.
+
+        Parameters
+        ----------
+        arm : array (..., 3)
+            From the origin of the link's frame to the centroid in the axes of the components [mm].
+
+        Returns
+        -------
+        array (..., 6)
+            [N, N mm]
+        """
+        force = self.mass.mass * self.per_mass(arm)
+        wrench = np.zeros((*force.shape[:-1], 6))
+        wrench[..., :3], wrench[..., 5] = force, -self.mass.inertia * np.asarray(self.angular_acceleration)
+        return wrench
+
+    def resultant(self, place: Placement) -> Real:
+        """Return the wrench about the origin of the link's frame, in global axes.
+
+        Parameters
+        ----------
+        place : Placement
+            Where the links stand.
+
+        Returns
+        -------
+        array (..., 6)
+            [N, N mm]
+        """
+        arm = vector(place.direction(self.link) * complex(*self.mass.centroid))
+        return shifted(in_axes(self, "global", place).at_centroid(arm), arm)
 
 
 Load = PointLoad | LineLoad | BodyForce
+AnyLoad = TypeVar("AnyLoad", bound=Load)
+
+
+def in_axes(load: AnyLoad, axes: Axes, place: Placement) -> AnyLoad:
+    """Return a load in global axes or in those of its link.
+
+    Parameters
+    ----------
+    load : PointLoad, LineLoad or BodyForce
+        In either axes.
+    axes : str
+        The axes that are wanted.
+    place : Placement
+        Where the links stand.
+
+    Returns
+    -------
+    PointLoad, LineLoad or BodyForce
+        The same load.
+    """
+    if load.axes == axes:
+        return load
+    turn = place.axes(load.link)
+    return _with(turned(load, turn if axes == "global" else turn.swapaxes(-1, -2)), axes=axes)
+
+
+def turned(load: AnyLoad, turn: Real) -> AnyLoad:
+    """Return a load with all of its vectors turned.
+
+    Parameters
+    ----------
+    load : PointLoad, LineLoad or BodyForce
+        The load.
+    turn : array (..., 3, 3)
+        What its vectors are multiplied by.
+
+    Returns
+    -------
+    PointLoad, LineLoad or BodyForce
+        The load, its axes named as before.
+    """
+    return _with(load, **{name: rotated(turn, getattr(load, name)) for name in load.VECTORS})
+
+
+def rotated(turn: Real, vectors: Real) -> Real:
+    """Return the product of matrices with one or more vectors side by side.
+
+    Parameters
+    ----------
+    turn : array (..., 3, 3)
+        The matrices.
+    vectors : array (..., 3 k)
+        k vectors.
+
+    Returns
+    -------
+    array (..., 3 k)
+        The products.
+    """
+    rows = vectors.reshape(*vectors.shape[:-1], -1, 3) @ turn.swapaxes(-1, -2)
+    return np.asarray(rows.reshape(*rows.shape[:-2], -1))
+
+
+def at_poses(load: AnyLoad, shape: tuple[int, ...]) -> AnyLoad:
+    """Return a load with the poses as leading axes of all of its arrays, where it is the same at every pose.
+
+    Parameters
+    ----------
+    load : PointLoad, LineLoad or BodyForce
+        The load.
+    shape : tuple
+        () for one pose, (n,) for n.
+
+    Returns
+    -------
+    PointLoad, LineLoad or BodyForce
+        With arrays (n, ...).
+    """
+    vectors = {name: getattr(load, name) for name in load.VECTORS}
+    scalars = {name: np.broadcast_to(getattr(load, name), shape) for name in load.SCALARS}
+    spread = {name: np.broadcast_to(vector, (*shape, vector.shape[-1])) for name, vector in vectors.items()}
+    return _with(load, **spread, **scalars)
+
+
+def _with(load: AnyLoad, **changes: Any) -> AnyLoad:
+    changed: Any = load
+    found: AnyLoad = replace(changed, **changes)
+    return found
+
+
+def chosen(record: Any, poses: Any) -> Any:
+    """Return a record of loads at one or some of its poses.
+
+    Parameters
+    ----------
+    record : Load, or part of the loads on a link
+        With poses as the leading axis of its ``VECTORS`` and ``SCALARS``.
+    poses : int, slice, numbers or mask (n,)
+        Which poses.
+
+    Returns
+    -------
+    Load, or part of the loads on a link
+        At these poses.
+    """
+    return replace(record, **{name: getattr(record, name)[poses] for name in (*record.VECTORS, *record.SCALARS)})
 
 
 def shifted(wrench: Real, arm: Real) -> Real:
@@ -141,14 +336,20 @@ def shifted(wrench: Real, arm: Real) -> Real:
 
     Parameters
     ----------
-    wrench : array (6,)
+    wrench : array (..., 6)
         Force [N] and moment [N mm] about its own point.
-    arm : array (3,)
+    arm : array (..., 3)
         Its own point as seen from the other one [mm].
 
     Returns
     -------
-    array (6,)
-        Force [N] and moment [N mm] about the other point.
+    array (..., 6)
+        About the other point.
     """
-    return np.concatenate([wrench[:3], wrench[3:] + np.cross(arm, wrench[:3])])
+    (fx, fy, fz), (x, y, z) = (np.moveaxis(part, -1, 0) for part in (wrench[..., :3], arm))
+    found = np.empty((*np.broadcast_shapes(wrench.shape[:-1], arm.shape[:-1]), 6))
+    found[...] = wrench
+    found[..., 3] += y * fz - z * fy
+    found[..., 4] += z * fx - x * fz
+    found[..., 5] += x * fy - y * fx
+    return found

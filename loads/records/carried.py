@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Discriminator, Tag
 
 from geometry.base.model import CaseModel, Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length, Mass
+from loads.records.applied import PartMass
 
 
 class CarriedSpread(CaseModel):
@@ -29,21 +31,6 @@ class CarriedBody(CaseModel):
     radius_of_gyration: Annotated[Length, NOT_NEGATIVE] = 0.0
     """About the centroid; a thin rod's is its length over the root of 12."""
 
-    def place(self, points: Mapping[str, tuple[float, float]]) -> tuple[float, float]:
-        """Return where the body's centroid is.
-
-        Parameters
-        ----------
-        points : mapping of str to tuple of float
-            The link's points in its frame [mm].
-
-        Returns
-        -------
-        tuple of float
-            Centroid in the link's frame [mm].
-        """
-        return points[self.at] if self.centroid is None else self.centroid
-
 
 def _kind(stated: Any) -> str:
     keys = stated if isinstance(stated, dict) else vars(stated) if isinstance(stated, CaseModel) else ()
@@ -51,3 +38,27 @@ def _kind(stated: Any) -> str:
 
 
 Carried = Annotated[Annotated[CarriedSpread, Tag("spread")] | Annotated[CarriedBody, Tag("body")], Discriminator(_kind)]
+
+
+def mass_of(carried: CarriedSpread | CarriedBody, points: Mapping[str, tuple[float, float]]) -> PartMass:
+    """Return what a link carries as a mass of its own; a spread one is a thin rod along the link's axis.
+
+    Parameters
+    ----------
+    carried : CarriedSpread or CarriedBody
+        What is carried.
+    points : mapping of str to (x, y)
+        The link's points [mm].
+
+    Returns
+    -------
+    PartMass
+        In the link's frame.
+    """
+    if isinstance(carried, CarriedSpread):
+        start, end = points[carried.start][0], points[carried.end][0]
+        centroid, inertia = np.array([(start + end) / 2.0, 0.0]), carried.mass * (end - start) ** 2 / 12.0
+    else:
+        centroid = np.array(points[carried.at] if carried.centroid is None else carried.centroid)
+        inertia = carried.mass * carried.radius_of_gyration**2
+    return PartMass(mass=carried.mass, centroid=centroid, inertia=inertia)

@@ -341,6 +341,6 @@ def _imbalance(
             moment += sign * turn * row[torque] * solution[torque] * _MM
     for load in loads:
         if load.link == link:
-            resultant = load.resultant(pose)
+            resultant = load.resultant(pose.placement)
             force, moment = force + resultant[:2], moment + resultant[5]
     return Imbalance(link=link, force=force, moment=float(moment))

@@ -1,49 +1,21 @@
-"""From the load case that a user states to the loads that act on the links."""
+"""From the load case that a user states to all that acts on the links, at one pose or at n."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from geometry.linkage.motion import solve_motion
+from geometry.linkage.placement import Placement, vector
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.aero import air_loads
-from loads.records.applied import BodyForce, LineLoad, Load, PointLoad
-from loads.records.load_case import Axes, LoadCase, gravity, vector3
+from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad, at_poses, shifted
+from loads.records.carried import Carried, CarriedSpread, mass_of
+from loads.records.load_case import LoadCase, gravity, vector3
 
-
-@dataclass(frozen=True, kw_only=True)
-class PartMass:
-    """Mass of a link [tonne], its centroid (2,) in the link's frame [mm], its moment of inertia [tonne mm²].
-
-    The moment of inertia is the one about the centroid and the axis z, in which the linkage moves.
-    """
-
-    mass: float
-    centroid: np.ndarray[tuple[int], np.dtype[np.float64]]
-    inertia: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class StatedLoad:
-    """A load as stated, whatever the pose.
-
-    load  its components in the axes named by ``axes``
-    axes  "global", or "link" for a load that turns with its link
-    """
-
-    load: Load
-    axes: Axes = "global"
-
-    def at(self, pose: Pose) -> Load:
-        """Return the load in global axes at a pose."""
-        if self.axes == "global" or isinstance(self.load, BodyForce):
-            return self.load
-        turn = np.eye(3)
-        turn[:2, :2] = pose.rotation(self.load.link)
-        if isinstance(self.load, PointLoad):
-            return replace(self.load, wrench=np.concatenate([turn @ self.load.wrench[:3], turn @ self.load.wrench[3:]]))
-        return replace(self.load, at_start=turn @ self.load.at_start, at_end=turn @ self.load.at_end)
+Real = NDArray[np.float64]
 
 
 def needs_masses(case: Case) -> bool:
@@ -51,32 +23,104 @@ def needs_masses(case: Case) -> bool:
     return any(load_case.own_weight or load_case.speed != 0.0 for load_case in case.load_cases.values())
 
 
-def actions(case: Case, load_case: LoadCase, pose: Pose, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
-    """Return every load of a load case at a pose, in global axes; ``masses`` as for ``stated_loads``."""
-    return tuple(stated.at(pose) for stated in stated_loads(case, load_case, masses))
+def placed(pose: Pose, speed: float) -> Placement:
+    """Return where the links stand at a pose, and how they move while its coordinate turns at a constant speed.
+
+    Parameters
+    ----------
+    pose : Pose
+        The pose.
+    speed : float
+        Of its coordinate [rad/s]; at 0 no rates are sought.
+
+    Raises
+    ------
+    CaseError
+        For a speed of a pose without coordinate or at a dead point of its coordinate.
+    """
+    if speed == 0.0:
+        return pose.placement
+    return replace(solve_motion(pose, [pose.held], speed=speed).placement.chosen(0), q=pose.q)
 
 
-def stated_loads(case: Case, load_case: LoadCase, masses: Mapping[str, PartMass]) -> tuple[StatedLoad, ...]:
-    """Return every load of a load case, good for any pose; the links in ``masses`` weigh if any weighs."""
-    loads: list[StatedLoad] = []
+def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
+    """Return all that acts on the links but what they do to each other: stated loads, air, weight and inertia.
+
+    Parameters
+    ----------
+    case, load_case
+        What is stated, and which of it.
+    place : Placement
+        Where the links stand; with rates inertia acts too.
+    masses : mapping of str to PartMass
+        Of the parts alone; what links carry comes from the case.
+    """
+    loads = stated_loads(case, load_case)
+    if load_case.own_weight or place.qddot is not None:
+        pull = gravity(load_case) if load_case.own_weight else np.zeros(3)
+        loads += inertia_loads(place, masses, pull)
+        if load_case.carried:
+            loads += tuple(_carried_load(place, carried, pull) for carried in case.carried)
+    return tuple(at_poses(load, place.shape) for load in loads)
+
+
+def stated_loads(case: Case, load_case: LoadCase) -> tuple[Load, ...]:
+    """Return the forces, moments, spread loads and air of a load case, good for any pose."""
+    loads: list[Load] = []
     for force in load_case.forces:
         wrench = np.concatenate([vector3(force.force), np.zeros(3)])
-        loads.append(StatedLoad(load=PointLoad(link=force.link, point=force.at, wrench=wrench), axes=force.axes))
+        loads.append(PointLoad(link=force.link, point=force.at, wrench=wrench, axes=force.axes))
     for moment in load_case.moments:
         wrench = np.array([0.0, 0.0, 0.0, *moment.moment])
-        loads.append(StatedLoad(load=PointLoad(link=moment.link, point=moment.at, wrench=wrench)))
+        loads.append(PointLoad(link=moment.link, point=moment.at, wrench=wrench))
     for spread in load_case.spread:
         points = case.links[spread.link].points
         start, end = sorted((points[spread.start][0], points[spread.end][0]))
         density = vector3(spread.total) / (end - start)
-        line = LineLoad(link=spread.link, start=start, end=end, at_start=density, at_end=density)
-        loads.append(StatedLoad(load=line, axes=spread.axes))
+        loads.append(
+            LineLoad(link=spread.link, start=start, end=end, at_start=density, at_end=density, axes=spread.axes)
+        )
     for i, air in enumerate(load_case.air):
-        loads += [StatedLoad(load=load) for load in air_loads(air, f"air.{i}", case.link_points)]
-    if load_case.own_weight:
-        pull = gravity(load_case)
-        loads += [
-            StatedLoad(load=BodyForce(link=link, mass=own.mass, centroid=own.centroid, acceleration=pull))
-            for link, own in masses.items()
-        ]
+        loads += air_loads(air, f"air.{i}", case.link_points)
     return tuple(loads)
+
+
+def inertia_loads(place: Placement, masses: Mapping[str, PartMass], gravity: Real) -> tuple[BodyForce, ...]:
+    """Return what weight and inertia of the links' masses do to them.
+
+    Every mass element dm of a link loads it with (g - a) dm, where a is its acceleration (after D'Alembert; Norton,
+    Design of Machinery, 5th ed., chapters 10 and 11).
+
+    Parameters
+    ----------
+    place : Placement
+        Where the links stand and how they move; at rest there is weight alone.
+    masses : mapping of str to PartMass
+        Of links.
+    gravity : array (3,)
+        Weight per mass [mm/s²].
+    """
+    return tuple(
+        BodyForce(
+            link=link,
+            mass=own,
+            specific_force=gravity - vector(place.acceleration(link)),
+            angular_acceleration=place.spin_rate(link),
+            angular_speed_squared=place.spin(link) ** 2,
+        )
+        for link, own in masses.items()
+    )
+
+
+def _carried_load(place: Placement, carried: Carried, gravity: Real) -> Load:
+    """What weight and inertia of a carried mass do to its link."""
+    link, points = carried.link, place.linkage.links[carried.link].points
+    own, turn = mass_of(carried, points), place.direction(carried.link)
+    [force] = inertia_loads(place, {link: own}, gravity)
+    if isinstance(carried, CarriedSpread):
+        start, end = sorted((points[carried.start][0], points[carried.end][0]))
+        first, last = (own.mass / (end - start) * force.per_mass(vector(x * turn)) for x in (start, end))
+        return LineLoad(link=link, start=start, end=end, at_start=first, at_end=last)
+    wrench = force.at_centroid(vector(turn * complex(*own.centroid)))
+    arm = vector(turn * complex(*(own.centroid - np.array(points[carried.at]))))
+    return PointLoad(link=link, point=carried.at, wrench=shifted(wrench, arm))

@@ -11,11 +11,14 @@ from geometry.base.errors import CaseError
 from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
-from loads.records.load_case import LoadCase
-from loads.states.actions import PartMass, needs_masses, stated_loads
+from loads.records.applied import Load, PartMass
+from loads.records.load_case import LoadCase, gravity
+from loads.states.actions import acting_loads, inertia_loads, needs_masses, stated_loads
 from loads.states.kinetostatics import (
     Kinetostatics,
+    Power,
     dead_points,
+    energies,
     is_determinate,
     solve_kinetostatics,
     torque_by_virtual_work,
@@ -30,17 +33,28 @@ Real = NDArray[np.float64]
 class CaseMotion:
     """A case over its motion.
 
-    masses  of the links' parts; empty where nothing weighs and inertia is left out
-    forces  load case -> joint forces; empty where they do not follow from equilibrium (redundant linkages)
-    torque  load case -> drive torque (n,) [N mm], or force along the guide [N] where the drive ``pushes``; NaN at dead
-            points of the driven link
-    dead_points  values of the coordinate [rad, mm] at which the driven link turns back
+    Attributes
+    ----------
+    case, motion, drive
+        The case, the n poses of its linkage, and what drives it.
+    masses : mapping of str to PartMass
+        Of the links' parts; empty where nothing weighs and inertia is left out.
+    loads : mapping of str to tuple of Load
+        Load case -> all that acts on the links at every pose, inertia included.
+    forces : mapping of str to Kinetostatics
+        Load case -> joint forces; empty where they do not follow from equilibrium (redundant linkages).
+    torque : mapping of str to array (n,)
+        Load case -> drive torque [N mm], or force along the guide [N] where the drive ``pushes``; NaN at dead points
+        of the driven link.
+    dead_points : tuple of float
+        Values of the coordinate [rad, mm] at which the driven link turns back.
     """
 
     case: Case
     motion: Motion
     drive: Drive
     masses: Mapping[str, PartMass]
+    loads: Mapping[str, tuple[Load, ...]]
     forces: Mapping[str, Kinetostatics]
     torque: Mapping[str, Real]
     dead_points: tuple[float, ...]
@@ -81,16 +95,19 @@ def solve_case_motion(case: Case) -> CaseMotion:
                 f"load_cases.{name}.speed: it is the speed of the pose's coordinate '{case.pose.coordinate}', but the "
                 f"motion prescribes '{coordinate}'; use one link for both, or leave this speed out"
             )
-    laden = laden_masses(case, masses) if masses or case.carried else {}
-    held = {name: laden if load_case.carried else masses for name, load_case in case.load_cases.items()}
-    loads = {name: stated_loads(case, load_case, held[name]) for name, load_case in case.load_cases.items()}
     moved = {name: _at_speed_of(motion, load_case) for name, load_case in case.load_cases.items()}
-    inert = {name: held[name] if with_inertia(case, name) else {} for name in loads}
+    loads = {}
+    for name, load_case in case.load_cases.items():
+        place = moved[name].placement
+        loads[name] = acting_loads(case, load_case, place if with_inertia(case, name) else place.at_rest, masses)
     forces: dict[str, Kinetostatics] = {}
     if is_determinate(case.linkage):
-        forces = {n: solve_kinetostatics(moved[n], drive, acting, inert[n]) for n, acting in loads.items()}
+        forces = {
+            n: solve_kinetostatics(moved[n], drive, acting, _energies(case, n, moved[n], masses))
+            for n, acting in loads.items()
+        }
     torque = {
-        n: drive_effort(forces[n]) if forces else torque_by_virtual_work(moved[n], drive, acting, inert[n])
+        n: drive_effort(forces[n]) if forces else torque_by_virtual_work(moved[n], drive, acting)
         for n, acting in loads.items()
     }
     return CaseMotion(
@@ -98,6 +115,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
         motion=motion,
         drive=drive,
         masses=masses,
+        loads=loads,
         forces=forces,
         torque=torque,
         dead_points=dead_points(motion, drive),
@@ -106,7 +124,16 @@ def solve_case_motion(case: Case) -> CaseMotion:
 
 def drive_effort(solved: Kinetostatics) -> Real:
     """Return the drive torque (n,) [N mm], or the drive force (n,) [N] where the drive pushes a slider."""
-    return solved.push if solved.drive.pushes(solved.motion.linkage) else solved.torque
+    assert solved.drive is not None
+    return np.asarray(solved.drive_force if solved.drive.pushes(solved.motion.linkage) else solved.drive_torque)
+
+
+def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMass]) -> Power:
+    """Return the energies of what a load case moves, each link's mass with what it carries as one."""
+    load_case, place = case.load_cases[name], motion.placement
+    laden = laden_masses(case, masses) if load_case.carried else masses
+    weights = inertia_loads(place.at_rest, laden, gravity(load_case)) if load_case.own_weight else ()
+    return energies(place, (*stated_loads(case, load_case), *weights), laden if with_inertia(case, name) else {})
 
 
 def with_inertia(case: Case, load_case: str) -> bool:

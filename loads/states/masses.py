@@ -8,8 +8,8 @@ import numpy as np
 from geometry.meshing.mesh import MassProperties, mass_properties
 from geometry.parts.part import Body
 from loads.case.case import Case
-from loads.states.actions import PartMass
-from loads.states.inertia import with_carried
+from loads.records.applied import PartMass
+from loads.records.carried import mass_of
 
 
 @lru_cache(maxsize=256)
@@ -38,10 +38,25 @@ def part_masses(case: Case) -> dict[str, PartMass]:
 
 
 def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMass]:
-    """Return the masses together with what the case's links carry."""
+    """Return the masses together with what the case's links carry, each link's as one.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    masses : mapping of str to PartMass
+        Of the parts alone.
+    """
     found = dict(masses)
-    for link in case.linkage.moving:
-        carried = tuple(mass for mass in case.carried if mass.link == link)
-        if carried:
-            found[link] = with_carried(found.get(link), carried, case.links[link].points)
+    for carried in case.carried:
+        own, more = found.get(carried.link), mass_of(carried, case.links[carried.link].points)
+        found[carried.link] = more if own is None else together(own, more)
     return found
+
+
+def together(one: PartMass, other: PartMass) -> PartMass:
+    """Return two masses as one, by Huygens and Steiner's parallel-axis rule."""
+    total = one.mass + other.mass
+    centre = np.asarray((one.mass * one.centroid + other.mass * other.centroid) / total)
+    inertia = sum(part.inertia + part.mass * float(np.sum((part.centroid - centre) ** 2)) for part in (one, other))
+    return PartMass(mass=total, centroid=centre, inertia=float(inertia))

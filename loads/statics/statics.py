@@ -1,25 +1,26 @@
-"""Pinned-frame statics: three equilibrium equations per moving link, assembled from the pose.
+"""Equilibrium of pinned links: three equations per moving link, assembled for one pose or for n of them.
 
 Each link is cut free. With r the arm from the origin of the link's frame to a joint,
 
     sum F_x = 0,    sum F_y = 0,    sum (r x F)_z + M_z = 0
 
-over joint forces, applied loads and the drive torque (Norton, Design of Machinery, 5th ed.,
-chapter 11, with accelerations zero). The unknown of a revolute joint is the force that the
-joint's first link exerts on its second; a pin in a slot carries a normal force, a slider a normal
-force and a moment.
+over joint forces, applied loads and the drive torque (Norton, Design of Machinery, 5th ed., chapter 11; inertia is
+among the loads, after D'Alembert). The unknown of a revolute joint is the force that the joint's first link exerts on
+its second; a pin in a slot carries a normal force, a slider a normal force and a moment. Joints have no friction.
 """
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CaseError
 from geometry.linkage.linkage import Linkage
+from geometry.linkage.placement import Complex, Placement, vector
 from geometry.linkage.pose import Pose
 from loads.records.applied import Load, shifted
 
@@ -59,9 +60,16 @@ class Drive:
 
 @dataclass(frozen=True, kw_only=True)
 class JointReaction:
-    """What link ``by`` does to link ``on`` at a joint: wrench (6,) about the pin, global axes [N, N mm].
+    """What one link does to the other at a joint, at one pose or at n.
 
-    arm  (3,) from the point of link ``by`` to the pin, which has travelled in a slot or along a guide [mm]
+    Attributes
+    ----------
+    joint, on, by : str
+        The joint, its second link and its first.
+    wrench : array (..., 6)
+        What ``by`` does to ``on``, about the pin, global axes [N, N mm].
+    arm : array (..., 3)
+        From the point of link ``by`` to the pin, which has travelled in a slot or along a guide [mm].
     """
 
     joint: str
@@ -72,12 +80,12 @@ class JointReaction:
 
     @property
     def force(self) -> Real:
-        """Force (3,) [N]."""
-        return self.wrench[:3]
+        """Force (..., 3) [N]."""
+        return self.wrench[..., :3]
 
     @property
     def magnitude(self) -> float:
-        """Size of the force [N]."""
+        """Size of the force at one pose [N]."""
         return float(np.linalg.norm(self.wrench[:3]))
 
 
@@ -85,11 +93,18 @@ class JointReaction:
 class System:
     """The equilibrium equations [A][R] = [b], with a name for every row and column.
 
-    matrix   (3 links, unknowns); force rows in N, moment rows in N mm
-    rhs      (3 links,)
-    rows     (link, "Fx" | "Fy" | "Mz") of every row
-    columns  name of every unknown: RAx, RAy, ..., T
-    scale    length by which moments are divided before singular values are taken [mm]
+    Attributes
+    ----------
+    matrix : array (..., 3 links, unknowns)
+        Force rows in N, moment rows in N mm.
+    rhs : array (..., 3 links)
+        The loads, with their sign turned.
+    rows : tuple of (link, "Fx" | "Fy" | "Mz")
+        Names of the rows.
+    columns : tuple of str
+        Names of the unknowns: RAx, RAy, ..., T.
+    scale : float
+        Length by which moments are divided before singular values are taken [mm].
     """
 
     matrix: Real
@@ -99,19 +114,23 @@ class System:
     scale: float
 
     @cached_property
+    def row_scale(self) -> Real:
+        """By what each row is divided (rows,)."""
+        return np.array([self.scale if kind == "Mz" else 1.0 for _, kind in self.rows])
+
+    @cached_property
+    def column_scale(self) -> Real:
+        """By what each unknown without dimension is multiplied (unknowns,)."""
+        return np.array([self.scale if name == "T" or name.startswith("M:") else 1.0 for name in self.columns])
+
+    @cached_property
     def scaled(self) -> Real:
         """The matrix without dimensions: moments and the torque divided by ``scale``."""
-        row = np.array([1.0 / self.scale if kind == "Mz" else 1.0 for _, kind in self.rows])
-        column = np.array([self.scale if self._is_moment(name) else 1.0 for name in self.columns])
-        return np.asarray(row[:, None] * self.matrix * column)
-
-    @staticmethod
-    def _is_moment(column: str) -> bool:
-        return column == "T" or column.startswith("M:")
+        return np.asarray(self.matrix * (self.column_scale / self.row_scale[:, None]))
 
     @cached_property
     def singular_values(self) -> Real:
-        """Singular values of the scaled matrix, falling."""
+        """Singular values (..., unknowns) of the scaled matrix, falling."""
         return np.asarray(np.linalg.svd(self.scaled, compute_uv=False), dtype=float)
 
     @property
@@ -120,29 +139,52 @@ class System:
         smallest = float(self.singular_values[-1])
         return float(self.singular_values[0]) / smallest if smallest > 0.0 else math.inf
 
+    def solved(self) -> tuple[Real, Real]:
+        """Return the unknowns (..., unknowns) and the residual (...): the largest one, as a share of the load.
+
+        Unknowns that are but rounding beside the largest are zero; as loads on a link these would not balance.
+        """
+        right = self.rhs / self.row_scale
+        unknowns = np.linalg.solve(self.scaled, right[..., None])[..., 0]
+        largest = np.abs(unknowns).max(axis=-1, keepdims=True, initial=0.0)
+        unknowns = np.where(np.abs(unknowns) <= ROUNDING * largest, 0.0, unknowns)
+        left = (self.scaled @ unknowns[..., None])[..., 0] - right
+        size = np.maximum(np.abs(right).max(axis=-1, initial=0.0), 1e-300)
+        return unknowns * self.column_scale, np.abs(left).max(axis=-1) / size
+
 
 @dataclass(frozen=True, kw_only=True)
-class Reactions:
-    """Joint reactions and drive torque of one pose under one set of loads.
+class Equilibrium:
+    """Joint forces and what the drive exerts, at one pose or at n, under one set of loads.
 
-    drive_torque  N mm, counter-clockwise positive, on the driven link; 0 without drive and where it pushes
-    drive_force   N, along the guide's direction, on the driven link; 0 unless the drive pushes. The slider's own
-                  reaction holds it
-    residual      largest unbalanced force or moment over the longest link, as a share of the load
-    unknowns      (columns,) the solution vector [R]
+    Attributes
+    ----------
+    drive : Drive, optional
+        None where nothing is driven.
+    joints : mapping of str to JointReaction
+        What the joints carry.
+    drive_torque : float or array (n,)
+        On the driven link, counter-clockwise positive [N mm]; 0 without drive and where it pushes.
+    drive_force : float or array (n,)
+        On the driven link along the guide's direction [N]; 0 unless the drive pushes. The slider's own reaction
+        holds it.
+    residual : float or array (n,)
+        Largest unbalanced force or moment over the longest link, as a share of the load.
     """
 
-    pose: Pose
     drive: Drive | None
-    system: System
-    unknowns: Real
     joints: Mapping[str, JointReaction]
-    drive_torque: float
-    residual: float
-    drive_force: float = 0.0
+    drive_torque: Any
+    drive_force: Any = 0.0
+    residual: Any
+
+    @property
+    def placement(self) -> Placement:
+        """Where the links stand."""
+        raise NotImplementedError
 
     def on_link(self, link: str) -> tuple[tuple[str, Real], ...]:
-        """(point, wrench (6,) about it in global axes) of every joint reaction that acts on a link.
+        """Return (point, wrench (..., 6) about it in global axes) of every joint reaction that acts on a link.
 
         The drive torque is not among them: see ``drive_torque``.
         """
@@ -150,86 +192,105 @@ class Reactions:
         for name, reaction in self.joints.items():
             if link in (reaction.on, reaction.by):
                 sign = 1.0 if reaction.on == link else -1.0
-                point = self.pose.linkage.point_of(name, link)
                 wrench = sign * reaction.wrench
                 if link == reaction.by:
                     wrench = shifted(wrench, reaction.arm)
-                found.append((point, wrench))
+                found.append((self.placement.linkage.point_of(name, link), wrench))
         return tuple(found)
 
-    def torque_on(self, link: str) -> float:
+    def torque_on(self, link: str) -> Any:
         """Drive torque that acts on a link [N mm]: on the driven link, and its reaction on the other."""
-        if self.drive is None or self.drive.pushes(self.pose.linkage):
+        linkage = self.placement.linkage
+        if self.drive is None or self.drive.pushes(linkage):
             return 0.0
         if link == self.drive.link:
             return self.drive_torque
-        return -self.drive_torque if link in self.pose.linkage.joints[self.drive.joint].links else 0.0
+        return -self.drive_torque if link in linkage.joints[self.drive.joint].links else 0.0
 
 
-def assemble(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> System:
-    """Write the equilibrium equations of every moving link at this pose.
+@dataclass(frozen=True, kw_only=True)
+class Reactions(Equilibrium):
+    """Joint reactions and drive torque of one pose, with the equations that have them.
 
-    The plane's three equations alone: see ``loads/records/applied.py`` for the loads; out-of-plane
-    components do not enter.
+    Attributes
+    ----------
+    pose, system
+        The pose, and its equations.
+    unknowns : array (columns,)
+        The solution vector [R].
     """
-    linkage = pose.linkage
-    entries: list[tuple[str, Real]] = []
-    for name in linkage.joints:
-        entries.extend(_columns(pose, name))
+
+    pose: Pose
+    system: System
+    unknowns: Real
+
+    @property
+    def placement(self) -> Placement:
+        """Where the links stand."""
+        return self.pose.placement
+
+
+def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> System:
+    """Write the equilibrium equations of every moving link, at one pose or at n.
+
+    The plane's three equations alone: out-of-plane components do not enter.
+
+    Parameters
+    ----------
+    place, drive
+        Where the links stand, and what is driven.
+    loads : sequence of Load
+        All that acts on the links, inertia included, at these poses.
+    """
+    linkage = place.linkage
+    unknowns = [(column, name, *unit) for name in linkage.joints for column, unit in _units(place, name).items()]
     if drive is not None and drive.pushes(linkage):
-        entries.append(("P", _column(pose, drive.joint, drive.sign(linkage) * _directions(pose, drive.joint)[0], 0.0)))
-    elif drive is not None:
-        torque = np.zeros(3 * len(linkage.moving))
-        for link in linkage.joints[drive.joint].links:
+        unknowns.append(("P", drive.joint, drive.sign(linkage) * _along(place, drive.joint), 0.0))
+    columns = tuple(column for column, *_ in unknowns)
+    turned = () if drive is None or drive.pushes(linkage) else linkage.joints[drive.joint].links
+    columns += ("T",) if turned else ()
+    matrix = np.zeros((*place.shape, 3 * len(linkage.moving), len(columns)))
+    for c, (_, name, force, moment) in enumerate(unknowns):
+        first, second = linkage.joints[name].links
+        at = place.position(second, linkage.joint_points(name)[1])
+        for link, sign in ((first, -1.0), (second, 1.0)):
             if link != linkage.ground:
-                torque[3 * linkage.moving.index(link) + 2] = 1.0 if link == drive.link else -1.0
-        entries.append(("T", torque))
-    rhs = np.zeros(3 * len(linkage.moving))
+                k = 3 * linkage.moving.index(link)
+                matrix[..., k, c], matrix[..., k + 1, c] = sign * force.real, sign * force.imag
+                matrix[..., k + 2, c] = sign * ((np.conj(at - place.origin(link)) * force).imag + moment)
+    for link in turned:
+        if link != linkage.ground:
+            assert drive is not None
+            matrix[..., 3 * linkage.moving.index(link) + 2, -1] = 1.0 if link == drive.link else -1.0
+    rhs = np.zeros(matrix.shape[:-1])
     for load in loads:
         if load.link != linkage.ground:
             k = 3 * linkage.moving.index(load.link)
-            rhs[k : k + 3] -= load.resultant(pose)[[0, 1, 5]]
+            rhs[..., k : k + 3] -= load.resultant(place)[..., [0, 1, 5]]
     return System(
-        matrix=np.array([column for _, column in entries]).T,
+        matrix=matrix,
         rhs=rhs,
         rows=tuple((link, kind) for link in linkage.moving for kind in ("Fx", "Fy", "Mz")),
-        columns=tuple(name for name, _ in entries),
+        columns=columns,
         scale=linkage.longest,
     )
 
 
-def _columns(pose: Pose, name: str) -> list[tuple[str, Real]]:
-    """Columns of a joint's unknowns: what each unit of it does to the rows of both links."""
-    along, across = _directions(pose, name)
-    if pose.linkage.joints[name].type == "revolute":
-        return [(f"R{name}x", _column(pose, name, along, 0.0)), (f"R{name}y", _column(pose, name, across, 0.0))]
-    columns = [(f"N{name}", _column(pose, name, across, 0.0))]
-    if pose.linkage.joints[name].type == "slider":
-        columns.append((f"M:{name}", _column(pose, name, np.zeros(2), 1.0)))
-    return columns
+def _units(place: Placement, name: str) -> dict[str, tuple[Complex, float]]:
+    """Force (...) and moment of a joint's first link on its second at the pin for a unit of each of its unknowns."""
+    along, kind = _along(place, name), place.linkage.joints[name].type
+    if kind == "revolute":
+        return {f"R{name}x": (along, 0.0), f"R{name}y": (1j * along, 0.0)}
+    units = {f"N{name}": (1j * along, 0.0)}
+    return units | {f"M:{name}": (0.0 * along, 1.0)} if kind == "slider" else units
 
 
-def _directions(pose: Pose, name: str) -> tuple[Real, Real]:
-    """Directions (2,) along and across a joint's slot, global axes; x and y for a revolute joint."""
-    joint = pose.linkage.joints[name]
-    along = 0.0 if joint.type == "revolute" else pose.angles[joint.links[0]] + joint.direction
-    c, s = math.cos(along), math.sin(along)
-    return np.array([c, s]), np.array([-s, c])
-
-
-def _column(pose: Pose, name: str, force: Real, moment: float) -> Real:
-    """What a force (2,) and a moment of a joint's first link on its second at the pin do to the rows of both links."""
-    linkage = pose.linkage
-    joint = linkage.joints[name]
-    at = pose.position(joint.links[1], linkage.joint_points(name)[1])
-    out = np.zeros(3 * len(linkage.moving))
-    for link, sign in zip(joint.links, (-1.0, 1.0), strict=True):
-        if link != linkage.ground:
-            k = 3 * linkage.moving.index(link)
-            arm = at - pose.origins[link]
-            out[k : k + 2] = sign * force
-            out[k + 2] = sign * (arm[0] * force[1] - arm[1] * force[0] + moment)
-    return out
+def _along(place: Placement, name: str) -> Complex:
+    """Direction (...) of a joint's slot, global axes; x for a revolute joint."""
+    joint = place.linkage.joints[name]
+    if joint.type == "revolute":
+        return np.ones(place.shape, dtype=complex)
+    return np.asarray(place.direction(joint.links[0]) * np.exp(1j * joint.direction))
 
 
 def check_drive(linkage: Linkage, drive: Drive | None) -> None:
@@ -245,39 +306,48 @@ def check_drive(linkage: Linkage, drive: Drive | None) -> None:
         )
 
 
-def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Reactions:
-    """Solve the equilibrium of all links for the joint reactions and the drive torque.
-
-    Raises ``CaseError`` where the equations have no single solution: more or fewer unknowns than
-    equations, or a pose at or next to a dead point of the driven link.
-    """
-    linkage = pose.linkage
-    check_drive(linkage, drive)
-    system = assemble(pose, drive, loads)
-    rows, columns = system.matrix.shape
+def require_determinate(linkage: Linkage, system: System) -> None:
+    """Raise ``CaseError`` where equilibrium alone does not give the joint forces."""
+    rows, columns = system.matrix.shape[-2:]
     if rows != columns:
         raise CaseError(
             f"drive: statics has {rows} equilibrium equations for {columns} unknowns, so joint forces do not follow "
-            "from equilibrium; drive as many links as the linkage has degrees of freedom "
-            f"(mobility {linkage.mobility})"
+            "from equilibrium; remove redundant joints or links, or drive as many links as the linkage has degrees of "
+            f"freedom (mobility {linkage.mobility})"
         )
+
+
+def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Reactions:
+    """Solve the equilibrium of all links at one pose for the joint reactions and the drive torque.
+
+    Parameters
+    ----------
+    pose, drive
+        The pose, and what is driven.
+    loads : sequence of Load
+        All that acts on the links, inertia included.
+
+    Raises
+    ------
+    CaseError
+        Where the equations have no single solution: more or fewer unknowns than equations, or a pose at or next to a
+        dead point of the driven link.
+    """
+    check_drive(pose.linkage, drive)
+    system = assemble(pose.placement, drive, loads)
+    require_determinate(pose.linkage, system)
     refuse_dead_point(system, drive)
-    unknowns = np.linalg.solve(system.scaled, _scaled_rhs(system))
-    # What is but rounding would stand as unbalanced loads on a link on which nothing acts.
-    unknowns[np.abs(unknowns) <= ROUNDING * np.abs(unknowns).max(initial=0.0)] = 0.0
-    unknowns = unknowns * np.array([system.scale if system._is_moment(c) else 1.0 for c in system.columns])
-    leftover = system.matrix @ unknowns - system.rhs
-    row_scale = np.array([system.scale if kind == "Mz" else 1.0 for _, kind in system.rows])
-    load_size = max(float(np.max(np.abs(_scaled_rhs(system)), initial=0.0)), 1e-300)
+    unknowns, residual = system.solved()
+    value = dict(zip(system.columns, unknowns.tolist(), strict=True))
     return Reactions(
         pose=pose,
         drive=drive,
         system=system,
         unknowns=unknowns,
-        joints={name: _reaction(pose, name, system, unknowns, drive) for name in linkage.joints},
-        drive_torque=float(unknowns[system.columns.index("T")]) if "T" in system.columns else 0.0,
-        drive_force=float(unknowns[system.columns.index("P")]) if "P" in system.columns else 0.0,
-        residual=float(np.max(np.abs(leftover / row_scale))) / load_size,
+        joints=joint_reactions(pose.placement, drive, value),
+        drive_torque=value.get("T", 0.0),
+        drive_force=value.get("P", 0.0),
+        residual=float(residual),
     )
 
 
@@ -293,29 +363,37 @@ def refuse_dead_point(system: System, drive: Drive | None) -> None:
         )
 
 
-def _scaled_rhs(system: System) -> Real:
-    return np.asarray(system.rhs / np.array([system.scale if kind == "Mz" else 1.0 for _, kind in system.rows]))
+def joint_reactions(place: Placement, drive: Drive | None, value: Mapping[str, Any]) -> dict[str, JointReaction]:
+    """Return what every joint carries.
+
+    Parameters
+    ----------
+    place : Placement
+        Where the links stand.
+    drive : Drive, optional
+        What is driven.
+    value : mapping of str to float or array (n,)
+        The unknowns of ``System.columns``, by name.
+    """
+    found = {}
+    for name, joint in place.linkage.joints.items():
+        wrench, along = np.zeros((*place.shape, 6)), _along(place, name)
+        if joint.type == "revolute":
+            wrench[..., 0], wrench[..., 1] = value[f"R{name}x"], value[f"R{name}y"]
+        else:
+            force = value[f"N{name}"] * 1j * along
+            if drive is not None and drive.joint == name:
+                force = force + drive.sign(place.linkage) * value.get("P", 0.0) * along
+            wrench[..., 0], wrench[..., 1], wrench[..., 5] = force.real, force.imag, value.get(f"M:{name}", 0.0)
+        arm = travelled(place, name)
+        found[name] = JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=arm)
+    return found
 
 
-def _reaction(pose: Pose, name: str, system: System, unknowns: Real, drive: Drive | None) -> JointReaction:
-    joint = pose.linkage.joints[name]
-    value = dict(zip(system.columns, unknowns, strict=True))
-    wrench = np.zeros(6)
+def travelled(place: Placement, name: str) -> Real:
+    """Return the way (..., 3) from the point of a joint's first link to its pin [mm]: zero at revolute joints."""
+    joint = place.linkage.joints[name]
     if joint.type == "revolute":
-        wrench[:2] = value[f"R{name}x"], value[f"R{name}y"]
-    else:
-        along, across = _directions(pose, name)
-        wrench[:2] = value[f"N{name}"] * across
-        if drive is not None and drive.joint == name:
-            wrench[:2] += drive.sign(pose.linkage) * value.get("P", 0.0) * along
-        wrench[5] = value.get(f"M:{name}", 0.0)
-    return JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=travelled(pose, name))
-
-
-def travelled(pose: Pose, name: str) -> Real:
-    """Return the way (3,) from the point of a joint's first link to its pin [mm]: zero at revolute joints."""
-    joint = pose.linkage.joints[name]
-    if joint.type == "revolute":
-        return np.zeros(3)
-    first, second = (pose.position(*at) for at in zip(joint.links, pose.linkage.joint_points(name), strict=True))
-    return np.array([*(second - first), 0.0])
+        return np.zeros((*place.shape, 3))
+    first, second = (place.position(*at) for at in zip(joint.links, place.linkage.joint_points(name), strict=True))
+    return vector(second - first)

@@ -134,9 +134,11 @@ def _extremes(result: CaseMotion, values: Real) -> dict[str, Any]:
     ends: dict[str, Any] = {"first": _number(values[0]), "last": _number(values[-1])}
     if result.dead_points or not np.any(np.isfinite(values)):
         return ends | {"smallest": None, "largest": None, "unbounded": True}
-    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
-    for key, i in (("smallest", low), ("largest", high)):
-        ends |= {key: _number(values[i]), f"{key}_at": float(result.motion.told(result.motion.angles[i]))}
+    # The first of the poses that differ by rounding alone, as those of a symmetric linkage do.
+    low, high, slack = np.nanmin(values), np.nanmax(values), 1e-9 * np.nanmax(np.abs(values))
+    for key, extreme, there in (("smallest", low, values <= low + slack), ("largest", high, values >= high - slack)):
+        pose = int(np.argmax(there))
+        ends |= {key: _number(extreme), f"{key}_at": float(result.motion.told(result.motion.angles[pose]))}
     return ends | {"unbounded": False}
 
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from fea.outcomes.result import CheckResult
 from loads.records.aero import shares
-from loads.records.applied import LineLoad, PointLoad
-from loads.states.actions import actions
+from loads.records.applied import LineLoad, PointLoad, in_axes
+from loads.states.actions import stated_loads
 from reports.figures.labels import along, place_labels
 from reports.words.wording import number, turning
 
@@ -112,7 +112,8 @@ class _Sheet:
         self.stated = result.case.load_cases[load_case]
         # The very loads that the statics had, turned as they are in this pose; the air's are told together below.
         without_air = self.stated.model_copy(update={"air": ()})
-        self.applied = actions(result.case, without_air, self.pose, {})
+        stated = stated_loads(result.case, without_air)
+        self.applied = [in_axes(load, "global", self.pose.placement) for load in stated]
         self.points = {
             (link, point): self.pose.position(link, point)
             for link, record in self.linkage.links.items()
@@ -149,7 +150,7 @@ class _Sheet:
             if isinstance(load, PointLoad):
                 vector, at, how = load.wrench[:2], self.points[load.link, load.point], "on"
             elif isinstance(load, LineLoad):
-                vector = (0.5 * (load.end - load.start) * (load.at_start + load.at_end))[:2]
+                vector = load.force[:2]
                 middle = 0.5 * (load.start + load.end)
                 at = self.pose.origins[load.link] + middle * self.pose.rotation(load.link)[:, 0]
                 how = "spread on"

@@ -10,8 +10,8 @@ from fea.common.verdict import Verdict
 from geometry.linkage.motion import solve_motion
 from geometry.linkage.pose import freedom
 from loads.case.case_file import read_case
+from loads.states.actions import acting_loads, placed
 from loads.states.case_motion import solve_case_motion
-from loads.states.inertia import acting_loads
 from loads.states.masses import laden_masses, part_masses
 from loads.statics.statics import solve_statics
 from reports.tables.mechanism import design_lines, design_of
@@ -80,13 +80,17 @@ def test_general_solver_and_closed_form_move_alike(case, moved) -> None:
 def test_statics_with_inertia_are_kinetostatics(case) -> None:
     masses = part_masses(case)
     pose = case.solve_pose()
-    statics = solve_statics(pose, case.pinned_drive, acting_loads(case, case.load_cases["flapping"], pose, masses))
+    statics = solve_statics(
+        pose,
+        case.pinned_drive,
+        acting_loads(case, case.load_cases["flapping"], placed(pose, case.load_cases["flapping"].speed), masses),
+    )
     spec = case.motion.model_copy(update={"range": (pose.angles["crank"], pose.angles["crank"] + 0.1), "poses": 3})
     forces = solve_case_motion(case.model_copy(update={"motion": spec})).forces["flapping"]
     largest = max(joint.magnitude for joint in statics.joints.values())
     for joint, reaction in statics.joints.items():
         np.testing.assert_allclose(reaction.force[:2], forces.forces[joint][0], rtol=0, atol=1e-10 * largest)
-    assert statics.drive_torque == pytest.approx(float(forces.torque[0]), rel=1e-9)
+    assert statics.drive_torque == pytest.approx(float(forces.drive_torque[0]), rel=1e-9)
 
 
 def test_the_energy_balance_closes(moved) -> None:
@@ -121,7 +125,7 @@ def test_weight_alone_turns_the_crank_by_virtual_work() -> None:
             for link, own in masses.items()
         )
 
-    loads = acting_loads(case, case.load_cases["held"], pose, part_masses(case))
+    loads = acting_loads(case, case.load_cases["held"], pose.placement, part_masses(case))
     found = solve_statics(pose, case.pinned_drive, loads).drive_torque
     assert found == pytest.approx((height(1) - height(0)) / (2 * step), rel=1e-5)
 

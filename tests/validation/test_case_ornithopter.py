@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from motion_poses import kinetostatics
 
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
@@ -13,11 +14,10 @@ from geometry.base.errors import CaseError
 from geometry.linkage.pose import freedom
 from geometry.mechanisms.ornithopter import OrnithopterRules, variants
 from loads.case.case_file import read_case
-from loads.states.actions import PartMass
+from loads.records.applied import PartMass
+from loads.states.actions import acting_loads, placed
 from loads.states.case_motion import solve_case_motion
-from loads.states.inertia import acting_loads, with_carried
-from loads.states.kinetostatics import solve_kinetostatics
-from loads.states.masses import part_masses
+from loads.states.masses import laden_masses, part_masses
 from loads.statics.statics import solve_statics
 
 RPM = math.pi / 30.0
@@ -91,9 +91,10 @@ def test_the_three_variants_run_at_both_speeds(name: str) -> None:
     closed = rules.drive().motion(turned.motion.angles - math.pi / 2.0, 150.0 * RPM)
     np.testing.assert_allclose(-turned.motion.angle("lever-right"), closed.wing_angle, atol=1e-9)
     for link in ("lever-right", "lever-left"):
-        histories = {history.load_case: history for history in link_histories(turned, link)}
-        np.testing.assert_allclose(-histories["slow"].places["slot"], closed.slot_position, atol=1e-9)
-        slow, fast = (np.abs(histories[speed].pins["slot"][:, 1]).max() for speed in ("slow", "fast"))
+        histories = {history.name: history for history in link_histories(turned, link)}
+        slots = [next(pin for pin in histories[speed].pins if pin.slotted) for speed in ("slow", "fast")]
+        np.testing.assert_allclose(-slots[0].centre[:, 0], closed.slot_position, atol=1e-9)
+        slow, fast = (np.abs(slot.wrench[:, 1]).max() for slot in slots)
         assert fast > 20.0 * slow
     result = check_case(variant, fidelity="beam")
     for load_case in ("slow", "fast"):
@@ -126,10 +127,9 @@ def test_both_slots_carry_alike(moved) -> None:
 
 @pytest.mark.parametrize("load_case", ["slow", "fast", "wings-10", "wings-12"])
 def test_statics_with_inertia_are_kinetostatics(case, moved, load_case: str) -> None:
-    pose = case.solve_pose()
-    found = solve_statics(
-        pose, case.pinned_drive, acting_loads(case, case.load_cases[load_case], pose, part_masses(case))
-    )
+    pose, stated = case.solve_pose(), case.load_cases[load_case]
+    loads = acting_loads(case, stated, placed(pose, stated.speed), part_masses(case))
+    found = solve_statics(pose, case.pinned_drive, loads)
     largest = max(joint.magnitude for joint in found.joints.values())
     for joint, reaction in found.joints.items():
         forces = moved.forces[load_case].forces[joint]
@@ -149,15 +149,13 @@ def closed_form_power(*, mass: float, frequency: float) -> np.ndarray:
 
 def test_the_power_of_the_wings_is_that_of_the_closed_form(case, moved) -> None:
     """Wings alone, weightless: kinetostatics of the linkage against P = n I φ' φ''."""
-    wings = {
-        link: with_carried(None, tuple(m for m in case.carried if m.link == link), case.links[link].points)
-        for link in ("lever-right", "lever-left")
-    }
+    wings = laden_masses(case, {})
+    assert list(wings) == ["lever-right", "lever-left"]
     motion = moved.forces["wings-12"].motion
-    solved = solve_kinetostatics(motion, case.pinned_drive, (), wings)
+    solved = kinetostatics(motion, case.pinned_drive, (), wings)
     power = closed_form_power(mass=1e-7, frequency=12.0)
     assert solved.drive_power.max() == pytest.approx(power.max(), rel=2e-4)  # 361 poses
-    assert np.abs(solved.torque).max() == pytest.approx(np.abs(power).max() / (2.0 * np.pi * 12.0), rel=2e-4)
+    assert np.abs(solved.drive_torque).max() == pytest.approx(np.abs(power).max() / (2.0 * np.pi * 12.0), rel=2e-4)
 
 
 def test_the_motor_covers_weight_and_inertia(case) -> None:
@@ -213,6 +211,6 @@ def test_a_massless_part_has_no_say(case) -> None:
     motion = solve_case_motion(case).forces["fast"].motion
     masses = part_masses(case)
     levers: dict[str, PartMass] = {link: own for link, own in masses.items() if link.startswith("lever")}
-    whole = solve_kinetostatics(motion, case.pinned_drive, (), masses)
-    part = solve_kinetostatics(motion, case.pinned_drive, (), levers)
+    whole = kinetostatics(motion, case.pinned_drive, (), masses)
+    part = kinetostatics(motion, case.pinned_drive, (), levers)
     assert np.linalg.norm(whole.forces["A"][0]) > 1.5 * np.linalg.norm(part.forces["A"][0])

@@ -138,9 +138,9 @@ def test_the_air_is_a_quarter_ellipse_on_two_links(name, load_case, statics):
     )
     case = found.case
     spread = air_loads(case.load_cases[load_case].air[0], "air.0", case.link_points)
-    wrench = sum(load.resultant(found.pose) for load in spread)
+    wrench = sum(load.resultant(found.pose.placement) for load in spread)
     for load in spread:  # from the origin of its link's frame to A
-        wrench[3:] += np.cross([*found.pose.origins[load.link], 0.0], load.resultant(found.pose)[:3])
+        wrench[3:] += np.cross([*found.pose.origins[load.link], 0.0], load.resultant(found.pose.placement)[:3])
     np.testing.assert_allclose(wrench[:3], air.total, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(wrench[3:], expected, rtol=1e-10, atol=1e-9)
     # What the assumptions say of "beyond H": the load stands 146 mm outward of the root; over 366 mm it stood at 155.
@@ -188,7 +188,7 @@ def test_one_position_on_the_weight_of_the_wing(name):
 
 def test_plumage_and_links_weigh_in_the_complete_case(statics):
     found = statics["owl-wing-flight"]
-    weight = sum(load.resultant(found.pose)[:3] for load in found.loads["complete"])
+    weight = sum(load.resultant(found.pose.placement)[:3] for load in found.loads["complete"])
     [air] = found.case.air_forces("complete")
     links = sum(mass.mass for mass in found.masses.values())
     expected = (links + 25.48e-6) * 9810.0
@@ -209,7 +209,7 @@ def test_the_anchor_holds_all_that_acts(name, statics):
         np.testing.assert_allclose(ground["A"][:3], -reactions.joints["A"].force)
         total, moment = np.zeros(3), np.zeros(3)
         for load in found.loads[title]:
-            wrench = load.resultant(found.pose)
+            wrench = load.resultant(found.pose.placement)
             total += wrench[:3]
             moment += wrench[3:] + np.cross([*found.pose.origins[load.link], 0.0], wrench[:3])
         size = float(np.linalg.norm(total))

@@ -17,7 +17,7 @@ from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.case_file import read_case, read_companion
 from loads.sources.published_statics import StaticsAudit, audit, read_matrix
-from loads.states.actions import actions
+from loads.states.actions import acting_loads
 from loads.statics.statics import Reactions, solve_statics
 
 # Published unknowns R (section 3.9), N and N m, to four decimals.
@@ -45,7 +45,7 @@ def pose(case: Case) -> Pose:
 
 @pytest.fixture(scope="module")
 def reactions(case: Case, pose: Pose) -> Reactions:
-    return solve_statics(pose, case.pinned_drive, actions(case, case.load_cases["weight"], pose, {}))
+    return solve_statics(pose, case.pinned_drive, acting_loads(case, case.load_cases["weight"], pose.placement, {}))
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def audited(case: Case, pose: Pose) -> StaticsAudit:
     published = case.published_statics
     assert published is not None
     texts = [read_companion("owl-wing-static", name) for name in (published.exact, published.printed)]
-    return audit(published, texts[0], texts[1], pose, actions(case, case.load_cases["weight"], pose, {}))
+    return audit(published, texts[0], texts[1], pose, acting_loads(case, case.load_cases["weight"], pose.placement, {}))
 
 
 def _direction(pose: Pose, start: str, end: str) -> float:

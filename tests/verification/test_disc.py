@@ -7,14 +7,14 @@ import pytest
 
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import check_beam
-from fea.common.link_loads import BodyLoad, DriveCouple, LinkLoads, PinLoad
+from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
 from geometry.parts.body import hand_section
 from geometry.parts.part import Body, Disc, Pin
+from loads.records.applied import BodyForce, PartMass
 from loads.records.bearing import NARROW
-from loads.states.actions import PartMass
 
 E, NU, RHO, OMEGA, HOLE, RADIUS = 2500.0, 0.38, 1.2e-9, 2000.0, 2.0, 10.0
 
@@ -36,10 +36,11 @@ def test_hoop_stress_of_a_rotating_disc_with_a_hole() -> None:
     mesh = mesh_body(body, MeshSettings(size=1.6, bore_elements=24, turn_elements=24, growth=0.25))
     whole = mass_properties(body)
     pull = -RHO * whole.volume * OMEGA**2 * whole.centroid[0]
-    spin = BodyLoad(specific_force=np.zeros(3), about=np.zeros(3), angular_speed=OMEGA)
+    mass = PartMass(mass=RHO * whole.volume, centroid=np.asarray(whole.centroid)[:2])
+    spin = BodyForce(link="disc", mass=mass, specific_force=np.zeros(3), angular_speed_squared=OMEGA**2, axes="link")
     shaft = PinLoad(name="O", centre=np.zeros(3), diameter=HOLE, wrench=np.array([pull, 0.0, 0.0, 0.0, 0.0, 0.0]))
     solution = solve_solid(
-        mesh, E=E, nu=NU, density=RHO, loads=[LinkLoads(name="spin", pins=(shaft,), bodies=(spin,))],
+        mesh, E=E, nu=NU, density=RHO, loads=[LinkLoads(name="spin", pins=(shaft,), inertia=spin)],
         line=("bore:O", "bore:A"), laws=[NARROW], threads=1,
     )  # fmt: skip
     field = stress_field(solution.space, solution.cases[0].displacement, E=E, nu=NU)
@@ -70,6 +71,6 @@ def test_a_driven_disc_balances_and_its_hand_calculation_is_its_net_section() ->
     assert max(case.imbalance for case in solution.cases) < 1e-9
     assert max(case.reaction for case in solution.cases) < 1e-6
     section = hand_section(body)
-    beam = check_beam(beam_loads(loads, body, RHO, PartMass(mass=0.0, centroid=np.zeros(2), inertia=0.0)), section, 1.0)
+    beam = check_beam(beam_loads(loads, body, RHO), section, 1.0)
     assert section.half_y == pytest.approx(math.sqrt(RADIUS**2 - 36.0) - 1.0, rel=1e-3)
     assert beam.worst.bending == pytest.approx(18.0 * section.half_y / section.i_z)

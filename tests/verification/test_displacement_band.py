@@ -17,7 +17,7 @@ from fea.frame.model import NodeLoad
 from geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
 from loads.case.case import Case
 from loads.case.case_file import read_case
-from loads.states.actions import actions
+from loads.states.actions import acting_loads
 
 
 def two_pins(part, length: float, first: float, last: float, *holes: HoleRow) -> Body:
@@ -71,7 +71,7 @@ def test_a_clamped_tube_with_eyes_gives_less_than_its_plain_section() -> None:
 def test_virtual_work_of_plain_beams_is_the_frames_displacement(case: Case, link: str, point: str) -> None:
     pose = case.solve_pose()
     title = next(iter(case.load_cases))
-    loads = actions(case, case.load_cases[title], pose, {})
+    loads = acting_loads(case, case.load_cases[title], pose.placement, {})
     frame = build_frame(case, pose, loads, held=case.pinned_drive)
     solution = solve_frame(frame.model)
     bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from motion_poses import kinetostatics, virtual_work
 from planar_linkages import joint, link, oscillating_cylinder, slider_crank
 
 from fea.frame.build import build_frame
@@ -16,9 +17,7 @@ from geometry.linkage.continuation import DeadPointError
 from geometry.linkage.linkage import Linkage
 from geometry.linkage.motion import solve_motion
 from geometry.linkage.pose import solve_pose
-from loads.records.applied import PointLoad
-from loads.states.actions import PartMass, StatedLoad
-from loads.states.kinetostatics import solve_kinetostatics, torque_by_virtual_work
+from loads.records.applied import PartMass, PointLoad
 from loads.statics.statics import Drive, solve_statics
 
 A, B, OFFSET = 40.0, 120.0, -20.0
@@ -127,12 +126,12 @@ def test_the_drive_force_is_that_of_virtual_work(drive: Drive) -> None:
             PointLoad(link="rod", point="N", wrench=np.array([1.0, 2, 0, 0, 0, 0])),
             PointLoad(link="cylinder", point="M", wrench=np.array([0.0, -4, 0, 0, 0, 0])),
         )
-    stated = tuple(StatedLoad(load=load, axes="global") for load in acting)
-    force = torque_by_virtual_work(motion, drive, stated)
-    solved = solve_kinetostatics(motion, drive, stated)
+    stated = tuple(load for load in acting)
+    force = virtual_work(motion, drive, stated)
+    solved = kinetostatics(motion, drive, stated)
     size = np.abs(force).max()
-    assert np.all(solved.torque == 0.0)
-    assert np.abs(solved.push - force).max() < 1e-10 * size
+    assert np.all(solved.drive_torque == 0.0)
+    assert np.abs(solved.drive_force - force).max() < 1e-10 * size
     assert solved.residual.max() < 1e-12
     for i in (0, 4, 8):
         alone = solve_statics(motion.pose(i), drive, acting)
@@ -151,15 +150,15 @@ def test_the_pistons_power_is_that_of_the_energies() -> None:
             ("block", 8e-6, 1.0, 2.0, 1e-4),
         )
     }
-    stated = tuple(StatedLoad(load=load, axes="global") for load in loads())
-    solved = solve_kinetostatics(motion, PISTON, stated, masses)
+    stated = tuple(load for load in loads())
+    solved = kinetostatics(motion, PISTON, stated, masses)
     assert np.abs(solved.imbalance).max() < 1e-8 * np.abs(solved.drive_power).max()
     assert solved.dead_points == ()
 
 
 def test_a_crank_that_carries_the_motion_finds_the_pistons_dead_points() -> None:
     motion = crank_driven(np.linspace(0.3, 0.3 + 2 * math.pi, 181))
-    solved = solve_kinetostatics(motion, PISTON, tuple(StatedLoad(load=load, axes="global") for load in loads()))
+    solved = kinetostatics(motion, PISTON, tuple(load for load in loads()))
     travels = motion.track.at(np.array(solved.dead_points))[:, -1]
     assert sorted(travels) == pytest.approx([SHORTEST, LONGEST], abs=1e-9)
 

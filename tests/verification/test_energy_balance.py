@@ -14,17 +14,18 @@ from motion_poses import (
     drive_of,
     forces_of,
     four_bar_pose,
+    kinetostatics,
     masses_of,
     parallelogram_pose,
     quick_return_pose,
     scotch_yoke_pose,
     slider_crank_pose,
+    virtual_work,
     weights_of,
     wing_pose,
 )
 
 from geometry.linkage.motion import solve_motion
-from loads.states.kinetostatics import solve_kinetostatics, torque_by_virtual_work
 
 SPEED = 12.0
 TURNING = {
@@ -51,7 +52,7 @@ def test_rates_at_every_pose(name, acceleration):
     sense = np.sign(angles[-1] - angles[0])
     speed = sense * np.sqrt(SPEED**2 + 2.0 * acceleration * np.abs(angles - angles[0]))
     motion = solve_motion(pose, angles, speed=speed, acceleration=sense * acceleration)
-    found = solve_kinetostatics(motion, drive_of(pose), forces_of(pose) + weights_of(pose), masses_of(pose))
+    found = kinetostatics(motion, drive_of(pose), forces_of(pose) + weights_of(pose), masses_of(pose))
     assert balance(found) < 1e-8
     # Each term matters: without any one of them the balance is open.
     for term in ("kinetic_rate", "potential_rate", "applied"):
@@ -64,7 +65,7 @@ def test_energies_over_a_turn(name):
     count = 256
     angles = CRANK + np.arange(count) * 2.0 * math.pi / count
     motion = solve_motion(pose, angles, speed=SPEED)
-    found = solve_kinetostatics(motion, drive_of(pose), forces_of(pose) + weights_of(pose), masses_of(pose))
+    found = kinetostatics(motion, drive_of(pose), forces_of(pose) + weights_of(pose), masses_of(pose))
     energy = found.power.kinetic + found.power.potential
     waves = np.fft.fftfreq(count, 1.0 / count)
     rate = SPEED * np.fft.ifft(1j * waves * np.fft.fft(energy)).real
@@ -79,7 +80,7 @@ def test_energies_over_the_wing():
     nodes = np.cos(np.pi * (np.arange(140) + 0.5) / 140)
     angles = 0.5 * (OPEN + CLOSED) + 0.5 * (OPEN - CLOSED) * nodes
     motion = solve_motion(pose, angles, speed=-SPEED)
-    found = solve_kinetostatics(motion, drive_of(pose), forces_of(pose) + weights_of(pose), masses_of(pose))
+    found = kinetostatics(motion, drive_of(pose), forces_of(pose) + weights_of(pose), masses_of(pose))
     energy = np.polynomial.Chebyshev.fit(nodes, found.power.kinetic + found.power.potential, 139, domain=[-1, 1])
     rate = energy.deriv()(nodes) / (0.5 * (OPEN - CLOSED)) * -SPEED
     np.testing.assert_allclose(
@@ -91,7 +92,7 @@ def test_over_a_full_turn_conservative_loads_take_no_work():
     pose = four_bar_pose()
     angles = CRANK + np.arange(128) * 2.0 * math.pi / 128
     motion = solve_motion(pose, angles, speed=SPEED)
-    found = solve_kinetostatics(motion, drive_of(pose), weights_of(pose), masses_of(pose))
+    found = kinetostatics(motion, drive_of(pose), weights_of(pose), masses_of(pose))
     assert abs(np.mean(found.drive_power)) < 1e-12 * np.max(np.abs(found.drive_power))
 
 
@@ -100,13 +101,13 @@ def test_a_redundant_linkage_balances_too():
     angles = CRANK + np.arange(64) * 2.0 * math.pi / 64
     motion = solve_motion(pose, angles, speed=SPEED)
     masses, weights = masses_of(pose), weights_of(pose)
-    torque = torque_by_virtual_work(motion, drive_of(pose), weights, masses)
+    torque = virtual_work(motion, drive_of(pose), weights, masses)
     # At constant speed the cranks and the level coupler keep their kinetic energy; the weights alone are lifted.
     potential = np.zeros(len(angles))
     for load in weights:
-        own, at = load.load, motion.position(load.load.link, next(iter(pose.linkage.links[load.load.link].points)))
-        turn = np.exp(1j * motion.angle(own.link)) * complex(*own.centroid)
-        potential -= own.mass * (at + np.stack([turn.real, turn.imag], axis=1)) @ own.acceleration[:2]
+        own, at = load.mass, motion.position(load.link, next(iter(pose.linkage.links[load.link].points)))
+        turn = np.exp(1j * motion.angle(load.link)) * complex(*own.centroid)
+        potential -= own.mass * (at + np.stack([turn.real, turn.imag], axis=1)) @ load.specific_force[:2]
     waves = np.fft.fftfreq(64, 1.0 / 64)
     lifted = np.fft.ifft(1j * waves * np.fft.fft(potential)).real
     np.testing.assert_allclose(torque, lifted, rtol=0, atol=1e-10 * np.max(np.abs(torque)))
@@ -120,7 +121,7 @@ def test_masses_of_very_different_size(ratio):
     for name in list(own)[::2]:
         own[name] = replace(own[name], mass=ratio * own[name].mass, inertia=ratio * own[name].inertia)
     motion = solve_motion(pose, CRANK + np.linspace(0, 2 * math.pi, 181), speed=SPEED, acceleration=35.0)
-    found = solve_kinetostatics(motion, drive_of(pose), forces_of(pose), own)
+    found = kinetostatics(motion, drive_of(pose), forces_of(pose), own)
     assert balance(found) < 1e-10
-    torque = torque_by_virtual_work(motion, drive_of(pose), forces_of(pose), own)
-    np.testing.assert_allclose(found.torque, torque, rtol=0, atol=1e-10 * np.max(np.abs(torque)))
+    torque = virtual_work(motion, drive_of(pose), forces_of(pose), own)
+    np.testing.assert_allclose(found.drive_torque, torque, rtol=0, atol=1e-10 * np.max(np.abs(torque)))

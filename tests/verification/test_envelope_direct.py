@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import solid_meshes
-from turning_load import POSES, RHO, L, history
+from turning_load import BODY, POSES, RHO, L, history
 
 from fea.motion.link_envelope import link_envelope
 from fea.motion.peaks import von_mises_peaks
-from fea.motion.unit_loads import TRANSFERS, load_scale, unit_loads
+from fea.motion.unit_loads import TRANSFERS, unit_loads
 from fea.motion.unit_solutions import solve_units
 from fea.solid.solution import solve_solid
 from fea.solid.space import displacement_space
@@ -35,9 +35,9 @@ def space(mesh):
 @pytest.fixture(scope="module")
 def solved(space):
     loads = history(space)
-    units = unit_loads(space, [loads], density=RHO)
+    units = unit_loads(space, BODY, [loads], density=RHO)
     columns = np.hstack([units.coefficients(loads, law, transfer) for law, transfer in VARIANTS])
-    scale = np.tile(load_scale(loads, 30.0), len(VARIANTS))
+    scale = np.tile(loads.size(30.0), len(VARIANTS))
     return solve_units(units, columns, scale, E=E, nu=NU, threads=1)
 
 
@@ -45,7 +45,7 @@ def solved(space):
 def test_fields_and_peaks_equal_a_direct_solution(mesh, space, solved, pose):
     peaks = von_mises_peaks(solved.stress, solved.combination)
     direct = solve_solid(
-        mesh, E=E, nu=NU, density=RHO, loads=[history(space).at(pose)], line=("bore:A", "bore:B"), threads=1
+        mesh, E=E, nu=NU, density=RHO, loads=[history(space).chosen(pose)], line=("bore:A", "bore:B"), threads=1
     )
     assert [(c.span, c.transfer) for c in direct.cases] == [(law.span, transfer) for law, transfer in VARIANTS]
     for number, case in enumerate(direct.cases):
@@ -65,15 +65,15 @@ def test_peaks_converge_to_the_direct_ones_with_the_order(mesh, space):
     """What is left out are high orders of the pressure: more of them, less difference."""
     loads = history(space)
     direct = solve_solid(
-        mesh, E=E, nu=NU, density=RHO, loads=[loads.at(5)], line=("bore:A", "bore:B"), laws=[NARROW],
+        mesh, E=E, nu=NU, density=RHO, loads=[loads.chosen(5)], line=("bore:A", "bore:B"), laws=[NARROW],
         transfers=["eye-faces"], threads=1,
     )  # fmt: skip
     exact = stress_field(space, direct.cases[0].displacement, E=E, nu=NU)
     missed = []
     for highest in (4, 8, 16):
-        units = unit_loads(space, [loads], density=RHO, highest=highest)
+        units = unit_loads(space, BODY, [loads], density=RHO, highest=highest)
         found = solve_units(
-            units, units.coefficients(loads, NARROW, "eye-faces"), load_scale(loads, 30.0), E=E, nu=NU, threads=1
+            units, units.coefficients(loads, NARROW, "eye-faces"), loads.size(30.0), E=E, nu=NU, threads=1
         )
         whole = np.einsum("nim,m->ni", found.stress, found.combination[:, 5])
         missed.append(np.abs(whole - exact.nodal).max() / exact.peak.value)
@@ -85,22 +85,22 @@ def test_two_forces_of_one_line_need_few_solutions(space):
     size = np.linspace(-1.0, 2.0, POSES)
     along = np.column_stack([size, np.zeros(POSES), np.zeros(POSES)])
     loads = history(space, pins={"A": -along, "B": along}, couples={}, ends={}, lines=(), mass=None)
-    units = unit_loads(space, [loads], density=RHO)
-    found = solve_units(units, units.coefficients(loads, WIDE, None), load_scale(loads, 30.0), E=E, nu=NU, threads=1)
+    units = unit_loads(space, BODY, [loads], density=RHO)
+    found = solve_units(units, units.coefficients(loads, WIDE, None), loads.size(30.0), E=E, nu=NU, threads=1)
     assert found.combination.shape[0] == 3  # the force, and the pressure of a pull and of a push
 
 
 def test_envelope_of_a_link_finds_the_pose_of_the_largest_direct_peak(mesh, space):
     loads = history(space)
     found = link_envelope(
-        space, link="bar", material=MATERIAL.model_copy(update={"density": RHO}), histories=[loads],
+        space, link="bar", body=BODY, material=MATERIAL.model_copy(update={"density": RHO}), histories=[loads],
         evaluated=np.ones(POSES, dtype=bool), stated="bore-shear", returns=True, threads=1,
     )  # fmt: skip
     worst = found.worst
     direct = []
     for pose in range(POSES):
         solution = solve_solid(
-            mesh, E=E, nu=NU, density=RHO, loads=[loads.at(pose)], line=("bore:A", "bore:B"),
+            mesh, E=E, nu=NU, density=RHO, loads=[loads.chosen(pose)], line=("bore:A", "bore:B"),
             laws=[WIDE if worst.governing.span == 180 else NARROW], transfers=["bore-shear"], threads=1,
         )  # fmt: skip
         direct.append(stress_field(space, solution.cases[0].displacement, E=E, nu=NU).peak)

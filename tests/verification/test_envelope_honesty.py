@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
-from turning_load import POSES, RHO, history
+from turning_load import BODY, POSES, RHO, history
 
 from fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, link_envelope
 from fea.refine.level import level_of
@@ -27,7 +27,7 @@ def refined_at(mesh, pose):
     """What a refinement that ended with its first mesh says of one pose."""
     solution = solve_solid(
         mesh, E=MATERIAL.youngs_modulus, nu=MATERIAL.poissons_ratio, density=RHO,
-        loads=[history(displacement_space(mesh)).at(pose)], line=("bore:A", "bore:B"), threads=1,
+        loads=[history(displacement_space(mesh)).chosen(pose)], line=("bore:A", "bore:B"), threads=1,
     )  # fmt: skip
     level = level_of(solution, 300.0)
     record = MeshRecord(elements=len(level.cells), unknowns=3 * len(level.nodes), error=0.1, seconds=1.0)
@@ -40,8 +40,9 @@ def refined_at(mesh, pose):
 def enveloped(mesh, refined, *, fatigue=False):
     space = displacement_space(mesh)
     found = link_envelope(
-        space, link="bar", material=MATERIAL, histories=[history(space)], evaluated=np.ones(POSES, dtype=bool),
-        stated="eye-faces", returns=True, fatigue=fatigue, refined=refined, threads=1,
+        space, link="bar", body=BODY, material=MATERIAL, histories=[history(space)],
+        evaluated=np.ones(POSES, dtype=bool), stated="eye-faces", returns=True,
+        fatigue=fatigue, refined=refined, threads=1,
     )  # fmt: skip
     [load_case] = found.load_cases.values()
     return load_case

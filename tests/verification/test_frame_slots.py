@@ -113,7 +113,7 @@ def test_the_ornithopter_is_looked_into_in_large_displacement() -> None:
     case = read_case("ornithopter")
     pose = case.solve_pose()
     loads = (PointLoad(link="lever-left", point="W", wrench=np.array([0, -0.3, 0, 0, 0, 0.0])),)
-    found = examine(case, "slow", joint_forces(case, pose, loads), loads, {})
+    found = examine(case, "slow", joint_forces(case, pose, loads), loads)
     assert found.state == "small"
     assert 0.0 < found.share < 1e-2
 

@@ -1,13 +1,14 @@
 """Properties of any motion: closed loops, rigid links, invariance, superposition, virtual work."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from closed_forms import four_bar_motion
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from motion_poses import drive_of, forces_of, masses_of, weights_of
+from motion_poses import drive_of, forces_of, kinetostatics, masses_of, virtual_work, weights_of
 from planar_linkages import OPEN_WING, four_bar, joint, link, six_bar
 
 from geometry.base.errors import CaseError
@@ -16,9 +17,7 @@ from geometry.linkage.linkage import Linkage
 from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.pose import solve_pose
 from geometry.mechanisms.fourbar import FourBar
-from loads.records.applied import PointLoad
-from loads.states.actions import PartMass, StatedLoad
-from loads.states.kinetostatics import solve_kinetostatics, torque_by_virtual_work
+from loads.records.applied import PartMass, PointLoad
 from loads.statics.statics import Drive
 
 RANGE = np.radians(np.linspace(228.15, 130.0, 25))
@@ -113,8 +112,8 @@ def test_invariance(scale, turn, mirrored, x, y):
         motion = solve_motion(pose, angle(RANGE), speed=speed)
         wrench = np.array([force.real, force.imag, 0.0, 0.0, 0.0, 0.0])
         own = {"CH": PartMass(mass=1e-5, centroid=np.array([70.0, 0.0]) * size, inertia=0.02 * size**2)}
-        static = solve_kinetostatics(motion, drive, [StatedLoad(load=PointLoad(link="CH", point="H", wrench=wrench))])
-        return motion, static, solve_kinetostatics(motion, drive, [], own)
+        static = kinetostatics(motion, drive, [PointLoad(link="CH", point="H", wrench=wrench)])
+        return motion, static, kinetostatics(motion, drive, [], own)
 
     force = 0.3 - 0.8j
     motion, static, inert = solve(six_bar(), lambda a: a, OPEN_WING, -5.0, force, 1.0)
@@ -134,8 +133,8 @@ def test_invariance(scale, turn, mirrored, x, y):
             np.testing.assert_allclose(
                 (found @ np.array([1.0, 1.0j]))[held], (image(z) * scale**power)[held], atol=1e-8 * size * scale**power
             )
-        expected = mirror * one.torque * scale ** (power + 1)
-        np.testing.assert_allclose(two.torque[held], expected[held], atol=1e-8 * np.max(np.abs(expected[held])))
+        expected = mirror * one.drive_torque * scale ** (power + 1)
+        np.testing.assert_allclose(two.drive_torque[held], expected[held], atol=1e-8 * np.max(np.abs(expected[held])))
     np.testing.assert_allclose(
         np.sort(mirror * (np.array(other_static.dead_points) - turn)), static.dead_points, atol=1e-9
     )
@@ -147,29 +146,25 @@ def test_superposition_and_virtual_work(linkage, speed, acceleration, factor):
     motion = move(linkage, speed=speed, acceleration=acceleration)
     pose, masses = motion.pose(0), masses_of(motion.pose(0))
     drive, forces, weights = drive_of(pose), forces_of(pose), weights_of(pose)
-    alone, weight = solve_kinetostatics(motion, drive, forces), solve_kinetostatics(motion, drive, weights, masses)
-    scaled = [
-        StatedLoad(load=PointLoad(link=s.load.link, point=s.load.point, wrench=factor * s.load.wrench), axes=s.axes)
-        for s in forces
-        if isinstance(s.load, PointLoad)
-    ]
-    points = solve_kinetostatics(motion, drive, [s for s in forces if isinstance(s.load, PointLoad)])
+    alone, weight = kinetostatics(motion, drive, forces), kinetostatics(motion, drive, weights, masses)
+    scaled = [replace(load, wrench=factor * load.wrench) for load in forces if isinstance(load, PointLoad)]
+    points = kinetostatics(motion, drive, [load for load in forces if isinstance(load, PointLoad)])
     sums = (
-        (solve_kinetostatics(motion, drive, forces + weights, masses), [(1.0, alone), (1.0, weight)]),
-        (solve_kinetostatics(motion, drive, scaled + weights, masses), [(factor, points), (1.0, weight)]),
+        (kinetostatics(motion, drive, forces + weights, masses), [(1.0, alone), (1.0, weight)]),
+        (kinetostatics(motion, drive, scaled + weights, masses), [(factor, points), (1.0, weight)]),
     )
     held = alone.leverage > 1e-2
     assume(np.any(held))
     for whole, parts in sums:
-        bound = sum(np.max(np.abs(part.torque[held])) for _, part in parts) + 1.0
-        total = sum(f * part.torque for f, part in parts)
-        np.testing.assert_allclose(whole.torque[held], total[held], rtol=0, atol=1e-9 * bound)
+        bound = sum(np.max(np.abs(part.drive_torque[held])) for _, part in parts) + 1.0
+        total = sum(f * part.drive_torque for f, part in parts)
+        np.testing.assert_allclose(whole.drive_torque[held], total[held], rtol=0, atol=1e-9 * bound)
         for name, force in whole.forces.items():
             total = sum(f * part.forces[name] for f, part in parts)
             bound = sum(np.max(np.abs(part.forces[name][held])) for _, part in parts) + 1.0
             np.testing.assert_allclose(force[held], total[held], rtol=0, atol=1e-9 * bound)
-    work = torque_by_virtual_work(motion, drive, forces + weights, masses)[held]
-    np.testing.assert_allclose(sums[0][0].torque[held], work, rtol=0, atol=1e-9 * (np.max(np.abs(work)) + 1.0))
+    work = virtual_work(motion, drive, forces + weights, masses)[held]
+    np.testing.assert_allclose(sums[0][0].drive_torque[held], work, rtol=0, atol=1e-9 * (np.max(np.abs(work)) + 1.0))
     peak = np.max(np.abs(sums[0][0].drive_power[held])) + np.max(np.abs(sums[0][0].power.applied)) + 1e-9
     assert np.max(np.abs(sums[0][0].imbalance[held])) <= 1e-8 * peak
 

@@ -12,12 +12,13 @@ from fea.beam.cut_free import beam_loads
 from fea.beam.theory import internal_forces
 from fea.check.run import check_case
 from fea.check.second_order import Bend, between_stations, on_its_pins
-from fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
+from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
 from fea.common.verdict import Verdict
 from fea.motion.buckling_history import with_second_order
 from fea.motion.link_history import link_histories
 from loads.case.case import Case
 from loads.case.case_file import validate
+from loads.records.applied import LineLoad
 from loads.states.case_motion import solve_case_motion
 
 L, EI = 100.0, 1e4
@@ -27,7 +28,8 @@ FACTORS = (1.5, 3.19, 9.0)
 
 
 def loaded(*pins: tuple[float, list[float]], q: float = 0.0, tip: tuple[float, list[float]] | None = None) -> LinkLoads:
-    line = LineLoad(first=0.0, last=L, intensity=np.array([[0.0, q, 0.0]] * 2))
+    even = np.array([0.0, q, 0.0])
+    line = LineLoad(link="bar", start=0.0, end=L, at_start=even, at_end=even, axes="link")
     return LinkLoads(
         name="one",
         pins=tuple(
@@ -41,7 +43,7 @@ def loaded(*pins: tuple[float, list[float]], q: float = 0.0, tip: tuple[float, l
 
 def forces(loads: LinkLoads):
     body = SimpleNamespace(pins=[SimpleNamespace(name=pin.name, foot=None) for pin in loads.pins])
-    return internal_forces(beam_loads(loads, body, 0.0, None))
+    return internal_forces(beam_loads(loads, body, 0.0))
 
 
 def moment(loads: LinkLoads) -> float:
@@ -260,7 +262,7 @@ def test_over_a_motion_every_pose_has_its_own_growth() -> None:
         across = abs(5.0 * math.sin(angle) + 38.6 * math.cos(angle))
         u = 200.0 * math.sqrt(push / stiffness)
         linear, found = (
-            internal_forces(beam_loads(own.at(pose), history.body, 0.0, None)).largest(lambda f: abs(float(f[5])))[2]
+            internal_forces(beam_loads(own.chosen(pose), case.body("post"), 0.0)).largest(lambda f: abs(float(f[5])))[2]
             for own in (history, grown)
         )
         assert linear == pytest.approx(200.0 * across, rel=1e-9)

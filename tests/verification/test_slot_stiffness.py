@@ -23,7 +23,7 @@ from fea.frame.linear import solve_frame
 from fea.frame.model import Support
 from fea.frame.stability import buckling_factor
 from fea.outcomes.buckling import link_factors
-from loads.states.actions import actions
+from loads.states.actions import acting_loads
 from loads.statics.statics import solve_statics
 
 WIDE, HIGH, THICK, SLOT = 9.9, 10.0, 5.0, 4.0
@@ -33,7 +33,7 @@ FIRST, LAST, TIP = 11.0, 51.0, 80.0
 
 def loaded(case):
     pose = case.solve_pose()
-    return pose, actions(case, case.load_cases["tip"], pose, {})
+    return pose, acting_loads(case, case.load_cases["tip"], pose.placement, {})
 
 
 def frame_of(case):
@@ -127,7 +127,7 @@ def test_by_hand_it_gives_as_much_but_for_what_the_pin_pushes_one_flank_further(
     pose, loads = loaded(case)
     body = case.body("lever")
     link = link_loads("tip", "lever", body, solve_statics(pose, case.pinned_drive, loads), loads)
-    forces = internal_forces(beam_loads(link, body, 1e-9, None))
+    forces = internal_forces(beam_loads(link, body, 1e-9))
     material = case.material_of("lever")
     bent = deflection(
         forces,

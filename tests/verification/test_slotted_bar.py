@@ -93,7 +93,7 @@ def solved(solutions) -> dict[tuple[str, type[PressureLaw], int], StressField]:
 
 def by_hand(x: float) -> tuple[BeamCheck, Detail]:
     loads = bent(x)
-    beam = check_beam(beam_loads(loads, BODY, 1e-9, None), PART.section, 1.0)
+    beam = check_beam(beam_loads(loads, BODY, 1e-9), PART.section, 1.0)
     (found,) = details(BODY, loads, beam.forces)
     return beam, found
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import BodyLoad, DriveCouple, EndLoad, LinkLoads, PinLoad
+from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from fea.solid.quadrature import volume_quadrature
 from fea.solid.solution import solve_solid
 from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
 from geometry.parts.part import Tube
+from loads.records.applied import BodyForce, PartMass
 from loads.records.bearing import WIDE
 
 E, NU = 2900.0, 0.38
@@ -81,8 +82,8 @@ def test_linear_elements_are_too_stiff():
     assert linear < 0.7 * quadratic
 
 
-def link(*, pins, couples=(), bodies=()):
-    return LinkLoads(name="link", pins=pins, couples=couples, bodies=bodies)
+def link(*, pins, couples=(), inertia=None):
+    return LinkLoads(name="link", pins=pins, couples=couples, inertia=inertia)
 
 
 def pin(name, x, *force):
@@ -132,9 +133,10 @@ def test_own_weight_between_two_pins(bar):
     area = 2.0 * HALF_WIDTH * HEIGHT
     volume = volume_quadrature(displacement_space(bar)).measure
     up = rho * g * volume / 2.0
+    mass = PartMass(mass=rho * volume, centroid=np.array([LENGTH / 2.0, 0.0]))
     loads = link(
         pins=(pin("A", 0.0, 0.0, up), pin("B", LENGTH, 0.0, up)),
-        bodies=(BodyLoad(specific_force=np.array([0.0, -g, 0.0]), about=np.zeros(3)),),
+        inertia=BodyForce(link="link", mass=mass, specific_force=np.array([0.0, -g, 0.0]), axes="link"),
     )
     found = section(bar, loads, 20.0, rho)
     w, hole = rho * g * area, rho * g * math.pi * 0.75**2 * HEIGHT

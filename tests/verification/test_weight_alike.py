@@ -36,11 +36,9 @@ def test_statics_motion_and_envelope_weigh_alike(carried: str) -> None:
     np.testing.assert_allclose(anchored, [0.0, mass * 9810.0], atol=1e-9)
     for link in case.checked_links:
         (history,) = link_histories(moved, link)
-        held = history.at(0)
-        weight = sum((own[link].mass * body.specific_force[:2] for body in held.bodies), np.zeros(2))
-        lines = sum(
-            (0.5 * (x.last - x.first) * np.asarray(x.intensity).sum(axis=0)[:2] for x in held.lines), np.zeros(2)
-        )
+        held = history.chosen(0)
+        weight = own[link].mass * held.inertia.specific_force[:2]
+        lines = sum((line.force[:2] for line in held.lines), np.zeros(2))
         pins = sum((pin.wrench[:2] for pin in (*held.pins, *held.ends)), np.zeros(2))
         np.testing.assert_allclose(weight + lines + pins, 0.0, atol=1e-9)
 

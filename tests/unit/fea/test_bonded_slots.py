@@ -10,7 +10,7 @@ from fea.check.run import check_case
 from fea.frame.joint_forces import joint_forces
 from geometry.base.errors import CaseError
 from loads.case.case_file import validate
-from loads.states.actions import actions
+from loads.states.actions import acting_loads
 
 STARTER = files("loads") / "cases" / "starter.toml.txt"
 LENGTH = 200.0
@@ -52,7 +52,7 @@ def beam(end):
 
 def end_reaction(case):
     pose = case.solve_pose()
-    found = joint_forces(case, pose, actions(case, case.load_cases["push"], pose, {}))
+    found = joint_forces(case, pose, acting_loads(case, case.load_cases["push"], pose.placement, {}))
     return found, found.reactions.joints["S"].wrench
 
 
@@ -87,7 +87,7 @@ def test_a_frame_at_a_dead_point_is_refused_as_equilibrium_is(off, refused):
     data["load_cases"] = {"up": {"forces": [{"link": "rocker", "at": "P", "force": ["0 N", "-1 N", "1 N"]}]}}
     case = validate(data)
     pose = case.solve_pose()
-    loads = actions(case, case.load_cases["up"], pose, {})
+    loads = acting_loads(case, case.load_cases["up"], pose.placement, {})
     if refused:
         with pytest.raises(CaseError, match="dead point of the driven link 'rocker'"):
             joint_forces(case, pose, loads)

@@ -20,7 +20,7 @@ from fea.frame.large_displacement import LARGE, LEAST_FACTOR, PATH_SUBDIVISIONS,
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.parts.part import Pin
 from loads.case.case_file import read_case
-from loads.states.actions import actions
+from loads.states.actions import acting_loads
 
 HELD_AT_GF = ('drive.link="GF"', 'drive.joint="G"')
 
@@ -35,8 +35,8 @@ def under(load, *overrides):
 
 def examined(case):
     pose = case.solve_pose()
-    loads = actions(case, case.load_cases["weight"], pose, {})
-    return examine(case, "weight", joint_forces(case, pose, loads), loads, {}), loads
+    loads = acting_loads(case, case.load_cases["weight"], pose.placement, {})
+    return examine(case, "weight", joint_forces(case, pose, loads), loads), loads
 
 
 def test_the_span_is_the_largest_distance_of_two_points():
@@ -123,7 +123,7 @@ def test_the_drive_torque_keeps_its_axis_where_the_driven_link_tilts(monkeypatch
     monkeypatch.setattr("fea.frame.deformed_links.LARGEST_SHIFT", 0.01)
     case = read_case("owl-wing-braking")
     statics = solve_case_statics(case, "owl-wing-braking")
-    found = examine(case, "complete", statics.forces["complete"], statics.loads["complete"], statics.masses)
+    found = examine(case, "complete", statics.forces["complete"], statics.loads["complete"])
     assert found.state == "deformed"
 
 
@@ -207,7 +207,7 @@ def test_links_carry_what_the_deformed_frame_says(load):
     assert found.reactions.drive_torque == pytest.approx(solution.joint_wrenches[frame.points["GF", "G"], 5], rel=1e-6)
     checked = 0
     for link, acting in found.links.items():
-        on_axis = beam_loads(acting, case.body(link), 0.0, None)
+        on_axis = beam_loads(acting, case.body(link), 0.0)
         assert on_axis.imbalance < 1e-12
         forces = internal_forces(on_axis)
         own = [i for i, e in enumerate(frame.model.elements) if e.nodes[0] in [n for _, n in frame.stations[link]]]
@@ -241,7 +241,7 @@ def test_a_bent_strut_has_the_moment_of_its_axial_force():
     straight = bar(("a", 0, [10, 0, 0, 0, 0, 0]), ("b", 40, [0] * 6), ("c", 100, [-10, 0, 0, 0, 0, 0]))
     moved = {"a": np.zeros(3), "b": np.array([0.0, 2.0, 1.0]), "c": np.zeros(3)}
     body = SimpleNamespace(pins=[SimpleNamespace(name=name, foot=None) for name in moved], ends=())
-    on_axis = beam_loads(bent(straight, moved), body, 0.0, None)
+    on_axis = beam_loads(bent(straight, moved), body, 0.0)
     found = internal_forces(on_axis).at(40.0)
     # Cut at the middle: the force at a, 2 mm below the cut, has the moment 2 x 10 about z on the part before it.
     assert found[5] == pytest.approx(-20.0)
@@ -250,14 +250,15 @@ def test_a_bent_strut_has_the_moment_of_its_axial_force():
 
 
 def test_what_spread_loads_leave_goes_to_the_strongest_pin():
-    line = LineLoad(first=0.0, last=100.0, intensity=np.array([[0, -0.1, 0], [0, -0.3, 0]]))
+    ends = np.array([[0, -0.1, 0], [0, -0.3, 0]])
+    line = LineLoad(link="bar", start=0.0, end=100.0, at_start=ends[0], at_end=ends[1], axes="link")
     loads = bar(("a", 0, [0, 10.0, 0, 0, 0, 0]), ("c", 100, [0.1, 10.2, 0, 0, 0, 0]), lines=(line,))
-    fixed = balanced(loads, None)
+    fixed = balanced(loads)
     assert fixed.pins[0].wrench == pytest.approx(loads.pins[0].wrench)
     # 20 N down with its centroid at 58.3 mm.
     assert fixed.pins[1].wrench == pytest.approx([0, 10.0, 0, 0, 0, 20 * 175 / 3 - 1000])
     with pytest.raises(CannotRunError, match=r"leave .* unbalanced .*stiffen the link"):
-        balanced(bar(("a", 0, [0, 10, 0, 0, 0, 0]), ("c", 100, [0, 10, 0, 0, 0, 0]), lines=(line,) * 2), None)
+        balanced(bar(("a", 0, [0, 10, 0, 0, 0, 0]), ("c", 100, [0, 10, 0, 0, 0, 0]), lines=(line,) * 2))
 
 
 def test_plain_ends_take_part():
@@ -268,16 +269,16 @@ def test_plain_ends_take_part():
     )
     # 50 N mm of the end's force about a, taken by 100 at a: half too little.
     with pytest.raises(CannotRunError, match="unbalanced"):
-        balanced(loads, None)
+        balanced(loads)
 
 
 def test_what_has_no_frame_is_not_looked_into():
     case = read_case("owl-wing-static")
     pose = case.solve_pose()
-    loads = actions(case, case.load_cases["weight"], pose, {})
+    loads = acting_loads(case, case.load_cases["weight"], pose.placement, {})
     forces = joint_forces(case, pose, loads)
     slot = case.joints["B"].model_copy(update={"type": "pin-in-slot"})
-    found = examine(case.model_copy(update={"joints": case.joints | {"B": slot}}), "weight", forces, loads, {})
+    found = examine(case.model_copy(update={"joints": case.joints | {"B": slot}}), "weight", forces, loads)
     assert (found.state, found.held) == ("unknown", 1.0)
     assert "the frame is a mechanism" in found.sentence
 
@@ -293,6 +294,6 @@ def test_a_pin_that_has_slid_pushes_across_its_slot():
     assert found.pins[0] is other[0]
     assert found.pins[1].centre == pytest.approx([30.5, 0, 0])
     assert found.pins[1].wrench == pytest.approx([0, 8, 0, 1, 0, 0])
-    assert balanced(found, None).pins[0].wrench == pytest.approx([0, -8, 0, -1, 0, -244])
+    assert balanced(found).pins[0].wrench == pytest.approx([0, -8, 0, -1, 0, -244])
     with pytest.raises(CaseError, match="lengthen the slot"):
         in_slots(LinkLoads(name="one", pins=(replace(slot, wrench=np.array([0, 1.0, 0, 0, 0, 4])),)), body, "lever")

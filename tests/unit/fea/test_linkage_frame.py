@@ -9,8 +9,8 @@ from fea.frame.linear import solve_frame
 from fea.frame.linkage_frame import out_of_plane
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case, validate
-from loads.records.applied import BodyForce, LineLoad, PointLoad, shifted
-from loads.states.actions import actions
+from loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad, shifted
+from loads.states.actions import acting_loads
 from loads.statics.statics import Drive, Reactions, solve_statics
 
 WING = read_case("owl-wing-static")
@@ -25,12 +25,10 @@ def force(link, point, *wrench):
 def body_force(link, acceleration):
     return BodyForce(
         link=link,
-        mass=2e-6,
-        centroid=np.array([31.0, 1.5]),
-        acceleration=np.array(acceleration),
-        angular_speed=3.0,
+        mass=PartMass(mass=2e-6, centroid=np.array([31.0, 1.5]), inertia=7e-4),
+        specific_force=np.array(acceleration),
+        angular_speed_squared=9.0,
         angular_acceleration=40.0,
-        inertia=7e-4,
     )
 
 
@@ -63,7 +61,7 @@ def assert_links_balance(reactions: Reactions, loads, tolerance=1e-9):
             total += shifted(wrench, np.array([*pose.position(link, point), 0.0]))
         for load in loads:
             if load.link == link:
-                total += shifted(load.resultant(pose), np.array([*pose.origins[link], 0.0]))
+                total += shifted(load.resultant(pose.placement), np.array([*pose.origins[link], 0.0]))
         assert np.abs(total[:3]).max() < tolerance, link
         assert np.abs(total[3:]).max() < tolerance * 300.0, link
 
@@ -132,7 +130,7 @@ def test_out_of_the_plane_a_symmetric_portal_has_a_closed_form():
     """
     case = validate(portal())
     pose = case.solve_pose()
-    loads = actions(case, case.load_cases["one"], pose, {})
+    loads = acting_loads(case, case.load_cases["one"], pose.placement, {})
     assert out_of_plane(loads)
     found = joint_forces(case, pose, loads)
     assert found.model == PINNED_FRAME

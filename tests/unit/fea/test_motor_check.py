@@ -77,7 +77,7 @@ def test_the_drive_must_not_be_faster_than_the_motor_without_load() -> None:
 def test_torque_over_the_line_and_over_time() -> None:
     """A stall torque twice what the peak needs at 720 rpm passes; one that it exceeds is for a flywheel to decide."""
     case = read_case("ornithopter")
-    torque = solve_case_motion(case).forces["wings-12"].torque
+    torque = solve_case_motion(case).forces["wings-12"].drive_torque
     peak = float(np.abs(torque).max())
     line = "share of the motor's torque at its speed"
     enough = limits(f'checks.motor.stall_torque="{2.0 * peak / (1.0 - 720.0 / 3500.0)} N*mm"')[line]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import BodyLoad, DriveCouple, EndLoad, LineLoad, LinkLoads, PinLoad
+from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from fea.refine.error_estimate import energy_density
 from fea.solid import solution as solid
 from fea.solid.quadrature import surface_quadrature, volume_quadrature
@@ -13,6 +13,7 @@ from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
 from fea.solid.supports import LineReference
 from geometry.base.errors import CannotRunError
+from loads.records.applied import BodyForce, LineLoad, PartMass
 from loads.records.bearing import WIDE
 
 E, NU, RHO = 2900.0, 0.38, 1.2e-9
@@ -137,12 +138,14 @@ def test_weight_end_and_line_loads_balance_against_the_pins(mesh):
     moment = -weight * volume.centroid[0] - 0.3 * tip[0] - spread * 10.0
     up_b = -moment / L
     up_a = weight + 0.3 + spread - up_b
+    mass = PartMass(mass=weight / 9810.0, centroid=volume.centroid[:2])
+    even = np.array([0, -0.02, 0])
     loads = LinkLoads(
         name="all",
         pins=(pin("A", 0.0, up_a, 0, 0, 0, 0), pin("B", 0.0, up_b, 0, 0, 0, 0)),
         ends=(EndLoad(name="T", point=tip, wrench=np.array([0.0, -0.3, 0, 0, 0, 0])),),
-        bodies=(BodyLoad(specific_force=np.array([0.0, -9810.0, 0.0]), about=np.zeros(3)),),
-        lines=(LineLoad(first=4.0, last=16.0, intensity=np.array([[0, -0.02, 0], [0, -0.02, 0]])),),
+        inertia=BodyForce(link="bar", mass=mass, specific_force=np.array([0.0, -9810.0, 0.0]), axes="link"),
+        lines=(LineLoad(link="bar", start=4.0, end=16.0, at_start=even, at_end=even, axes="link"),),
     )
     case = solve_solid(mesh, loads=[loads], laws=(WIDE,), **MATERIAL).cases[0]
     assert case.imbalance < 1e-9

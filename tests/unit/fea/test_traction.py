@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common.link_loads import BodyLoad, LineLoad, PinLoad
+from fea.common.link_loads import PinLoad
 from fea.solid.quadrature import surface_quadrature, volume_quadrature
 from fea.solid.space import displacement_space
 from fea.solid.supports import rigid_motions
@@ -18,6 +18,7 @@ from fea.solid.traction import (
     wrench_density,
 )
 from geometry.base.errors import CannotRunError
+from loads.records.applied import BodyForce, LineLoad, PartMass
 from loads.records.bearing import NARROW, WIDE
 
 CENTRE = np.array([20.0, 0.0, 0.0])
@@ -125,12 +126,14 @@ def test_patch_without_extent_is_refused(space):
 def test_weight_and_angular_acceleration(space):
     volume = volume_quadrature(space)
     rho = 1.2e-9
-    load = BodyLoad(specific_force=np.array([0.0, -9810.0, 0.0]), about=np.zeros(3))
     mass = rho * volume.measure
+    own = PartMass(mass=mass, centroid=volume.centroid[:2])
+    load = BodyForce(link="bar", mass=own, specific_force=np.array([0.0, -9810.0, 0.0]), axes="link")
     got = delivered(space, volume, body_density(volume, load, rho), volume.centroid)
     np.testing.assert_allclose(got, [0, -9810.0 * mass, 0, 0, 0, 0], atol=1e-12)
-    spun = BodyLoad(specific_force=np.zeros(3), about=volume.centroid, angular_acceleration=50.0)
-    arm = volume.x - volume.centroid
+    (x, y, _), arm = volume.centroid, volume.x - volume.centroid
+    about_centroid = 50.0 * np.array([-y, x, 0.0])
+    spun = BodyForce(link="bar", mass=own, specific_force=about_centroid, angular_acceleration=50.0, axes="link")
     inertia = rho * float((volume.w * (arm[..., 0] ** 2 + arm[..., 1] ** 2)).sum())
     got = delivered(space, volume, body_density(volume, spun, rho), volume.centroid)
     np.testing.assert_allclose(got, [0, 0, 0, 0, 0, -50.0 * inertia], atol=1e-12)
@@ -138,9 +141,10 @@ def test_weight_and_angular_acceleration(space):
 
 def test_centrifugal_force_is_that_of_the_centroid(space):
     volume = volume_quadrature(space)
-    load = BodyLoad(specific_force=np.zeros(3), about=np.array([2.0, 1.0, 0.0]), angular_speed=30.0)
-    got = delivered(space, volume, body_density(volume, load, 1.2e-9), load.about)
-    arm = (volume.centroid - load.about) * (1.0, 1.0, 0.0)
+    about, own = np.array([2.0, 1.0, 0.0]), PartMass(mass=1.2e-9 * volume.measure, centroid=volume.centroid[:2])
+    load = BodyForce(link="bar", mass=own, specific_force=-900.0 * about, angular_speed_squared=900.0, axes="link")
+    got = delivered(space, volume, body_density(volume, load, 1.2e-9), about)
+    arm = (volume.centroid - about) * (1.0, 1.0, 0.0)
     np.testing.assert_allclose(got[:3], 1.2e-9 * volume.measure * 900.0 * arm, atol=1e-14)
     assert abs(got[5]) < 1e-14
 
@@ -148,7 +152,7 @@ def test_centrifugal_force_is_that_of_the_centroid(space):
 def test_line_load_has_its_resultant_and_moment(space):
     volume = volume_quadrature(space)
     intensity = np.array([[0.1, -0.3, 0.2], [0.0, 0.5, -0.1]])
-    load = LineLoad(first=4.0, last=16.0, intensity=intensity)
+    load = LineLoad(link="bar", start=4.0, end=16.0, at_start=intensity[0], at_end=intensity[1], axes="link")
     got = delivered(space, volume, line_density(volume, load), np.zeros(3))
     x = np.linspace(4.0, 16.0, 4001)
     q = intensity[0] + ((x - 4.0) / 12.0)[:, None] * (intensity[1] - intensity[0])
@@ -160,7 +164,8 @@ def test_line_load_has_its_resultant_and_moment(space):
 def test_even_line_load_is_even_along_a_link_of_varying_section(space):
     # Past the hole at B the section is smaller; each millimetre still gets its share.
     volume = volume_quadrature(space)
-    load = LineLoad(first=-2.0, last=26.0, intensity=np.array([[0, 1.0, 0], [0, 1.0, 0]]))
+    even = np.array([0, 1.0, 0])
+    load = LineLoad(link="bar", start=-2.0, end=26.0, at_start=even, at_end=even, axes="link")
     density = line_density(volume, load)
     x = volume.x[..., 0]
     for start in (-2.0, 5.0, 12.0, 19.0):
@@ -170,5 +175,6 @@ def test_even_line_load_is_even_along_a_link_of_varying_section(space):
 
 def test_line_load_beside_the_link_is_refused(space):
     volume = volume_quadrature(space)
+    one = np.ones(3)
     with pytest.raises(CannotRunError, match=r"lies partly outside of the link"):
-        line_density(volume, LineLoad(first=30.0, last=60.0, intensity=np.ones((2, 3))))
+        line_density(volume, LineLoad(link="bar", start=30.0, end=60.0, at_start=one, at_end=one, axes="link"))

@@ -4,17 +4,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
-from turning_load import BODY, POSES, RHO, L, history
+from turning_load import BODY, RHO, L, history
 
 from fea.common.link_loads import PinLoad
-from fea.motion.unit_loads import TRANSFERS, fourier_coefficients, load_scale, unit_loads
+from fea.motion.unit_loads import TRANSFERS, fourier_coefficients, unit_loads
 from fea.solid.quadrature import surface_quadrature
 from fea.solid.space import displacement_space
 from fea.solid.supports import rigid_motions
 from fea.solid.traction import pin_traction
 from geometry.base.errors import CannotRunError
+from loads.records.applied import PartMass
 from loads.records.bearing import NARROW, WIDE
-from loads.states.actions import PartMass
 
 ORIGIN = np.zeros(3)
 
@@ -26,7 +26,7 @@ def space():
 
 @pytest.fixture(scope="module")
 def units(space):
-    return unit_loads(space, [history(space)], density=RHO)
+    return unit_loads(space, BODY, [history(space)], density=RHO)
 
 
 @pytest.mark.parametrize("law", [WIDE, NARROW])
@@ -51,7 +51,7 @@ def test_even_orders_up_to_eight_hold_the_wide_peak():
 def test_every_pose_balances_on_the_meshed_hole(space, units, law, transfer):
     loads = history(space)
     resultant = units.wrenches @ units.coefficients(loads, law, transfer)
-    scale = load_scale(loads, 30.0)
+    scale = loads.size(30.0)
     assert np.abs(resultant[:3] / scale).max() < 1e-12
     assert np.abs(resultant[3:] / (30.0 * scale)).max() < 1e-12
 
@@ -66,10 +66,10 @@ def test_pressure_fields_have_no_resultant_and_tractions_deliver_the_force(units
 @pytest.mark.parametrize(("law", "least"), [(WIDE, 2e-3), (NARROW, 4e-3)])
 def test_load_vectors_are_those_of_the_pressure_itself(space, units, law, least):
     bore = surface_quadrature(space, "bore:B")
-    loads = history(space, couples={}, ends={}, lines=(), mass=None)
-    loads = replace(loads, pins={"A": np.zeros((POSES, 3)), "B": loads.pins["B"]})
+    at_b = history(space).pins[1].wrench[:, [0, 1, 5]]
+    loads = history(space, pins={"A": 0.0 * at_b, "B": at_b}, couples={}, ends={}, lines=(), mass=None)
     found = units.vectors @ units.coefficients(loads, law, None)
-    for pose, force in enumerate(loads.pins["B"]):
+    for pose, force in enumerate(at_b):
         wrench = np.array([*force[:2], 0, 0, 0, 0])
         pin = PinLoad(name="B", centre=np.array([L, 0, 0]), diameter=1.5, wrench=wrench)
         whole = bore.load_vector(pin_traction(bore, pin, law), len(space.nodes))
@@ -78,7 +78,7 @@ def test_load_vectors_are_those_of_the_pressure_itself(space, units, law, least)
 
 def test_inertia_carries_the_stated_mass(space):
     mass = PartMass(mass=3e-6, centroid=np.array([11.0, 0.3]), inertia=4e-4)
-    made = unit_loads(space, [history(space, mass=mass)], density=RHO)
+    made = unit_loads(space, BODY, [history(space, mass=mass)], density=RHO)
     about = mass.inertia + mass.mass * (11.0**2 + 0.3**2)
     expected = 3e-6 * np.array([[1, 0, -0.3], [0, 1, 11.0], [0.3, -11.0, -about / 3e-6], [11.0, 0.3, 0.0]]).T
     assert made.wrenches[[0, 1, 5]][:, made.inertia] == pytest.approx(expected, rel=1e-9, abs=1e-15)
@@ -90,9 +90,9 @@ def test_wrenches_are_those_of_the_vectors(space, units):
 
 
 def test_only_what_acts_has_a_unit_load(space):
-    loads = history(space, couples={}, ends={}, lines=(), mass=None)
-    loads = replace(loads, pins={"A": np.zeros((POSES, 3)), "B": loads.pins["B"]})
-    made = unit_loads(space, [loads], density=RHO, highest=8)
+    at_b = history(space).pins[1].wrench[:, [0, 1, 5]]
+    loads = history(space, pins={"A": 0.0 * at_b, "B": at_b}, couples={}, ends={}, lines=(), mass=None)
+    made = unit_loads(space, BODY, [loads], density=RHO, highest=8)
     assert list(made.pins) == ["B"]
     assert (made.count, made.inertia, made.couples, made.ends, made.lines) == (2 * 8 + 1 + 2, None, {}, {}, {})
 
@@ -100,7 +100,7 @@ def test_only_what_acts_has_a_unit_load(space):
 def test_hole_of_another_size_is_refused(space):
     pins = (replace(BODY.pins[0], diameter=2.5), BODY.pins[1])
     with pytest.raises(CannotRunError, match=r"measures 1\.\d+ mm on the mesh, not 2\.5 mm"):
-        unit_loads(space, [history(space, body=replace(BODY, pins=pins))], density=RHO)
+        unit_loads(space, replace(BODY, pins=pins), [history(space)], density=RHO)
 
 
 def test_a_hole_that_misses_its_load_is_refused(units):

@@ -10,7 +10,7 @@ from geometry.base.errors import CaseError
 from loads.case.case_file import read_case, read_text, validate
 from loads.records.aero import AirLoad, air_forces, air_loads, check_air, shares
 from loads.records.applied import LineLoad, PointLoad
-from loads.states.actions import actions
+from loads.states.actions import acting_loads
 
 POINTS = {"a": {"P": (0.0, 0.0), "Q": (120.0, 0.0), "M": (40.0, 0.0)}, "b": {"Q": (10.0, 0.0), "R": (90.0, 0.0)}}
 STREAM = {"speed": "22 m/s", "density": "1.225 kg/m^3", "area": "0.05 m^2"}
@@ -295,7 +295,7 @@ def test_a_weight_without_any_part_is_refused():
 def test_the_loads_of_a_case_are_its_air_forces():
     case = read_case(FLIGHT)
     pose = case.solve_pose()
-    loads = actions(case, case.load_cases["planform"], pose, {})
-    total = sum(load.resultant(pose)[:3] for load in loads)
+    loads = acting_loads(case, case.load_cases["planform"], pose.placement, {})
+    total = sum(load.resultant(pose.placement)[:3] for load in loads)
     [air_force] = case.air_forces("planform")
     np.testing.assert_allclose(total, air_force.total + np.array([0.0, 0.0, -0.25]), atol=1e-12)

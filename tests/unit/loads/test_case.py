@@ -13,9 +13,9 @@ from geometry.linkage.pose import CLOSED
 from geometry.parts.body_rules import check_body
 from loads.case.case import Case
 from loads.case.case_file import read_case, read_text, validate
-from loads.records.applied import BodyForce, LineLoad, PointLoad
+from loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad
 from loads.records.load_case import vector3
-from loads.states.actions import PartMass, actions, needs_masses
+from loads.states.actions import acting_loads, needs_masses
 
 OWL = "owl-wing-static"
 
@@ -151,7 +151,7 @@ def test_actions_of_every_kind(owl: Case) -> None:
     assert needs_masses(case)
     assert not needs_masses(owl)
     masses = {name: PartMass(mass=2e-6, centroid=np.array([30.0, 0.0])) for name in case.checked_links}
-    loads = actions(case, case.load_cases["weight"], case.solve_pose(), masses)
+    loads = acting_loads(case, case.load_cases["weight"], case.solve_pose().placement, masses)
     points = [load for load in loads if isinstance(load, PointLoad)]
     np.testing.assert_array_equal(points[0].wrench, [0, -0.25, 0, 0, 0, 0])
     np.testing.assert_array_equal(points[1].wrench, [0, 0, 0, 0, 0, 2000.0])
@@ -160,7 +160,7 @@ def test_actions_of_every_kind(owl: Case) -> None:
     np.testing.assert_allclose(line.at_start * 47.0, [1.0, 2.0, 3.0])
     weights = [load for load in loads if isinstance(load, BodyForce)]
     assert [load.link for load in weights] == list(case.checked_links)
-    np.testing.assert_allclose(weights[0].acceleration, [-9810.0, 0.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(weights[0].specific_force, [-9810.0, 0.0, 0.0], atol=1e-9)
 
 
 @pytest.mark.parametrize(

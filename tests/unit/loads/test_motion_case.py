@@ -7,7 +7,7 @@ import pytest
 
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case
-from loads.states.actions import actions
+from loads.states.actions import acting_loads
 from loads.states.case_motion import solve_case_motion
 from loads.states.masses import laden_masses
 from loads.statics.statics import solve_statics
@@ -104,7 +104,9 @@ def test_loads_in_the_axes_of_their_link_are_so_in_statics_too(path):
     result = solved(path, "motion.inertia=false")
     for i in (0, 11, 23):
         pose = result.motion.pose(i)
-        one = solve_statics(pose, case.pinned_drive, actions(case, case.load_cases["follower"], pose, {}))
+        one = solve_statics(
+            pose, case.pinned_drive, acting_loads(case, case.load_cases["follower"], pose.placement, {})
+        )
         assert result.torque["follower"][i] == pytest.approx(one.drive_torque, abs=1e-10)
 
 

@@ -82,7 +82,7 @@ def test_a_right_system_gives_what_statics_gives(pose: Pose) -> None:
     for i, name in enumerate("ABCDEFG"):
         assert np.linalg.norm(solution[2 * i : 2 * i + 2]) == pytest.approx(reactions.joints[name].magnitude, rel=1e-9)
     assert solution[14] * 1000.0 == pytest.approx(reactions.drive_torque, rel=1e-9)
-    assert assemble(pose, Drive(link="AE", joint="A"), []).matrix.shape == (15, 15)
+    assert assemble(pose.placement, Drive(link="AE", joint="A"), []).matrix.shape == (15, 15)
 
 
 @pytest.mark.parametrize("row", range(15))
@@ -177,7 +177,7 @@ def test_links_that_meet_at_the_ground_alone_each_have_a_sign() -> None:
         },
     )
     pose = solve_pose(linkage, coordinate=None, near={"1": 0.9, "2": 2.2, "3": 0.9, "4": 2.2})
-    system = assemble(pose, None, [])
+    system = assemble(pose.placement, None, [])
     columns = ",".join(system.columns)
     # Count every force as acting on the link with one sign, in m.
     matrix = np.abs(np.sign(system.matrix)) * np.abs(system.matrix)

@@ -18,7 +18,7 @@ from planar_linkages import (
 from geometry.base.errors import CaseError
 from geometry.linkage.linkage import Linkage
 from geometry.linkage.pose import Pose, constraint_jacobian, solve_pose
-from loads.records.applied import BodyForce, LineLoad, Load, PointLoad
+from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad
 from loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions, assemble, check_drive, solve_statics
 
 AE = Drive(link="AE", joint="A")
@@ -71,9 +71,8 @@ def random_loads(pose: Pose, seed: int = 0) -> list[Load]:
         loads += [force(name, point, *rng.normal(size=3) * [1, 1, 20]) for point in pose.linkage.links[name].points]
         ends = rng.normal(size=(2, 3))
         loads.append(LineLoad(link=name, start=-3.0, end=17.0, at_start=ends[0], at_end=ends[1]))
-        loads.append(
-            BodyForce(link=name, mass=2e-6, centroid=rng.normal(size=2) * 9, acceleration=rng.normal(size=3) * 1e4)
-        )
+        mass = PartMass(mass=2e-6, centroid=rng.normal(size=2) * 9)
+        loads.append(BodyForce(link=name, mass=mass, specific_force=rng.normal(size=3) * 1e4))
     return loads
 
 
@@ -101,7 +100,8 @@ def unbalanced(reactions: Reactions, loads: Sequence[Load], name: str) -> tuple[
         if load.link == name and isinstance(load, PointLoad):
             act(pose.position(name, load.point), load.wrench[:2], load.wrench[5])
         elif load.link == name and isinstance(load, BodyForce):
-            act(pose.origins[name] + pose.rotation(name) @ load.centroid, load.mass * load.acceleration[:2], 0.0)
+            mass = load.mass
+            act(pose.origins[name] + pose.rotation(name) @ mass.centroid, mass.mass * load.specific_force[:2], 0.0)
         elif load.link == name and isinstance(load, LineLoad):
             nodes, weights = np.polynomial.legendre.leggauss(4)
             for t, w in zip((nodes + 1) / 2, weights / 2, strict=True):
@@ -133,7 +133,7 @@ def test_the_ground_bears_all_loads(case: str) -> None:
     total, moment, size = unbalanced(reactions, loads, pose.linkage.ground)
     wrench = np.zeros(6)
     for load in loads:
-        resultant = load.resultant(pose)
+        resultant = load.resultant(pose.placement)
         at = pose.origins[load.link]
         wrench += [*resultant[:5], resultant[5] + at[0] * resultant[1] - at[1] * resultant[0]]
     np.testing.assert_allclose(total, wrench[:2], atol=1e-10 * size)
@@ -144,7 +144,7 @@ def test_the_ground_bears_all_loads(case: str) -> None:
 def test_the_matrix_is_the_constraint_jacobian_transposed(case: str) -> None:
     """Duality: joint forces do no work, so the scaled statics matrix is -J^T with a column for the drive."""
     pose, drive = POSES[case]
-    system = assemble(pose, drive, [])
+    system = assemble(pose.placement, drive, [])
     jacobian = constraint_jacobian(pose)
     torque = np.zeros(jacobian.shape[1])
     for name in pose.linkage.joints[drive.joint].links:
@@ -156,7 +156,7 @@ def test_the_matrix_is_the_constraint_jacobian_transposed(case: str) -> None:
 def test_the_smallest_singular_value_is_the_dead_point_distance() -> None:
     for angle in (216.0, 222.0, 228.15):
         pose = wing(angle)
-        system = assemble(pose, AE, [])
+        system = assemble(pose.placement, AE, [])
         assert system.singular_values[-1] == pytest.approx(pose.dead_point_distance("AE"), rel=1e-9)
 
 
@@ -179,15 +179,16 @@ def test_an_even_line_load_acts_as_its_resultant_at_the_middle() -> None:
     pose = wing()
     density = np.array([0.01, -0.02, 0.0])
     spread = LineLoad(link="CH", start=0.0, end=124.0, at_start=density, at_end=density)
-    middle = BodyForce(link="CH", mass=124.0, centroid=np.array([62.0, 0.0]), acceleration=density)
-    np.testing.assert_allclose(spread.resultant(pose), middle.resultant(pose), atol=1e-12)
+    middle = BodyForce(link="CH", mass=PartMass(mass=124.0, centroid=np.array([62.0, 0.0])), specific_force=density)
+    np.testing.assert_allclose(spread.resultant(pose.placement), middle.resultant(pose.placement), atol=1e-12)
 
 
 def test_a_triangular_line_load_acts_at_two_thirds() -> None:
     pose = wing()
     spread = LineLoad(link="CH", start=31.0, end=124.0, at_start=np.zeros(3), at_end=np.array([0.0, 2.0, 1.0]))
-    at = BodyForce(link="CH", mass=93.0, centroid=np.array([93.0, 0.0]), acceleration=np.array([0.0, 1.0, 0.5]))
-    np.testing.assert_allclose(spread.resultant(pose), at.resultant(pose), atol=1e-10)
+    mass = PartMass(mass=93.0, centroid=np.array([93.0, 0.0]))
+    at = BodyForce(link="CH", mass=mass, specific_force=np.array([0.0, 1.0, 0.5]))
+    np.testing.assert_allclose(spread.resultant(pose.placement), at.resultant(pose.placement), atol=1e-10)
 
 
 def test_loads_on_the_ground_and_out_of_the_plane_do_not_enter() -> None:
@@ -219,7 +220,7 @@ def test_wrenches_of_a_link_balance_with_the_torque_on_it() -> None:
 
 
 def test_rows_and_columns_have_names() -> None:
-    system = assemble(*POSES["slider-crank"], [])
+    system = assemble(POSES["slider-crank"][0].placement, POSES["slider-crank"][1], [])
     assert system.columns == ("RAx", "RAy", "RBx", "RBy", "RCx", "RCy", "NS", "M:S", "T")
     assert system.rows[:3] == (("crank", "Fx"), ("crank", "Fy"), ("crank", "Mz"))
     assert system.matrix.shape == (9, 9)
@@ -229,7 +230,7 @@ def test_rows_and_columns_have_names() -> None:
 def test_the_condition_does_not_depend_on_the_unit_of_length(factor: float) -> None:
     near = dict(OPEN_WING)
     scaled = solve_pose(six_bar(factor), coordinate="GF", angle=math.radians(228.15), near=near)
-    one, other = assemble(wing(), AE, []), assemble(scaled, AE, [])
+    one, other = assemble(wing().placement, AE, []), assemble(scaled.placement, AE, [])
     assert other.condition == pytest.approx(one.condition, rel=1e-9)
     np.testing.assert_allclose(other.singular_values, one.singular_values, rtol=1e-9)
 
@@ -248,7 +249,7 @@ def test_at_a_dead_point_of_the_driven_link_statics_is_refused(away: float) -> N
     pose = solve_pose(
         six_bar(), coordinate="GF", angle=math.radians(angle), near=OPEN_WING | {"CF": math.radians(angle)}
     )
-    assert assemble(pose, AE, []).singular_values[-1] < NEARLY_SINGULAR
+    assert assemble(pose.placement, AE, []).singular_values[-1] < NEARLY_SINGULAR
     with pytest.raises(CaseError, match=r"dead point of the driven link 'AE'.*change the pose or drive another link"):
         solve_statics(pose, AE, [WEIGHT])
 

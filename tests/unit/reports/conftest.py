@@ -17,7 +17,7 @@ from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from loads.case.case_file import read_case, validate
 from loads.records.load_case import LoadCase
-from loads.states.actions import actions
+from loads.states.actions import acting_loads
 
 NAME = "owl-wing-static"
 SOLID_LINK = "GF"
@@ -116,7 +116,7 @@ def result():
     checked = check_case(case, name=NAME, fidelity="beam")
     weight = checked.load_cases["weight"]
     body, material = case.body(SOLID_LINK), case.material_of(SOLID_LINK)
-    loads = actions(case, case.load_cases["weight"], checked.pose, {})
+    loads = acting_loads(case, case.load_cases["weight"], checked.pose.placement, {})
     cut = link_loads("weight", SOLID_LINK, body, weight.reactions, loads)
     solid = solid_result(weight.links[SOLID_LINK].beam, material, cut)
     load_cases = {}
