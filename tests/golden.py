@@ -25,7 +25,7 @@ EXACT, ITERATED, MESHED = 1e-9, 1e-7, 1e-6
 """Relative tolerances: of what no iteration and no mesh has a part in; of hand calculation, whose frames have iterated
 eigenvalues that repeat to 1.4e-9 on a busy machine; and of what goes through a mesh."""
 REST = 1e-12
-"""Below it a residual or imbalance, relative, is rounding, and any order of sums may change it."""
+"""Below it a residual or imbalance, relative, or a moment in N mm, is rounding, and any order of sums may change it."""
 VOLATILE = ("schema_version", "timings", "timings_s", "seconds", "version", "next_cost", "work", "memory")
 """Entries that differ from run to run or from machine to machine."""
 
@@ -105,7 +105,7 @@ def differences(kept: dict[str, Any], found: dict[str, Any], tolerance: float) -
         old, new = kept[path], found[path]
         if isinstance(old, int | float) and isinstance(new, int | float):
             allowed = tolerance * largest[re.sub(r"\[\d+\]", "[]", path)]
-            if path.endswith(("residual", "imbalance")):
+            if path.endswith(("residual", "imbalance", "moment")):
                 allowed = max(allowed, REST)
             if not math.isclose(old, new, rel_tol=tolerance, abs_tol=allowed):
                 limit = max(allowed, tolerance * abs(old))

@@ -158,11 +158,13 @@ def _children(pid: int) -> list[int]:
 
 
 def _meshing(process: subprocess.Popen[str]) -> list[int]:
-    """Wait until meshers are at work and return their numbers."""
-    for _ in range(600):
-        if found := _children(process.pid):
-            time.sleep(0.5)
-            return found
+    """Wait until a mesher is in the midst of its work, not between two tasks, and return the meshers' numbers."""
+    first_seen: dict[int, float] = {}
+    for _ in range(1200):
+        now = time.monotonic()
+        first_seen = {pid: first_seen.get(pid, now) for pid in _children(process.pid)}
+        if any(now - seen > 1.5 for seen in first_seen.values()):
+            return list(first_seen)
         time.sleep(0.05)
     raise AssertionError("no mesher was started")
 
