@@ -65,9 +65,9 @@ class Discretisation:
             return self.sharp.sentence
         if self.status == "edge":
             return (
-                f"a sharp inner edge bears at least {_percent(LOADED)} of the peak stress, and {count} of the {SERIES} "
-                "meshes are there that show whether it has a limit. No safety factor is reported; state the real "
-                f"fillet_radius; {self._remedy}"
+                f"a sharp inner edge bears at least {_percent(LOADED)} of the peak stress. Showing whether that "
+                f"stress has a limit takes {SERIES} meshes, this run made {count}. No safety factor is reported; state "
+                f"the real fillet_radius; {self._remedy}"
             )
         if self.status == "growing":
             return (

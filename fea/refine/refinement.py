@@ -265,7 +265,7 @@ class _Link:
         if self._settled():
             self.done = True
         elif len(self.levels) >= self.effort.max_meshes:
-            self._stop(f"the limit of {len(self.levels)} meshes is reached")
+            self._stop(f"the largest number of meshes, {len(self.levels)}, is reached")
         elif elapsed + time.perf_counter() - called > self.effort.time_limit:
             self._stop(f"the time limit of {self.effort.time_limit:g} s is used up")
         else:

@@ -107,7 +107,7 @@ def test_names_beyond_ascii_in_a_locale_of_ascii(tmp_path: Path) -> None:
     assert "Ärmel" in json.dumps(json.loads(done.stdout), ensure_ascii=False)
     done = shell_in(tmp_path, '"$@"', "export", "größe.toml", "--step", "-o", "teile", **PLAIN)
     assert done.returncode == 4
-    assert done.stderr.startswith("alula: a name with '\\xc4' cannot be given to a file under this locale, whose enc")
+    assert done.stderr.startswith("alula: a name with '\\xc4' cannot be a file name in this locale, whose enc")
     assert not (tmp_path / "teile").exists()
     (tmp_path / "größe.toml").write_text(rocker_case.TOML, encoding="utf-8")
     done = shell_in(tmp_path, '"$@"', "export", "größe.toml", "--step", "-o", "größe", **PLAIN)

@@ -115,4 +115,4 @@ def test_sharp_edge_gets_no_factor_before_three_meshes(meshes):
     assert math.isfinite(link.displacement_max.high)
     assert check.verdict is Verdict.UNDECIDED
     assert "sharp inner edge" in check.reason
-    assert f"{meshes} meshes are as many" in check.reason
+    assert f"number of meshes, {meshes}, is reached" in check.reason

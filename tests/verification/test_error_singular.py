@@ -70,7 +70,7 @@ def test_stated_accuracy_refines_what_is_clear_already():
 @pytest.mark.parametrize(
     ("limit", "words"),
     [
-        ({"max_meshes": 2}, "2 meshes are as many"),
+        ({"max_meshes": 2}, "number of meshes, 2, is reached"),
         ({"max_unknowns": 1, "max_meshes": 3}, "more than the 1 allowed"),
         ({"time_limit": 0.0}, "time limit of 0 s"),
     ],
@@ -89,7 +89,7 @@ def test_open_verdict_names_the_limit_that_ended_the_refinement():
     _, check = checked(Effort(max_meshes=1), part=arm_case.BAR, fillet=1.0, force=-1.0, minimum=minimum)
     assert check.verdict is Verdict.UNDECIDED
     assert "straddles" in check.reason
-    assert "1 meshes are as many" in check.reason
+    assert "number of meshes, 1, is reached" in check.reason
 
 
 def test_accuracy_of_the_case_and_of_the_command():
