@@ -1,8 +1,7 @@
 """The whole check of a case: pose, statics, beams, solids, bands, verdict."""
 
-import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from pydantic_core import PydanticCustomError
@@ -13,6 +12,7 @@ from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.link_result import link_result
 from fea.check.load_growth import Growths, growths
 from fea.check.solid_result import link_task
+from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
@@ -61,19 +61,6 @@ class CaseStatics:
     def reactions(self) -> Mapping[str, Reactions]:
         """Joint reactions of every load case, in the undeformed pose."""
         return {title: forces.reactions for title, forces in self.forces.items()}
-
-
-@dataclass
-class _Clock:
-    """Seconds that each stage took."""
-
-    stages: dict[str, float] = field(default_factory=dict)
-    last: float = field(default_factory=time.perf_counter)
-
-    def __call__(self, stage: str) -> None:
-        now = time.perf_counter()
-        self.stages[stage] = self.stages.get(stage, 0.0) + now - self.last
-        self.last = now
 
 
 def effort_of(
@@ -223,7 +210,7 @@ def check_case(
     """
     if fidelity not in FIDELITIES:
         raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
-    clock = _Clock()
+    clock = Clock()
     statics = solve_case_statics(case, name)
     clock("pose and statics")
     moved = {title: examine(case, title, forces, statics.loads[title]) for title, forces in statics.forces.items()}

@@ -1,9 +1,8 @@
 """The whole motion of a case: the least safety factor of each link over all poses and load cases, where and when."""
 
 import math
-import time
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,9 +10,11 @@ from numpy.typing import NDArray
 
 from fea.check.run import effort_of
 from fea.check.solid_result import link_task
+from fea.common.clock import Clock
+from fea.common.link_loads import LinkLoads
 from fea.common.scatter import load_scatter
 from fea.common.threads import bounded_run
-from fea.common.verdict import overall
+from fea.common.verdict import CheckOutcome, overall
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
@@ -23,11 +24,12 @@ from fea.motion.linkage_history import linkage_outcomes
 from fea.outcomes.linkage import unless_it_gives_way
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
-from fea.refine.refinement import START, Effort, refine_links
+from fea.refine.refinement import START, Effort, LinkTask, refine_links
 from fea.solid.solution import require_compressible
 from fea.solid.space import DisplacementSpace, displacement_space
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import mesh_bodies
+from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.case.case import Case
 from loads.states.case_motion import CaseMotion, solve_case_motion
 
@@ -36,6 +38,80 @@ Progress = Callable[[str], None]
 
 TORQUE_GROWTH = 20.0
 """Of the drive torque towards a dead point, beside that at the best leverage, beyond which poses are left out."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Envelope:
+    """A case over its motion: what acts on every link on which something does, one record per load case."""
+
+    moved: CaseMotion
+    evaluated: NDArray[np.bool_]
+    sizes: Mapping[str, float]
+    loaded: Mapping[str, tuple[LinkLoads, ...]]
+    threads: int
+    progress: Progress
+
+    @classmethod
+    def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
+        case, loaded = moved.case, {}
+        sizes = {title: stated_size(case, title) for title in case.load_cases}
+        for link in case.checked_links:
+            found = tuple(
+                with_second_order(case, link, history, evaluated)
+                for history in link_histories(moved, link)
+                if acts(history.chosen(evaluated), sizes[history.name], case.linkage.longest)
+            )
+            if found:
+                loaded[link] = found
+        return cls(moved=moved, evaluated=evaluated, sizes=sizes, loaded=loaded, threads=threads, progress=progress)
+
+    @property
+    def idle(self) -> tuple[str, ...]:
+        """Load cases under which nothing acts on any link."""
+        acting = {history.name for found in self.loaded.values() for history in found}
+        return tuple(title for title in self.sizes if title not in acting)
+
+    def solved(self, link: str, space: DisplacementSpace, **options: Any) -> LinkEnvelope:
+        """Solve one link over the motion on one mesh."""
+        case = self.moved.case
+        try:
+            return link_envelope(
+                space,
+                link=link,
+                body=case.body(link),
+                material=case.material_of(link),
+                histories=self.loaded[link],
+                evaluated=self.evaluated,
+                stated=case.drive.transfer if case.drive else None,
+                returns=self.moved.motion.returns,
+                scatter={title: load_scatter(case, title) for title in case.load_cases},
+                threads=self.threads,
+                **options,
+            )
+        except AlulaError as error:
+            raise type(error)(f"{link}: {error}") from None
+
+    def at_worst_pose(self, link: str, mesh: TaggedMesh) -> LinkTask:
+        """Return what is to be solved for a link at the worst pose of every load case, found on a first mesh."""
+        self.progress(f"Finding the worst poses of {link} ...")
+        first = self.solved(link, displacement_space(mesh), fatigue=False)
+        loads = [history.chosen(first.load_cases[history.name].pose) for history in self.loaded[link]]
+        task = link_task(self.moved.case, link, loads)
+        require_compressible(task.nu)
+        return task
+
+    def outcomes(self, links: Mapping[str, LinkEnvelope]) -> list[CheckOutcome]:
+        """Return the outcome of every check; undecided under load cases that load no link."""
+        moved, evaluated = self.moved, self.evaluated
+        checks = [*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, self.loaded, evaluated)]
+        checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
+        for title in self.idle:
+            joints = moved.forces[title].forces
+            forces = {name: np.linalg.norm(f[evaluated], axis=1).max() for name, f in joints.items()}
+            own = [*(check for check in checks if check.load_case == title), *unloaded_links(moved.case, title)]
+            checks = [check for check in checks if check.load_case != title]
+            checks += undecided(own, title, self.sizes[title], forces)
+        return checks
 
 
 @bounded_run
@@ -51,94 +127,57 @@ def envelope_case(
 ) -> EnvelopeResult:
     """Check every link of a case over its motion, under every load case.
 
-    name         path or built-in name of the case, for the report
-    repetitions  of the motion that are wanted, for fatigue; the cycles of the material's card when left out
-    growth       of the drive torque towards a dead point, beyond which poses are left out
-    effort       accuracy of the solid models and what it may cost, by default what the case says
-
     On a first, coarse mesh the worst pose of every link and load case is found. There the meshes are refined as
     a check would; the finest one then serves the whole motion, with the relative error found at the worst pose.
 
-    Raises ``CaseError`` for a case without motion, drive or part and for repetitions that are no number of at least 1,
-    ``CannotRunError`` where a stage fails.
+    Parameters
+    ----------
+    case : Case
+    name : str, optional
+        Path or built-in name of the case, for the report.
+    threads : int
+    repetitions : float, optional
+        Of the motion that are wanted, for fatigue; the cycles of the material's card when left out.
+    growth : float
+        Of the drive torque towards a dead point, beyond which poses are left out.
+    effort : Effort, optional
+        Accuracy of the solid models and what it may cost; by default what the case says.
+    progress : callable
+        Called with a sentence before every stage that may take long.
+
+    Returns
+    -------
+    EnvelopeResult
+
+    Raises
+    ------
+    CaseError
+        For a case without motion, drive or part and for repetitions that are no number of at least 1.
+    CannotRunError
+        Where a stage fails.
     """
-    begin = time.perf_counter()
-    if repetitions is not None and not (math.isfinite(repetitions) and repetitions >= 1.0):
-        raise CaseError(f"repetitions: they are {repetitions:g}, but must be a number of at least 1; state how many")
-    if not case.checked_links:
-        raise CaseError("envelope: no moving link has a part, so there is no stress; give a link a part")
-    if case.motion is not None and case.motion.travel is not None:
-        raise CaseError(
-            "motion.travel: an envelope is drawn over the direction of a link, not over a slider's travel; state the "
-            "range of a link, or look at the forces with alula motion"
-        )
+    clock = Clock()
+    _require(case, repetitions)
     moved = solve_case_motion(case)
-    evaluated = evaluated_poses(moved, growth)
-    if not evaluated.any():
-        raise CannotRunError(
-            f"envelope: no pose is left, since the drive torque grows beyond {growth:g} times everywhere; drive "
-            "another link or allow a larger growth"
-        )
-    sizes = {title: stated_size(case, title) for title in case.load_cases}
-    length = case.linkage.longest
-    histories = {
-        link: tuple(h for h in link_histories(moved, link) if acts(h.chosen(evaluated), sizes[h.name], length))
-        for link in case.checked_links
-    }
-    loaded = {
-        link: tuple(with_second_order(case, link, history, evaluated) for history in found)
-        for link, found in histories.items()
-        if found
-    }
-    timings = {"motion": time.perf_counter() - begin}
-
-    def over_motion(link: str, space: DisplacementSpace, **options: Any) -> LinkEnvelope:
-        try:
-            return link_envelope(
-                space,
-                link=link,
-                body=case.body(link),
-                material=case.material_of(link),
-                histories=loaded[link],
-                evaluated=evaluated,
-                stated=case.drive.transfer if case.drive else None,
-                returns=moved.motion.returns,
-                scatter={title: load_scatter(case, title) for title in case.load_cases},
-                threads=threads,
-                **options,
-            )
-        except AlulaError as error:
-            raise type(error)(f"{link}: {error}") from None
-
-    begin = time.perf_counter()
+    evaluated = _some_poses(moved, growth)
+    over = _Envelope.of(moved, evaluated, threads, progress)
+    clock("motion")
+    progress(f"Meshing {len(over.loaded)} links ...")
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
-    progress(f"Meshing {len(loaded)} links ...")
-    meshes = mesh_bodies({link: case.body(link) for link in loaded}, start)
-    timings["meshing"], begin = time.perf_counter() - begin, time.perf_counter()
-    tasks = {}
-    for link, found in loaded.items():
-        progress(f"Finding the worst poses of {link} ...")
-        first = over_motion(link, displacement_space(meshes[link]), fatigue=False)
-        at_worst = [h.chosen(first.load_cases[h.name].pose) for h in found]
-        tasks[link] = link_task(case, link, at_worst)
-        require_compressible(tasks[link].nu)
-    timings["worst poses"], begin = time.perf_counter() - begin, time.perf_counter()
+    meshes = mesh_bodies({link: case.body(link) for link in over.loaded}, start)
+    clock("meshing")
+    tasks = {link: over.at_worst_pose(link, meshes[link]) for link in over.loaded}
+    clock("worst poses")
     refined = refine_links(tasks, start, effort or effort_of(case), threads=threads, progress=progress)
-    timings["refinement"], begin = time.perf_counter() - begin, time.perf_counter()
+    clock("refinement")
     links = {}
     for link, solid in refined.items():
         space = solid.solution.space
         progress(f"Solving {link} over the motion: {len(space.cells)} elements, {int(evaluated.sum())} poses ...")
-        links[link] = over_motion(link, space, repetitions=repetitions, refined=solid, notes=solid.solution.notes)
-    timings["motion of the solids"] = time.perf_counter() - begin
-    checks = [*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, loaded, evaluated)]
-    checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
-    idle = set(case.load_cases) - {history.name for found in loaded.values() for history in found}
-    for title in (title for title in case.load_cases if title in idle):
-        forces = {name: np.linalg.norm(f[evaluated], axis=1).max() for name, f in moved.forces[title].forces.items()}
-        of_idle = [*(check for check in checks if check.load_case == title), *unloaded_links(case, title)]
-        checks = [check for check in checks if check.load_case != title]
-        checks += undecided(of_idle, title, sizes[title], forces)
+        links[link] = over.solved(link, space, repetitions=repetitions, refined=solid, notes=solid.solution.notes)
+    clock("motion of the solids")
+    checks = over.outcomes(links)
+    idle = [nothing_acts(title, over.sizes[title]) for title in over.idle]
     return EnvelopeResult(
         name=name,
         case=case,
@@ -148,15 +187,35 @@ def envelope_case(
         drive_angles=moved.motion.angle(moved.drive.link),
         evaluated=evaluated,
         links=links,
-        idle=tuple(link for link in histories if link not in loaded),
+        idle=tuple(link for link in case.checked_links if link not in over.loaded),
         checks=tuple(checks),
         verdict=overall(check.verdict for check in checks),
-        warnings=(
-            *(nothing_acts(title, sizes[title]) for title in case.load_cases if title in idle),
-            *_warnings(case, moved, evaluated, growth),
-        ),
-        timings=timings,
+        warnings=(*idle, *_warnings(case, moved, evaluated, growth)),
+        timings=clock.stages,
     )
+
+
+def _some_poses(moved: CaseMotion, growth: float) -> NDArray[np.bool_]:
+    evaluated = evaluated_poses(moved, growth)
+    if not evaluated.any():
+        raise CannotRunError(
+            f"envelope: no pose is left, since the drive torque grows beyond {growth:g} times everywhere; drive "
+            "another link or allow a larger growth"
+        )
+    return evaluated
+
+
+def _require(case: Case, repetitions: float | None) -> None:
+    """Refuse what no envelope is drawn for."""
+    if repetitions is not None and not (math.isfinite(repetitions) and repetitions >= 1.0):
+        raise CaseError(f"repetitions: they are {repetitions:g}, but must be a number of at least 1; state how many")
+    if not case.checked_links:
+        raise CaseError("envelope: no moving link has a part, so there is no stress; give a link a part")
+    if case.motion is not None and case.motion.travel is not None:
+        raise CaseError(
+            "motion.travel: an envelope is drawn over the direction of a link, not over a slider's travel; state the "
+            "range of a link, or look at the forces with alula motion"
+        )
 
 
 def evaluated_poses(moved: CaseMotion, growth: float = TORQUE_GROWTH) -> NDArray[np.bool_]:

@@ -1,6 +1,5 @@
 """One link over a motion: stress of every pose and load case from unit loads, its peaks, bands and fatigue."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -14,13 +13,12 @@ from fea.common.source import Source, SourceKind, distinct, pin_sources
 from fea.motion.critical import critical_nodes
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import fatigue_life, missing_data, strength_at
+from fea.motion.mesh_factors import MeshFactors
 from fea.motion.peaks import Peaks, principal_peaks, von_mises_peaks
 from fea.motion.unit_loads import TRANSFERS, unit_loads
 from fea.motion.unit_solutions import UnitSolutions, solve_units
 from fea.refine.convergence import ALONE
-from fea.refine.discretisation import Discretisation, discretisation_source, judged
 from fea.refine.error_estimate import estimate_error
-from fea.refine.link_series import PeakQuantity
 from fea.refine.refinement import RefinedSolid
 from fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT
 from fea.solid.space import DisplacementSpace
@@ -29,19 +27,16 @@ from fea.solid.supports import LineReference
 from fea.solid.traction import Transfer
 from geometry.base.errors import CannotRunError
 from geometry.parts.material import Material, stress_measure
-from geometry.parts.part import Body
-from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw, Span
+from geometry.parts.part import Body, Pin
+from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
 
 LAWS = (WIDE, NARROW)
-ONE_MESH = "the error of its one mesh is not estimated"
 ELSEWHERE, FATIGUE_ELSEWHERE = (
     Source(kind=SourceKind.DISCRETISATION, detail=f"fourfold estimate on one mesh, since none was refined for {where}")
     for where in ("this pose", "the place where fatigue is worst")
 )
-AGREEMENT = 5e-3
-"""To which the peak of a pose by unit loads equals that of a direct solution."""
 
 
 def link_envelope(
@@ -63,64 +58,49 @@ def link_envelope(
 ) -> LinkEnvelope:
     """Solve one link over a motion.
 
-    histories  its loads, one record per load case
-    evaluated  (n,) the poses that count
-    stated     how the drive torque enters, by the case; the other way stands in the band
-    returns    True where the last pose is the first again; else the motion goes there and back
-    fatigue    False to leave it out; ``repetitions`` of the motion that are wanted
-    refined    the series of meshes that ended with this one, solved at the worst pose: for the bands
-    scatter    load case -> that of its loads; none where it is left out
+    Parameters
+    ----------
+    space, link, body, material
+    histories : sequence of LinkLoads
+        Its loads over the motion, one record per load case.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+    stated : Transfer or None
+        How the drive torque enters, by the case; the other way stands in the band.
+    returns : bool
+        True where the last pose is the first again; else the motion goes there and back.
+    fatigue, repetitions : bool and float, optional
+        False to leave it out; repetitions of the motion that are wanted.
+    refined : RefinedSolid, optional
+        The series of meshes that ended with this one, solved at the worst pose: for the bands.
+    scatter : mapping of str to Scatter, optional
+        Load case -> that of its loads; none where it is left out.
+    notes, threads : tuple of str and int, optional
 
-    Raises ``CannotRunError`` for loads that do not balance, supports that react, or a failing solver.
+    Returns
+    -------
+    LinkEnvelope
+
+    Raises
+    ------
+    CannotRunError
+        For loads that do not balance, supports that react, or a failing solver.
     """
-    chosen = [history.chosen(evaluated) for history in histories]
-    units = unit_loads(space, body, chosen, density=material.density)
-    size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
-    names: list[tuple[int, PressureLaw, Transfer | None]] = []
-    columns, scales = [], []
-    for i, history in enumerate(chosen):
-        torque = bool(history.couples) or any(np.any(pin.wrench[:, 5] != 0.0) for pin in history.pins)
-        scale = history.size(size)
-        for law in LAWS:
-            for transfer in TRANSFERS if torque else (None,):
-                names.append((i, law, transfer))
-                columns.append(units.coefficients(history, law, transfer))
-                scales.append(np.where(scale > 0.0, scale, scale.max()))
-    solved = solve_units(
-        units,
-        np.hstack(columns),
-        np.concatenate(scales),
-        E=material.youngs_modulus,
-        nu=material.poissons_ratio,
-        threads=threads,
-    )
-    _balanced(solved)
-    peaks = (principal_peaks if material.brittle else von_mises_peaks)(solved.stress, solved.combination)
-    lacking = missing_data(material) if fatigue else "it was not requested"
-    if not lacking and not evaluated.all():
-        lacking = "poses near a dead point are left out, so the stress history is not closed"
-    poses = int(evaluated.sum())
+    solved, variants = _solved(space, body, material, histories, evaluated, threads)
+    lacking = _lacking(material, evaluated) if fatigue else "it was not asked for"
     found = {}
-    for i, history in enumerate(chosen):
-        variants = [
-            _curve(law, transfer, peaks, number * poses, evaluated)
-            for number, (case, law, transfer) in enumerate(names)
-            if case == i
-        ]
-        series = _Series.of(refined, history.name, material)
-        load_case = _load_case(space.nodes, history.name, material, variants, stated, series)
-        if load_case.known and series.was_not_refined_for(load_case.governing):
-            load_case = _estimated(load_case, solved, material, evaluated)
-        load = (scatter or {}).get(history.name, Scatter())
+    for name, curves in variants.items():
+        series = MeshFactors.of(refined, name, material)
+        load_case = _load_case(space.nodes, name, material, curves, stated, series)
+        load_case = _estimated(load_case, series, solved, material, evaluated)
+        load = (scatter or {}).get(name, Scatter())
         load_case = _scattered(load_case, material, load)
         if not lacking and load_case.known:
-            varied = _fatigue(solved, material, load_case, stated, series, returns, repetitions, load)
-            load_case = replace(load_case, fatigue=varied)
-        found[history.name] = load_case
+            again = _fatigue(solved, material, load_case, stated, series, returns, repetitions, load)
+            load_case = replace(load_case, fatigue=again)
+        found[name] = load_case
     worst = min(found.values(), key=lambda load_case: load_case.severity)
-    number = worst.governing.first + int(np.count_nonzero(evaluated[: worst.pose]))
-    pins = body.pins
-    raw = solved.field(number)
+    raw = solved.field(worst.governing.first + int(np.count_nonzero(evaluated[: worst.pose])))
     return LinkEnvelope(
         link=link,
         measure=stress_measure(brittle=material.brittle),
@@ -136,10 +116,54 @@ def link_envelope(
         reaction=float(solved.reaction.max()),
         imbalance=float(solved.imbalance.max()),
         field=stress_field(space, raw, E=material.youngs_modulus, nu=material.poissons_ratio),
-        displacement=_relative(space, (f"bore:{pins[0].name}", f"bore:{pins[-1].name}"), raw),
+        displacement=_relative(space, body.pins, raw),
         no_fatigue=lacking,
         notes=notes,
     )
+
+
+def _lacking(material: Material, evaluated: NDArray[np.bool_]) -> str:
+    """Say why there is no fatigue calculation; "" where there is one."""
+    left_out = "" if evaluated.all() else "poses near a dead point are left out, so the stress history is not closed"
+    return missing_data(material) or left_out
+
+
+def _solved(
+    space: DisplacementSpace,
+    body: Body,
+    material: Material,
+    histories: Sequence[LinkLoads],
+    evaluated: NDArray[np.bool_],
+    threads: int | None,
+) -> tuple[UnitSolutions, dict[str, list[VariantCurve]]]:
+    """Return the solutions of the poses that count, and of every load case the curves of its variants."""
+    chosen = [history.chosen(evaluated) for history in histories]
+    units = unit_loads(space, body, chosen, density=material.density)
+    size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
+    names: list[tuple[str, PressureLaw, Transfer | None]] = []
+    columns, scales = [], []
+    for history in chosen:
+        torque = bool(history.couples) or any(np.any(pin.wrench[:, 5] != 0.0) for pin in history.pins)
+        scale = history.size(size)
+        for law in LAWS:
+            for transfer in TRANSFERS if torque else (None,):
+                names.append((history.name, law, transfer))
+                columns.append(units.coefficients(history, law, transfer))
+                scales.append(np.where(scale > 0.0, scale, scale.max()))
+    solved = solve_units(
+        units,
+        np.hstack(columns),
+        np.concatenate(scales),
+        E=material.youngs_modulus,
+        nu=material.poissons_ratio,
+        threads=threads,
+    )
+    _balanced(solved)
+    peaks = (principal_peaks if material.brittle else von_mises_peaks)(solved.stress, solved.combination)
+    curves: dict[str, list[VariantCurve]] = {history.name: [] for history in chosen}
+    for number, (name, law, transfer) in enumerate(names):
+        curves[name].append(_curve(law, transfer, peaks, number * int(evaluated.sum()), evaluated))
+    return solved, curves
 
 
 def _balanced(solved: UnitSolutions) -> None:
@@ -154,9 +178,9 @@ def _balanced(solved: UnitSolutions) -> None:
             )
 
 
-def _relative(space: DisplacementSpace, line: tuple[str, str], field: Real) -> Real:
+def _relative(space: DisplacementSpace, pins: Sequence[Pin], field: Real) -> Real:
     """Displacements relative to the line through the link's first and last pin."""
-    return LineReference(space, line).relative(field)
+    return LineReference(space, (f"bore:{pins[0].name}", f"bore:{pins[-1].name}")).relative(field)
 
 
 def _curve(
@@ -168,66 +192,13 @@ def _curve(
     return VariantCurve(span=law.span, transfer=transfer, stress=stress, node=node, first=first)
 
 
-class _Series:
-    """How far the finest mesh's peak of every variant may be from its limit, as factors on its stress."""
-
-    def __init__(self) -> None:
-        self.factors: dict[tuple[Span, Transfer | None], tuple[float, float]] = {}
-        self.discretisation: Discretisation | None = None
-        self.sources: tuple[Source, ...] = ()
-        self.without = ONE_MESH
-        self._refined: dict[tuple[Span, Transfer | None], float] = {}
-        self._size = math.inf
-
-    @classmethod
-    def of(cls, refined: RefinedSolid | None, load_case: str, material: Material) -> "_Series":
-        """Return the factors of a load case."""
-        found = cls()
-        if refined is None:
-            return found
-        numbers = [n for n, case in enumerate(refined.solution.cases) if case.load == load_case]
-        judgements = [judged(refined, number, brittle=material.brittle) for number in numbers]
-        found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
-        source = discretisation_source(found.discretisation.stress, sharp_edges=refined.sharp_edges)
-        found.sources, found.without = (replace(source, detail=f"{source.detail}, at the worst pose"),), ""
-        for number, judgement in zip(numbers, judgements, strict=True):
-            case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
-            found._refined[case.span, case.transfer] = series.value
-            found._size = min(found._size, series.sizes[0])
-            if judgement.known and series.value > 0.0:
-                measure: PeakQuantity = "principal" if material.brittle else "von_mises"
-                ends = precise.low(measure) / series.value, precise.high(measure) / series.value
-                found.factors[case.span, case.transfer] = ends
-        return found
-
-    def was_not_refined_for(self, variant: VariantCurve) -> bool:
-        """True where the motion's peak exceeds that of the pose that the meshes were refined for: it lies elsewhere."""
-        refined = self._refined.get((variant.span, variant.transfer), np.inf)
-        return variant.peak > (1.0 + AGREEMENT) * refined
-
-    def holds_at(self, variant: VariantCurve, nodes: Real, node: int) -> bool:
-        """True for a node about the peak that the meshes were refined for, no further than the first's elements."""
-        if self.was_not_refined_for(variant):
-            return False
-        peak = int(variant.node[int(np.nanargmax(variant.stress))])
-        return bool(np.linalg.norm(nodes[node] - nodes[peak]) <= self._size)
-
-    def of_variant(self, variant: VariantCurve) -> tuple[float, float]:
-        """Factors on the stress of a variant: its own, else those of its span without torque, else the widest."""
-        for key in ((variant.span, variant.transfer), (variant.span, None)):
-            if key in self.factors:
-                return self.factors[key]
-        lows, highs = zip(*self.factors.values(), strict=True) if self.factors else ((1.0,), (1.0,))
-        return min(lows), max(highs)
-
-
 def _load_case(
     nodes: Real,
     name: str,
     material: Material,
     variants: Sequence[VariantCurve],
     stated: Transfer | None,
-    series: _Series,
+    series: MeshFactors,
 ) -> LoadCaseEnvelope:
     own = [v for v in variants if v.transfer in (None, stated)]
     governing = max(own, key=lambda v: v.peak)
@@ -265,9 +236,15 @@ def _load_case(
 
 
 def _estimated(
-    load_case: LoadCaseEnvelope, solved: UnitSolutions, material: Material, evaluated: NDArray[np.bool_]
+    load_case: LoadCaseEnvelope,
+    series: MeshFactors,
+    solved: UnitSolutions,
+    material: Material,
+    evaluated: NDArray[np.bool_],
 ) -> LoadCaseEnvelope:
     """Return the envelope with a peak that no mesh was refined for in a band of the estimate on this mesh alone."""
+    if not load_case.known or not series.was_not_refined_for(load_case.governing):
+        return load_case
     governing, pose = load_case.governing, load_case.pose
     number = governing.first + int(np.count_nonzero(evaluated[:pose]))
     error = _local_error(solved, material, number, int(governing.node[pose]))
@@ -311,7 +288,18 @@ def _sources(governing: VariantCurve) -> tuple[Source, ...]:
 
 
 def closed_history(history: Real, *, returns: bool) -> Real:
-    """Return one repetition (n,) of a motion's history: a full turn, or there and back."""
+    """Return one repetition of a motion's history: a full turn, or there and back.
+
+    Parameters
+    ----------
+    history : ndarray, shape (n,)
+    returns : bool
+        True where the last pose is the first again.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+    """
     return history[:-1] if returns else np.concatenate([history, history[-2:0:-1]])
 
 
@@ -320,7 +308,7 @@ def _fatigue(
     material: Material,
     load_case: LoadCaseEnvelope,
     stated: Transfer | None,
-    series: _Series,
+    series: MeshFactors,
     returns: bool,
     repetitions: float | None,
     load: Scatter,

@@ -1,0 +1,75 @@
+"""How far the peaks of a motion on one mesh may be from their limits, by the meshes of its worst pose."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.source import Source
+from fea.motion.envelope_result import VariantCurve
+from fea.refine.discretisation import Discretisation, discretisation_source, judged
+from fea.refine.link_series import PeakQuantity
+from fea.refine.refinement import RefinedSolid
+from fea.solid.traction import Transfer
+from geometry.parts.material import Material
+from loads.records.bearing import Span
+
+Real = NDArray[np.float64]
+
+ONE_MESH = "the error of its one mesh is not estimated"
+AGREEMENT = 5e-3
+"""To which the peak of a pose by unit loads equals that of a direct solution."""
+
+
+class MeshFactors:
+    """How far the finest mesh's peak of every variant may be from its limit, as factors on its stress."""
+
+    def __init__(self) -> None:
+        self.factors: dict[tuple[Span, Transfer | None], tuple[float, float]] = {}
+        self.discretisation: Discretisation | None = None
+        self.sources: tuple[Source, ...] = ()
+        self.without = ONE_MESH
+        self._refined: dict[tuple[Span, Transfer | None], float] = {}
+        self._size = math.inf
+
+    @classmethod
+    def of(cls, refined: RefinedSolid | None, load_case: str, material: Material) -> "MeshFactors":
+        """Return the factors of a load case."""
+        found = cls()
+        if refined is None:
+            return found
+        numbers = [n for n, case in enumerate(refined.solution.cases) if case.load == load_case]
+        judgements = [judged(refined, number, brittle=material.brittle) for number in numbers]
+        found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
+        source = discretisation_source(found.discretisation.stress, sharp_edges=refined.sharp_edges)
+        found.sources, found.without = (replace(source, detail=f"{source.detail}, at the worst pose"),), ""
+        for number, judgement in zip(numbers, judgements, strict=True):
+            case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
+            found._refined[case.span, case.transfer] = series.value
+            found._size = min(found._size, series.sizes[0])
+            if judgement.known and series.value > 0.0:
+                measure: PeakQuantity = "principal" if material.brittle else "von_mises"
+                ends = precise.low(measure) / series.value, precise.high(measure) / series.value
+                found.factors[case.span, case.transfer] = ends
+        return found
+
+    def was_not_refined_for(self, variant: VariantCurve) -> bool:
+        """True where the motion's peak exceeds that of the pose that the meshes were refined for: it lies elsewhere."""
+        refined = self._refined.get((variant.span, variant.transfer), np.inf)
+        return variant.peak > (1.0 + AGREEMENT) * refined
+
+    def holds_at(self, variant: VariantCurve, nodes: Real, node: int) -> bool:
+        """True for a node about the peak that the meshes were refined for, no further than the first's elements."""
+        if self.was_not_refined_for(variant):
+            return False
+        peak = int(variant.node[int(np.nanargmax(variant.stress))])
+        return bool(np.linalg.norm(nodes[node] - nodes[peak]) <= self._size)
+
+    def of_variant(self, variant: VariantCurve) -> tuple[float, float]:
+        """Factors on the stress of a variant: its own, else those of its span without torque, else the widest."""
+        for key in ((variant.span, variant.transfer), (variant.span, None)):
+            if key in self.factors:
+                return self.factors[key]
+        lows, highs = zip(*self.factors.values(), strict=True) if self.factors else ((1.0,), (1.0,))
+        return min(lows), max(highs)
