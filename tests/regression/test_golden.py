@@ -26,3 +26,11 @@ def test_a_difference_names_entry_values_and_tolerance() -> None:
     ]
     found = {"a.x[0]": 1.0, "a.x[1]": 1e-12, "verdict": "fail", "c": 3.0}
     assert golden.differences(kept, found, 1e-9) == ["b: gone, it was 2.0", "c: new, 3.0", "verdict: fail, it was pass"]
+
+
+def test_numbers_that_measure_error_count_from_a_floor_of_their_kind() -> None:
+    kept = {"a.residual": 1e-15, "a.solver_error": 2e-10, "links.a.support_reaction": 3e-12, "a.stress": 1e-10}
+    assert golden.differences(kept, {**kept, "a.residual": 9e-13}, 1e-6) == []
+    assert golden.differences(kept, {**kept, "a.solver_error": 9e-9, "links.a.support_reaction": 9e-9}, 1e-6) == []
+    for entry in kept:
+        assert len(golden.differences(kept, {**kept, entry: 2e-8}, 1e-6)) == 1
