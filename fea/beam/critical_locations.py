@@ -96,10 +96,10 @@ def critical_locations(body: Body, loads: LinkLoads, beam: BeamCheck) -> tuple[C
 def displacement_estimate(
     body: Body, loads: LinkLoads, beam: BeamCheck, *, young: float, poisson: float, line: tuple[float, float]
 ) -> float:
-    """Estimate of the largest displacement of any point, relative to the line through two stations.
+    """Estimate the largest displacement of any point, relative to the line through two stations.
 
-    Of the axis by beam theory, straight on where the link stands out beyond its last load, with what the turning of
-    sections and eyes adds at the surface, and the give of the eyes under their pins, F/(E t).
+    It sums three terms: the displacement of the axis by beam theory, which goes on straight beyond the last load; what
+    the rotation of sections and eyes adds at the surface; and the compliance of the eyes under their pins, F/(E t).
 
     Parameters
     ----------
@@ -141,9 +141,8 @@ def displacement_estimate(
 def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float, float, float]:
     """Return the stress concentration factors of a shaft at a filleted step up.
 
-    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, 3.10 and 3.12: K = C1 + C2 s + C3 s²
-    + C4 s³ with s = 2 step/D, for step/radius of 0.1 to 20 in tension and bending and of 0.25 to 4 in torsion
-    (clipped).
+    K = C1 + C2 s + C3 s² + C4 s³ with s = 2 step/D, for step/radius of 0.1 to 20 in tension and bending and of 0.25 to
+    4 in torsion (clipped).
 
     Parameters
     ----------
@@ -158,6 +157,10 @@ def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float
     -------
     tuple of 3 float
         In tension, bending and torsion.
+
+    References
+    ----------
+    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, 3.10 and 3.12.
     """
     t, s = min(max(step / radius, 0.1), 20.0), 2.0 * step / (diameter + 2.0 * step)
     root = math.sqrt(t)

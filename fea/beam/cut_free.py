@@ -18,7 +18,7 @@ from loads.statics.statics import Equilibrium
 Real = NDArray[np.float64]
 
 ACROSS_SLOT = np.array([0.0, 1.0, 0.0, 1.0, 0.0, 0.0])
-"""Components of a wrench that a pin in a slot along x carries: across it, and about it."""
+"""Components of a wrench that a pin in a slot along x carries: the force across it, and the moment about x."""
 
 
 def link_loads(
@@ -31,21 +31,25 @@ def link_loads(
 ) -> LinkLoads:
     """Return all that acts on a link in a load case: a balanced set, at one pose or at n.
 
-    Forces at a pin are taken together as one wrench of the pin; the drive torque stays apart,
-    since it enters the part in a way of its own.
+    Forces at a pin are summed to one wrench. The drive torque stays apart, since it enters the part in its own way.
 
     Parameters
     ----------
-    name, link : str
-        The load case and the link.
+    name : str
+        Of the load case.
+    link : str
     body : Body
-        The link's body.
+        The link's.
     reactions : Equilibrium
-        What the joints carry.
+        Joint reactions and drive torque.
     loads : sequence of Load
         All else that acts on the links, at the same poses.
     axes : array (3, 3), optional
-        Axes in which all is given, as columns in global ones; the link's own when left out.
+        Axes of the result, as columns in global ones; the link's own when left out.
+
+    Returns
+    -------
+    LinkLoads
     """
     place = reactions.placement
     turn = (place.axes(link) if axes is None else axes).swapaxes(-1, -2)
@@ -86,9 +90,9 @@ def link_loads(
 
 
 def _pin_load(place: Placement, link: str, pin: Pin, wrench: Real, own_axes: bool) -> PinLoad:
-    """Load of a pin from its wrench (..., 6) about its point; in a slot, the wrench about where it stands.
+    """Return the load of a pin from its wrench (..., 6) about the link's point; in a slot, about the pin's place.
 
-    A pin free to slide and turn pushes across its slot alone: what rounding leaves of the rest is zero.
+    In a slot and the link's axes, the components that such a pin does not carry (``ACROSS_SLOT``) are set to zero.
     """
     centre = np.zeros((*place.shape, 3))
     centre[..., 0], centre[..., 1] = pin.x, pin.y
@@ -97,12 +101,12 @@ def _pin_load(place: Placement, link: str, pin: Pin, wrench: Real, own_axes: boo
     centre[..., 0] = slot_place(place, link, pin)
     x, y = place.linkage.links[link].points[pin.name]
     about = shifted(wrench, np.array([x, y, 0.0]) - centre)
-    held = about * ACROSS_SLOT if own_axes else about
-    return PinLoad(name=pin.name, centre=centre, diameter=pin.pin_diameter, wrench=held, slotted=True)
+    across = about * ACROSS_SLOT if own_axes else about
+    return PinLoad(name=pin.name, centre=centre, diameter=pin.pin_diameter, wrench=across, slotted=True)
 
 
 def slot_place(place: Placement, link: str, pin: Pin) -> Real:
-    """Return the x (...) at which a pin stands in its slot, in the link's frame [mm].
+    """Return where a pin stands in its slot.
 
     Parameters
     ----------
@@ -113,10 +117,15 @@ def slot_place(place: Placement, link: str, pin: Pin) -> Real:
     pin : Pin
         The slot.
 
+    Returns
+    -------
+    array (...)
+        x in the link's frame [mm].
+
     Raises
     ------
     CaseError
-        Where the slot ends before.
+        Where it stands beyond an end of the slot.
     """
     linkage = place.linkage
     joint = next(name for name in linkage.joints_of(link) if linkage.point_of(name, link) == pin.name)
@@ -126,7 +135,27 @@ def slot_place(place: Placement, link: str, pin: Pin) -> Real:
 
 
 def in_slot(pin: Pin, x: Real, link: str) -> Real:
-    """Return places x (...) in a slot, held to its ends within rounding; ``CaseError`` where one lies beyond them."""
+    """Return places in a slot; one beyond an end by rounding is moved to that end.
+
+    Parameters
+    ----------
+    pin : Pin
+        The slot.
+    x : array (...)
+        In the link's frame [mm].
+    link : str
+        The link with the slot.
+
+    Returns
+    -------
+    array (...)
+        x [mm].
+
+    Raises
+    ------
+    CaseError
+        Where a place lies beyond an end of the slot.
+    """
     low, high = pin.span
     slack = 1e-6 * pin.slot
     if x.min() < low - slack or x.max() > high + slack:
@@ -139,7 +168,7 @@ def in_slot(pin: Pin, x: Real, link: str) -> Real:
 
 
 def _on_beam(pin: PinLoad, foot: tuple[float, float] | None) -> beam.PointLoad:
-    """Return the load of a pin on the beam; that of a pin on an arm enters where the arm starts."""
+    """Return the load of a pin on the beam; a pin on an arm loads it where the arm starts."""
     if foot is None:
         return beam.PointLoad(point=pin.centre, wrench=pin.wrench)
     start = np.array([*foot, 0.0])
@@ -148,7 +177,7 @@ def _on_beam(pin: PinLoad, foot: tuple[float, float] | None) -> beam.PointLoad:
 
 
 def _eyes(body: Body, density: float, per_length: float) -> list[tuple[float, float]]:
-    """What each eye on the axis weighs more than the tube or bar that it stands for: station [mm], mass [tonne]."""
+    """Return, for each eye on the axis, its station [mm] and its mass less that of the tube or bar there [tonne]."""
     part = body.part
     if not part.is_beam:
         return []
@@ -167,18 +196,22 @@ def _eyes(body: Body, density: float, per_length: float) -> list[tuple[float, fl
 def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
     """Return the loads of one pose on the link's axis.
 
-    A body force is spread along the tube or bar between the link's ends by its mass per length; what an eye adds
-    stands as a point load at its pin, and what holes and fillets change of the mass, or of its centroid, as one at
-    each end.
+    A body force is spread along the tube or bar between the link's ends by its mass per length. The additional mass of
+    an eye is a point load at its pin. Point loads at both ends stand for what holes and fillets change of the mass and
+    of its centroid.
 
     Parameters
     ----------
     loads : LinkLoads
         At one pose.
     body : Body
-        The link's body.
+        The link's.
     density : float
         Of its material [tonne/mm³].
+
+    Returns
+    -------
+    beam.BeamLoads
     """
     feet = {pin.name: pin.foot for pin in body.pins}
     points = [_on_beam(pin, feet[pin.name]) for pin in loads.pins]
@@ -192,7 +225,7 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
     ]
     if loads.inertia is not None:
         force, mass = loads.inertia, loads.inertia.mass
-        height = float(mass.centroid[1])  # of the field that is taken for the axis
+        height = float(mass.centroid[1])  # y at which the body force is evaluated for the axis
 
         def per_mass(x: float) -> Real:
             return force.per_mass(np.array([x, height, 0.0]))
@@ -210,7 +243,7 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
         for x, lump in lumps:
             wrench = np.concatenate([lump * per_mass(x), np.zeros(3)])
             points.append(beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=wrench))
-        # The centroid's distance from the axis is felt as a moment, and so is the width of eyes and tube.
+        # The centroid's distance from the axis adds a moment, and so do the widths of eyes and tube by their inertia.
         off_axis = np.cross([0.0, height, 0.0], mass.mass * per_mass(mass.centroid[0]))
         spread = per_length * (last - first) ** 3 / 12.0
         on_line = spread + per_length * (last - first) * ((first + last) / 2.0 - mass.centroid[0]) ** 2

@@ -41,13 +41,12 @@ def deflection(
 ) -> Deflection:
     """Integrate the internal forces to the deflection relative to the line through two stations.
 
-    Along a slot both flanks bend alike, under M_z less the moment of the pair of forces that their ends' turning makes,
-    (∫M_z dx/L) S/(S + I) with S the pair's second moment and I the flanks' own. How the pin bends the flank that it
-    pushes further than the other is left out.
+    Timoshenko's beam with Cowper's shear coefficient κ: θ_z' = M_z/(E I_z), v' = θ_z + V_y/(κ G A), θ_y' = M_y/(E I_y),
+    w' = -θ_y + V_z/(κ G A), u' = N/(E A), φ' = T/(G J).
 
-    Timoshenko's beam with Cowper's shear coefficient κ (Przemieniecki, Theory of Matrix Structural Analysis, 1968,
-    section 5.6): θ_z' = M_z/(E I_z), v' = θ_z + V_y/(κ G A), θ_y' = M_y/(E I_y), w' = -θ_y + V_z/(κ G A), u' = N/(E A),
-    φ' = T/(G J).
+    Along a slot both flanks bend alike. Their moment is M_z less that of their pair of forces, (∫M_z dx/L) S/(S + I),
+    with S the pair's second moment and I the flanks' own. The additional bending of the flank that the pin pushes is
+    left out.
 
     Parameters
     ----------
@@ -69,6 +68,10 @@ def deflection(
     -------
     Deflection
         Exact for the polynomial loads of ``BeamLoads``.
+
+    References
+    ----------
+    Przemieniecki, Theory of Matrix Structural Analysis, 1968, section 5.6.
     """
     x_a, x_b = line
     forces = _divided(forces, [x for slot in flanks for x in (slot.first, slot.last)])

@@ -136,7 +136,7 @@ def net_section(width: float, slot: float, thickness: float) -> Section:
 
 
 def flank_moments(length: float, at: float, force: float, x: Floats) -> Floats:
-    """Return the moments along a beam built in at both ends under a force (Roark, 8th ed., table 8.1, case 1d).
+    """Return the moments along a beam built in at both ends under a force.
 
     With b = length - at: M(0) = -F at b²/L², M(at) = 2 F at² b²/L³, M(L) = -F at² b/L², linear between.
 
@@ -155,6 +155,10 @@ def flank_moments(length: float, at: float, force: float, x: Floats) -> Floats:
     -------
     ndarray, shape (n,)
         Moments [N·mm].
+
+    References
+    ----------
+    Roark's Formulas for Stress and Strain, 8th ed., table 8.1, case 1d.
     """
     b = length - at
     ends = -force * at * b**2 / length**2, 2.0 * force * at**2 * b**2 / length**3, -force * at**2 * b / length**2

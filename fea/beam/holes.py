@@ -1,4 +1,4 @@
-"""Handbook stresses at eyes and cross holes, for the hand calculations; the solid model is the better witness.
+"""Handbook stresses at eyes and cross holes, for the hand calculations; a solid model is more accurate.
 
 Loads in N and N·mm, lengths in mm, stresses in MPa.
 """
@@ -8,8 +8,6 @@ from geometry.base.errors import CannotRunError
 
 def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickness: float) -> float:
     """Return the mean tension F/((D - d) t) in the section through the hole of an eye that its pin pulls.
-
-    Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., chapter 8.
 
     Parameters
     ----------
@@ -31,6 +29,10 @@ def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickne
     ------
     CannotRunError
         Where the hole leaves no section.
+
+    References
+    ----------
+    Budynas & Nisbett, Shigley's Mechanical Engineering Design, 9th ed., chapter 8.
     """
     if not (0.0 < hole_diameter < eye_diameter and thickness > 0.0):
         raise CannotRunError(
@@ -42,9 +44,8 @@ def net_tension(force: float, eye_diameter: float, hole_diameter: float, thickne
 def tube_hole_factors(outer_diameter: float, inner_diameter: float, hole_diameter: float) -> tuple[float, float]:
     """Return the stress concentration factors of a tube with a transverse hole.
 
-    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., 2008, chapter 4 (polynomial fits, used here for
-    d_i/D <= 0.9 and d/D <= 0.4). In bending the hole opens at the extreme fibre. Converged solid models lie up to some
-    10 % lower in tension and more in bending.
+    They are polynomial fits, used here for d_i/D <= 0.9 and d/D <= 0.4. In bending the hole opens at the extreme fibre.
+    Converged solid models lie up to some 10 % lower in tension and more in bending.
 
     Parameters
     ----------
@@ -64,6 +65,10 @@ def tube_hole_factors(outer_diameter: float, inner_diameter: float, hole_diamete
     ------
     CannotRunError
         Outside of that range.
+
+    References
+    ----------
+    Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., 2008, chapter 4.
     """
     r, h = inner_diameter / outer_diameter, hole_diameter / outer_diameter
     if not (0.0 <= r <= 0.9 and 0.0 < h <= 0.4):

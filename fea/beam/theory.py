@@ -238,8 +238,6 @@ class CantileverCheck:
 def uniform_cantilever(weight: float, length: float, section: Section, strength: float) -> CantileverCheck:
     """Calculate a cantilever under a weight spread evenly: M = W L/2, σ = M c/I_z.
 
-    Gere & Goodno, Mechanics of Materials, 8th ed., example 4-5 (q = W/L).
-
     Parameters
     ----------
     weight : float
@@ -255,6 +253,15 @@ def uniform_cantilever(weight: float, length: float, section: Section, strength:
     -------
     CantileverCheck
         Moment, stress and safety factor.
+
+    Raises
+    ------
+    CannotRunError
+        For a length that is not above zero.
+
+    References
+    ----------
+    Gere & Goodno, Mechanics of Materials, 8th ed., example 4-5 (q = W/L).
     """
     if not (length > 0.0 and np.isfinite([weight, length]).all()):
         raise CannotRunError(f"a cantilever needs a length above zero and a finite weight, not {length:g} mm")

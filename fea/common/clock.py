@@ -20,7 +20,12 @@ class Clock:
     last: float = field(default_factory=time.perf_counter)
 
     def __call__(self, stage: str) -> None:
-        """End a stage."""
+        """End a stage and count the seconds since the last one ended.
+
+        Parameters
+        ----------
+        stage : str
+        """
         now = time.perf_counter()
         self.stages[stage] = self.stages.get(stage, 0.0) + now - self.last
         self.last = now

@@ -19,7 +19,7 @@ ALONG = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PinLoad:
-    """What the pin in a hole or slot does to the link.
+    """Load of the pin in a hole or slot on the link.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class PinLoad:
     wrench : array (..., 6)
         Fx, Fy, Fz [N] and Mx, My, Mz [N mm] about ``centre``; Mz enters like a drive couple.
     slotted : bool
-        True for a pin in a slot along x, which can neither push along x nor turn the link.
+        True for a pin in a slot along x, which carries neither a force along x nor a moment about z.
     """
 
     VECTORS: ClassVar[tuple[str, ...]] = ("centre", "wrench")
@@ -46,7 +46,15 @@ class PinLoad:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DriveCouple:
-    """A torque (...) [N mm] about z, counter-clockwise positive, on the link at the pin ``pin``."""
+    """Drive torque on the link at a pin.
+
+    Attributes
+    ----------
+    pin : str
+        Name of its hole.
+    torque : float or array (...)
+        About z, counter-clockwise positive [N mm].
+    """
 
     VECTORS: ClassVar[tuple[str, ...]] = ()
     SCALARS: ClassVar[tuple[str, ...]] = ("torque",)
@@ -56,7 +64,17 @@ class DriveCouple:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EndLoad:
-    """A wrench (..., 6) [N, N mm] about ``point`` (3,) [mm], spread over the patch ``end:<name>``."""
+    """Wrench on a loaded end, spread over the patch ``end:<name>``.
+
+    Attributes
+    ----------
+    name : str
+        Of the end.
+    point : array (3,)
+        [mm].
+    wrench : array (..., 6)
+        About ``point`` [N, N mm].
+    """
 
     VECTORS: ClassVar[tuple[str, ...]] = ("wrench",)
     SCALARS: ClassVar[tuple[str, ...]] = ()
@@ -73,8 +91,12 @@ class LinkLoads:
     ----------
     name, link : str
         Of the load case and the link.
-    pins, couples, ends
-        What joints and stated loads do to the link.
+    pins : tuple of PinLoad
+        Joint forces and loads stated at pins.
+    couples : tuple of DriveCouple
+        The drive torque.
+    ends : tuple of EndLoad
+        Loads stated at ends.
     lines : tuple of LineLoad
         Spread loads, in the link's axes.
     inertia : BodyForce, optional
@@ -106,6 +128,10 @@ class LinkLoads:
         ----------
         poses : int, slice, numbers or mask (n,)
             Which poses; for a single number the result has no axis of poses.
+
+        Returns
+        -------
+        LinkLoads
         """
         return replace(
             self,
@@ -117,7 +143,7 @@ class LinkLoads:
         )
 
     def parts(self) -> list[Real]:
-        """Wrench (..., 6) of every load about the origin of the link's frame."""
+        """Return the wrench (..., 6) of every load about the origin of the link's frame [N, N mm]."""
         found = [shifted(wrench, place) for place, wrench in self.wrenches]
         for couple in self.couples:
             torque = np.asarray(couple.torque, dtype=float)
@@ -138,12 +164,17 @@ class LinkLoads:
         return np.asarray(sum(self.parts(), np.zeros(6)))
 
     def size(self, length: float) -> Real:
-        """Return the sum (...) of all forces, and of all moments over a length [N]: what a resultant is compared with.
+        """Return the sum of the magnitudes of all forces, and of all moments over a length: the scale of a resultant.
 
         Parameters
         ----------
         length : float
             Such as the link's [mm].
+
+        Returns
+        -------
+        array (...)
+            In N.
         """
         total = np.zeros(())
         for wrench in [w for _, w in self.wrenches]:

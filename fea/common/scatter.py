@@ -71,7 +71,7 @@ class Scatter:
 
 
 def _product(end: float, factor: float) -> float:
-    """End of a band times a factor; nothing stays nothing, and what no load breaks stays unbroken."""
+    """Return an end of a band times a factor; zero and infinity stay as they are."""
     return end if end in (0.0, math.inf) else end * factor
 
 

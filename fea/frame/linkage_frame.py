@@ -24,7 +24,8 @@ from fea.frame.model import FrameModel
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
 from loads.records.applied import LineLoad, Load, PointLoad, shifted
-from loads.statics.statics import Drive, JointReaction, Reactions, assemble, travelled
+from loads.statics.joint_reaction import JointReaction, travelled
+from loads.statics.statics import Drive, Reactions, assemble
 
 Real = NDArray[np.float64]
 

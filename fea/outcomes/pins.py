@@ -31,7 +31,7 @@ from fea.outcomes.limits import least_safety_factor
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.records.check_spec import PinCheck
-from loads.statics.statics import JointReaction
+from loads.statics.joint_reaction import JointReaction
 
 SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
 

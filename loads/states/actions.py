@@ -19,19 +19,32 @@ Real = NDArray[np.float64]
 
 
 def needs_masses(case: Case) -> bool:
-    """Return True where a load case lets the parts weigh what they weigh, or moves them."""
+    """Return True where a load case needs the masses of the parts, for weight or for inertia.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    bool
+    """
     return any(load_case.own_weight or load_case.speed != 0.0 for load_case in case.load_cases.values())
 
 
 def placed(pose: Pose, speed: float) -> Placement:
-    """Return where the links stand at a pose, and how they move while its coordinate turns at a constant speed.
+    """Return where the links stand at a pose, and how they move at a constant speed of its coordinate.
 
     Parameters
     ----------
     pose : Pose
-        The pose.
     speed : float
-        Of its coordinate [rad/s]; at 0 no rates are sought.
+        Of its coordinate [rad/s].
+
+    Returns
+    -------
+    Placement
+        Without rates at speed 0.
 
     Raises
     ------
@@ -44,16 +57,22 @@ def placed(pose: Pose, speed: float) -> Placement:
 
 
 def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
-    """Return all that acts on the links but what they do to each other: stated loads, air, weight and inertia.
+    """Return all that acts on the links but the joint forces: stated loads, air, weight and inertia.
 
     Parameters
     ----------
-    case, load_case
-        What is stated, and which of it.
+    case : Case
+    load_case : LoadCase
+        One of the case's.
     place : Placement
-        Where the links stand; with rates inertia acts too.
+        Where the links stand; inertia acts where it has rates.
     masses : mapping of str to PartMass
-        Of the parts alone; what links carry comes from the case.
+        Of the parts alone, by link; what links carry comes from the case.
+
+    Returns
+    -------
+    tuple of Load
+        At the poses of ``place``.
     """
     loads = stated_loads(case, load_case)
     if load_case.own_weight or place.qddot is not None:
@@ -65,7 +84,18 @@ def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapp
 
 
 def stated_loads(case: Case, load_case: LoadCase) -> tuple[Load, ...]:
-    """Return the forces, moments, spread loads and air of a load case, good for any pose."""
+    """Return the forces, moments, spread loads and air of a load case, the same at every pose.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : LoadCase
+        One of the case's.
+
+    Returns
+    -------
+    tuple of Load
+    """
     loads: list[Load] = []
     for force in load_case.forces:
         wrench = np.concatenate([vector3(force.force), np.zeros(3)])
@@ -86,19 +116,27 @@ def stated_loads(case: Case, load_case: LoadCase) -> tuple[Load, ...]:
 
 
 def inertia_loads(place: Placement, masses: Mapping[str, PartMass], gravity: Real) -> tuple[BodyForce, ...]:
-    """Return what weight and inertia of the links' masses do to them.
+    """Return weight and inertia as loads on the links, after D'Alembert.
 
-    Every mass element dm of a link loads it with (g - a) dm, where a is its acceleration (after D'Alembert; Norton,
-    Design of Machinery, 5th ed., chapters 10 and 11).
+    Every mass element dm of a link loads it with (g - a) dm, where a is its acceleration.
 
     Parameters
     ----------
     place : Placement
         Where the links stand and how they move; at rest there is weight alone.
     masses : mapping of str to PartMass
-        Of links.
+        By link.
     gravity : array (3,)
-        Weight per mass [mm/s²].
+        Weight per mass g, global axes [mm/s²].
+
+    Returns
+    -------
+    tuple of BodyForce
+        One per mass.
+
+    References
+    ----------
+    Norton, Design of Machinery, 5th ed., chapters 10 and 11.
     """
     return tuple(
         BodyForce(
@@ -113,7 +151,7 @@ def inertia_loads(place: Placement, masses: Mapping[str, PartMass], gravity: Rea
 
 
 def _carried_load(place: Placement, carried: Carried, gravity: Real) -> Load:
-    """What weight and inertia of a carried mass do to its link."""
+    """Return weight and inertia of a carried mass as a load on its link."""
     link, points = carried.link, place.linkage.links[carried.link].points
     own, turn = mass_of(carried, points), place.direction(carried.link)
     [force] = inertia_loads(place, {link: own}, gravity)

@@ -35,10 +35,12 @@ class CaseMotion:
 
     Attributes
     ----------
-    case, motion, drive
-        The case, the n poses of its linkage, and what drives it.
+    case : Case
+    motion : Motion
+        The n poses of its linkage.
+    drive : Drive
     masses : mapping of str to PartMass
-        Of the links' parts; empty where nothing weighs and inertia is left out.
+        Of the parts, by link; empty where weight and inertia are left out.
     loads : mapping of str to tuple of Load
         Load case -> all that acts on the links at every pose, inertia included.
     forces : mapping of str to Kinetostatics
@@ -73,10 +75,20 @@ class CaseMotion:
 def solve_case_motion(case: Case) -> CaseMotion:
     """Move the case's linkage as its table [motion] says and solve every load case at every pose.
 
-    A load case that states its own speed moves over the same poses at that speed, with inertia; its speed is
-    the one of the pose's coordinate.
+    A load case with a speed of its own moves over the same poses at that speed of the pose's coordinate, with inertia.
 
-    Raises ``CaseError`` where the motion meets a dead point or the case states no motion, drive or masses.
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    CaseMotion
+
+    Raises
+    ------
+    CaseError
+        Where the motion meets a dead point, or the case states no motion, drive or masses.
     """
     coordinate = case.motion_coordinate
     spec, drive = case.motion, case.pinned_drive
@@ -123,13 +135,23 @@ def solve_case_motion(case: Case) -> CaseMotion:
 
 
 def drive_effort(solved: Kinetostatics) -> Real:
-    """Return the drive torque (n,) [N mm], or the drive force (n,) [N] where the drive pushes a slider."""
+    """Return the drive torque, or the drive force where the drive pushes a slider.
+
+    Parameters
+    ----------
+    solved : Kinetostatics
+
+    Returns
+    -------
+    array (n,)
+        Torque [N mm] or force [N].
+    """
     assert solved.drive is not None
     return np.asarray(solved.drive_force if solved.drive.pushes(solved.motion.linkage) else solved.drive_torque)
 
 
 def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMass]) -> Power:
-    """Return the energies of what a load case moves, each link's mass with what it carries as one."""
+    """Return the energies of a load case, where each link's part and what it carries count as one mass."""
     load_case, place = case.load_cases[name], motion.placement
     laden = laden_masses(case, masses) if load_case.carried else masses
     weights = inertia_loads(place.at_rest, laden, gravity(load_case)) if load_case.own_weight else ()
@@ -137,7 +159,19 @@ def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMa
 
 
 def with_inertia(case: Case, load_case: str) -> bool:
-    """Whether inertia acts in a load case of a motion: where the motion asks for it or the case states a speed."""
+    """Return True where inertia acts in a load case of a motion.
+
+    Parameters
+    ----------
+    case : Case
+        Whose table [motion] may ask for inertia.
+    load_case : str
+        Its name; one with a speed of its own has inertia.
+
+    Returns
+    -------
+    bool
+    """
     asked = case.motion is not None and case.motion.inertia
     return asked or case.load_cases[load_case].speed != 0.0
 
@@ -151,7 +185,19 @@ def _at_speed_of(motion: Motion, load_case: LoadCase) -> Motion:
 
 
 def drive_angles(case: Case, pose: Pose) -> Real:
-    """Values of the motion's coordinate (poses,) [rad, mm]: its range, or a full turn from the stated pose."""
+    """Return the values of the motion's coordinate: over its range, or a full turn from the stated pose.
+
+    Parameters
+    ----------
+    case : Case
+    pose : Pose
+        The stated one.
+
+    Returns
+    -------
+    array (poses,)
+        Angles [rad] or travels [mm].
+    """
     spec = case.motion
     assert spec is not None
     if spec.ends is not None:
@@ -161,9 +207,25 @@ def drive_angles(case: Case, pose: Pose) -> Real:
 
 
 def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
-    """Speed and acceleration of the motion's coordinate at its angles or travels (poses,), per second and second².
+    """Return speed and acceleration of the motion's coordinate.
 
-    With constant acceleration: speed² = first speed² + 2 acceleration (angle - first angle).
+    The acceleration is constant: speed² = first speed² + 2 acceleration (angle - first angle).
+
+    Parameters
+    ----------
+    case : Case
+    angles : array (poses,)
+        Angles [rad] or travels [mm].
+
+    Returns
+    -------
+    tuple of 2 array (poses,)
+        Speed [rad/s, mm/s] and acceleration [rad/s², mm/s²].
+
+    Raises
+    ------
+    CaseError
+        Where the drive slows down to a stop before the motion ends.
     """
     spec = case.motion
     assert spec is not None

@@ -1,7 +1,6 @@
 """Joint forces and drive torque over a motion: the equilibrium of ``loads/statics/statics.py`` at all poses at once.
 
-Inertia is among the loads, after D'Alembert: sum F = m a_G and the moment of the change of angular momentum (Norton,
-Design of Machinery, 5th ed., chapter 11).
+Inertia is among the loads, after D'Alembert (Norton, Design of Machinery, 5th ed., chapter 11).
 """
 
 import math
@@ -24,8 +23,8 @@ from loads.statics.statics import (
     assemble,
     check_drive,
     joint_reactions,
-    require_determinate,
 )
+from loads.statics.system import require_determinate
 
 Real = NDArray[np.float64]
 
@@ -35,7 +34,7 @@ _BLOCK = 1024
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Power:
-    """Energies [N mm] and powers [N mm/s] at the n poses.
+    """Energies [N mm], their rates and powers [N mm/s] at the n poses.
 
     Attributes
     ----------
@@ -58,16 +57,15 @@ class Power:
 class Kinetostatics(Equilibrium):
     """Joint forces, drive torque and power at the n poses of a motion under one set of loads.
 
-    Where the leverage is below ``loads.statics.statics.NEARLY_SINGULAR`` forces and torque grow without bound:
-    they are NaN there.
+    Forces and torque grow without bound at a dead point. They are NaN where the leverage is below ``NEARLY_SINGULAR``
+    of ``loads.statics.statics``.
 
     Attributes
     ----------
     motion : Motion
-        The motion.
     leverage : array (n,)
-        Speed of the driven angle, times the longest link, over the size of all speeds of the linkage (of the driven
-        travel, over it): 0 at a dead point of the driven link, at most 1.
+        How well the driven link moves the others: 0 at its dead points, at most 1. The ratio of its angular speed
+        times the longest link, or of its speed along the guide, to the norm of all links' speeds.
     power : Power
         The terms of the energy balance.
     """
@@ -119,11 +117,14 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
     motion : Motion
         The n poses.
     drive : Drive
-        The driven link and the joint about which it is driven.
     loads : sequence of Load
         All that acts on the links, inertia included.
     power : Power
-        The energies of what moves (``energies``), which the result tells.
+        From ``energies``; it goes into the result unchanged.
+
+    Returns
+    -------
+    Kinetostatics
 
     Raises
     ------
@@ -136,8 +137,8 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
     if drive is None:
         raise CaseError("drive: the linkage moves, but nothing drives it; add a [drive] with its link and joint")
     leverage = _leverage(motion, drive)
-    held = np.flatnonzero(leverage >= NEARLY_SINGULAR)
-    if not held.size:
+    solvable = np.flatnonzero(leverage >= NEARLY_SINGULAR)
+    if not solvable.size:
         raise CaseError(
             f"drive.link: '{drive.link}' does not move at joint '{drive.joint}' during this motion, "
             "so nothing there can drive it; drive a link that moves"
@@ -145,7 +146,7 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
     acting = [at_poses(load, place.shape) for load in loads]
     value: dict[str, Real] = {}
     residual = np.full(place.shape, np.nan)
-    for poses in np.array_split(held, math.ceil(len(held) / _BLOCK)):
+    for poses in np.array_split(solvable, math.ceil(len(solvable) / _BLOCK)):
         system = assemble(place.chosen(poses), drive, [chosen(load, poses) for load in acting])
         require_determinate(linkage, system)
         unknowns, residual[poses] = system.solved()
@@ -165,15 +166,26 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
 
 
 def torque_by_virtual_work(motion: Motion, drive: Drive, loads: Sequence[Load]) -> Real:
-    """Return the drive torque (n,) [N mm], or force [N], by virtual work alone; NaN at dead points.
+    """Return the drive torque or force by virtual work.
 
-    It needs the motion alone, hence serves redundant linkages too, whose joint forces do not follow
-    from equilibrium (Norton, 5th ed., chapter 10).
+    It needs no joint forces, so that it serves redundant linkages too.
 
     Parameters
     ----------
-    motion, drive, loads
-        As for ``solve_kinetostatics``.
+    motion : Motion
+        The n poses.
+    drive : Drive
+    loads : sequence of Load
+        All that acts on the links, inertia included.
+
+    Returns
+    -------
+    array (n,)
+        Torque [N mm], or force [N] where the drive pushes; NaN at dead points.
+
+    References
+    ----------
+    Norton, Design of Machinery, 5th ed., chapter 10.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         torque = -_work(loads, motion.placement, motion.virtual) / _relative_motion(motion, drive)
@@ -181,26 +193,46 @@ def torque_by_virtual_work(motion: Motion, drive: Drive, loads: Sequence[Load]) 
 
 
 def is_determinate(linkage: Linkage) -> bool:
-    """Return True where equilibrium gives all joint forces of the driven linkage: as many equations as unknowns."""
+    """Return True where the driven linkage has as many equations of equilibrium as unknowns.
+
+    Parameters
+    ----------
+    linkage : Linkage
+
+    Returns
+    -------
+    bool
+    """
     unknowns = sum(1 if joint.type == "pin-in-slot" else 2 for joint in linkage.joints.values()) + 1
     return unknowns == 3 * len(linkage.moving)
 
 
 def _counterpart(linkage: Linkage, drive: Drive) -> str:
-    """The link that carries the reaction of the drive torque."""
+    """Return the link that carries the reaction of the drive torque."""
     first, second = linkage.joints[drive.joint].links
     return second if first == drive.link else first
 
 
 def dead_points(motion: Motion, drive: Drive) -> tuple[float, ...]:
-    """Return the values of a motion's coordinate [rad, mm] at which the driven link turns back."""
+    """Return where in a motion the driven link turns back.
+
+    Parameters
+    ----------
+    motion : Motion
+    drive : Drive
+
+    Returns
+    -------
+    tuple of float
+        Values of the motion's coordinate [rad, mm].
+    """
     if drive.pushes(motion.linkage):
         return motion.stopping_points(drive.joint)
     return motion.turning_points(drive.link, _counterpart(motion.linkage, drive))
 
 
 def _relative_motion(motion: Motion, drive: Drive) -> Real:
-    """Turn of the driven link against its counterpart, or its way along the guide [mm], by the coordinate."""
+    """Return the derivative (n,) by the coordinate of the driven link's angle or travel against the other link."""
     if drive.pushes(motion.linkage):
         column = len(motion.linkage.moving) + motion.closure.slots.index(drive.joint)
         return drive.sign(motion.linkage) * motion.first[:, column]
@@ -208,10 +240,10 @@ def _relative_motion(motion: Motion, drive: Drive) -> Real:
 
 
 def _leverage(motion: Motion, drive: Drive) -> Real:
-    """How well the driven link moves the others (n,).
+    """Return the leverage (n,) of the driven link.
 
-    The scaled virtual velocities are a vector that the joint forces' columns of the scaled
-    equilibrium matrix are normal to, so that this is an upper bound of its smallest singular value.
+    Joint forces do no virtual work, so their columns of the scaled equilibrium matrix are normal to the scaled virtual
+    velocities. Hence the leverage is an upper bound of the matrix's smallest singular value.
     """
     longest, moved = motion.linkage.longest, motion.virtual
     unit = 1.0 if drive.pushes(motion.linkage) else longest
@@ -220,7 +252,7 @@ def _leverage(motion: Motion, drive: Drive) -> Real:
 
 
 def _work(loads: Sequence[Load], place: Placement, moved: Placement) -> Real:
-    """Work (n,) of loads by the rates of ``moved``: their power, or their virtual work."""
+    """Return the power (n,) of loads at the velocities of ``moved``, or their virtual work at virtual ones."""
     total = np.zeros(place.shape)
     for load in loads:
         if load.link != place.linkage.ground:
@@ -231,7 +263,7 @@ def _work(loads: Sequence[Load], place: Placement, moved: Placement) -> Real:
 
 
 def energies(place: Placement, loads: Sequence[Load], masses: Mapping[str, PartMass]) -> Power:
-    """Return the energies of moving masses and the power of what acts on them.
+    """Return the energies of moving masses and the power of the loads on them.
 
     Parameters
     ----------
@@ -240,7 +272,11 @@ def energies(place: Placement, loads: Sequence[Load], masses: Mapping[str, PartM
     loads : sequence of Load
         Body forces among them are weights; the others are applied.
     masses : mapping of str to PartMass
-        Of the links whose inertia counts.
+        Of the links with inertia.
+
+    Returns
+    -------
+    Power
     """
     kinetic, kinetic_rate, potential, potential_rate = (np.zeros(place.shape) for _ in range(4))
     for link, own in masses.items():

@@ -14,15 +14,28 @@ from loads.records.carried import mass_of
 
 @lru_cache(maxsize=256)
 def _measured(body: Body) -> MassProperties:
-    """Volume and inertia of a body; equal bodies, and one body in several motions, are measured once."""
+    """Return volume and inertia of a body; equal bodies are measured once."""
     return mass_properties(body)
 
 
 def part_mass(case: Case, link: str) -> PartMass:
     """Return mass, centroid and moment of inertia of a link's part, by the geometry kernel.
 
-    Raises ``CaseError`` for a link without part or a body that cannot be built, ``CannotRunError`` where
-    the kernel fails.
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    PartMass
+
+    Raises
+    ------
+    CaseError
+        For a link without part or a body that cannot be built.
+    CannotRunError
+        Where the kernel fails.
     """
     solid, density = _measured(case.body(link)), case.material_of(link).density
     return PartMass(
@@ -33,19 +46,33 @@ def part_mass(case: Case, link: str) -> PartMass:
 
 
 def part_masses(case: Case) -> dict[str, PartMass]:
-    """Return the mass of every moving link's part; links without part are left out."""
-    return {link: part_mass(case, link) for link in case.checked_links}
-
-
-def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMass]:
-    """Return the masses together with what the case's links carry, each link's as one.
+    """Return the mass of every moving link's part.
 
     Parameters
     ----------
     case : Case
-        The case.
+
+    Returns
+    -------
+    dict of str to PartMass
+        By link; links without part are left out.
+    """
+    return {link: part_mass(case, link) for link in case.checked_links}
+
+
+def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMass]:
+    """Return the masses of the links, each of its part and what it carries.
+
+    Parameters
+    ----------
+    case : Case
     masses : mapping of str to PartMass
-        Of the parts alone.
+        Of the parts alone, by link.
+
+    Returns
+    -------
+    dict of str to PartMass
+        By link.
     """
     found = dict(masses)
     for carried in case.carried:
@@ -55,7 +82,17 @@ def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMa
 
 
 def together(one: PartMass, other: PartMass) -> PartMass:
-    """Return two masses as one, by Huygens and Steiner's parallel-axis rule."""
+    """Return two masses as one, by the parallel-axis theorem.
+
+    Parameters
+    ----------
+    one, other : PartMass
+        About the same origin.
+
+    Returns
+    -------
+    PartMass
+    """
     total = one.mass + other.mass
     centre = np.asarray((one.mass * one.centroid + other.mass * other.centroid) / total)
     inertia = sum(part.inertia + part.mass * float(np.sum((part.centroid - centre) ** 2)) for part in (one, other))

@@ -6,13 +6,11 @@ Each link is cut free. With r the arm from the origin of the link's frame to a j
 
 over joint forces, applied loads and the drive torque (Norton, Design of Machinery, 5th ed., chapter 11; inertia is
 among the loads, after D'Alembert). The unknown of a revolute joint is the force that the joint's first link exerts on
-its second; a pin in a slot carries a normal force, a slider a normal force and a moment. Joints have no friction.
+its second. A pin in a slot carries a normal force, and a slider a normal force and a moment. Joints have no friction.
 """
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,9 +18,11 @@ from numpy.typing import NDArray
 
 from geometry.base.errors import CaseError
 from geometry.linkage.linkage import Linkage
-from geometry.linkage.placement import Complex, Placement, vector
+from geometry.linkage.placement import Complex, Placement
 from geometry.linkage.pose import Pose
 from loads.records.applied import Load, shifted
+from loads.statics.joint_reaction import JointReaction, travelled
+from loads.statics.system import System, require_determinate
 
 Real = NDArray[np.float64]
 
@@ -30,132 +30,67 @@ NEARLY_SINGULAR = 1e-6
 """Smallest singular value of the scaled matrix below which a pose is refused."""
 
 
-ROUNDING = 1e-13
-"""Share of the largest force below which a value is rounding."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """The drive: it turns ``link`` about ``joint`` against the other link there (often the ground).
+    """The drive: a torque about a joint, or a force along the guide of a slider.
 
-    Where the joint is a slider it pushes the link along the guide instead.
+    Attributes
+    ----------
+    link : str
+        The driven link.
+    joint : str
+        Where it is driven against the other link of the joint, often the ground.
     """
 
     link: str
     joint: str
 
     def pushes(self, linkage: Linkage) -> bool:
-        """Whether the drive is a force along a guide, and no torque."""
+        """Return True where the drive is a force along a guide, and no torque.
+
+        Parameters
+        ----------
+        linkage : Linkage
+
+        Returns
+        -------
+        bool
+        """
         return linkage.joints[self.joint].type == "slider"
 
     def dead_point_distance(self, pose: Pose) -> float:
-        """How far a pose is from a dead point of the driven link or slider (``Pose.dead_point_distance``)."""
+        """Return how far a pose is from a dead point of the driven link or slider.
+
+        Parameters
+        ----------
+        pose : Pose
+
+        Returns
+        -------
+        float
+            As ``Pose.dead_point_distance`` counts it.
+        """
         slides = self.pushes(pose.linkage)
         return pose.dead_point_distance(self.joint if slides else self.link, slides=slides)
 
     def sign(self, linkage: Linkage) -> float:
-        """Return 1 where the driven link is the joint's second, so that its motion is that of the joint; else -1."""
+        """Return the sign of the driven link's motion in the joint's, which is that of its second link.
+
+        Parameters
+        ----------
+        linkage : Linkage
+
+        Returns
+        -------
+        float
+            1 where the driven link is the joint's second, else -1.
+        """
         return 1.0 if linkage.joints[self.joint].links[1] == self.link else -1.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointReaction:
-    """What one link does to the other at a joint, at one pose or at n.
-
-    Attributes
-    ----------
-    joint, on, by : str
-        The joint, its second link and its first.
-    wrench : array (..., 6)
-        What ``by`` does to ``on``, about the pin, global axes [N, N mm].
-    arm : array (..., 3)
-        From the point of link ``by`` to the pin, which has travelled in a slot or along a guide [mm].
-    """
-
-    joint: str
-    on: str
-    by: str
-    wrench: Real
-    arm: Real = field(default_factory=lambda: np.zeros(3))
-
-    @property
-    def force(self) -> Real:
-        """Force (..., 3) [N]."""
-        return self.wrench[..., :3]
-
-    @property
-    def magnitude(self) -> float:
-        """Size of the force at one pose [N]."""
-        return float(np.linalg.norm(self.wrench[:3]))
-
-
-@dataclass(frozen=True, kw_only=True)
-class System:
-    """The equilibrium equations [A][R] = [b], with a name for every row and column.
-
-    Attributes
-    ----------
-    matrix : array (..., 3 links, unknowns)
-        Force rows in N, moment rows in N mm.
-    rhs : array (..., 3 links)
-        The loads, with their sign turned.
-    rows : tuple of (link, "Fx" | "Fy" | "Mz")
-        Names of the rows.
-    columns : tuple of str
-        Names of the unknowns: RAx, RAy, ..., T.
-    scale : float
-        Length by which moments are divided before singular values are taken [mm].
-    """
-
-    matrix: Real
-    rhs: Real
-    rows: tuple[tuple[str, str], ...]
-    columns: tuple[str, ...]
-    scale: float
-
-    @cached_property
-    def row_scale(self) -> Real:
-        """By what each row is divided (rows,)."""
-        return np.array([self.scale if kind == "Mz" else 1.0 for _, kind in self.rows])
-
-    @cached_property
-    def column_scale(self) -> Real:
-        """By what each unknown without dimension is multiplied (unknowns,)."""
-        return np.array([self.scale if name == "T" or name.startswith("M:") else 1.0 for name in self.columns])
-
-    @cached_property
-    def scaled(self) -> Real:
-        """The matrix without dimensions: moments and the torque divided by ``scale``."""
-        return np.asarray(self.matrix * (self.column_scale / self.row_scale[:, None]))
-
-    @cached_property
-    def singular_values(self) -> Real:
-        """Singular values (..., unknowns) of the scaled matrix, falling."""
-        return np.asarray(np.linalg.svd(self.scaled, compute_uv=False), dtype=float)
-
-    @property
-    def condition(self) -> float:
-        """Condition number of the scaled matrix (2-norm)."""
-        smallest = float(self.singular_values[-1])
-        return float(self.singular_values[0]) / smallest if smallest > 0.0 else math.inf
-
-    def solved(self) -> tuple[Real, Real]:
-        """Return the unknowns (..., unknowns) and the residual (...): the largest one, as a share of the load.
-
-        Unknowns that are but rounding beside the largest are zero; as loads on a link these would not balance.
-        """
-        right = self.rhs / self.row_scale
-        unknowns = np.linalg.solve(self.scaled, right[..., None])[..., 0]
-        largest = np.abs(unknowns).max(axis=-1, keepdims=True, initial=0.0)
-        unknowns = np.where(np.abs(unknowns) <= ROUNDING * largest, 0.0, unknowns)
-        left = (self.scaled @ unknowns[..., None])[..., 0] - right
-        size = np.maximum(np.abs(right).max(axis=-1, initial=0.0), 1e-300)
-        return unknowns * self.column_scale, np.abs(left).max(axis=-1) / size
-
-
-@dataclass(frozen=True, kw_only=True)
 class Equilibrium:
-    """Joint forces and what the drive exerts, at one pose or at n, under one set of loads.
+    """Joint reactions and the drive's torque or force under one set of loads, at one pose or at n.
 
     Attributes
     ----------
@@ -166,8 +101,8 @@ class Equilibrium:
     drive_torque : float or array (n,)
         On the driven link, counter-clockwise positive [N mm]; 0 without drive and where it pushes.
     drive_force : float or array (n,)
-        On the driven link along the guide's direction [N]; 0 unless the drive pushes. The slider's own reaction
-        holds it.
+        On the driven link along the guide's direction [N]; 0 unless the drive pushes. It is part of the reaction
+        of the driven slider.
     residual : float or array (n,)
         Largest unbalanced force or moment over the longest link, as a share of the load.
     """
@@ -184,9 +119,16 @@ class Equilibrium:
         raise NotImplementedError
 
     def on_link(self, link: str) -> tuple[tuple[str, Real], ...]:
-        """Return (point, wrench (..., 6) about it in global axes) of every joint reaction that acts on a link.
+        """Return every joint reaction that acts on a link; the drive torque is not among them.
 
-        The drive torque is not among them: see ``drive_torque``.
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        tuple of (str, array (..., 6))
+            Point of the link, and wrench about it in global axes [N, N mm].
         """
         found = []
         for name, reaction in self.joints.items():
@@ -199,7 +141,17 @@ class Equilibrium:
         return tuple(found)
 
     def torque_on(self, link: str) -> Any:
-        """Drive torque that acts on a link [N mm]: on the driven link, and its reaction on the other."""
+        """Return the torque that the drive exerts on a link.
+
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        float or array (n,)
+            The drive torque on the driven link, its reaction on the other, 0 elsewhere [N mm].
+        """
         linkage = self.placement.linkage
         if self.drive is None or self.drive.pushes(linkage):
             return 0.0
@@ -210,14 +162,15 @@ class Equilibrium:
 
 @dataclass(frozen=True, kw_only=True)
 class Reactions(Equilibrium):
-    """Joint reactions and drive torque of one pose, with the equations that have them.
+    """Joint reactions and drive torque of one pose, with the equations that they solve.
 
     Attributes
     ----------
-    pose, system
-        The pose, and its equations.
+    pose : Pose
+    system : System
+        The equations.
     unknowns : array (columns,)
-        The solution vector [R].
+        The solution vector [R] [N, N mm].
     """
 
     pose: Pose
@@ -231,16 +184,19 @@ class Reactions(Equilibrium):
 
 
 def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> System:
-    """Write the equilibrium equations of every moving link, at one pose or at n.
-
-    The plane's three equations alone: out-of-plane components do not enter.
+    """Write the three equilibrium equations in the plane of every moving link, at one pose or at n.
 
     Parameters
     ----------
-    place, drive
-        Where the links stand, and what is driven.
+    place : Placement
+        Where the links stand.
+    drive : Drive, optional
     loads : sequence of Load
-        All that acts on the links, inertia included, at these poses.
+        All that acts on the links, inertia included, at these poses; components out of the plane are left out.
+
+    Returns
+    -------
+    System
     """
     linkage = place.linkage
     unknowns = [(column, name, *unit) for name in linkage.joints for column, unit in _units(place, name).items()]
@@ -277,7 +233,7 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
 
 
 def _units(place: Placement, name: str) -> dict[str, tuple[Complex, float]]:
-    """Force (...) and moment of a joint's first link on its second at the pin for a unit of each of its unknowns."""
+    """Return, by unknown of a joint, force (...) and moment of the first link on the second at the pin for one unit."""
     along, kind = _along(place, name), place.linkage.joints[name].type
     if kind == "revolute":
         return {f"R{name}x": (along, 0.0), f"R{name}y": (1j * along, 0.0)}
@@ -286,7 +242,7 @@ def _units(place: Placement, name: str) -> dict[str, tuple[Complex, float]]:
 
 
 def _along(place: Placement, name: str) -> Complex:
-    """Direction (...) of a joint's slot, global axes; x for a revolute joint."""
+    """Return the direction (...) of a joint's slot in global axes; x for a revolute joint."""
     joint = place.linkage.joints[name]
     if joint.type == "revolute":
         return np.ones(place.shape, dtype=complex)
@@ -294,7 +250,18 @@ def _along(place: Placement, name: str) -> Complex:
 
 
 def check_drive(linkage: Linkage, drive: Drive | None) -> None:
-    """Raise ``CaseError`` if the drive names a link or joint that does not fit."""
+    """Require that the drive names a moving link and one of its joints.
+
+    Parameters
+    ----------
+    linkage : Linkage
+    drive : Drive, optional
+
+    Raises
+    ------
+    CaseError
+        Where it does not.
+    """
     if drive is None:
         return
     if drive.link not in linkage.moving:
@@ -306,26 +273,19 @@ def check_drive(linkage: Linkage, drive: Drive | None) -> None:
         )
 
 
-def require_determinate(linkage: Linkage, system: System) -> None:
-    """Raise ``CaseError`` where equilibrium alone does not give the joint forces."""
-    rows, columns = system.matrix.shape[-2:]
-    if rows != columns:
-        raise CaseError(
-            f"drive: statics has {rows} equilibrium equations for {columns} unknowns, so joint forces do not follow "
-            "from equilibrium; remove redundant joints or links, or drive as many links as the linkage has degrees of "
-            f"freedom (mobility {linkage.mobility})"
-        )
-
-
 def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Reactions:
     """Solve the equilibrium of all links at one pose for the joint reactions and the drive torque.
 
     Parameters
     ----------
-    pose, drive
-        The pose, and what is driven.
+    pose : Pose
+    drive : Drive, optional
     loads : sequence of Load
         All that acts on the links, inertia included.
+
+    Returns
+    -------
+    Reactions
 
     Raises
     ------
@@ -352,7 +312,19 @@ def solve_statics(pose: Pose, drive: Drive | None, loads: Sequence[Load]) -> Rea
 
 
 def refuse_dead_point(system: System, drive: Drive | None) -> None:
-    """Raise ``CaseError`` where the equations, square or redundant, leave a motion that hardly anything holds."""
+    """Refuse a pose at or next to a dead point, where the equations are nearly singular.
+
+    Parameters
+    ----------
+    system : System
+        The equations of a determinate or of a redundant linkage.
+    drive : Drive, optional
+
+    Raises
+    ------
+    CaseError
+        Where the smallest singular value is below ``NEARLY_SINGULAR``.
+    """
     smallest = float(system.singular_values[-1])
     if smallest < NEARLY_SINGULAR:
         who = f"driven link '{drive.link}'" if drive else "structure"
@@ -364,16 +336,20 @@ def refuse_dead_point(system: System, drive: Drive | None) -> None:
 
 
 def joint_reactions(place: Placement, drive: Drive | None, value: Mapping[str, Any]) -> dict[str, JointReaction]:
-    """Return what every joint carries.
+    """Return the reaction at every joint.
 
     Parameters
     ----------
     place : Placement
         Where the links stand.
     drive : Drive, optional
-        What is driven.
     value : mapping of str to float or array (n,)
-        The unknowns of ``System.columns``, by name.
+        The unknowns of ``System.columns``, by name [N, N mm].
+
+    Returns
+    -------
+    dict of str to JointReaction
+        By joint.
     """
     found = {}
     for name, joint in place.linkage.joints.items():
@@ -388,12 +364,3 @@ def joint_reactions(place: Placement, drive: Drive | None, value: Mapping[str, A
         arm = travelled(place, name)
         found[name] = JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=arm)
     return found
-
-
-def travelled(place: Placement, name: str) -> Real:
-    """Return the way (..., 3) from the point of a joint's first link to its pin [mm]: zero at revolute joints."""
-    joint = place.linkage.joints[name]
-    if joint.type == "revolute":
-        return np.zeros((*place.shape, 3))
-    first, second = (place.position(*at) for at in zip(joint.links, place.linkage.joint_points(name), strict=True))
-    return vector(second - first)

@@ -7,7 +7,8 @@ import numpy as np
 
 from fea.check.run import CaseStatics
 from geometry.base.version import result_stamp
-from loads.statics.statics import Reactions, System
+from loads.statics.statics import Reactions
+from loads.statics.system import System
 from reports.tables.frames import AXES, reaction_records, shown_components
 
 

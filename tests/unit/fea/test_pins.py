@@ -11,7 +11,7 @@ from fea.outcomes.pins import eyes, pin_stress, stress_at
 from geometry.base.errors import CaseError
 from geometry.parts.material import library
 from loads.case.case_file import read_case
-from loads.statics.statics import JointReaction
+from loads.statics.joint_reaction import JointReaction
 
 WING = "owl-wing-static"
 
