@@ -15,13 +15,6 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-NOT_YET = (
-    "fea/check",
-    "fea/motion",
-)
-"""Sub-packages whose docstrings still have other forms. The list may only shrink: whoever converts the last docstring
-of a sub-package takes it out here, and a test fails until that is done. Taken out too early, it fails with what is
-left to convert."""
 
 
 def section(docstring: str, title: str) -> list[str] | None:
@@ -115,18 +108,13 @@ def folders() -> list[str]:
     return sorted({str(file.parent.relative_to(ROOT)) for file in files})
 
 
-@pytest.mark.parametrize("folder", [folder for folder in folders() if folder not in NOT_YET])
+@pytest.mark.parametrize("folder", folders())
 def test_docstrings_name_what_goes_in_and_comes_out(folder):
     assert defects(folder) == []
 
 
 def test_the_public_face_does_so_too():
     assert source_defects((ROOT / "alula.py").read_text(encoding="utf-8")) == []
-
-
-@pytest.mark.parametrize("folder", NOT_YET)
-def test_what_is_not_converted_yet_is_not_converted(folder):
-    assert defects(folder), f"all docstrings of {folder} have their sections now: take it out of NOT_YET"
 
 
 GOOD = '''

@@ -18,13 +18,13 @@ _ROUNDING = 1e-10
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AnchorLoads:
-    """What the linkage does to the ground; what rounding leaves of a force or a moment is zero.
+    """What the linkage does to the ground; components within rounding are zero.
 
     Attributes
     ----------
     joints : mapping of str to ndarray, shape (6,)
-        Joint on the ground -> wrench on the ground about the joint [N, N mm], global axes; the reaction of the drive
-        torque, where it goes to the ground, is in the moment about z at the drive's joint.
+        Joint on the ground -> wrench on the ground about the joint [N, N mm], global axes. Where the drive's torque
+        reacts on the ground, that reaction is in the moment about z at the drive's joint.
     about : str
         The joint about which ``total`` is taken.
     total : ndarray, shape (6,)
@@ -79,7 +79,7 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
 
 
 def _size(reactions: Reactions) -> Real:
-    """Size (6,) of the forces and moments of a solution, of which single components may be what rounding leaves."""
+    """Size (6,) of the forces and moments of a solution, beside which a component may be rounding."""
     wrenches = np.array([joint.wrench for joint in reactions.joints.values()])
     arm = reactions.pose.linkage.longest
     force = max(np.abs(wrenches[:, :3]).max(), np.abs(wrenches[:, 3:]).max() / arm, abs(reactions.drive_torque) / arm)

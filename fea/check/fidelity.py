@@ -1,7 +1,7 @@
 """The cheapest model that decides a link: hand calculation, else a solid model.
 
-Hand calculation decides only where its whole band, as calibrated against solid models (``fea.beam.calibration``),
-clears every limit on the link, and all that stated scatter makes of it.
+The bands of hand calculation are calibrated against solid models (``fea.beam.calibration``). It decides a link only
+where no limit on the link, with its stated scatter, lies in them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -130,7 +130,7 @@ def decide(
     Parameters
     ----------
     tasks : mapping of str to LinkTask
-        Of the links on which something acts.
+        Link -> what is to be solved; the links on which something acts.
     beams : mapping of str to mapping of str to BeamCheck
         Link -> load case -> its hand calculation.
     start : MeshSettings
@@ -172,7 +172,7 @@ def decide(
 
 
 def by_hand(task: LinkTask, beams: Mapping[str, BeamCheck]) -> DecidedLink:
-    """Return what a link is by hand alone, where that was asked for; without decision where it has no bands.
+    """Return a link by hand alone, where that was asked for; no model decides it where it has no bands.
 
     Parameters
     ----------
@@ -279,7 +279,7 @@ def _limit(ends: tuple[float, float]) -> str:
 
 
 def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decision | None, str]:
-    """Return the decision if hand calculation makes it.
+    """Return the decision, if hand calculation can make it.
 
     Parameters
     ----------
@@ -290,7 +290,7 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
     Returns
     -------
     tuple of (Decision or None, str)
-        Why there is none, where hand calculation cannot decide.
+        The decision, and why there is none; "" where there is one.
     """
     for hand in hands:
         if hand.outside:
@@ -352,7 +352,7 @@ def _source(calibration: Calibration) -> Source:
 
 
 def _at_location(location: CriticalLocation, factors: Factors, sources: tuple[Source, ...]) -> Band:
-    """Band of the stress at a critical location; pin contact adds to what solids of the calibration bore in eyes."""
+    """Band of the stress at a critical location; in an eye it reaches higher, by what pin contact adds."""
     if location.kind != "eye":
         return _band(location.estimate, factors, sources)
     contact = replace(factors, high=factors.high / (1.0 - CONTACT_SHORTFALL))

@@ -21,7 +21,19 @@ from loads.statics.statics import Reactions
 
 @dataclass(frozen=True, kw_only=True)
 class LinkByHand:
-    """The hand calculation of one link under one load case."""
+    """The hand calculation of one link under one load case.
+
+    Attributes
+    ----------
+    check : BeamCheck
+        Stresses of the plain sections.
+    displacement : float
+        The largest [mm].
+    details : tuple of Detail
+        Places that have a stress formula of their own.
+    remarks : tuple of str
+        What the reader must know about these numbers.
+    """
 
     check: BeamCheck
     displacement: float
@@ -38,28 +50,33 @@ class LinkByHand:
 def cut_link(
     case: Case,
     link: str,
-    title: str,
+    load_case: str,
     moved: LargeDisplacement,
     reactions: Reactions,
     loads: Sequence[Load],
 ) -> LinkLoads:
-    """Return what acts on a link, with the growth of its bending that the frame's answer leaves out.
+    """Return what acts on a link, with the second-order bending that the frame does not contain.
 
-    On a deformed shape that is the bending between loaded places; where no frame told that it is small, all of it.
+    A frame on its deformed shape lacks the bending between loaded places. Where no frame tells, all second-order
+    bending is added. Nothing is added where a frame found it small, or found no stable shape.
 
     Parameters
     ----------
-    case, link, title
-        The case, the link and the load case.
+    case : Case
+    link, load_case : str
     moved : LargeDisplacement
         The frame's answer.
     reactions : Reactions
         What the joints carry.
     loads : sequence of Load
         All else that acts.
+
+    Returns
+    -------
+    LinkLoads
     """
     deformed, longest = moved.links.get(link), case.linkage.longest
-    found = deformed or link_loads(title, link, case.body(link), reactions, loads)
+    found = deformed or link_loads(load_case, link, case.body(link), reactions, loads)
     found = without_rounding(found, load_size(loads, longest), longest)
     if deformed is None and moved.state not in ("off", "unknown"):
         return found
@@ -67,7 +84,19 @@ def cut_link(
 
 
 def link_by_hand(case: Case, link: str, loads: LinkLoads) -> LinkByHand:
-    """Return the hand calculation of a link under what acts on it."""
+    """Return the hand calculation of a link under what acts on it.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    loads : LinkLoads
+        At one pose.
+
+    Returns
+    -------
+    LinkByHand
+    """
     material, body = case.material_of(link), case.body(link)
     section = hand_section(body)
     acting = beam_loads(loads, body, material.density)

@@ -1,7 +1,8 @@
 """What grows out of proportion to scattered loads: bending under compression, and the forces in a linkage that moves.
 
-A linkage of linear material has the shape that load over modulus gives it. So the case is calculated anew with its
-moduli divided by the ends of that ratio: its forces times the load's scatter are those of the scattered load.
+The deformed shape of a linkage of linear material depends on the ratio of load to modulus alone. So the case is
+calculated again with all moduli divided by the least and by the largest value of that ratio. The forces found, times
+the load's scatter, are those under the scattered load.
 """
 
 import math
@@ -28,9 +29,16 @@ LEAST = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class Growths:
-    """Growth of links' stress and of joint forces beyond that of the load, of displacement beyond load over modulus.
+    """Growth out of proportion to the load; that of displacements out of proportion to load over modulus.
 
-    Empty where all is in proportion; infinite at the upper end where nothing holds the scattered load.
+    A link or joint in proportion is left out. The upper end is infinite where nothing holds the scattered load.
+
+    Attributes
+    ----------
+    stress, displacement : mapping of str to Scatter
+        Link -> growth of its stress, and of its displacement.
+    joints : mapping of str to Scatter
+        Joint -> growth of its force.
     """
 
     stress: Mapping[str, Scatter] = field(default_factory=dict)
@@ -43,22 +51,41 @@ _Numbers = tuple[dict[str, float], dict[str, float], dict[str, float]]
 
 def growths(
     case: Case,
-    title: str,
+    load_case: str,
     pose: Pose,
     loads: Sequence[Load],
     moved: LargeDisplacement,
     reactions: Reactions,
     hands: Mapping[str, LinkByHand],
 ) -> Growths:
-    """Return what the scatter of load and modulus makes of a load case beyond proportion, by hand calculation."""
-    load, materials = load_scatter(case, title), [case.material_of(link) for link in hands]
+    """Return what the scatter of load and modulus makes of a load case beyond proportion, by hand calculation.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+    pose : Pose
+    loads : sequence of Load
+        Of the load case, in that pose.
+    moved : LargeDisplacement
+        The frame's answer.
+    reactions : Reactions
+        In the undeformed pose.
+    hands : mapping of str to LinkByHand
+        Link -> its hand calculation.
+
+    Returns
+    -------
+    Growths
+    """
+    load, materials = load_scatter(case, load_case), [case.material_of(link) for link in hands]
     slack = [compliance_scatter(material) for material in materials]
     low = load.low * min((s.low for s in slack), default=1.0)
     high = load.high * max((s.high for s in slack), default=1.0)
     if low == high or moved.state not in ("deformed", "off", "unknown"):
         return Growths()
     plain = _numbers(hands, moved.reactions or reactions)
-    least, most = (_at(case, title, pose, loads, factor) for factor in (low, high))
+    least, most = (_at(case, load_case, pose, loads, factor) for factor in (low, high))
     found = []
     for i, kind in enumerate(plain):
         # Displacement is in proportion to load over modulus, which its own scatter holds.
@@ -82,19 +109,19 @@ def growths(
 
 def _at(
     case: Case,
-    title: str,
+    load_case: str,
     pose: Pose,
     loads: Sequence[Load],
     factor: float,
 ) -> _Numbers | None:
     """Numbers of the load case where load over modulus is ``factor`` times its own; None where nothing holds it."""
-    soft = _softened(case, title, factor)
+    soft = _softened(case, load_case, factor)
     try:
         forces = joint_forces(soft, pose, loads)
-        moved = examine(soft, title, forces, loads)
+        moved = examine(soft, load_case, forces, loads)
         if moved.gives_way:
             return None
-        cut = {link: cut_link(soft, link, title, moved, forces.reactions, loads) for link in soft.checked_links}
+        cut = {link: cut_link(soft, link, load_case, moved, forces.reactions, loads) for link in soft.checked_links}
         hands = {link: link_by_hand(soft, link, what) for link, what in cut.items()}
     except (CaseError, CannotRunError):
         return None
@@ -109,7 +136,7 @@ def _numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> _Numbers:
     )
 
 
-def _softened(case: Case, title: str, factor: float) -> Case:
+def _softened(case: Case, load_case: str, factor: float) -> Case:
     """Return the case with all moduli divided by a factor and no range of them, and no scatter of the load."""
     materials = {
         name: material.model_copy(
@@ -123,6 +150,6 @@ def _softened(case: Case, title: str, factor: float) -> Case:
         )
         for name, material in case.all_materials.items()
     }
-    load_case = case.load_cases[title].model_copy(update={"scatter": (1.0, 1.0)})
-    load_cases = {**case.load_cases, title: load_case}
+    plain = case.load_cases[load_case].model_copy(update={"scatter": (1.0, 1.0)})
+    load_cases = {**case.load_cases, load_case: plain}
     return case.model_copy(update={"materials": materials, "load_cases": load_cases})

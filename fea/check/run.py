@@ -48,7 +48,22 @@ BY_HAND = ("beam", "frame")
 
 @dataclass(frozen=True, kw_only=True)
 class CaseStatics:
-    """Pose, loads and reactions of every load case of a case."""
+    """Pose, loads and reactions of every load case of a case.
+
+    Attributes
+    ----------
+    case : Case
+    pose : Pose
+        Undeformed; the same for all load cases.
+    loads : mapping of str to tuple of Load
+        Load case -> what acts.
+    forces : mapping of str to JointForces
+        Load case -> joint forces.
+    masses : mapping of str to PartMass
+        Link -> its mass; empty where no load case needs them.
+    audit : StaticsAudit or None
+        Comparison with published statics, where the case names some.
+    """
 
     case: Case
     pose: Pose
@@ -60,7 +75,7 @@ class CaseStatics:
     @property
     def reactions(self) -> Mapping[str, Reactions]:
         """Joint reactions of every load case, in the undeformed pose."""
-        return {title: forces.reactions for title, forces in self.forces.items()}
+        return {load_case: forces.reactions for load_case, forces in self.forces.items()}
 
 
 def effort_of(
@@ -70,9 +85,26 @@ def effort_of(
     max_unknowns: int = Effort.max_unknowns,
     time_limit: float = Effort.time_limit,
 ) -> Effort:
-    """Return what a check may cost: the stated ``accuracy`` such as ``"5 %"``, else the case's, else the default.
+    """Return what a check may cost.
 
-    Raises ``CaseError`` for an accuracy that is none.
+    Parameters
+    ----------
+    case : Case
+    accuracy : str, optional
+        Such as ``"5 %"``; by default what the case says, else that of ``Effort``.
+    max_unknowns : int
+        Largest system that is solved to reach the accuracy.
+    time_limit : float
+        After it no further mesh is begun [s].
+
+    Returns
+    -------
+    Effort
+
+    Raises
+    ------
+    CaseError
+        For a text that is no accuracy.
     """
     try:
         stated = case.solid.accuracy if accuracy is None else parse_accuracy(accuracy)
@@ -83,17 +115,30 @@ def effort_of(
 
 
 def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
-    """Solve pose and statics of every load case; ``name`` is the path or built-in name of the case.
+    """Solve pose and statics of every load case.
 
-    Raises ``CaseError`` for a pose that cannot be assembled or has no single equilibrium.
+    Parameters
+    ----------
+    case : Case
+    name : str, optional
+        Path or built-in name of the case, for companion files.
+
+    Returns
+    -------
+    CaseStatics
+
+    Raises
+    ------
+    CaseError
+        For a pose that cannot be assembled or has no single equilibrium.
     """
     pose = case.solve_pose()
     masses = part_masses(case) if needs_masses(case) else {}
     loads = {
-        title: acting_loads(case, load_case, placed(pose, load_case.speed), masses)
-        for title, load_case in case.load_cases.items()
+        load_case: acting_loads(case, stated, placed(pose, stated.speed), masses)
+        for load_case, stated in case.load_cases.items()
     }
-    forces = {title: joint_forces(case, pose, loads[title]) for title in loads}
+    forces = {load_case: joint_forces(case, pose, loads[load_case]) for load_case in loads}
     found = None
     if case.published_statics is not None:
         published = case.published_statics
@@ -112,7 +157,7 @@ class _LoadCase:
     """One load case by hand: what acts on every link cut free, its hand calculation, and what is out of proportion."""
 
     statics: CaseStatics
-    title: str
+    load_case: str
     moved: LargeDisplacement
     cut: Mapping[str, LinkLoads]
     hands: Mapping[str, LinkByHand]
@@ -120,18 +165,18 @@ class _LoadCase:
     size: float
 
     @classmethod
-    def of(cls, statics: CaseStatics, title: str, moved: LargeDisplacement) -> "_LoadCase":
-        case, loads = statics.case, statics.loads[title]
-        reactions = statics.reactions[title]
-        cut = {link: cut_link(case, link, title, moved, reactions, loads) for link in case.checked_links}
+    def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement) -> "_LoadCase":
+        case, loads = statics.case, statics.loads[load_case]
+        reactions = statics.reactions[load_case]
+        cut = {link: cut_link(case, link, load_case, moved, reactions, loads) for link in case.checked_links}
         hands = {link: link_by_hand(case, link, acting) for link, acting in cut.items()}
         return cls(
             statics=statics,
-            title=title,
+            load_case=load_case,
             moved=moved,
             cut=cut,
             hands=hands,
-            uneven=growths(case, title, statics.pose, loads, moved, reactions, hands),
+            uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands),
             size=load_size(loads, case.linkage.longest),
         )
 
@@ -146,30 +191,30 @@ class _LoadCase:
 
     def judged(self, decided: Mapping[str, DecidedLink], motors: Sequence[CheckOutcome]) -> LoadCaseResult:
         """Return the result, with the outcomes of ``motors`` after those of links, joints and linkage."""
-        case, title, moved = self.statics.case, self.title, self.moved
-        reactions = moved.reactions or self.statics.reactions[title]
+        case, load_case, moved = self.statics.case, self.load_case, self.moved
+        reactions = moved.reactions or self.statics.reactions[load_case]
         links = {
-            link: link_result(case, link, title, hand, decided.get(link), self.uneven)
+            link: link_result(case, link, load_case, hand, decided.get(link), self.uneven)
             for link, hand in self.hands.items()
         }
         pins = _pins(case, reactions)
         found = (
-            *outcomes(case, title, links, pins, moved, self.uneven.joints),
-            *_bearing(case, title, reactions, self.uneven),
-            *buckling_outcomes(case, title, {link: hand.check for link, hand in self.hands.items()}, moved),
+            *outcomes(case, load_case, links, pins, moved, self.uneven.joints),
+            *_bearing(case, load_case, reactions, self.uneven),
+            *buckling_outcomes(case, load_case, {link: hand.check for link, hand in self.hands.items()}, moved),
             *motors,
         )
-        checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {title} if moved.gives_way else ())
+        checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())
         if self.idle:
             joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
-            checks = undecided(checks, title, self.size, joints)
+            checks = undecided(checks, load_case, self.size, joints)
         return LoadCaseResult(
-            name=title,
-            forces=self.statics.forces[title],
+            name=load_case,
+            forces=self.statics.forces[load_case],
             large_displacement=moved,
             links=links,
             pins=pins,
-            ways_to_hold=ways_to_hold(case, self.statics.pose, self.statics.loads[title]),
+            ways_to_hold=ways_to_hold(case, self.statics.pose, self.statics.loads[load_case]),
             checks=tuple(checks),
         )
 
@@ -192,14 +237,18 @@ def check_case(
     name : str, optional
         Path or built-in name of the case, for companion files and the report.
     fidelity : {"auto", "beam", "frame", "solid"}
-        "auto" takes the cheapest model that decides each link (``fea.check.fidelity``), the others one model for all:
-        "beam" is hand calculation alone, in calibrated bands where there are any and else without verdict. "frame" is
-        another name of "beam", since a frame gives joint forces where they need one.
-    threads : int
+        "auto" takes the cheapest model that decides each link (``fea.check.fidelity``). The others take one model for
+        all links. "beam" is hand calculation alone; a link without calibrated bands gets no verdict. "frame" means
+        the same: a frame is solved wherever joint forces need one.
+    threads : int, optional
     effort : Effort, optional
         Accuracy of solid models and what it may cost; by default what the case says.
     progress : callable
         Called with a sentence before every stage that may take long.
+
+    Returns
+    -------
+    CheckResult
 
     Raises
     ------
@@ -213,31 +262,34 @@ def check_case(
     clock = Clock()
     statics = solve_case_statics(case, name)
     clock("pose and statics")
-    moved = {title: examine(case, title, forces, statics.loads[title]) for title, forces in statics.forces.items()}
+    moved = {
+        load_case: examine(case, load_case, forces, statics.loads[load_case])
+        for load_case, forces in statics.forces.items()
+    }
     clock("frames")
-    by_title = {title: _LoadCase.of(statics, title, what) for title, what in moved.items()}
+    by_load_case = {load_case: _LoadCase.of(statics, load_case, what) for load_case, what in moved.items()}
     clock("hand calculations")
-    decided = _decided(case, list(by_title.values()), fidelity, effort, threads, progress)
+    decided = _decided(case, list(by_load_case.values()), fidelity, effort, threads, progress)
     if fidelity not in BY_HAND:
         clock("solid models")
-    motors: dict[str, list[CheckOutcome]] = {title: [] for title in by_title}
+    motors: dict[str, list[CheckOutcome]] = {load_case: [] for load_case in by_load_case}
     for asked, check in case.checks.items():
         if isinstance(check, MotorCheck):
-            for title, found in motor_outcomes(case, asked, check).items():
-                motors[title] += found
-    load_cases = {title: one.judged(decided, motors[title]) for title, one in by_title.items()}
+            for load_case, found in motor_outcomes(case, asked, check).items():
+                motors[load_case] += found
+    load_cases = {load_case: one.judged(decided, motors[load_case]) for load_case, one in by_load_case.items()}
     clock("stress")
     return CheckResult(
         name=name,
         case=case,
         pose=statics.pose,
         load_cases=load_cases,
-        hand={title: _cantilever(case, title) for title in case.hand_calculations},
+        hand={calculation: _cantilever(case, calculation) for calculation in case.hand_calculations},
         audit=statics.audit,
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
         warnings=(
-            *(nothing_acts(title, one.size) for title, one in by_title.items() if one.idle),
+            *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),
             *_warnings(case, statics, moved),
         ),
     )
@@ -254,7 +306,7 @@ def _decided(
     """Decide every link on which something acts, by the model that was asked for."""
     loaded = {link: [one.cut[link] for one in load_cases if one.acts_on(link)] for link in case.checked_links}
     tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
-    beams = {link: {one.title: one.hands[link].check for one in load_cases} for link in tasks}
+    beams = {link: {one.load_case: one.hands[link].check for one in load_cases} for link in tasks}
     if fidelity in BY_HAND:
         return {link: by_hand(task, beams[link]) for link, task in tasks.items()}
     if fidelity == "solid":
@@ -272,40 +324,40 @@ def _pins(case: Case, reactions: Reactions) -> dict[str, PinStress]:
     return {joint: stress_at(case, joint, reactions.joints[joint]) for joint in asked}
 
 
-def _bearing(case: Case, title: str, reactions: Reactions, uneven: Growths) -> Iterator[CheckOutcome]:
+def _bearing(case: Case, load_case: str, reactions: Reactions, uneven: Growths) -> Iterator[CheckOutcome]:
     """Outcomes of the checks that ask for bearing."""
     for name, check in case.checks.items():
         if isinstance(check, BearingCheck):
             for joint in check.joints or case.bearing_joints:
                 force = float(np.hypot(*reactions.joints[joint].wrench[:2]))
-                yield bearing_outcome(case, title, name, check, joint, force, uneven.joints.get(joint))
+                yield bearing_outcome(case, load_case, name, check, joint, force, uneven.joints.get(joint))
 
 
-def _cantilever(case: Case, title: str) -> CantileverCheck:
-    hand = case.hand_calculations[title]
+def _cantilever(case: Case, calculation: str) -> CantileverCheck:
+    hand = case.hand_calculations[calculation]
     part = case.parts[hand.part]
     strength = case.all_materials[part.material].allowable
     return uniform_cantilever(hand.load, hand.length, part.section, strength)
 
 
-def _of(titles: Sequence[str]) -> str:
-    return f"load case{'s' if len(titles) > 1 else ''} {', '.join(titles)}"
+def _of(names: Sequence[str]) -> str:
+    return f"load case{'s' if len(names) > 1 else ''} {', '.join(names)}"
 
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
     found = unusual_materials(case)
     for model, reason in dict.fromkeys((f.model, f.reason) for f in statics.forces.values()):
         if model != PINNED_STATICS:
-            titles = [title for title, f in statics.forces.items() if (f.model, f.reason) == (model, reason)]
-            found.append(f"{_of(titles)}: {reason}, so the joint forces are those of a {model}")
+            names = [load_case for load_case, f in statics.forces.items() if (f.model, f.reason) == (model, reason)]
+            found.append(f"{_of(names)}: {reason}, so the joint forces are those of a {model}")
     said = dict.fromkeys(what.sentence for what in moved.values() if what.state != "small")
     for sentence in said:
-        titles = [title for title, what in moved.items() if what.sentence == sentence]
-        found.append(f"{_of(titles)}: {sentence}")
+        names = [load_case for load_case, what in moved.items() if what.sentence == sentence]
+        found.append(f"{_of(names)}: {sentence}")
     found += [
-        f"load case {title}: {sentence}"
-        for title in case.load_cases
-        for air in case.air_forces(title)
+        f"load case {load_case}: {sentence}"
+        for load_case in case.load_cases
+        for air in case.air_forces(load_case)
         for sentence in air.warnings
     ]
     pose, drive, near = statics.pose, case.pinned_drive, {}

@@ -1,11 +1,14 @@
 """Bending that grows with compression: second-order theory of one link, brought into the loads that act on it.
 
-A link that bends by v under a compression P has the moment of P on the bent shape as well. It is that of a transverse
-load -(P v')' on the straight link (Timoshenko & Gere, Theory of Elastic Stability, 2nd ed., section 1.2), where v is
-the deflection that all of it makes: E I v'''' + (P v')' = q, here by cubic elements, as the buckling factor
-(``fea.beam.column_factor``). With that load added, hand calculation, frame and solid bear the second-order moments,
-each with its own concentrations of stress. Tension, which straightens a link, is left out; so is compression that adds
-less than ``NEGLIGIBLE``.
+On a link that bends by v, a compression P has a moment as well. It equals that of a transverse load -(P v')' on the
+straight link. The deflection v is that under all loads, this one included: E I v'''' + (P v')' = q. It is solved with
+cubic elements, as the buckling factor is (``fea.beam.column_factor``). With that load added, hand calculation, frame
+and solid bear the second-order moments, each with its own stress concentrations. Tension straightens a link and is
+left out; so is compression that adds less than ``NEGLIGIBLE``.
+
+References
+----------
+Timoshenko & Gere, Theory of Elastic Stability, 2nd ed., section 1.2.
 """
 
 import itertools
@@ -39,8 +42,12 @@ NEGLIGIBLE = 0.01
 class Bend:
     """How a link bends in one plane.
 
-    stiffness  E I [N mm²]
-    stretches  softer ones, over the same E I
+    Attributes
+    ----------
+    stiffness : float
+        E I [N mm²].
+    stretches : sequence of Stretch
+        Softer ones, as shares of the same E I.
     """
 
     stiffness: float
@@ -52,13 +59,17 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
 
     Parameters
     ----------
-    case, link
-        The case and the link.
+    case : Case
+    link : str
     loads : LinkLoads
         At one pose.
     stays : bool
-        True where all loaded places stand where the loads have them, as on the deformed shape of a frame; else the
-        outermost pins stay, or the joint of the drive holds the link and its angle and the others move with it.
+        True where all loaded places stay where they are, as on the deformed shape of a frame. Else the outermost pins
+        stay; a link held by the drive alone keeps its place and angle there, and its other joints move.
+
+    Returns
+    -------
+    LinkLoads
     """
     body, material = case.body(link), case.material_of(link)
     forces = internal_forces(beam_loads(loads, body, material.density))
@@ -78,8 +89,23 @@ def between_stations(
 ) -> LinkLoads:
     """Return the loads of a link whose pins and loaded ends stay where they are, with its bending between them.
 
-    So is a link on the deformed shape of its frame, which has the moments of what these places have moved.
-    Unchanged where compression buckles the link between them.
+    This is for a link on the deformed shape of its frame: the movement of these places is in the frame's moments.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+        At one pose.
+    forces : Piecewise
+        Internal forces of these loads.
+    in_plane, across : Bend
+        Bending in the linkage's plane, and out of it.
+    on_arms : collection of str
+        Pins that are not on the axis.
+
+    Returns
+    -------
+    LinkLoads
+        Unchanged between places where compression buckles the link.
     """
     found, stations = loads, _stations(loads, on_arms)
     for a, b in itertools.pairwise(stations):
@@ -95,10 +121,22 @@ def on_its_pins(
     held: Sequence[float],
     on_arms: Collection[str] = (),
 ) -> LinkLoads:
-    """Return the loads of a link with its bending, the places ``held`` staying where they are.
+    """Return the loads of a link with its bending, where the places ``held`` stay.
 
-    One place alone is held in its angle too: the other joints of a driven link move with it, and the drive takes the
-    moment that their forces so get. Unchanged where compression buckles the link, or it is held at no pin on its axis.
+    A single place is held in its angle too: the other joints of a driven link move, and the drive takes the moment that
+    their forces get by that.
+
+    Parameters
+    ----------
+    loads, forces, in_plane, across, on_arms
+        As for ``between_stations``.
+    held : sequence of float
+        Stations along the axis [mm].
+
+    Returns
+    -------
+    LinkLoads
+        Unchanged where compression buckles the link, and where a held place is no pin or loaded end on the axis.
     """
     stations = _stations(loads, {*on_arms, *(pin.name for pin in loads.pins if pin.slotted)})
     return _bowed(loads, forces, (in_plane, across), stations, held) if {*held} <= {*stations} else loads
@@ -160,7 +198,7 @@ def _transverse(
     marks: Sequence[float],
     held: Sequence[float],
 ) -> tuple[Real, Real, float] | None:
-    """Return -(P v')' between nodes (n - 1, 2) [N/mm] and at marks (m,) [N], and its moment that is left [N mm].
+    """Return -(P v')' between nodes (n - 1, 2) [N/mm] and at marks (m,) [N], and the moment that is left over [N mm].
 
     None where the compression P buckles the link.
     """

@@ -59,8 +59,8 @@ def solid_result(
 
     Parameters
     ----------
-    case, link, load_case
-        The load case of a link.
+    case : Case
+    link, load_case : str
     beam : BeamCheck
         The hand calculation.
     refined : RefinedSolid

@@ -21,7 +21,19 @@ Real = NDArray[np.float64]
 
 
 def factors_over_motion(case: Case, link: str, history: LinkLoads) -> ColumnFactors:
-    """Return the buckling factors of a link at every pose; infinite where nothing compresses it."""
+    """Return the buckling factors of a link at every pose; infinite where nothing compresses it.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    history : LinkLoads
+        At the P poses of a motion.
+
+    Returns
+    -------
+    ColumnFactors
+    """
     largest, force = axial_compression(case, link, history)
     found = link_factors(case, link, hand_section(case.body(link)), force)
     idle = largest <= 0.0
@@ -32,8 +44,21 @@ def factors_over_motion(case: Case, link: str, history: LinkLoads) -> ColumnFact
 def with_second_order(case: Case, link: str, history: LinkLoads, evaluated: NDArray[np.bool_]) -> LinkLoads:
     """Return a history with what bending under compression adds, at the evaluated poses near to buckling.
 
-    As ``fea.check.second_order`` does for one pose: on the outermost pins, or as a cantilever where the drive holds the
-    link.
+    As ``fea.check.second_order.second_order_loads`` does for one pose with ``stays=False``.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    history : LinkLoads
+        At the P poses of a motion.
+    evaluated : ndarray of bool, shape (P,)
+        The poses that count.
+
+    Returns
+    -------
+    LinkLoads
+        At the same poses.
     """
     found = factors_over_motion(case, link, history)
     near = np.flatnonzero(evaluated & (np.minimum(found.value, found.least) < LEAST_FACTOR))
@@ -59,11 +84,23 @@ def with_second_order(case: Case, link: str, history: LinkLoads, evaluated: NDAr
 
 
 def axial_compression(case: Case, link: str, history: LinkLoads) -> tuple[Real, AxialForce]:
-    """Return the largest compression (P,) [N] along a link, and the compression all along it.
+    """Return the largest compression along a link at every pose, and the compression at every station.
 
-    With point loads F at stations and line loads q between them the compression at x is ΣF + ∫q dx over all that acts
-    before x: in each interval of degree 2, by its values at both ends and in the middle. Compression that is rounding
-    beside the forces on the link counts as none.
+    With point loads F at stations and line loads q between them, the compression at x is ΣF + ∫q dx over all that acts
+    before x. In each interval it is a parabola, given by its values at both ends and in the middle. Compression within
+    rounding of the forces on the link counts as none.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    history : LinkLoads
+        At the P poses of a motion.
+
+    Returns
+    -------
+    tuple of (ndarray, shape (P,), AxialForce)
+        The largest [N], and all of it.
     """
     points, lines = _axial_loads(case, link, history)
     breaks = sorted({x for x, _ in points} | {x for line in lines for x in line[:2]})

@@ -1,4 +1,4 @@
-"""Where a link fatigues first: the node at which the largest cycle of a motion harms most, found among all nodes."""
+"""Where a link fatigues first: among all nodes, the one at which the largest cycle of a motion harms most."""
 
 from collections.abc import Sequence
 
@@ -15,14 +15,25 @@ _BLOCK = 128
 
 
 def critical_nodes(stress: Real, combinations: Sequence[Real], material: Material) -> list[tuple[int, Real]]:
-    """Return the node and the history (n,) of its signed stress [MPa], for each of several motions.
+    """Return the node that fatigues first, for each of several motions.
 
-    stress        (nodes, 6, m) of the modes [MPa]
-    combinations  (m, n) of the modes at the poses
+    The largest cycle of a node goes from its smallest to its largest signed stress. No cycle of signed stresses up to
+    some size harms more than the reversed cycle of that size. By this bound a node is left out if it harms less than
+    one already found. The size is first the sum of the modes' sizes, then the largest that the node's stress reaches.
 
-    The largest cycle of a node goes from its smallest to its largest signed stress. No cycle of signed stresses up
-    to some size harms more than the reversed one of that size. Nodes that by this bound, first with the sum of the
-    modes' sizes, then with the largest size that their stress reaches, harm less than one already found are left out.
+    Parameters
+    ----------
+    stress : ndarray, shape (nodes, 6, m)
+        Of m modes [MPa].
+    combinations : sequence of ndarray, shape (m, n)
+        Of the modes at the n poses of each motion.
+    material : Material
+        With fatigue data.
+
+    Returns
+    -------
+    list of tuple of (int, ndarray, shape (n,))
+        The node, and the history of its signed stress [MPa].
     """
     parts = size_parts(stress, whole=material.brittle)
     own = mode_sizes(parts)

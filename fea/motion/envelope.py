@@ -37,12 +37,12 @@ Real = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 TORQUE_GROWTH = 20.0
-"""Of the drive torque towards a dead point, beside that at the best leverage, beyond which poses are left out."""
+"""Poses near a dead point are left out if their drive torque exceeds that at the best leverage by this factor."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Envelope:
-    """A case over its motion: what acts on every link on which something does, one record per load case."""
+    """A case over its motion, with the loads on every loaded link, one record per load case."""
 
     moved: CaseMotion
     evaluated: NDArray[np.bool_]
@@ -54,7 +54,7 @@ class _Envelope:
     @classmethod
     def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
         case, loaded = moved.case, {}
-        sizes = {title: stated_size(case, title) for title in case.load_cases}
+        sizes = {load_case: stated_size(case, load_case) for load_case in case.load_cases}
         for link in case.checked_links:
             found = tuple(
                 with_second_order(case, link, history, evaluated)
@@ -69,7 +69,7 @@ class _Envelope:
     def idle(self) -> tuple[str, ...]:
         """Load cases under which nothing acts on any link."""
         acting = {history.name for found in self.loaded.values() for history in found}
-        return tuple(title for title in self.sizes if title not in acting)
+        return tuple(load_case for load_case in self.sizes if load_case not in acting)
 
     def solved(self, link: str, space: DisplacementSpace, **options: Any) -> LinkEnvelope:
         """Solve one link over the motion on one mesh."""
@@ -84,7 +84,7 @@ class _Envelope:
                 evaluated=self.evaluated,
                 stated=case.drive.transfer if case.drive else None,
                 returns=self.moved.motion.returns,
-                scatter={title: load_scatter(case, title) for title in case.load_cases},
+                scatter={load_case: load_scatter(case, load_case) for load_case in case.load_cases},
                 threads=self.threads,
                 **options,
             )
@@ -105,12 +105,12 @@ class _Envelope:
         moved, evaluated = self.moved, self.evaluated
         checks = [*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, self.loaded, evaluated)]
         checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
-        for title in self.idle:
-            joints = moved.forces[title].forces
+        for load_case in self.idle:
+            joints = moved.forces[load_case].forces
             forces = {name: np.linalg.norm(f[evaluated], axis=1).max() for name, f in joints.items()}
-            own = [*(check for check in checks if check.load_case == title), *unloaded_links(moved.case, title)]
-            checks = [check for check in checks if check.load_case != title]
-            checks += undecided(own, title, self.sizes[title], forces)
+            own = [*(check for check in checks if check.load_case == load_case), *unloaded_links(moved.case, load_case)]
+            checks = [check for check in checks if check.load_case != load_case]
+            checks += undecided(own, load_case, self.sizes[load_case], forces)
         return checks
 
 
@@ -127,19 +127,19 @@ def envelope_case(
 ) -> EnvelopeResult:
     """Check every link of a case over its motion, under every load case.
 
-    On a first, coarse mesh the worst pose of every link and load case is found. There the meshes are refined as
-    a check would; the finest one then serves the whole motion, with the relative error found at the worst pose.
+    On a first, coarse mesh the worst pose of every link and load case is found. For these poses the meshes are refined
+    as in a check. The finest mesh then serves the whole motion, with the relative error found at the worst pose.
 
     Parameters
     ----------
     case : Case
     name : str, optional
         Path or built-in name of the case, for the report.
-    threads : int
+    threads : int, optional
     repetitions : float, optional
         Of the motion that are wanted, for fatigue; the cycles of the material's card when left out.
-    growth : float
-        Of the drive torque towards a dead point, beyond which poses are left out.
+    growth : float, optional
+        Of the drive torque towards a dead point; poses beyond it are left out.
     effort : Effort, optional
         Accuracy of the solid models and what it may cost; by default what the case says.
     progress : callable
@@ -152,7 +152,7 @@ def envelope_case(
     Raises
     ------
     CaseError
-        For a case without motion, drive or part and for repetitions that are no number of at least 1.
+        For a case without motion, drive or part, and for repetitions that are not a number of at least 1.
     CannotRunError
         Where a stage fails.
     """
@@ -177,7 +177,7 @@ def envelope_case(
         links[link] = over.solved(link, space, repetitions=repetitions, refined=solid, notes=solid.solution.notes)
     clock("motion of the solids")
     checks = over.outcomes(links)
-    idle = [nothing_acts(title, over.sizes[title]) for title in over.idle]
+    idle = [nothing_acts(load_case, over.sizes[load_case]) for load_case in over.idle]
     return EnvelopeResult(
         name=name,
         case=case,
@@ -219,11 +219,22 @@ def _require(case: Case, repetitions: float | None) -> None:
 
 
 def evaluated_poses(moved: CaseMotion, growth: float = TORQUE_GROWTH) -> NDArray[np.bool_]:
-    """Poses (n,) whose stress means something.
+    """Return the poses that count.
 
-    Near a dead point of the driven link the torque that a load asks for grows as one over the leverage.
-    Where the motion holds such a point, poses are left out whose leverage is less than one ``growth``-th of
-    the best one; and in any motion those at which there is no torque at all.
+    Near a dead point of the driven link the drive torque grows as one over the leverage. Where the motion has such a
+    point, poses with a leverage below the best one over ``growth`` are left out. In any motion, poses that no drive
+    torque balances are left out.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+        At n poses.
+    growth : float, optional
+        Of the drive torque towards a dead point.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
     """
     good = np.ones(len(moved.motion.angles), dtype=np.bool_)
     for solved in moved.forces.values():

@@ -38,6 +38,10 @@ def envelope_outcomes(
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
 
+    Returns
+    -------
+    list of CheckOutcome
+
     Raises
     ------
     CaseError
@@ -47,34 +51,37 @@ def envelope_outcomes(
     for name, check in case.all_checks.items():
         if isinstance(check, SafetyFactorCheck):
             for link in (x for x in check.links or case.checked_links if x in links):
-                for title, over in links[link].load_cases.items():
+                for load_case, over in links[link].load_cases.items():
                     meshes = over.discretisation
-                    outcome = safety_factor_outcome(case, name, check, title, link, over.safety_factor, meshes)
+                    outcome = safety_factor_outcome(case, name, check, load_case, link, over.safety_factor, meshes)
                     found.append(_complete(outcome, evaluated))
         elif isinstance(check, PinCheck | BearingCheck):
             found += _joints(moved, name, check, evaluated)
     for link, envelope in links.items():
-        for title, over in envelope.load_cases.items():
+        for load_case, over in envelope.load_cases.items():
             if over.fatigue is not None:
-                found += fatigue_outcomes(case.material_of(link), link, title, over.fatigue)
+                found += fatigue_outcomes(case.material_of(link), link, load_case, over.fatigue)
     return found
 
 
-def fatigue_outcomes(material: Material, link: str, title: str, fatigue: LinkFatigue) -> Iterator[CheckOutcome]:
+def fatigue_outcomes(material: Material, link: str, load_case: str, fatigue: LinkFatigue) -> Iterator[CheckOutcome]:
     """Yield the outcomes of a link's fatigue: on stress, and on life where the card has an exponent.
 
     Parameters
     ----------
     material : Material
     link : str
-    title : str
-        The load case.
+    load_case : str
     fatigue : LinkFatigue
+
+    Yields
+    ------
+    CheckOutcome
     """
     subject, wanted = Subject.link(link), fatigue.wanted
     if fatigue.strength is not None:
         factor = fatigue.stress.inverse(fatigue.strength)
-        yield CheckOutcome.of("fatigue", subject, title, Quantity.FATIGUE_STRESS, factor, STRESS_FACTOR)
+        yield CheckOutcome.of("fatigue", subject, load_case, Quantity.FATIGUE_STRESS, factor, STRESS_FACTOR)
     elif fatigue.repetitions is None:
         assert material.fatigue is not None
         unknown = Band.unknown(BEYOND_CARD)
@@ -82,10 +89,10 @@ def fatigue_outcomes(material: Material, link: str, title: str, fatigue: LinkFat
             f"the material's card ends at {material.fatigue.cycles:g} cycles and states no exponent, so its strength "
             f"for {wanted:g} repetitions is not known; ask for at most as many, or add an exponent to the card"
         )
-        yield CheckOutcome.of("fatigue", subject, title, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, why)
+        yield CheckOutcome.of("fatigue", subject, load_case, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, why)
     if fatigue.repetitions is not None:
         share = fatigue.repetitions.times(1.0 / wanted)
-        yield CheckOutcome.of("fatigue", subject, title, Quantity.FATIGUE_LIFE, share, LIFE_FACTOR)
+        yield CheckOutcome.of("fatigue", subject, load_case, Quantity.FATIGUE_LIFE, share, LIFE_FACTOR)
 
 
 def _joints(
@@ -95,14 +102,14 @@ def _joints(
     case = moved.case
     asked = case.bearing_joints if isinstance(check, BearingCheck) else case.pinned_joints
     for joint in check.joints or asked:
-        for title, solved in moved.forces.items():
+        for load_case, solved in moved.forces.items():
             size = np.where(evaluated, np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
             pose = first_largest(size)
             force = float(size[pose])
             if isinstance(check, BearingCheck):
-                outcome = bearing_outcome(case, title, name, check, joint, force)
+                outcome = bearing_outcome(case, load_case, name, check, joint, force)
             else:
-                outcome = pin_outcome(case, title, name, check, joint, stress_of(case, joint, force))
+                outcome = pin_outcome(case, load_case, name, check, joint, stress_of(case, joint, force))
             outcome = _complete(outcome, evaluated)
             yield outcome.because(f"under {force:.3g} N at {_when(moved, pose)}: {outcome.reason}")
 
@@ -119,6 +126,10 @@ def column_outcomes(
         Link -> what acts on it, one record per load case.
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
+
+    Yields
+    ------
+    CheckOutcome
     """
     for link, histories in loaded.items():
         for history in histories:

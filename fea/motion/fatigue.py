@@ -1,8 +1,13 @@
 """Life under a stress that varies: cycles by rainflow, mean stress by Goodman or the material's own rule, Miner's sum.
 
-Measure of stress. Ductile materials: the von Mises stress with the sign of the principal stress of largest
-size; brittle ones: that principal stress itself. One direction of stress at a time is assumed: where the
-principal directions turn within a cycle, neither measure knows.
+The measure of stress for brittle materials is the principal stress of largest size. For ductile ones it is the von
+Mises stress with the sign of that principal stress. Both assume that the principal directions do not turn within a
+cycle.
+
+References
+----------
+ASTM E1049-85, sections 5.4.4 and 5.4.5.
+Shigley's Mechanical Engineering Design, 10th ed., chapter 6.
 """
 
 import itertools
@@ -18,7 +23,7 @@ from geometry.parts.material import Fatigue, Material
 Real = NDArray[np.float64]
 
 NEGLIGIBLE = 0.05
-"""Cycles of a smaller range than this part of the largest one are left out, or ripples would count as peaks."""
+"""Cycles with a smaller range than this share of the largest range are left out, or ripples would count as peaks."""
 STRESS_FACTOR = 2.0
 LIFE_FACTOR = 4.0
 """Default limits: on stress at the wanted number of cycles, and on life."""
@@ -64,8 +69,8 @@ def turning_points(history: Real) -> Real:
 def rainflow(history: Real) -> Real:
     """Count the cycles of a history.
 
-    ASTM E1049-85, section 5.4.4: of the last three points the ranges Y (earlier) and X (later) are compared;
-    X ≥ Y makes of Y a half cycle where it holds the first point, else a full one.
+    ASTM E1049-85, section 5.4.4: of the last three points the ranges Y (earlier) and X (later) are compared. If X ≥ Y,
+    Y counts as a half cycle where it contains the first point, else as a full one.
 
     Parameters
     ----------
@@ -147,8 +152,8 @@ def reversed_amplitude(cycles: Real, ultimate: float) -> Real:
 def equivalent_peak(cycles: Real, fatigue: Fatigue, ultimate: float | None) -> Real:
     """Return the peak stresses of cycles of the test's stress ratio R that harm as much as the given ones.
 
-    By the peak-stress rule the cycle's own peak, none where that is compressive. By Goodman, with the reversed
-    amplitude σr: the σ at which σ (1 − R)/2 / (1 − σ (1 + R)/(2 Su)) = σr.
+    By the peak-stress rule it is the cycle's own peak, and zero where that is compressive. By Goodman's rule it is the
+    σ at which σ (1 − R)/2 / (1 − σ (1 + R)/(2 Su)) = σr, with the reversed amplitude σr.
 
     Parameters
     ----------

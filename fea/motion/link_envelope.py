@@ -1,7 +1,7 @@
 """One link over a motion: stress of every pose and load case from unit loads, its peaks, bands and fatigue."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +60,11 @@ def link_envelope(
 
     Parameters
     ----------
-    space, link, body, material
+    space : DisplacementSpace
+        Of the link's mesh.
+    link : str
+    body : Body
+    material : Material
     histories : sequence of LinkLoads
         Its loads over the motion, one record per load case.
     evaluated : ndarray of bool, shape (n,)
@@ -69,13 +73,16 @@ def link_envelope(
         How the drive torque enters, by the case; the other way stands in the band.
     returns : bool
         True where the last pose is the first again; else the motion goes there and back.
-    fatigue, repetitions : bool and float, optional
-        False to leave it out; repetitions of the motion that are wanted.
+    fatigue : bool, optional
+        False to leave it out.
+    repetitions : float, optional
+        Of the motion that are wanted.
     refined : RefinedSolid, optional
         The series of meshes that ended with this one, solved at the worst pose: for the bands.
     scatter : mapping of str to Scatter, optional
-        Load case -> that of its loads; none where it is left out.
-    notes, threads : tuple of str and int, optional
+        Load case -> that of its loads.
+    notes : tuple of str, optional
+    threads : int, optional
 
     Returns
     -------
@@ -88,17 +95,8 @@ def link_envelope(
     """
     solved, variants = _solved(space, body, material, histories, evaluated, threads)
     lacking = _lacking(material, evaluated) if fatigue else "it was not asked for"
-    found = {}
-    for name, curves in variants.items():
-        series = MeshFactors.of(refined, name, material)
-        load_case = _load_case(space.nodes, name, material, curves, stated, series)
-        load_case = _estimated(load_case, series, solved, material, evaluated)
-        load = (scatter or {}).get(name, Scatter())
-        load_case = _scattered(load_case, material, load)
-        if not lacking and load_case.known:
-            again = _fatigue(solved, material, load_case, stated, series, returns, repetitions, load)
-            load_case = replace(load_case, fatigue=again)
-        found[name] = load_case
+    over = _Motion(solved=solved, material=material, evaluated=evaluated, stated=stated, returns=returns)
+    found = over.envelopes(variants, refined, scatter or {}, repetitions, fatigue=not lacking)
     worst = min(found.values(), key=lambda load_case: load_case.severity)
     raw = solved.field(worst.governing.first + int(np.count_nonzero(evaluated[: worst.pose])))
     return LinkEnvelope(
@@ -192,82 +190,145 @@ def _curve(
     return VariantCurve(span=law.span, transfer=transfer, stress=stress, node=node, first=first)
 
 
-def _load_case(
-    nodes: Real,
-    name: str,
-    material: Material,
-    variants: Sequence[VariantCurve],
-    stated: Transfer | None,
-    series: MeshFactors,
-) -> LoadCaseEnvelope:
-    own = [v for v in variants if v.transfer in (None, stated)]
-    governing = max(own, key=lambda v: v.peak)
-    pose = int(np.nanargmax(governing.stress))
-    value = np.array([v.stress for v in own]).max(axis=0)
-    # Compression makes the ends of a band change places; no tension is no stress that breaks a brittle part.
-    ends = np.array([factor * v.stress for v in variants for factor in series.of_variant(v)])
-    low, high = np.minimum(ends.min(axis=0), value), np.maximum(ends.max(axis=0), value)
-    if series.discretisation is not None and not series.discretisation.known:
-        value = low = high = np.full_like(value, np.nan)
-    if series.discretisation is None or series.discretisation.known:
-        peak = Band(
-            value=max(governing.peak, 0.0),
-            low=max(min(f * v.peak for v in variants for f in (*series.of_variant(v), 1.0)), 0.0),
-            high=max(float(np.nanmax(high)), 0.0),
-            sources=(*_sources(governing), *series.sources),
-            without=series.without,
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Motion:
+    """A link solved over a motion, from which the envelopes of its load cases are drawn."""
+
+    solved: UnitSolutions
+    material: Material
+    evaluated: NDArray[np.bool_]
+    stated: Transfer | None
+    returns: bool
+
+    def envelopes(
+        self,
+        variants: Mapping[str, Sequence[VariantCurve]],
+        refined: RefinedSolid | None,
+        scatter: Mapping[str, Scatter],
+        repetitions: float | None,
+        *,
+        fatigue: bool,
+    ) -> dict[str, LoadCaseEnvelope]:
+        """Return the envelope of every load case, with stated scatter in its bands."""
+        found = {}
+        for name, curves in variants.items():
+            series, load = MeshFactors.of(refined, name, self.material), scatter.get(name, Scatter())
+            own = self._estimated(self._by_meshes(name, curves, series), series)
+            own = _scattered(own, self.material, load)
+            if fatigue and own.known:
+                own = replace(own, fatigue=self._fatigue(own, series, load, repetitions))
+            found[name] = own
+        return found
+
+    def _by_meshes(self, name: str, variants: Sequence[VariantCurve], series: MeshFactors) -> LoadCaseEnvelope:
+        """Return the envelope in bands by the meshes of the worst pose."""
+        own = [v for v in variants if v.transfer in (None, self.stated)]
+        governing = max(own, key=lambda v: v.peak)
+        pose = int(np.nanargmax(governing.stress))
+        value = np.array([v.stress for v in own]).max(axis=0)
+        # Under compression the ends of a band change places. Compression does not break a brittle part, so 0 is least.
+        ends = np.array([factor * v.stress for v in variants for factor in series.of_variant(v)])
+        low, high = np.minimum(ends.min(axis=0), value), np.maximum(ends.max(axis=0), value)
+        if series.discretisation is not None and not series.discretisation.known:
+            value = low = high = np.full_like(value, np.nan)
+        if series.discretisation is None or series.discretisation.known:
+            peak = Band(
+                value=max(governing.peak, 0.0),
+                low=max(min(f * v.peak for v in variants for f in (*series.of_variant(v), 1.0)), 0.0),
+                high=max(float(np.nanmax(high)), 0.0),
+                sources=(*_sources(governing), *series.sources),
+                without=series.without,
+            )
+        else:
+            peak = Band.unknown("the peak has no limit")
+        return LoadCaseEnvelope(
+            name=name,
+            variants=tuple(variants),
+            governing=governing,
+            value=value,
+            low=low,
+            high=high,
+            stress=peak,
+            safety_factor=peak.inverse(self.material.allowable),
+            pose=pose,
+            location=self.solved.space.nodes[governing.node[pose]].copy(),
+            fatigue=None,
+            discretisation=series.discretisation,
         )
-    else:
-        peak = Band.unknown("the peak has no limit")
-    return LoadCaseEnvelope(
-        name=name,
-        variants=tuple(variants),
-        governing=governing,
-        value=value,
-        low=low,
-        high=high,
-        stress=peak,
-        safety_factor=peak.inverse(material.allowable),
-        pose=pose,
-        location=nodes[governing.node[pose]].copy(),
-        fatigue=None,
-        discretisation=series.discretisation,
-    )
 
+    def _estimated(self, load_case: LoadCaseEnvelope, series: MeshFactors) -> LoadCaseEnvelope:
+        """Return the envelope; a peak that no mesh was refined for gets a band by the estimate on this mesh alone."""
+        if not load_case.known or not series.was_not_refined_for(load_case.governing):
+            return load_case
+        governing, pose = load_case.governing, load_case.pose
+        number = governing.first + int(np.count_nonzero(self.evaluated[:pose]))
+        error = self._local_error(number, int(governing.node[pose]))
+        contact = 1.0 - CONTACT_SHORTFALL if governing.span == NARROW.span else 1.0
+        peak = load_case.stress
+        peak = Band(
+            value=peak.value,
+            low=min(peak.low, max(peak.value - error, 0.0)),
+            high=max(peak.high, (peak.value + error) / contact),
+            sources=(*peak.sources, ELSEWHERE),
+        )
+        low, high = load_case.low.copy(), load_case.high.copy()
+        low[pose], high[pose] = min(low[pose], peak.low), max(high[pose], peak.high)
+        factor = peak.inverse(self.material.allowable)
+        return replace(load_case, stress=peak, safety_factor=factor, low=low, high=high)
 
-def _estimated(
-    load_case: LoadCaseEnvelope,
-    series: MeshFactors,
-    solved: UnitSolutions,
-    material: Material,
-    evaluated: NDArray[np.bool_],
-) -> LoadCaseEnvelope:
-    """Return the envelope with a peak that no mesh was refined for in a band of the estimate on this mesh alone."""
-    if not load_case.known or not series.was_not_refined_for(load_case.governing):
-        return load_case
-    governing, pose = load_case.governing, load_case.pose
-    number = governing.first + int(np.count_nonzero(evaluated[:pose]))
-    error = _local_error(solved, material, number, int(governing.node[pose]))
-    contact = 1.0 - CONTACT_SHORTFALL if governing.span == NARROW.span else 1.0
-    peak = load_case.stress
-    peak = Band(
-        value=peak.value,
-        low=min(peak.low, max(peak.value - error, 0.0)),
-        high=max(peak.high, (peak.value + error) / contact),
-        sources=(*peak.sources, ELSEWHERE),
-    )
-    low, high = load_case.low.copy(), load_case.high.copy()
-    low[pose], high[pose] = min(low[pose], peak.low), max(high[pose], peak.high)
-    factor = peak.inverse(material.allowable)
-    return replace(load_case, stress=peak, safety_factor=factor, low=low, high=high)
+    def _local_error(self, number: int, node: int) -> float:
+        """Fourfold estimate [MPa] beside a node, on this mesh alone, under load ``number``."""
+        field, young, poisson = self.solved.field(number), self.material.youngs_modulus, self.material.poissons_ratio
+        estimate = estimate_error(
+            stress_field(self.solved.space, field, E=young, nu=poisson), field, E=young, nu=poisson
+        )
+        beside = (self.solved.space.cells == node).any(axis=1)
+        return ALONE * float(estimate.stress[beside].max())
 
+    def _fatigue(
+        self, load_case: LoadCaseEnvelope, series: MeshFactors, load: Scatter, repetitions: float | None
+    ) -> LinkFatigue:
+        """Return the fatigue under a load case, at the critical node of the variant that governs."""
+        assert self.material.fatigue is not None
+        every, found, parts, meshes = [], [], [], list(series.sources)
+        for variant in load_case.variants:
+            count = int(np.isfinite(variant.stress).sum())
+            parts.append(self.solved.combination[:, variant.first : variant.first + count])
+        critical = critical_nodes(self.solved.stress, parts, self.material)
+        for variant, (node, history) in zip(load_case.variants, critical, strict=True):
+            closed = closed_history(history, returns=self.returns)
+            life = fatigue_life(closed, self.material)
+            factors = series.of_variant(variant)
+            if series.discretisation is not None and not series.holds_at(variant, self.solved.space.nodes, node):
+                factors = self._fatigue_factors(variant, node, history)
+                meshes.append(FATIGUE_ELSEWHERE)
+            ends = (factors[0] * load.low, factors[1] * load.high)
+            every += [life, *(fatigue_life(factor * closed, self.material) for factor in ends)]
+            if variant.transfer in (None, self.stated):
+                found.append((life, node, history))
+        life, node, history = max(found, key=lambda f: f[0].stress)
+        sources = distinct(_sources(load_case.governing), tuple(meshes), load.sources)
+        wanted = self.material.fatigue.cycles if repetitions is None else repetitions
+        counts = tuple(one.repetitions for one in every if one.repetitions is not None)
+        return LinkFatigue(
+            location=self.solved.space.nodes[node].copy(),
+            history=history,
+            life=life,
+            stress=Band.around(life.stress, tuple(one.stress for one in every), *sources),
+            wanted=wanted,
+            strength=strength_at(self.material.fatigue, wanted),
+            repetitions=None if life.repetitions is None else Band.around(life.repetitions, counts, *sources),
+        )
 
-def _local_error(solved: UnitSolutions, material: Material, number: int, node: int) -> float:
-    """Fourfold estimate [MPa] beside a node, on this mesh alone, under load ``number``."""
-    field, young, poisson = solved.field(number), material.youngs_modulus, material.poissons_ratio
-    estimate = estimate_error(stress_field(solved.space, field, E=young, nu=poisson), field, E=young, nu=poisson)
-    beside = (solved.space.cells == node).any(axis=1)
-    return ALONE * float(estimate.stress[beside].max())
+    def _fatigue_factors(self, variant: VariantCurve, node: int, history: Real) -> tuple[float, float]:
+        """Factors for a node that no mesh was refined for, by the estimate beside it in its worst pose."""
+        pose = int(np.argmax(np.abs(history)))
+        stress = abs(float(history[pose]))
+        if stress == 0.0:
+            return 1.0, 1.0
+        error = self._local_error(variant.first + pose, node) / stress
+        contact = 1.0 - CONTACT_SHORTFALL if variant.span == NARROW.span else 1.0
+        return max(1.0 - error, 0.0), (1.0 + error) / contact
 
 
 def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -> LoadCaseEnvelope:
@@ -277,7 +338,7 @@ def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -
         load_case,
         stress=stress,
         safety_factor=strength_scatter(material).on(stress.inverse(material.allowable)),
-        # Compression goes the other way, further from no stress.
+        # Stress is negative under compression, so the larger load gives its lower end.
         low=np.minimum(load.low * load_case.low, load.high * load_case.low),
         high=np.maximum(load.low * load_case.high, load.high * load_case.high),
     )
@@ -293,6 +354,7 @@ def closed_history(history: Real, *, returns: bool) -> Real:
     Parameters
     ----------
     history : ndarray, shape (n,)
+        At the poses of the motion.
     returns : bool
         True where the last pose is the first again.
 
@@ -301,58 +363,3 @@ def closed_history(history: Real, *, returns: bool) -> Real:
     ndarray, shape (k,)
     """
     return history[:-1] if returns else np.concatenate([history, history[-2:0:-1]])
-
-
-def _fatigue(
-    solved: UnitSolutions,
-    material: Material,
-    load_case: LoadCaseEnvelope,
-    stated: Transfer | None,
-    series: MeshFactors,
-    returns: bool,
-    repetitions: float | None,
-    load: Scatter,
-) -> LinkFatigue:
-    assert material.fatigue is not None
-    every, found, parts, meshes = [], [], [], list(series.sources)
-    for variant in load_case.variants:
-        count = int(np.isfinite(variant.stress).sum())
-        parts.append(solved.combination[:, variant.first : variant.first + count])
-    critical = critical_nodes(solved.stress, parts, material)
-    for variant, (node, history) in zip(load_case.variants, critical, strict=True):
-        closed = closed_history(history, returns=returns)
-        life = fatigue_life(closed, material)
-        factors = series.of_variant(variant)
-        if series.discretisation is not None and not series.holds_at(variant, solved.space.nodes, node):
-            factors = _fatigue_factors(solved, material, variant, node, history)
-            meshes.append(FATIGUE_ELSEWHERE)
-        ends = (factors[0] * load.low, factors[1] * load.high)
-        every += [life, *(fatigue_life(factor * closed, material) for factor in ends)]
-        if variant.transfer in (None, stated):
-            found.append((life, node, history))
-    life, node, history = max(found, key=lambda f: f[0].stress)
-    sources = distinct(_sources(load_case.governing), tuple(meshes), load.sources)
-    wanted = material.fatigue.cycles if repetitions is None else repetitions
-    counts = tuple(one.repetitions for one in every if one.repetitions is not None)
-    return LinkFatigue(
-        location=solved.space.nodes[node].copy(),
-        history=history,
-        life=life,
-        stress=Band.around(life.stress, tuple(one.stress for one in every), *sources),
-        wanted=wanted,
-        strength=strength_at(material.fatigue, wanted),
-        repetitions=None if life.repetitions is None else Band.around(life.repetitions, counts, *sources),
-    )
-
-
-def _fatigue_factors(
-    solved: UnitSolutions, material: Material, variant: VariantCurve, node: int, history: Real
-) -> tuple[float, float]:
-    """Factors on the history of a node that no mesh was refined for: the estimate there where its stress is largest."""
-    pose = int(np.argmax(np.abs(history)))
-    stress = abs(float(history[pose]))
-    if stress == 0.0:
-        return 1.0, 1.0
-    error = _local_error(solved, material, variant.first + pose, node) / stress
-    contact = 1.0 - CONTACT_SHORTFALL if variant.span == NARROW.span else 1.0
-    return max(1.0 - error, 0.0), (1.0 + error) / contact

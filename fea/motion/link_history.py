@@ -17,6 +17,10 @@ def link_histories(moved: CaseMotion, link: str) -> tuple[LinkLoads, ...]:
     link : str
         A link with a part.
 
+    Returns
+    -------
+    tuple of LinkLoads
+
     Raises
     ------
     CannotRunError

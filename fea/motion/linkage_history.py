@@ -17,16 +17,20 @@ from loads.states.case_motion import CaseMotion
 
 
 def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterator[CheckOutcome]:
-    """Yield an outcome for every load case under which the linkage may give way at a pose that was looked at.
+    """Yield an outcome for every load case under which the linkage may give way at one of two poses.
 
-    Looked at are the pose next to a dead point of the driven link and that of the largest drive torque.
-    By the rule of single poses (``fea.outcomes.linkage``).
+    They are the pose next to a dead point of the driven link and that of the largest drive torque. The rule is that of
+    single poses (``fea.outcomes.linkage``).
 
     Parameters
     ----------
     moved : CaseMotion
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
+
+    Yields
+    ------
+    CheckOutcome
     """
     case, motion = moved.case, moved.motion
     if case.large_displacement == "off":
@@ -36,9 +40,9 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         for i in np.flatnonzero(evaluated)
     }
     nearest = min(poses, key=lambda i: moved.drive.dead_point_distance(poses[i]))
-    for title, acting in moved.loads.items():
+    for load_case, acting in moved.loads.items():
         found = []
-        hardest = max(poses, key=lambda i: abs(float(moved.torque[title][i])))
+        hardest = max(poses, key=lambda i: abs(float(moved.torque[load_case][i])))
         for i in dict.fromkeys((nearest, hardest)):
             pose = poses[i]
             try:
@@ -54,6 +58,6 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         where = f"{motion.coordinate} = {np.degrees(motion.angles[i]):.5g} deg"
         how = f"at {where} linear theory finds it unstable or at a dead point at {least:.3g} times the load"
         remedy = "check that pose with alula check, which follows the deformed shape"
-        outcome = by_linear_theory(case, title, least, factor, how, remedy)
+        outcome = by_linear_theory(case, load_case, least, factor, how, remedy)
         if outcome.verdict is not Verdict.PASS:
             yield outcome

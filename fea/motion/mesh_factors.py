@@ -19,7 +19,7 @@ Real = NDArray[np.float64]
 
 ONE_MESH = "the error of its one mesh is not estimated"
 AGREEMENT = 5e-3
-"""To which the peak of a pose by unit loads equals that of a direct solution."""
+"""Relative accuracy of the peak of a pose by unit loads, compared with a direct solution."""
 
 
 class MeshFactors:
@@ -35,7 +35,19 @@ class MeshFactors:
 
     @classmethod
     def of(cls, refined: RefinedSolid | None, load_case: str, material: Material) -> "MeshFactors":
-        """Return the factors of a load case."""
+        """Return the factors of a load case.
+
+        Parameters
+        ----------
+        refined : RefinedSolid or None
+            The series of meshes; None where there is one mesh alone.
+        load_case : str
+        material : Material
+
+        Returns
+        -------
+        MeshFactors
+        """
         found = cls()
         if refined is None:
             return found
@@ -55,19 +67,50 @@ class MeshFactors:
         return found
 
     def was_not_refined_for(self, variant: VariantCurve) -> bool:
-        """True where the motion's peak exceeds that of the pose that the meshes were refined for: it lies elsewhere."""
+        """Return True where the motion's peak exceeds that of the pose that the meshes were refined for.
+
+        Parameters
+        ----------
+        variant : VariantCurve
+
+        Returns
+        -------
+        bool
+        """
         refined = self._refined.get((variant.span, variant.transfer), np.inf)
         return variant.peak > (1.0 + AGREEMENT) * refined
 
     def holds_at(self, variant: VariantCurve, nodes: Real, node: int) -> bool:
-        """True for a node about the peak that the meshes were refined for, no further than the first's elements."""
+        """Return True for a node near the peak that the meshes were refined for, within an element of the first mesh.
+
+        Parameters
+        ----------
+        variant : VariantCurve
+        nodes : ndarray, shape (nodes, 3)
+            Of the mesh [mm].
+        node : int
+
+        Returns
+        -------
+        bool
+        """
         if self.was_not_refined_for(variant):
             return False
         peak = int(variant.node[int(np.nanargmax(variant.stress))])
         return bool(np.linalg.norm(nodes[node] - nodes[peak]) <= self._size)
 
     def of_variant(self, variant: VariantCurve) -> tuple[float, float]:
-        """Factors on the stress of a variant: its own, else those of its span without torque, else the widest."""
+        """Return the factors on the stress of a variant: its own, else its span's without torque, else the widest.
+
+        Parameters
+        ----------
+        variant : VariantCurve
+
+        Returns
+        -------
+        tuple of (float, float)
+            The low and the high one.
+        """
         for key in ((variant.span, variant.transfer), (variant.span, None)):
             if key in self.factors:
                 return self.factors[key]

@@ -1,10 +1,9 @@
 """Largest stress of a link under each of many loads, found among all nodes from the stresses of a few modes.
 
-The von Mises stress is the length of five numbers that are linear in the stress, so that for N loads it is
-the length of matrix products, taken in blocks. It is a norm, hence never above the sum of the modes' own
-von Mises stresses times their coefficients: nodes that by this bound reach the peak under no load are left
-out beforehand. The largest principal stress is at most the mean stress plus 2/3 of the von Mises stress,
-so that only few tensors need their eigenvalues.
+The von Mises stress is the length of five numbers that are linear in the stress. For N loads these are matrix
+products, taken in blocks. The length is a norm, hence at most the sum of the modes' own von Mises stresses times the
+size of their coefficients. Nodes that by this bound reach the peak under no load are left out beforehand. The largest
+principal stress is at most the mean stress plus 2/3 of the von Mises stress, so few tensors need their eigenvalues.
 """
 
 from dataclasses import dataclass
@@ -23,24 +22,51 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Peaks:
-    """Largest stress (N,) of any node under each of N loads [MPa], and the node (N,)."""
+    """Largest stress of all nodes under each of N loads.
+
+    Attributes
+    ----------
+    value : ndarray, shape (N,)
+        [MPa]
+    node : ndarray of int, shape (N,)
+        Where it is.
+    """
 
     value: Real
     node: NDArray[np.int64]
 
 
 def deviator(stress: Real) -> Real:
-    """Five numbers (nodes, 5, m) of stresses (nodes, 6, m) whose length is the von Mises stress."""
+    """Return five numbers, linear in the stress, whose length is the von Mises stress.
+
+    Parameters
+    ----------
+    stress : ndarray, shape (nodes, 6, m)
+        Components [MPa].
+
+    Returns
+    -------
+    ndarray, shape (nodes, 5, m)
+        [MPa]
+    """
     xx, yy, zz, xy, yz, xz = np.moveaxis(stress, 1, 0)
     root = np.sqrt(3.0)
     return np.stack([root / 2.0 * (xx - yy), (xx + yy) / 2.0 - zz, root * xy, root * yz, root * xz], axis=1)
 
 
 def von_mises_peaks(stress: Real, combination: Real) -> Peaks:
-    """Largest von Mises stress under each load.
+    """Return the largest von Mises stress under each load.
 
-    stress       (nodes, 6, m) of m modes at the nodes [MPa]
-    combination  (m, N) of the modes under N loads
+    Parameters
+    ----------
+    stress : ndarray, shape (nodes, 6, m)
+        Of m modes at the nodes [MPa].
+    combination : ndarray, shape (m, N)
+        Of the modes under N loads.
+
+    Returns
+    -------
+    Peaks
     """
     parts = deviator(stress)
     nodes = _candidates(parts, combination)
@@ -80,7 +106,19 @@ def _candidates(parts: Real, combination: Real) -> NDArray[np.int64]:
 
 
 def principal_peaks(stress: Real, combination: Real) -> Peaks:
-    """Largest principal stress under each load; arguments as for ``von_mises_peaks``."""
+    """Return the largest principal stress under each load.
+
+    Parameters
+    ----------
+    stress : ndarray, shape (nodes, 6, m)
+        Of m modes at the nodes [MPa].
+    combination : ndarray, shape (m, N)
+        Of the modes under N loads.
+
+    Returns
+    -------
+    Peaks
+    """
     count = combination.shape[1]
     hot = von_mises_peaks(stress, combination).node
     value = principal(np.einsum("nim,mn->ni", stress[hot], combination))[:, 0]
@@ -106,9 +144,19 @@ def principal_peaks(stress: Real, combination: Real) -> Peaks:
 
 
 def size_parts(stress: Real, *, whole: bool) -> Real:
-    """Numbers (nodes, k, m) whose length over k is the size of stresses (nodes, 6, m) [MPa].
+    """Return numbers, linear in the stress, whose length over k is the size of the stress.
 
-    whole   True: the Frobenius norm, which no principal stress exceeds; False: the von Mises stress
+    Parameters
+    ----------
+    stress : ndarray, shape (nodes, 6, m)
+        Components [MPa].
+    whole : bool
+        True for the Frobenius norm, which no principal stress exceeds, as size; False for the von Mises stress.
+
+    Returns
+    -------
+    ndarray, shape (nodes, k, m)
+        [MPa]
     """
     if not whole:
         return deviator(stress)
@@ -116,12 +164,36 @@ def size_parts(stress: Real, *, whole: bool) -> Real:
 
 
 def mode_sizes(parts: Real) -> Real:
-    """Sizes (nodes, m) of each mode by itself, of what ``size_parts`` returns."""
+    """Return the size of the stress of each mode by itself.
+
+    Parameters
+    ----------
+    parts : ndarray, shape (nodes, k, m)
+        From ``size_parts`` [MPa].
+
+    Returns
+    -------
+    ndarray, shape (nodes, m)
+        [MPa]
+    """
     return np.asarray(np.sqrt(np.einsum("kim,kim->km", parts, parts)))
 
 
 def largest_sizes(parts: Real, combination: Real) -> Real:
-    """Largest size of the stress of each node (nodes,) under any of the loads (m, N) [MPa]."""
+    """Return the largest size that the stress of each node has under any load.
+
+    Parameters
+    ----------
+    parts : ndarray, shape (nodes, k, m)
+        Of m modes, from ``size_parts`` [MPa].
+    combination : ndarray, shape (m, N)
+        Of the modes under N loads.
+
+    Returns
+    -------
+    ndarray, shape (nodes,)
+        [MPa]
+    """
     found = np.empty(len(parts))
     step = max(1, _BLOCK // (parts.shape[1] * combination.shape[1]))
     for start in range(0, len(parts), step):

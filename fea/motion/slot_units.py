@@ -1,8 +1,11 @@
 """Unit loads of a pin that travels along a slot: its push at a row of places, from which any place follows.
 
 The push on a flank at the place x is Σ L_k(x) q_k with the pushes q_k of a unit force at places x_k and the cubic
-Lagrange polynomials L_k of the four nearest (Hildebrand, Introduction to Numerical Analysis, 2nd ed., section 3.2).
-These reproduce 1 and x, so force and moment are exact at every place.
+Lagrange polynomials L_k of the four nearest. These reproduce 1 and x, so force and moment are exact at every place.
+
+References
+----------
+Hildebrand, Introduction to Numerical Analysis, 2nd ed., section 3.2.
 """
 
 from dataclasses import dataclass
@@ -31,9 +34,15 @@ _STENCIL = 4
 class SlotUnits:
     """Where the unit loads of one slot stand.
 
-    pushes  (span of the law, side of the flank) -> numbers of the pushes at the law's places, freed of their resultants
-    places  span of the law -> (k,) x [mm], evenly spaced
-    rigid   numbers of the tractions that deliver a unit force along y and a unit moment about the middle
+    Attributes
+    ----------
+    pin : Pin
+    pushes : dict of (Span, float) to slice
+        Span of the law and side of the flank -> numbers of the pushes at the law's places, without their resultants.
+    places : dict of Span to ndarray, shape (k,)
+        Span of the law -> x, evenly spaced [mm].
+    rigid : slice
+        Numbers of the tractions that deliver a unit force along y and a unit moment about the middle.
     """
 
     pin: Pin
@@ -42,7 +51,21 @@ class SlotUnits:
     rigid: slice
 
     def coefficients(self, force: Real, place: Real, law: PressureLaw) -> tuple[dict[float, Real], Real]:
-        """Coefficients of each side's pushes (k, n) and of the tractions (2, n), for forces along y (n,) at x (n,)."""
+        """Return the coefficients of the pushes and of the tractions.
+
+        Parameters
+        ----------
+        force : ndarray, shape (n,)
+            Along y, at n poses [N].
+        place : ndarray, shape (n,)
+            x of the pin [mm].
+        law : PressureLaw
+
+        Returns
+        -------
+        tuple of (dict of float to ndarray, shape (k, n), ndarray, shape (2, n))
+            Those of each side's pushes [N], and those of the tractions [N, N mm].
+        """
         weights = lagrange_weights(self.places[law.span], place)
         pushed = {
             side: weights * np.where(np.sign(force) == side, np.abs(force), 0.0)
@@ -53,9 +76,24 @@ class SlotUnits:
 
 
 def places_for(pin: Pin, law: PressureLaw, low: float, high: float) -> Real:
-    """Return the places of a law's pushes for a pin that travels from ``low`` to ``high`` [mm].
+    """Return the places of a law's pushes for a pin that travels along its slot.
 
-    Raises ``CannotRunError``, naming the pin, for a travel that would need too many.
+    Parameters
+    ----------
+    pin : Pin
+    law : PressureLaw
+    low, high : float
+        Ends of its travel, x [mm].
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        x, evenly spaced [mm].
+
+    Raises
+    ------
+    CannotRunError
+        For a travel that would need too many places.
     """
     step = law.patch(pin.pin_diameter) / PER_PATCH
     count = max(_STENCIL, int(np.ceil((high - low) / step)) + 1)
@@ -71,7 +109,19 @@ def places_for(pin: Pin, law: PressureLaw, low: float, high: float) -> Real:
 
 
 def lagrange_weights(places: Real, x: Real) -> Real:
-    """Weights (k, n) of evenly spaced places for values at x (n,), cubic on the four nearest."""
+    """Return the weights of evenly spaced places for values between them, cubic on the four nearest.
+
+    Parameters
+    ----------
+    places : ndarray, shape (k,)
+        Evenly spaced [mm].
+    x : ndarray, shape (n,)
+        Where values are wanted [mm].
+
+    Returns
+    -------
+    ndarray, shape (k, n)
+    """
     step = (places[-1] - places[0]) / (len(places) - 1)
     first = np.clip(np.floor((x - places[0]) / step).astype(int) - 1, 0, len(places) - _STENCIL)
     t = (x - places[0]) / step - first
@@ -83,7 +133,24 @@ def lagrange_weights(places: Real, x: Real) -> Real:
 
 
 def unit_pushes(wall: SurfaceQuadrature, pin: Pin, law: PressureLaw, side: float, places: Real) -> list[Real]:
-    """Tractions of a unit force on the flank at y > 0 (``side`` 1) or y < 0 (-1), with the pin at each place."""
+    """Return the tractions of a unit force of a pin on one flank of its slot, with the pin at each place.
+
+    Parameters
+    ----------
+    wall : SurfaceQuadrature
+        Of the slot.
+    pin : Pin
+    law : PressureLaw
+    side : {1, -1}
+        1 for the flank at y > 0, -1 for that at y < 0.
+    places : ndarray, shape (k,)
+        x of the pin [mm].
+
+    Returns
+    -------
+    list of ndarray, shape (cells, points, 3)
+        [MPa/N], one for each place.
+    """
     wrench = np.array([0.0, side, 0.0, 0.0, 0.0, 0.0])
     return [
         slot_traction(

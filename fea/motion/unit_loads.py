@@ -1,19 +1,12 @@
 """Unit loads of a link, of which the loads of every pose and load case are sums.
 
-The pressure p(θ − α) of a pin is not linear in its force, but its Fourier series is a sum of fixed fields:
+Pins in holes and pins in slots have several unit loads each (``pin_units``, ``slot_units``). Plain ends, spread loads,
+weight, inertia and couples are linear as they stand.
 
-    p(θ − α) = Σ a_n (cos nα cos nθ + sin nα sin nθ)
-
-so that the fields cos nθ and sin nθ on the hole, with the coefficients of either span, give it at every
-direction α. Each field is freed of its own resultant by a traction of the rigid-body fields on the same hole,
-and two such tractions deliver the force: the sum then carries exactly the force that statics asks for, on
-the hole as it is meshed. Plain ends, spread loads, weight, inertia and couples are linear as they stand.
-
-Single unit loads do not balance, the loads of a pose do; held by six isostatic supports, whose reactions
-cancel in the sum, displacements and stresses superpose all the same.
+A single unit load does not balance, while the loads of a pose do. So the link is held by six isostatic supports, whose
+reactions cancel in the sum. Displacements and stresses superpose all the same.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.link_loads import LinkLoads, PinLoad
+from fea.motion.pin_units import HIGHEST_ORDER, PinUnits
 from fea.motion.slot_units import SlotUnits, places_for, unit_pushes
 from fea.solid.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
 from fea.solid.slot_traction import DEGREE
 from fea.solid.space import DisplacementSpace
 from fea.solid.supports import rigid_motions
 from fea.solid.traction import (
-    LARGEST_CORRECTION,
     Transfer,
     body_density,
     couple_traction,
@@ -42,86 +35,35 @@ from loads.records.bearing import NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
 
-HIGHEST_ORDER = 16
-"""Of the pressure's Fourier series. Measured on a bar with 24 quadratic elements round its holes under a force that
-turns fully, as the largest difference of the peak stress from the pressure's own, over 180° and over 90°: orders to
-8 0.17 and 0.63 %, to 10 0.20 and 1.13 %, to 12 0.12 and 0.36 %, to 16 0.05 and 0.09 %. Since only the span of the
-motion's loads is solved for, these took 38, 45, 48 and 50 solutions."""
 TRANSFERS: tuple[Transfer, ...] = ("eye-faces", "bore-shear")
 IN_PLANE = [0, 1, 5]
 """Components of a wrench that act in the linkage's plane."""
-
-
-def fourier_coefficients(law: PressureLaw, highest: int = HIGHEST_ORDER) -> Real:
-    """Coefficients a_n (highest + 1,) of cos nθ in p(θ)/p0 = cos kθ for |θ| < β = π/(2k), zero elsewhere.
-
-    a_0 = 1/(πk), a_n = (1/π) (sin((k−n)β)/(k−n) + sin((k+n)β)/(k+n)), and a_k = 1/(2k).
-    """
-    k, n = law.wave, np.arange(highest + 1)
-    beta = math.pi / (2.0 * k)
-    found = beta / math.pi * (np.sinc((k - n) * beta / math.pi) + np.sinc((k + n) * beta / math.pi))
-    found[0] *= 0.5
-    return np.asarray(found)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PinUnits:
-    """Where the unit loads of one pin stand, and what its pressure fields deliver on the mesh.
-
-    cosine, sine  numbers of the fields cos nθ, n = 0, 1, ..., and sin nθ, n = 1, 2, ...
-    force         numbers of the tractions that deliver a unit force along x and y
-    wrench        (6, 2 orders − 1) resultants of the pressure fields before they were freed of them
-    """
-
-    pin: Pin
-    cosine: slice
-    sine: slice
-    force: slice
-    wrench: Real
-
-    def coefficients(self, force: Real, law: PressureLaw) -> tuple[Real, Real]:
-        """Coefficients of the pressure (2 orders − 1, n) and of the tractions (2, n) for forces (n, 2).
-
-        The pressure is turned and scaled until it delivers the force on the meshed hole, as
-        ``fea.solid.traction.pin_traction`` does. Raises ``CannotRunError`` for a hole meshed too coarsely.
-        """
-        size = np.hypot(force[:, 0], force[:, 1])
-        loaded = size > 0.0
-        wanted = np.arctan2(force[loaded, 1], force[loaded, 0])
-        a = fourier_coefficients(law, self.cosine.stop - self.cosine.start - 1)[:, None]
-        order = np.arange(len(a))[:, None]
-        direction = wanted.copy()
-        for _ in range(100):
-            series = np.vstack([a * np.cos(order * direction), (a * np.sin(order * direction))[1:]])
-            got = self.wrench @ series
-            error = np.remainder(wanted - np.arctan2(got[1], got[0]) + math.pi, 2.0 * math.pi) - math.pi
-            if np.all(np.abs(error) < 1e-13):
-                break
-            direction += error
-        else:
-            raise CannotRunError(
-                f"the hole at pin {self.pin.name} is meshed too coarsely to carry the pin's pressure; refine it"
-            )
-        got *= size[loaded] / np.hypot(got[0], got[1])
-        missing = np.vstack([got[:2] - force[loaded].T, got[2:]])
-        gap = np.linalg.norm(missing[:3], axis=0) + np.linalg.norm(missing[3:], axis=0) / self.pin.diameter
-        if np.any(gap > LARGEST_CORRECTION * size[loaded]):
-            raise CannotRunError(
-                f"the hole at pin {self.pin.name} is meshed too unevenly: its pressure misses the load by "
-                f"{float(np.max(gap / size[loaded])):.1%}; refine it"
-            )
-        pressure = np.zeros((len(series), len(force)))
-        pressure[:, loaded] = series * (size[loaded] / np.hypot(*(self.wrench @ series)[:2]))
-        return pressure, force.T
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class UnitLoads:
     """The unit loads of one link.
 
-    vectors   sparse (3 nodes, units) consistent load vectors
-    wrenches  (6, units) their resultants about the frame's origin [N, N mm]
-    local     (units,) True for the pressure fields, which have no resultant
+    Attributes
+    ----------
+    space : DisplacementSpace
+        Of the link's mesh.
+    vectors : sparse matrix, shape (3 nodes, units)
+        Consistent load vectors [N].
+    wrenches : ndarray, shape (6, units)
+        Their resultants about the frame's origin [N, N mm].
+    local : ndarray of bool, shape (units,)
+        True for the pressure fields, which have no resultant.
+    pins : mapping of str to PinUnits
+    slots : mapping of str to SlotUnits
+    couples : mapping of (str, Transfer) to int
+        Pin and transfer -> number of its unit torque.
+    ends : mapping of str to slice
+        End -> numbers of its unit Fx, Fy and Mz.
+    lines : mapping of (float, float) to slice
+        First and last station [mm] -> numbers of the unit intensities between them.
+    inertia : slice or None
+        Numbers of what ``unit_forces`` returns; None where no load moves mass.
     """
 
     space: DisplacementSpace
@@ -141,7 +83,7 @@ class UnitLoads:
         return len(self.local)
 
     def coefficients(self, loads: LinkLoads, law: PressureLaw, transfer: Transfer | None) -> Real:
-        """Return what multiplies each unit load (units, n) at n poses.
+        """Return what multiplies each unit load at n poses.
 
         Parameters
         ----------
@@ -149,8 +91,12 @@ class UnitLoads:
             On the link at the n poses.
         law : PressureLaw
             How a pin presses in its hole.
-        transfer : str, optional
-            Of the torques; any where none acts.
+        transfer : Transfer or None
+            Of the torques; None where none acts.
+
+        Returns
+        -------
+        ndarray, shape (units, n)
         """
         found = np.zeros((self.count, loads.poses))
         for pin in loads.pins:
@@ -200,10 +146,14 @@ def unit_loads(
     histories : sequence of LinkLoads
         At the poses of the motion, one record per load case.
     density : float
-        Of the material [tonne/mm³]: how weight and inertia are spread over the volume, whose resultants are then
-        brought to those of the link's mass.
-    highest : int
+        Of the material [tonne/mm³]. It spreads weight and inertia over the volume; their resultants are then brought
+        to those of the link's mass.
+    highest : int, optional
         Order of the pressure's Fourier series.
+
+    Returns
+    -------
+    UnitLoads
 
     Raises
     ------
@@ -290,7 +240,7 @@ class _Builder:
         return csc_array((data, rows, indptr), shape=(self._space.unknowns, len(self._columns)))
 
     def pin(self, pin: Pin, highest: int) -> PinUnits:
-        """Pressure fields of a pin, freed of their resultants, and the tractions of unit forces."""
+        """Pressure fields of a pin without their resultants, and the tractions of unit forces."""
         bore, centre = surface_quadrature(self._space, f"bore:{pin.name}"), np.array([pin.x, pin.y, 0.0])
         arm = bore.x - centre
         radius = float((bore.w * np.hypot(arm[..., 0], arm[..., 1])).sum() / bore.w.sum())
@@ -313,7 +263,7 @@ class _Builder:
         )
 
     def slot(self, pin: Pin, loads: Sequence[PinLoad]) -> SlotUnits:
-        """Pushes of a pin on the flanks of its slot, freed of their resultants, and the tractions that deliver them."""
+        """Pushes of a pin on the flanks of its slot without their resultants, and the tractions that deliver these."""
         wall, middle = surface_quadrature(self._space, f"bore:{pin.name}", degree=DEGREE), np.array([pin.x, pin.y, 0.0])
         forces = np.concatenate([load.wrench[:, 1] for load in loads])
         travel = np.concatenate([load.centre[:, 0] for load in loads])[forces != 0.0]
@@ -363,7 +313,18 @@ class _Builder:
 
 
 def unit_forces(mass: PartMass) -> tuple[BodyForce, ...]:
-    """Return unit specific forces along x and y, unit angular acceleration and unit squared angular speed."""
+    """Return unit specific forces along x and y, unit angular acceleration and unit squared angular speed.
+
+    Parameters
+    ----------
+    mass : PartMass
+        Of the link.
+
+    Returns
+    -------
+    tuple of BodyForce
+        The four, in link axes [mm/s², rad/s², rad²/s²].
+    """
     return tuple(
         BodyForce(
             link="",

@@ -1,8 +1,8 @@
 """Displacement and stress of everything that a link undergoes over a motion, from as few solutions as span it.
 
-All loads lie in the span of the unit loads, and those of one motion in a smaller part of it: the force on an
-eye follows one curve. A singular value decomposition of the coefficients finds it, apart for the pressure
-fields, which have no resultant and are truncated by ``TRUNCATION``, and for all others, which are kept whole.
+All loads lie in the span of the unit loads. Those of one motion span a smaller part of it, since the force on an eye
+follows one curve. Singular value decompositions of the coefficients find that part. The pressure fields, which have no
+resultant, have one of their own, truncated by ``TRUNCATION``; that of all other unit loads is kept whole.
 One factorisation and one solution per mode then serve every pose.
 """
 
@@ -23,7 +23,7 @@ from fea.solid.two_level import linear_level
 Real = NDArray[np.float64]
 
 TRUNCATION = 1e-3
-"""Part of a load's pressure fields, by the norm of their nodal forces, that may be left out."""
+"""Part of a load's pressure fields that may be left out, by the norm of their nodal forces."""
 _EXACT = 1e-11
 _CHUNK = 1024
 """Elements whose stresses are recovered at once."""
@@ -33,13 +33,26 @@ _CHUNK = 1024
 class UnitSolutions:
     """Modes of a link and what they add up to.
 
-    displacement  (3 nodes, modes) [mm], supported isostatically
-    stress        (nodes, 6, modes) recovered at the nodes [MPa]
-    combination   (modes, N) of the N loads
-    reaction      (N,) largest support reaction relative to the load
-    imbalance     (N,) resultant of the load vectors relative to the load
-    units         number of unit loads that the modes are made of
-    solver, solver_reason, solver_error  name, why it was chosen, largest relative error of a mode (energy norm)
+    Attributes
+    ----------
+    space : DisplacementSpace
+        Of the link's mesh.
+    displacement : ndarray, shape (3 nodes, modes)
+        Supported isostatically [mm].
+    stress : ndarray, shape (nodes, 6, modes)
+        Recovered at the nodes [MPa].
+    combination : ndarray, shape (modes, N)
+        Of the modes under N loads.
+    reaction : ndarray, shape (N,)
+        Largest support reaction relative to the load.
+    imbalance : ndarray, shape (N,)
+        Resultant of the load vectors relative to the load.
+    units : int
+        Number of unit loads that the modes are made of.
+    solver, solver_reason : str
+        Its name, and why it was chosen.
+    solver_error : float
+        Largest relative error of a mode (energy norm).
     """
 
     space: DisplacementSpace
@@ -54,7 +67,18 @@ class UnitSolutions:
     solver_error: float
 
     def field(self, load: int) -> Real:
-        """Displacements (nodes, 3) of one of the loads [mm]."""
+        """Return the displacements under one of the loads.
+
+        Parameters
+        ----------
+        load : int
+            Its number.
+
+        Returns
+        -------
+        ndarray, shape (nodes, 3)
+            [mm]
+        """
         return np.asarray((self.displacement @ self.combination[:, load]).reshape(-1, 3))
 
 
@@ -70,11 +94,27 @@ def solve_units(
 ) -> UnitSolutions:
     """Solve for the modes of N loads.
 
-    coefficients  (units, N) of ``units``
-    scale         (N,) what resultants are compared with [N]
-    E, nu         of the material [MPa, -]
+    Parameters
+    ----------
+    units : UnitLoads
+    coefficients : ndarray, shape (units, N)
+        Of the unit loads.
+    scale : ndarray, shape (N,)
+        What resultants are compared with [N].
+    E, nu : float
+        Of the material [MPa, -].
+    method : {"pardiso", "superlu", "two-level"}, optional
+        The solver; chosen by size and memory when left out.
+    threads : int, optional
 
-    Raises ``CannotRunError`` where memory does not suffice or a solver fails.
+    Returns
+    -------
+    UnitSolutions
+
+    Raises
+    ------
+    CannotRunError
+        Where memory does not suffice or a solver fails.
     """
     space = units.space
     modes, combination = _modes(units, coefficients, scale)
@@ -143,7 +183,21 @@ def _modes(units: UnitLoads, coefficients: Real, scale: Real) -> tuple[Real, Rea
 
 
 def nodal_stress(space: DisplacementSpace, displacement: Real, *, E: float, nu: float) -> Real:
-    """Stress (nodes, 6, m) recovered at the nodes from m displacement fields (3 nodes, m), as ``stress_field`` does."""
+    """Return the stress recovered at the nodes from m displacement fields, as ``stress_field`` does.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+    displacement : ndarray, shape (3 nodes, m)
+        [mm]
+    E, nu : float
+        Of the material [MPa, -].
+
+    Returns
+    -------
+    ndarray, shape (nodes, 6, m)
+        [MPa]
+    """
     from scipy.sparse import csr_array
 
     X, _, _, gradient = reference_basis(space, space.order)

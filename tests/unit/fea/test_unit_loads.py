@@ -7,7 +7,8 @@ import solid_meshes
 from turning_load import BODY, RHO, L, history
 
 from fea.common.link_loads import PinLoad
-from fea.motion.unit_loads import TRANSFERS, fourier_coefficients, unit_loads
+from fea.motion.pin_units import fourier_coefficients
+from fea.motion.unit_loads import TRANSFERS, unit_loads
 from fea.solid.quadrature import surface_quadrature
 from fea.solid.space import displacement_space
 from fea.solid.supports import rigid_motions
