@@ -50,7 +50,7 @@ def test_the_next_mesh_is_finer_at_the_peak_and_nowhere_coarser(space):
     old = element_sizes(space)
     nearest = int(np.argmin(np.linalg.norm(points, axis=1)))
     assert sizes[nearest] == pytest.approx(old.min() / SERIES_RATIO, rel=0.2)
-    assert sizes.max() <= old.max() * (1.0 + 1e-12)
+    assert sizes.max() <= old.max() * (1.0 + 1e-3)
     assert sizes[points[:, 0] > 3.5].min() > 0.95 * old.min()
 
 
@@ -59,7 +59,7 @@ def test_an_element_that_may_hold_the_peak_is_refined_wherever_it_is(space):
     far = int(np.argmax(space.nodes[space.cells[:, :4]].mean(axis=1)[:, 0]))
     with_goal.stress[far], with_goal.estimate[far] = 9.5, 5.0
     _, sizes = next_sizes(space, [], [with_goal])
-    assert sizes[space.cells[far, :4]] == pytest.approx(element_sizes(space)[far] / MOST_RATIO)
+    assert sizes[space.cells[far, :4]] == pytest.approx(element_sizes(space)[far] / MOST_RATIO, rel=1e-3)
 
 
 def test_sizes_grow_slowly(space):
@@ -69,3 +69,10 @@ def test_sizes_grow_slowly(space):
     )
     length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
     assert (np.abs(sizes[edges[:, 0]] - sizes[edges[:, 1]]) <= GROWTH * length * (1.0 + 1e-6)).all()
+
+
+def test_rounding_of_the_estimate_leaves_the_sizes_as_they_are(space):
+    factors = np.linspace(1.0, 1.4, len(space.cells))
+    noise = 1.0 + 1e-13 * np.sin(np.arange(len(factors)))
+    sizes, disturbed = (next_sizes(space, [f], [goal(space, 0.01)])[1] for f in (factors, factors * noise))
+    assert np.array_equal(sizes, disturbed)
