@@ -4,9 +4,8 @@ from typing import Annotated, ClassVar, Literal
 
 from geometry.base.errors import CaseError
 from geometry.base.units import POSITIVE, Length
-from geometry.parts.body import Body, extent
+from geometry.parts.body import Body, Feature, PartKind, extent
 from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.kind import Feature, PartKind
 from geometry.parts.section import Section, rectangle
 
 

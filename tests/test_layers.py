@@ -1,6 +1,7 @@
 """Imports go one way through the packages and their sub-packages, and each foreign library stays where it belongs."""
 
 import ast
+import graphlib
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -81,6 +82,26 @@ def test_the_house_is_as_planned():
 
 def test_imports_go_one_way_and_libraries_stay_at_home():
     assert violations(ROOT) == []
+
+
+def module_graph(root: Path) -> dict[str, set[str]]:
+    """Return the modules that each module of the packages below `root` imports, for types as well."""
+    files = {file for package in PACKAGES for file in (root / package).rglob("*.py")}
+    modules = {file.relative_to(root).with_suffix("").as_posix().replace("/", "."): file for file in files}
+    graph = {}
+    for module, file in modules.items():
+        names = {name for _, name in imported(file.read_text(encoding="utf-8"))}
+        graph[module] = {name if name in modules else name.rpartition(".")[0] for name in names} & modules.keys()
+    return graph
+
+
+def test_no_module_imports_itself_by_way_of_others(tmp_path):
+    graphlib.TopologicalSorter(module_graph(ROOT)).prepare()
+    (tmp_path / "fea").mkdir()
+    (tmp_path / "fea" / "a.py").write_text("from fea.b import x", encoding="utf-8")
+    (tmp_path / "fea" / "b.py").write_text("if TYPE_CHECKING:\n    import fea.a", encoding="utf-8")
+    with pytest.raises(graphlib.CycleError):
+        graphlib.TopologicalSorter(module_graph(tmp_path)).prepare()
 
 
 @pytest.mark.parametrize(

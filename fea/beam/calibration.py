@@ -11,9 +11,8 @@ from functools import cache
 from importlib.resources import files
 
 from fea.beam.critical_locations import LocationKind
-from geometry.parts.body import patch_span
+from geometry.parts.body import Body, PartKind, patch_span
 from geometry.parts.eyes import eye_reach
-from geometry.parts.part import Body, Part
 
 Interval = tuple[float, float]
 _GAPS = {
@@ -186,12 +185,12 @@ def uncalibrated(body: Body, nu: float) -> str:
     return calibration_of(body.part).outside(body, nu)
 
 
-def calibration_of(part: Part) -> Calibration:
+def calibration_of(part: PartKind) -> Calibration:
     """Return the calibration of a part's shape; a disc has none.
 
     Parameters
     ----------
-    part : Part
+    part : PartKind
         Tube or bar.
 
     Returns

@@ -26,8 +26,8 @@ from fea.beam.deflection import flexibility
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
-from geometry.parts.body import hand_section
-from geometry.parts.part import Body, HoleRow, Part, Pin
+from geometry.parts.body import Body, PartKind, hand_section
+from geometry.parts.features import HoleRow, Pin
 from loads.case.case import Case
 
 Real = NDArray[np.float64]
@@ -289,7 +289,7 @@ def _factors(area: float, i_y: float, i_z: float) -> Real:
     return np.array([1.0 / area, 1.0 / area, 1.0 / area, worst, 1.0 / i_y, 1.0 / i_z])
 
 
-def _net(part: Part, row: HoleRow) -> Real:
+def _net(part: PartKind, row: HoleRow) -> Real:
     """Factors at a cross hole: the plain section less the hole's strip through its middle, a tube's bore apart."""
     across, depth = part.section.width, part.section.height
     if row.along == "z":
@@ -306,7 +306,7 @@ def _net(part: Part, row: HoleRow) -> Real:
     return _factors(*shares)
 
 
-def _at_bore(part: Part, diameter: float) -> Real:
+def _at_bore(part: PartKind, diameter: float) -> Real:
     """Factors at a pin's bore, where the eye's net section stands for the plain one; never below 1."""
     wide, thick, section = part.eye_diameter, part.eye_thickness, part.section
     area = (wide - diameter) * thick / section.area

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError, CaseError
-from geometry.parts.body import Body, HoleRow, Pin, PlainEnd, patch_span
+from geometry.parts.body import Body, patch_span
 from geometry.parts.eyes import flush
+from geometry.parts.features import HoleRow, Pin, PlainEnd
 from geometry.parts.kernel import ON_SURFACE, Entity, FilletError, Kernel
 
 SECTION_UNITS = 10.0

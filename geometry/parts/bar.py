@@ -7,10 +7,9 @@ from pydantic_core import PydanticCustomError
 
 from geometry.base.model import Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.parts.body import Body
+from geometry.parts.body import Body, Feature
 from geometry.parts.eyes import EYE_WIDTH, RIM, ROUNDING
 from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.kind import Feature
 from geometry.parts.section import Section, rectangle
 from geometry.parts.straight import Piece, Straight
 

@@ -1,147 +1,130 @@
-"""What shapes a link: its part, and the pins, loaded ends and rows of holes along it.
+"""What shapes a link: its part, of some kind, and the pins, loaded ends and rows of holes along it.
 
-A body lies along the x axis of its link's frame, its pins along z, its mid-plane at z = 0.
+A body lies along the x axis of its link's frame, its pins along z, its mid-plane at z = 0. A new kind of part derives
+from ``PartKind`` in a file of its own, and joins ``Part``.
 """
 
 import math
+from abc import abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from geometry.base.model import CaseModel
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from geometry.parts.features import HoleRow, Pin, PlainEnd
+from geometry.parts.kernel import Entity, Kernel
 from geometry.parts.section import Section
 
-if TYPE_CHECKING:
-    from geometry.parts.part import Part
+Feature = Literal["slots", "arms", "rows of holes", "load points without a pin"]
 
 
-class HoleRow(CaseModel):
-    """A row of equal cross holes along the link, such as those that hold feathers."""
+class PartKind(CaseModel):
+    """A kind of part: the sizes that a case states, as fields, and what follows from them.
 
-    count: Annotated[int, Field(gt=0, le=200)]
-    diameter: Annotated[Length, POSITIVE]
-    first: Length
-    """x of the first hole in the link's frame."""
-    last: Length
-    """x of the last hole; the others are evenly spaced between."""
-    along: Literal["y", "z"]
-    """Direction of the holes' axes: y in the linkage's plane, z along the pins."""
-
-    @property
-    def positions(self) -> tuple[float, ...]:
-        """The x of every hole [mm]."""
-        if self.count == 1:
-            return (self.first,)
-        step = (self.last - self.first) / (self.count - 1)
-        return tuple(self.first + i * step for i in range(self.count))
-
-
-class Slot(CaseModel):
-    """A through slot along the link's axis, with round ends, in which a pin slides."""
-
-    first: Length
-    """x of the centre of one round end in the link's frame: how far the pin's centre may travel."""
-    last: Length
-    """x of the centre of the other round end."""
-    clearance: Annotated[Length, NOT_NEGATIVE] = 0.0
-    """How much wider the slot is than the pin."""
-
-    @model_validator(mode="after")
-    def _order(self) -> "Slot":
-        if not self.first < self.last:
-            raise PydanticCustomError(
-                "no_slot",
-                "first = {first} mm must be less than last = {last} mm; swap them or lengthen the slot",
-                {"first": f"{self.first:g}", "last": f"{self.last:g}"},
-            )
-        return self
-
-
-@dataclass(frozen=True, kw_only=True)
-class Pin:
-    """A pin hole of a link, or a slot: a hole drawn out along x.
-
-    Attributes
-    ----------
-    name : str
-        Name of the point.
-    x, y : float
-        Middle in the link's frame [mm].
-    diameter : float
-        Diameter of the hole, or width of the slot [mm].
-    slot : float
-        Distance of the centres of a slot's round ends [mm]; 0 for a hole.
-    clearance : float
-        How much wider than the pin the slot is [mm].
-    foot : tuple of float, optional
-        (x, y) of the pin on the link's axis from which an arm reaches to this one [mm]; None for a pin without arm.
+    Its fields are ``shape`` (a literal), ``material`` and sizes. The four properties below are fields or properties of
+    each kind's own.
     """
 
-    name: str
-    x: float
-    y: float
-    diameter: float
-    slot: float = 0.0
-    clearance: float = 0.0
-    foot: tuple[float, float] | None = None
+    if TYPE_CHECKING:  # at run time they would stand in the way of a kind's fields
+
+        @property
+        def shape(self) -> str:
+            """Name of the kind in the case file."""
+
+        @property
+        def eye_diameter(self) -> float:
+            """Outer diameter of the rings about its holes [mm]."""
+
+        @property
+        def eye_thickness(self) -> float:
+            """Height of these rings [mm]."""
+
+        @property
+        def fillet_radius(self) -> float:
+            """Between eyes and the rest [mm]; 0 where edges are sharp."""
+
+    takes: ClassVar[frozenset[Feature]] = frozenset()
+    """What a link of this kind may have besides pin holes."""
+    is_beam: ClassVar[bool] = True
+    """Whether beam theory holds between its eyes."""
 
     @property
-    def span(self) -> tuple[float, float]:
-        """The x of the centres of a slot's round ends; twice that of a hole's centre [mm]."""
-        return self.x - self.slot / 2.0, self.x + self.slot / 2.0
+    @abstractmethod
+    def section(self) -> Section:
+        """Cross-section between the eyes; of a part that is no beam, one through its middle."""
 
-    @property
-    def pin_diameter(self) -> float:
-        """Diameter of the pin in it [mm]."""
-        return self.diameter - self.clearance
-
-    def distance(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
-        """Return the distance of places from the hole's axis, or the slot's centre line.
+    @abstractmethod
+    def solid(self, kernel: Kernel, body: "Body") -> Entity:
+        """Build the part without its pin holes, slots and rows of holes.
 
         Parameters
         ----------
-        x, y : array_like
-            Places in the link's frame, of any one shape [mm].
+        kernel : Kernel
+            The geometry kernel; sections are ten units across.
+        body : Body
+            The body, of which this is the part, in the kernel's unit.
 
         Returns
         -------
-        ndarray
-            Distances, of the same shape [mm].
+        Entity
+            The solid.
+
+        Raises
+        ------
+        FilletError
+            Where a fillet does not fit.
         """
-        along = np.maximum(np.abs(np.asarray(x) - self.x) - self.slot / 2.0, 0.0)
-        return np.asarray(np.hypot(along, np.asarray(y) - self.y))
 
-    @property
-    def distance_formula(self) -> str:
-        """The same distance as a formula of the mesher in x and y."""
-        along = f"(x-({self.x:.12g}))"
-        if self.slot > 0.0:
-            along = f"Max(Fabs{along}-{self.slot / 2.0:.12g},0)"
-        return f"Sqrt({along}^2+(y-({self.y:.12g}))^2)"
+    @abstractmethod
+    def fine_places(self, body: "Body", size: float, share: float) -> list[tuple[float, str]]:
+        """Return where elements must be smaller than elsewhere, pin holes and rows of holes apart.
 
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+        size : float
+            Element edge elsewhere, in the unit of the body.
+        share : float
+            Element edge along a fillet over its radius.
 
-@dataclass(frozen=True, kw_only=True)
-class PlainEnd:
-    """A load point that is no pin.
+        Returns
+        -------
+        list of tuple
+            Element edge, and the distance from the place as a formula of the mesher in x, y and z.
+        """
 
-    Attributes
-    ----------
-    name : str
-        Name of the point.
-    x : float
-        Its place on the link's axis [mm].
-    patch : float
-        Length of the loaded patch along x [mm].
-    """
+    def check(self, body: "Body") -> None:
+        """Refuse a body that this kind of part cannot be built for, by closed form.
 
-    name: str
-    x: float
-    patch: float
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part; what holds for all kinds has been checked.
+
+        Raises
+        ------
+        CaseError
+            With the entry, its value, the rule and a remedy.
+        """
+
+    def hand_section(self, body: "Body") -> Section:
+        """Return the section of which hand calculation takes the link to be made.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+
+        Returns
+        -------
+        Section
+            The section between the eyes unless the kind knows better.
+        """
+        return self.section
+
+    def largest_element(self) -> float:
+        """Return the largest element edge that its round surfaces bear [unit of its sizes]."""
+        return float("inf")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,7 +133,7 @@ class Body:
 
     Attributes
     ----------
-    part : Part
+    part : PartKind
         Kind and sizes.
     pins : tuple of Pin
         Pin holes and slots.
@@ -160,7 +143,7 @@ class Body:
         Rows of cross holes.
     """
 
-    part: "Part"
+    part: PartKind
     pins: tuple[Pin, ...]
     ends: tuple[PlainEnd, ...]
     holes: tuple[HoleRow, ...]

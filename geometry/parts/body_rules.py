@@ -6,8 +6,9 @@ Here stand the rules for all kinds of parts; each kind adds its own in ``check``
 import itertools
 
 from geometry.base.errors import CaseError
-from geometry.parts.body import Body, HoleRow, PlainEnd, apart, extent, patch_span
+from geometry.parts.body import Body, apart, extent, patch_span
 from geometry.parts.eyes import ON_AXIS, eye_reach
+from geometry.parts.features import HoleRow, PlainEnd
 
 SLENDEREST = 1e6
 """Largest distance of any part of a link from its origin over the smaller size of its section. Measured: the kernel's

@@ -10,9 +10,8 @@ from pydantic_core import PydanticCustomError
 from geometry.base.errors import CaseError
 from geometry.base.model import Name
 from geometry.base.units import POSITIVE, Length
-from geometry.parts.body import Body, apart, extent
+from geometry.parts.body import Body, PartKind, apart, extent
 from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.kind import PartKind
 from geometry.parts.section import Section, rectangle
 
 _CHORDS = 200

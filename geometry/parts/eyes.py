@@ -5,7 +5,8 @@ import math
 from dataclasses import replace
 
 from geometry.base.errors import CaseError
-from geometry.parts.body import Body, Pin, extent
+from geometry.parts.body import Body, extent
+from geometry.parts.features import Pin
 
 EYE_WIDTH = 1.6
 """Diameter of an eye over the width of its tube or bar, where none is stated: a proportion often met, no standard."""

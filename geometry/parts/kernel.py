@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
-from geometry.parts.body import Pin
+from geometry.parts.features import Pin
 
 Entity = tuple[int, int]
 """Dimension and tag of something in the kernel."""

@@ -5,8 +5,9 @@ from typing import Annotated
 from pydantic import Field
 
 from geometry.parts.bar import Bar
-from geometry.parts.body import Body, HoleRow, Pin, PlainEnd, Slot
+from geometry.parts.body import Body
 from geometry.parts.disc import Disc
+from geometry.parts.features import HoleRow, Pin, PlainEnd, Slot
 from geometry.parts.section import Section, rectangle, ring
 from geometry.parts.tube import Tube
 

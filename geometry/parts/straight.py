@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.parts.arms import check_arms
-from geometry.parts.body import Body, Pin, extent
+from geometry.parts.body import Body, PartKind, extent
 from geometry.parts.eyes import check_eyes, flush, plain_eye
+from geometry.parts.features import Pin
 from geometry.parts.kernel import ON_SURFACE, Entity, Kernel
-from geometry.parts.kind import PartKind
 
 
 @dataclass(frozen=True, kw_only=True)

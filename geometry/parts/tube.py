@@ -9,10 +9,9 @@ from pydantic_core import PydanticCustomError
 
 from geometry.base.model import Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.parts.body import Body, extent, patch_span
+from geometry.parts.body import Body, Feature, extent, patch_span
 from geometry.parts.eyes import EYE_WIDTH, RIM, ROUNDING
 from geometry.parts.kernel import ON_SURFACE, Entity, Kernel
-from geometry.parts.kind import Feature
 from geometry.parts.section import Section, ring
 from geometry.parts.straight import Piece, Straight
 

@@ -1,5 +1,6 @@
 """The case: its core, and the tables that serve published sources."""
 
+from loads.case.case_rules import check_rules
 from loads.case.core import CoreCase
 from loads.sources.tables import SourceTables
 
@@ -21,4 +22,5 @@ class Case(SourceTables, CoreCase):
             For the first rule that is broken.
         """
         super().model_post_init(context)
+        check_rules(self)
         self.check_tables(self.linkage)

@@ -1,14 +1,14 @@
 """What must fit together in a case: names, numbers of joints and drives, places of loads, limits of checks."""
 
 import math
-from typing import TYPE_CHECKING
 
 from geometry.base.errors import CaseError
 from geometry.base.model import check_file_names
 from geometry.parts.body_rules import check_body
 from geometry.parts.material import Material
 from geometry.parts.part import Body
-from loads.case.load_rules import check_loads, check_masses, check_moving, check_place, check_point
+from loads.case.core import CoreCase, check_moving, check_point
+from loads.case.load_rules import check_loads, check_masses, check_place
 from loads.records.check_spec import (
     BearingCheck,
     Check,
@@ -24,16 +24,13 @@ from loads.records.settings import WaysToHold
 from loads.statics.statics import Drive, check_drive
 from loads.text.explain import require
 
-if TYPE_CHECKING:
-    from loads.case.core import CoreCase
-
 MOST_RESULTS = 2_000
 """Load cases times links with a part: each pair is solved, drawn and told of."""
 MOST_MOTION = 40_000_000
 """Entries of a motion's equilibrium equations, some 44 bytes each (measured: 100,000 poses of four moving links)."""
 
 
-def check_rules(case: "CoreCase") -> None:
+def check_rules(case: CoreCase) -> None:
     """Check that all of a case fits together.
 
     Parameters
@@ -57,6 +54,7 @@ def check_rules(case: "CoreCase") -> None:
     for name, link in case.links.items():
         if link.part is not None:
             require(f"links.{name}.part", link.part, case.parts, "is unknown")
+            _check_slots(case, name)
             _check_body(f"links.{name}", case.body(name))
         elif link.slots or link.arms:
             raise CaseError(f"links.{name}.part: it is missing, but slots and arms are shapes of a part; name one")
@@ -79,7 +77,7 @@ def check_rules(case: "CoreCase") -> None:
         _check_motion(case, case.motion)
 
 
-def _check_drive(case: "CoreCase") -> None:
+def _check_drive(case: CoreCase) -> None:
     check_drive(case.linkage, case.pinned_drive)
     mobility = case.linkage.mobility
     if case.joint_model == "bonded":
@@ -96,11 +94,11 @@ def _check_drive(case: "CoreCase") -> None:
         )
 
 
-def _check_material(case: "CoreCase", entry: str, name: str) -> None:
+def _check_material(case: CoreCase, entry: str, name: str) -> None:
     require(entry, name, case.all_materials, "is unknown", "or add a card under [materials]")
 
 
-def _check_size(case: "CoreCase") -> None:
+def _check_size(case: CoreCase) -> None:
     results = len(case.load_cases) * len(case.checked_links)
     if results > MOST_RESULTS:
         raise CaseError(
@@ -119,7 +117,7 @@ def _check_size(case: "CoreCase") -> None:
         )
 
 
-def _check_pose(case: "CoreCase") -> None:
+def _check_pose(case: CoreCase) -> None:
     linkage, pose = case.linkage, case.pose
     if pose.travel is not None:
         _check_slides(case, "pose.coordinate", pose.coordinate)
@@ -137,12 +135,12 @@ def _check_pose(case: "CoreCase") -> None:
         )
 
 
-def _check_slides(case: "CoreCase", entry: str, name: str | None) -> None:
+def _check_slides(case: CoreCase, entry: str, name: str | None) -> None:
     slots = [joint for joint, record in case.joints.items() if record.type != "revolute"]
     require(entry, name, slots, "is no slider or slot, but a travel is stated")
 
 
-def _check_motion(case: "CoreCase", spec: MotionSpec) -> None:
+def _check_motion(case: CoreCase, spec: MotionSpec) -> None:
     name = case.motion_coordinate
     if spec.travel is not None:
         _check_slides(case, "motion.coordinate", name)
@@ -162,7 +160,7 @@ def _check_body(entry: str, body: Body) -> None:
         raise CaseError(f"{entry}: {error}") from None
 
 
-def _check_check(case: "CoreCase", name: str, check: Check) -> None:
+def _check_check(case: CoreCase, name: str, check: Check) -> None:
     """Check what a check refers to."""
     if isinstance(check, PinCheck | BearingCheck):
         _check_pins(case, name, check)
@@ -191,7 +189,7 @@ def _check_minimum(name: str, title: str, material: Material, of: str) -> None:
         )
 
 
-def _check_pins(case: "CoreCase", name: str, check: PinCheck | BearingCheck) -> None:
+def _check_pins(case: CoreCase, name: str, check: PinCheck | BearingCheck) -> None:
     bearing = isinstance(check, BearingCheck)
     known = case.bearing_joints if bearing else case.pinned_joints
     for joint in check.joints:
@@ -203,7 +201,7 @@ def _check_pins(case: "CoreCase", name: str, check: PinCheck | BearingCheck) -> 
             _check_minimum(name, case.joints[joint].pin_material, case.pin_material(joint), of)
 
 
-def _check_ways_to_hold(case: "CoreCase", asked: WaysToHold) -> None:
+def _check_ways_to_hold(case: CoreCase, asked: WaysToHold) -> None:
     """A published displacement stands beside that of the loads that it was published for, and of no others."""
     check_point(case, "ways_to_hold", asked.link, asked.at)
     if asked.load_case is not None:
@@ -213,7 +211,7 @@ def _check_ways_to_hold(case: "CoreCase", asked: WaysToHold) -> None:
         raise CaseError(f"ways_to_hold.load_case: it is missing; name the one that was published for, among {known}")
 
 
-def _check_displaced(case: "CoreCase", name: str, check: DisplacementCheck) -> None:
+def _check_displaced(case: CoreCase, name: str, check: DisplacementCheck) -> None:
     if check.at is None:
         raise CaseError(f"checks.{name}.at: it is missing; add the point of link '{check.link}', or use links")
     if check.links:
@@ -223,7 +221,7 @@ def _check_displaced(case: "CoreCase", name: str, check: DisplacementCheck) -> N
     case.displaced_point(name, check)
 
 
-def _check_motor(case: "CoreCase", name: str) -> None:
+def _check_motor(case: CoreCase, name: str) -> None:
     if case.motion is None or case.drive is None:
         raise CaseError(f"checks.{name}: a motor needs a motion to drive; add [motion] and [drive]")
     if Drive(link=case.drive.link, joint=case.drive.joint).pushes(case.linkage):
@@ -235,7 +233,7 @@ def _check_motor(case: "CoreCase", name: str) -> None:
         )
 
 
-def check_slots(case: "CoreCase", link: str) -> None:
+def _check_slots(case: CoreCase, link: str) -> None:
     """Check that a link's slots and arms are where pins are, and that every pin that slides in it has a slot.
 
     Parameters

@@ -11,8 +11,6 @@ from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.parts.material import Material, library
 from geometry.parts.part import Body, Part, Pin, PlainEnd
-from loads.case.case_rules import check_rules, check_slots
-from loads.case.load_rules import check_point
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
 from loads.records.carried import Carried
@@ -27,6 +25,7 @@ from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
 from loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
 from loads.statics.statics import Drive
+from loads.text.explain import require
 
 
 class CoreCase(Revisable):
@@ -63,21 +62,6 @@ class CoreCase(Revisable):
     checks: dict[Name, Check] = {}
     hand_calculations: dict[Name, CantileverCalculation] = {}
     solid: SolidSettings = SolidSettings()
-
-    def model_post_init(self, context: object) -> None:
-        """Check that all names fit together.
-
-        Parameters
-        ----------
-        context : object
-            Of pydantic; not used.
-
-        Raises
-        ------
-        CaseError
-            For the first rule that is broken.
-        """
-        check_rules(self)
 
     @cached_property
     def linkage(self) -> Linkage:
@@ -252,7 +236,6 @@ class CoreCase(Revisable):
             Where a pin has no diameter, a plain end does not lie on the axis, or a slot or arm does not fit its joints.
         """
         record = self.links[link]
-        check_slots(self, link)
         pinned: dict[str, str] = {}
         for joint in self.linkage.joints_of(link):
             first = pinned.setdefault(self.linkage.point_of(joint, link), joint)
@@ -344,3 +327,46 @@ def _pin(case: CoreCase, link: str, name: str, diameter: float) -> Pin:
         return Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.clearance)
     foot = record.arms.get(name)
     return Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot])
+
+
+def check_moving(case: CoreCase, entry: str, link: str) -> None:
+    """Check that a link moves.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    entry : str
+        Entry of the case file that names the link, for the message.
+    link : str
+        Name of the link.
+
+    Raises
+    ------
+    CaseError
+        Where it is the ground or unknown.
+    """
+    require(entry, link, case.linkage.moving, "is not a moving link")
+
+
+def check_point(case: CoreCase, entry: str, link: str, point: str) -> None:
+    """Check that a link moves and has a point.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    entry : str
+        Table of the case file that names both, for the message.
+    link, point : str
+        Their names.
+
+    Raises
+    ------
+    CaseError
+        Where it is the ground or unknown, or has no such point.
+    """
+    check_moving(case, f"{entry}.link", link)
+    points = case.links[link].points
+    if point not in points:
+        raise CaseError(f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(points)}")

@@ -1,65 +1,17 @@
 """What must fit together between a case's links and what acts on them: places of loads and masses, weight."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from geometry.base.errors import CaseError
+from loads.case.core import CoreCase, check_moving, check_point
 from loads.records.aero import AirPatch, check_air
 from loads.records.carried import CarriedBody, CarriedSpread
 from loads.records.load_case import LoadCase, PointForce, PointMoment, SpreadForce
-from loads.text.explain import require
-
-if TYPE_CHECKING:
-    from loads.case.core import CoreCase
 
 Place = PointForce | PointMoment | SpreadForce | CarriedBody | CarriedSpread | AirPatch
 
 
-def check_moving(case: "CoreCase", entry: str, link: str) -> None:
-    """Check that a link moves.
-
-    Parameters
-    ----------
-    case : CoreCase
-        The case.
-    entry : str
-        Entry of the case file that names the link, for the message.
-    link : str
-        Name of the link.
-
-    Raises
-    ------
-    CaseError
-        Where it is the ground or unknown.
-    """
-    require(entry, link, case.linkage.moving, "is not a moving link")
-
-
-def check_point(case: "CoreCase", entry: str, link: str, point: str) -> None:
-    """Check that a link moves and has a point.
-
-    Parameters
-    ----------
-    case : CoreCase
-        The case.
-    entry : str
-        Table of the case file that names both, for the message.
-    link, point : str
-        Their names.
-
-    Raises
-    ------
-    CaseError
-        Where it is the ground or unknown, or has no such point.
-    """
-    check_moving(case, f"{entry}.link", link)
-    points = case.links[link].points
-    if point not in points:
-        raise CaseError(f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(points)}")
-
-
-def check_loads(case: "CoreCase", where: str, load_case: LoadCase) -> None:
+def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
     """Check where the loads of a load case act, and that its speed means something.
 
     Parameters
@@ -94,7 +46,7 @@ def check_loads(case: "CoreCase", where: str, load_case: LoadCase) -> None:
         )
 
 
-def check_place(case: "CoreCase", entry: str, place: Place) -> None:
+def check_place(case: CoreCase, entry: str, place: Place) -> None:
     """Check where a load or a mass acts: at a point of a moving link, or between two points along it.
 
     Parameters
@@ -124,7 +76,7 @@ def check_place(case: "CoreCase", entry: str, place: Place) -> None:
         raise CaseError(f"{entry}: start and end lie at the same station; name two different points")
 
 
-def _check_torque(case: "CoreCase", entry: str, load: PointMoment) -> None:
+def _check_torque(case: CoreCase, entry: str, load: PointMoment) -> None:
     """A pin that turns freely passes no torque about its own axis; only the drive's does."""
     linkage = case.linkage
     pins = [name for name in linkage.joints_of(load.link)
@@ -138,7 +90,7 @@ def _check_torque(case: "CoreCase", entry: str, load: PointMoment) -> None:
         )
 
 
-def check_masses(case: "CoreCase") -> None:
+def check_masses(case: CoreCase) -> None:
     """Check that where weight or inertia acts, the case says of every moving link where its mass comes from.
 
     Parameters

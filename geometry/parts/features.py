@@ -1,0 +1,136 @@
+"""Pins, loaded ends and holes of a link, all along the x axis of its frame."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from geometry.base.model import CaseModel
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+
+
+class HoleRow(CaseModel):
+    """A row of equal cross holes along the link, such as those that hold feathers."""
+
+    count: Annotated[int, Field(gt=0, le=200)]
+    diameter: Annotated[Length, POSITIVE]
+    first: Length
+    """x of the first hole in the link's frame."""
+    last: Length
+    """x of the last hole; the others are evenly spaced between."""
+    along: Literal["y", "z"]
+    """Direction of the holes' axes: y in the linkage's plane, z along the pins."""
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """The x of every hole [mm]."""
+        if self.count == 1:
+            return (self.first,)
+        step = (self.last - self.first) / (self.count - 1)
+        return tuple(self.first + i * step for i in range(self.count))
+
+
+class Slot(CaseModel):
+    """A through slot along the link's axis, with round ends, in which a pin slides."""
+
+    first: Length
+    """x of the centre of one round end in the link's frame: how far the pin's centre may travel."""
+    last: Length
+    """x of the centre of the other round end."""
+    clearance: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """How much wider the slot is than the pin."""
+
+    @model_validator(mode="after")
+    def _order(self) -> "Slot":
+        if not self.first < self.last:
+            raise PydanticCustomError(
+                "no_slot",
+                "first = {first} mm must be less than last = {last} mm; swap them or lengthen the slot",
+                {"first": f"{self.first:g}", "last": f"{self.last:g}"},
+            )
+        return self
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """A pin hole of a link, or a slot: a hole drawn out along x.
+
+    Attributes
+    ----------
+    name : str
+        Name of the point.
+    x, y : float
+        Middle in the link's frame [mm].
+    diameter : float
+        Diameter of the hole, or width of the slot [mm].
+    slot : float
+        Distance of the centres of a slot's round ends [mm]; 0 for a hole.
+    clearance : float
+        How much wider than the pin the slot is [mm].
+    foot : tuple of float, optional
+        (x, y) of the pin on the link's axis from which an arm reaches to this one [mm]; None for a pin without arm.
+    """
+
+    name: str
+    x: float
+    y: float
+    diameter: float
+    slot: float = 0.0
+    clearance: float = 0.0
+    foot: tuple[float, float] | None = None
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The x of the centres of a slot's round ends; twice that of a hole's centre [mm]."""
+        return self.x - self.slot / 2.0, self.x + self.slot / 2.0
+
+    @property
+    def pin_diameter(self) -> float:
+        """Diameter of the pin in it [mm]."""
+        return self.diameter - self.clearance
+
+    def distance(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
+        """Return the distance of places from the hole's axis, or the slot's centre line.
+
+        Parameters
+        ----------
+        x, y : array_like
+            Places in the link's frame, of any one shape [mm].
+
+        Returns
+        -------
+        ndarray
+            Distances, of the same shape [mm].
+        """
+        along = np.maximum(np.abs(np.asarray(x) - self.x) - self.slot / 2.0, 0.0)
+        return np.asarray(np.hypot(along, np.asarray(y) - self.y))
+
+    @property
+    def distance_formula(self) -> str:
+        """The same distance as a formula of the mesher in x and y."""
+        along = f"(x-({self.x:.12g}))"
+        if self.slot > 0.0:
+            along = f"Max(Fabs{along}-{self.slot / 2.0:.12g},0)"
+        return f"Sqrt({along}^2+(y-({self.y:.12g}))^2)"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlainEnd:
+    """A load point that is no pin.
+
+    Attributes
+    ----------
+    name : str
+        Name of the point.
+    x : float
+        Its place on the link's axis [mm].
+    patch : float
+        Length of the loaded patch along x [mm].
+    """
+
+    name: str
+    x: float
+    patch: float
