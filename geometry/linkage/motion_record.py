@@ -313,21 +313,6 @@ class Motion:
             slides=self.slides,
         )
 
-    def travel_rate(self, joint: str) -> Real:
-        """Rate of the travel in a slot (n,) [mm/s].
-
-        Parameters
-        ----------
-        joint : str
-            Name of the joint.
-
-        Returns
-        -------
-        ndarray
-            Rates (n,) [mm/s].
-        """
-        return self.qdot[:, len(self.linkage.moving) + self.closure.slots.index(joint)]
-
     def stopping_points(self, joint: str) -> tuple[float, ...]:
         """Values of the coordinate [rad, mm] at which the travel in a slot or slider turns back, rising.
 

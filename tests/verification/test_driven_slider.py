@@ -54,8 +54,8 @@ def test_the_motion_is_the_inverse_of_the_crank_driven_one() -> None:
     angles = np.linspace(0.3, 2.6, 41)
     cranked = crank_driven(angles, speed=7.0, acceleration=3.0)
     travels = cranked.travel("S")
-    rates = cranked.qddot[:, len(LINKAGE.moving) + cranked.closure.slots.index("S")]
-    pushed = piston_driven(travels, speed=cranked.travel_rate("S"), acceleration=rates)
+    column = len(LINKAGE.moving) + cranked.closure.slots.index("S")
+    pushed = piston_driven(travels, speed=cranked.qdot[:, column], acceleration=cranked.qddot[:, column])
     size = np.abs(cranked.q).max()
     assert np.abs(pushed.q - cranked.q).max() < 1e-10 * size
     assert np.abs(pushed.qdot - cranked.qdot).max() < 1e-10 * np.abs(cranked.qdot).max()

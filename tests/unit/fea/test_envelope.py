@@ -18,7 +18,8 @@ from fea.beam.theory import check_beam
 from fea.check.run import solve_case_statics
 from fea.common.band import Band
 from fea.common.source import SourceKind
-from fea.common.verdict import Quantity, Verdict
+from fea.common.verdict import LINKAGE, Quantity, Verdict
+from fea.motion import envelope
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
 from fea.motion.link_envelope import closed_history, link_envelope
@@ -130,6 +131,20 @@ def moved(path):
 @pytest.fixture(scope="module")
 def result(path):
     return envelope_case(read_case(path), name="crank-rocker", threads=1, effort=Effort(max_meshes=1))
+
+
+def test_no_link_passes_where_the_linkage_gives_way(result, monkeypatch):
+    """Under the one load case of which the linkage is said to fail; the other keeps its verdicts."""
+    passed = {one.load_case for one in result.checks if one.verdict is Verdict.PASS and one.subject.kind == "link"}
+    assert passed == {"spin", "push"}
+    some = next(one for one in result.checks if one.load_case == "push")
+    fails = replace(some, subject=LINKAGE, verdict=Verdict.FAIL)
+    monkeypatch.setattr(envelope, "linkage_outcomes", lambda moved, evaluated: [fails])
+    over = envelope._Envelope.of(result.moved, result.evaluated, 1, lambda message: None)
+    checks = [one for one in over.outcomes(result.links) if one.subject.kind == "link"]
+    verdicts = {name: {one.verdict for one in checks if one.load_case == name} for name in ("spin", "push")}
+    assert Verdict.PASS in verdicts["spin"]
+    assert verdicts["push"] <= {Verdict.UNDECIDED, Verdict.FAIL}
 
 
 def test_loads_at_a_pose_are_those_of_the_statics(path, moved):
