@@ -26,7 +26,7 @@ from fea.solid import mkl
 from fea.solid.block_matrix import SymmetricBlockMatrix
 from fea.solid.direct import DirectFactor, PardisoFactor, SuperLUFactor
 from fea.solid.solved import Solved
-from fea.solid.two_level import LinearLevel, TwoLevelFactor
+from fea.solid.two_level import TOLERANCE, LinearLevel, TwoLevelFactor
 from geometry.base.errors import CannotRunError
 
 Method = Literal["pardiso", "superlu", "two-level"]
@@ -85,13 +85,19 @@ class Factor:
         """
         return self.solved(rhs).x
 
-    def solved(self, rhs: NDArray[np.float64]) -> Solved:
+    def solved(
+        self, rhs: NDArray[np.float64], *, start: NDArray[np.float64] | None = None, tolerance: float = TOLERANCE
+    ) -> Solved:
         """Solve the system, and tell the error and the number of iterations.
 
         Parameters
         ----------
         rhs : ndarray, shape (n,) or (n, k)
             Right-hand sides.
+        start : ndarray, shape (n,) or (n, k), optional
+            First guess of the solutions, one for all or one for each; a factorisation needs none.
+        tolerance : float, optional
+            Error in the energy norm, relative to the solution, at which iterations end; a factorisation has none.
 
         Returns
         -------
@@ -99,6 +105,8 @@ class Factor:
             Solutions, error and iterations.
         """
         with bounded(self.threads):
+            if isinstance(self.solver, TwoLevelFactor):
+                return self.solver.solve(rhs, start=start, tolerance=tolerance)
             return self.solver.solve(rhs)
 
 

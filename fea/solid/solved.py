@@ -163,7 +163,7 @@ def _lost(defect: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(defect > 0.0, np.inf, defect)
 
 
-def accept(error: float, solver: str) -> None:
+def accept(error: float, solver: str, *, limit: float = ENERGY_LIMIT) -> None:
     """Refuse a solution whose error is too large.
 
     Parameters
@@ -172,14 +172,16 @@ def accept(error: float, solver: str) -> None:
         In the energy norm, relative.
     solver : str
         Its name, for the message.
+    limit : float, optional
+        Largest error accepted.
 
     Raises
     ------
     CannotRunError
-        For an error beyond ``ENERGY_LIMIT``, or none at all.
+        For an error beyond the limit, or one that is not a number.
     """
-    if not error <= ENERGY_LIMIT:
+    if not error <= limit:
         raise CannotRunError(
-            f"{solver} leaves an error of {error:.1e} of the solution in the energy norm (limit {ENERGY_LIMIT:g}): the "
+            f"{solver} leaves an error of {error:.1e} of the solution in the energy norm (limit {limit:g}): the "
             "stiffness matrix is nearly singular; check supports, mesh quality, slenderness and Poisson's ratio"
         )

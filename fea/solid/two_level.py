@@ -20,13 +20,14 @@ from numpy.typing import NDArray
 from fea.solid.block_matrix import Product, SymmetricBlockMatrix
 from fea.solid.direct import DirectFactor
 from fea.solid.elasticity import assemble_stiffness
-from fea.solid.solved import ENERGY_TARGET, REFINEMENTS, Solved, accept, energy_error
+from fea.solid.solved import ENERGY_LIMIT, REFINEMENTS, Solved, accept, energy_error
 from fea.solid.space import EDGES, DisplacementSpace
 from geometry.base.errors import CannotRunError
 
 TOLERANCE = 1e-9
 """Energy norm of the error, by the preconditioner, relative to that of the solution, at which iterations end."""
 MOST_ITERATIONS = 400
+_SLACK = 10.0  # of the error measured in the end over the one at which iterations end
 _BATCH = 8  # columns iterated together: bounds the working memory
 _DEGREE = 2
 _RATIO = 10.0  # of the largest to the smallest eigenvalue that the smoother treats
@@ -113,13 +114,19 @@ class TwoLevelFactor:
         self._transfer = _Transfer(level.space)
         self._smoother = _ChebyshevSmoother(K)
 
-    def solve(self, rhs: NDArray[np.float64]) -> Solved:
+    def solve(
+        self, rhs: NDArray[np.float64], *, start: NDArray[np.float64] | None = None, tolerance: float = TOLERANCE
+    ) -> Solved:
         """Solve the system.
 
         Parameters
         ----------
         rhs : ndarray, shape (n,) or (n, k)
             Right-hand sides.
+        start : ndarray, shape (n,) or (n, k), optional
+            First guess of the solutions.
+        tolerance : float, optional
+            Error in the energy norm, relative to the solution, at which iterations end.
 
         Returns
         -------
@@ -133,36 +140,56 @@ class TwoLevelFactor:
         """
         columns = np.ascontiguousarray(rhs.reshape(self._K.size, -1).T, dtype=np.float64)
         solution = np.zeros_like(columns)
+        if start is not None:
+            solution[:] = np.broadcast_to(start.reshape(self._K.size, -1).T, columns.shape)
+            solution[:, self._fixed] = 0.0
         iterations, error = 0, 0.0
-        loaded = np.flatnonzero(columns.any(axis=1))
-        for start in range(0, len(loaded), _BATCH):
-            batch = loaded[start : start + _BATCH]
-            solution[batch], left, count = self._solved(columns[batch])
+        loaded = columns.any(axis=1)
+        solution[~loaded] = 0.0
+        numbers = np.flatnonzero(loaded)
+        for first in range(0, len(numbers), _BATCH):
+            batch = numbers[first : first + _BATCH]
+            guess = None if start is None else solution[batch]
+            solution[batch], left, count = self._solved(columns[batch], guess, tolerance)
             iterations, error = max(iterations, count), max(error, left)
         return Solved(x=solution.T.reshape(rhs.shape), error=error, iterations=iterations)
 
-    def _solved(self, b: Vectors) -> tuple[Vectors, float, int]:
+    def _solved(self, b: Vectors, start: Vectors | None, tolerance: float) -> tuple[Vectors, float, int]:
         """Iterate, and again on the residual computed anew if rounding has spoilt what the iteration believes."""
-        target = TOLERANCE**2 * _dot(b, self._cycle(b))
-        x, iterations = self._conjugate_gradients(b, target)
+        z = self._cycle(b)
+        target = tolerance**2 * _dot(b, z)
+        if start is None:
+            x, iterations = self._conjugate_gradients(b, target, z)
+        else:
+            # The multiple of the guess with the least energy of the error: none is worse than no guess at all.
+            image = self._product(start)
+            work = _dot(start, image)
+            share = (_dot(start, b) / np.where(work > 0.0, work, np.inf))[:, None]
+            x, iterations = self._conjugate_gradients(b - share * image, target)
+            x += share * start
         error = np.inf
         for _ in range(REFINEMENTS):
             residual = b - self._product(x)
             previous, error = error, energy_error(residual.T, self._cycle(residual).T, b.T, x.T)
-            if not (error > ENERGY_TARGET and error < 0.5 * previous):
+            if not (error > _SLACK * tolerance and error < 0.5 * previous):
                 break
             step, count = self._conjugate_gradients(residual, target)
             x += step
             iterations += count
-        accept(error, self.name)
+        accept(error, self.name, limit=max(ENERGY_LIMIT, _SLACK * tolerance))
         return x, error, iterations
 
-    def _conjugate_gradients(self, b: Vectors, target: NDArray[np.float64]) -> tuple[Vectors, int]:
-        """Iterate until the squared energy of each column's error is below its target; columns that are leave."""
+    def _conjugate_gradients(
+        self, b: Vectors, target: NDArray[np.float64], z: Vectors | None = None
+    ) -> tuple[Vectors, int]:
+        """Iterate until the squared energy of each column's error is below its target; columns that are leave.
+
+        ``z`` is the cycle's answer to b where it is known already.
+        """
         x = np.zeros_like(b)
         active = np.arange(len(b))
         r = b.copy()
-        z = self._cycle(r)
+        z = self._cycle(r) if z is None else z
         rz = _dot(r, z)
         p = z
         for iteration in range(MOST_ITERATIONS):

@@ -115,6 +115,35 @@ def test_columns_have_their_own_coefficients():
     assert (np.abs(solved.x - direct).max(axis=0) < 1e-8 * size).all()
 
 
+def test_first_guess_saves_iterations_and_none_costs_accuracy():
+    K, level, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), columns=3)
+    factor = factorise(K, level=level, method="two-level", threads=1)
+    direct = factorise(K, threads=1).solve(rhs)
+    plain = factor.solved(rhs)
+    waves = np.random.default_rng(1).normal(size=rhs.shape)
+    near = factor.solved(rhs, start=direct * (1.0 + 1e-5 * waves))
+    assert near.iterations <= plain.iterations - 5
+    assert factor.solved(rhs, start=3.0 * direct).iterations == 0, "the multiple of a guess is the solver's to find"
+    for start in (1e6 * waves, np.zeros_like(rhs), waves[:, 0]):
+        solved = factor.solved(rhs, start=start)
+        assert solved.iterations <= plain.iterations + 3
+        np.testing.assert_array_equal(solved.x[level.fixed], 0.0)
+        np.testing.assert_allclose(solved.x, direct, rtol=0.0, atol=3e-8 * np.abs(direct).max())
+
+
+def test_loose_tolerance_saves_iterations_and_is_kept():
+    K, level, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), columns=2)
+    factor = factorise(K, level=level, method="two-level", threads=1)
+    direct = factorise(K, threads=1).solve(rhs)
+    loose, tight = factor.solved(rhs, tolerance=1e-3), factor.solved(rhs)
+    assert loose.iterations < 0.6 * tight.iterations
+    for solved, tolerance in ((loose, 1e-3), (tight, two_level.TOLERANCE)):
+        off = solved.x - direct
+        error = np.sqrt(np.einsum("ij,ij->j", off, K @ off) / np.einsum("ij,ij->j", direct, rhs)).max()
+        assert error < 3.0 * tolerance
+        assert error / 3.0 < solved.error < 10.0 * tolerance
+
+
 def test_nonzero_value_at_a_fixed_unknown_is_kept():
     K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)))
     rhs[level.fixed[0]] = 2.0 * K.full().diagonal()[level.fixed[0]]
@@ -135,7 +164,7 @@ def test_a_solution_that_the_iteration_only_believes_to_be_one_is_an_error(monke
     K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)))
     exact = factorise(K, threads=1).solve(rhs).T
     monkeypatch.setattr(
-        two_level.TwoLevelFactor, "_conjugate_gradients", lambda self, b, target: (share * exact[: len(b)], 7)
+        two_level.TwoLevelFactor, "_conjugate_gradients", lambda self, b, target, z=None: (share * exact[: len(b)], 7)
     )
     with pytest.raises(CannotRunError, match=r"leaves an error of .* of the solution in the energy norm"):
         _iterated(K, level, rhs)
