@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
-from geometry.meshing.tagged_mesh import TaggedMesh
+from geometry.meshing.tagged_mesh import IMAGE_ORDER, TaggedMesh
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 """Corner pairs of the mid-nodes 4 to 9 of a quadratic element."""
 # Faces seen from outside a positive tetrahedron: three corners, then the mid-nodes of edges ab, bc, ac.
 _FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
-_MIRROR = [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]
 _STRAIGHT = 1e-13  # of an element's size: what rounding leaves of a straight edge
 
 
@@ -39,6 +38,8 @@ class DisplacementSpace:
         Nodes of all boundary faces, counter-clockwise seen from outside.
     surfaces : dict of str to ndarray of int
         Name and indices of the faces in ``boundary``.
+    mirror : ndarray of int or None, shape (n,)
+        Number of every node's image at -z; None where the mesh has no such symmetry (``TaggedMesh.mirror``).
     """
 
     nodes: NDArray[np.float64]
@@ -47,6 +48,7 @@ class DisplacementSpace:
     curved: NDArray[np.bool_]
     boundary: NDArray[np.int64]
     surfaces: Mapping[str, NDArray[np.int64]]
+    mirror: NDArray[np.int64] | None = None
 
     @property
     def order(self) -> int:
@@ -137,7 +139,7 @@ def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace
     size = np.abs(spans).max(axis=(1, 2))
     if (np.abs(volume) <= 1e-12 * size**3).any():
         raise CannotRunError(f"{np.count_nonzero(np.abs(volume) <= 1e-12 * size**3)} elements of the mesh are flat")
-    cells[volume < 0.0] = cells[volume < 0.0][:, _MIRROR[: cells.shape[1]]]
+    cells[volume < 0.0] = cells[volume < 0.0][:, IMAGE_ORDER[: cells.shape[1]]]
     curved = np.zeros(len(cells), dtype=np.bool_)
     if order == 2:
         for local, (a, b) in enumerate(EDGES):
@@ -151,7 +153,17 @@ def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace
         curved=curved,
         boundary=boundary,
         surfaces=_named(boundary, {name: from_point[t] for name, t in mesh.surfaces.items()}, len(used)),
+        mirror=None if mesh.mirror is None else _images(cells),
     )
+
+
+def _images(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the images of all nodes where the second half of the elements holds those of the first."""
+    upper, lower = np.array_split(cells, 2)
+    swapped = lower[:, IMAGE_ORDER[: cells.shape[1]]]
+    found = np.empty(int(cells.max()) + 1, dtype=np.int64)
+    found[upper], found[swapped] = swapped, upper
+    return found
 
 
 def _keys(triangles: NDArray[np.int64], count: int) -> NDArray[np.int64]:

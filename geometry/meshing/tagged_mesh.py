@@ -9,6 +9,11 @@ from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
 
+IMAGE_ORDER = (1, 0, 2, 3, 4, 6, 5, 8, 7, 9)
+"""Nodes of an element, or the first four of a straight one, in the order in which its image is positive."""
+REFLECTION = np.array([1.0, 1.0, -1.0])
+"""What the reflection in z = 0 multiplies a vector with."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class TaggedMesh:
@@ -34,6 +39,10 @@ class TaggedMesh:
         Centroid (3,) by the geometry kernel [mm].
     notes : tuple of str
         What the mesher had to do to make every element valid, for the report.
+    mirror : ndarray of int or None, shape (n,)
+        Number of every point's image at -z, its own on the plane z = 0; None where the mesh has no such symmetry. The
+        first half of the elements then lies at z ≥ 0, and the second holds their images in the same order
+        (``geometry.meshing.mirror``).
 
     Raises
     ------
@@ -48,6 +57,7 @@ class TaggedMesh:
     volume: float
     centroid: NDArray[np.float64]
     notes: tuple[str, ...] = ()
+    mirror: NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit each other."""
@@ -60,6 +70,19 @@ class TaggedMesh:
         for name, triangles in self.surfaces.items():
             if len(triangles) == 0:
                 raise CannotRunError(f"the mesh has no triangle on surface '{name}'")
+        if self.mirror is not None and not self._symmetric(self.mirror):
+            raise CannotRunError("the mesh is not the image of its upper half")
+
+    def _symmetric(self, mirror: NDArray[np.int64]) -> bool:
+        upper, lower = np.array_split(self.cells, 2)
+        return (
+            len(mirror) == len(self.points)
+            and len(upper) == len(lower)
+            and np.array_equal(mirror[mirror], np.arange(len(mirror)))
+            and np.array_equal(self.points[mirror], self.points * REFLECTION)
+            and bool((self.points[upper, 2] >= 0.0).all())
+            and np.array_equal(mirror[upper][:, list(IMAGE_ORDER[: upper.shape[1]])], lower)
+        )
 
     @property
     def curved(self) -> bool:
