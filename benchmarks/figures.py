@@ -279,6 +279,29 @@ def peers(record: dict[str, Any]) -> plt.Figure:
     return figure
 
 
+def trade(record: dict[str, Any]) -> plt.Figure:
+    """Time to a verdict over the accuracy asked for, link by link, beside CalculiX on the last mesh."""
+    links = list(dict.fromkeys((r["case"], r["link"]) for r in record["rows"]))
+    figure, axes = plt.subplots(1, 2, figsize=(12, 4.8), sharey=True)
+    for ax, key, title in zip(axes, ("wall_s", "cpu_s"), ("wall time", "processor time"), strict=True):
+        for (case, link), colour, marker in zip(links, (BLUE, ORANGE, GREEN, PURPLE), "o^sD", strict=False):
+            rows = [r for r in record["rows"] if (r["case"], r["link"]) == (case, link)]
+            asked = [100.0 * r["accuracy"] for r in rows]
+            ax.plot(asked, [r[key] for r in rows], "-", color=colour, marker=marker, label=f"{case}, {link}")
+            theirs = [(x, r[f"calculix_{key}"]) for x, r in zip(asked, rows, strict=True) if f"calculix_{key}" in r]
+            if theirs:
+                ax.plot(*zip(*theirs, strict=True), ":", color=colour, marker=marker, mfc="white")
+        log_axes(ax, "accuracy asked for [%]", "time [s]")
+        ax.set_xticks(sorted({100.0 * r["accuracy"] for r in record["rows"]}))
+        ax.invert_xaxis()
+        ax.set_title(title, fontsize=10)
+    axes[1].plot([], [], ":", color=BLACK, marker="o", mfc="white", label="CalculiX on the last mesh, one load")
+    axes[1].legend(fontsize=8)
+    figure.suptitle(f"From geometry to a stress of that accuracy, {record['threads']} threads", fontsize=11)
+    figure.tight_layout()
+    return figure
+
+
 def drawn() -> Iterator[Path]:
     """Draw what there are results for."""
     FIGURES.mkdir(exist_ok=True)
@@ -287,6 +310,7 @@ def drawn() -> Iterator[Path]:
         "unknowns": (growth, "solvers"),
         "poses": (poses, "growth"),
         "peers": (peers, "peers"),
+        "trade": (trade, "trade"),
     }
     found = {name: make(record) for name, (make, source) in makers.items() if (record := loaded(source))}
     split = stages(loaded("solvers"), loaded("stages"))

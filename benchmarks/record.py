@@ -11,8 +11,10 @@ from typing import Any
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
-LOAD = os.getloadavg()[0]
-"""How busy the machine was before."""
+LOAD = float(os.environ.get("ALULA_BENCH_LOAD", os.getloadavg()[0]))
+"""How busy the machine was before; of several benchmarks in turn, before the first."""
+QUIET = 0.5
+"""Load average above which no time means much."""
 
 
 def circumstances() -> dict[str, Any]:
@@ -53,3 +55,27 @@ class Stopwatch:
     def read(self) -> dict[str, float]:
         """Return both, as ``wall_s`` and ``cpu_s``."""
         return {"wall_s": time.perf_counter() - self._wall, "cpu_s": time.process_time() - self._cpu}
+
+
+class Others:
+    """What other programs take of the processors while it lives; on Linux alone."""
+
+    def __init__(self) -> None:
+        self._start, self._busy = time.perf_counter(), _busy()
+
+    def share(self, own: float) -> float | None:
+        """Return the share of all processors that others took, given our own processor seconds."""
+        busy = _busy()
+        if busy is None or self._busy is None:
+            return None
+        whole = (time.perf_counter() - self._start) * (os.cpu_count() or 1)
+        return round(max(0.0, busy - self._busy - own) / whole, 3)
+
+
+def _busy() -> float | None:
+    """Processor seconds of all programs since the machine started: all but idle and waiting (proc(5))."""
+    try:
+        ticks = [float(x) for x in Path("/proc/stat").read_text(encoding="ascii").split("\n", 1)[0].split()[1:9]]
+    except OSError:
+        return None
+    return (sum(ticks) - ticks[3] - ticks[4]) / os.sysconf("SC_CLK_TCK")

@@ -3,7 +3,8 @@
     python benchmarks/run.py [--quick] [--only accuracy peers ...] [--ngsolve PYTHON]
 
 On two quiet cores all of it takes an hour or so, most of it the slowest peers at 1.5 million unknowns; ``--quick``
-keeps to small sizes. A benchmark that fails is named at the end; the others run all the same.
+keeps to small sizes. A benchmark that fails is named at the end; the others run all the same. On a machine whose load
+average is above 0.5 before it starts nothing runs, unless ``--busy`` says so; the tables then tell it.
 """
 
 import argparse
@@ -14,7 +15,7 @@ import sys
 import time
 from pathlib import Path
 
-from record import save
+from record import LOAD, QUIET, save
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -27,6 +28,8 @@ BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
     "growth": (False, [], ["--mesh", "3", "--counts", "30", "5", "5"]),
     "accuracy": (False, ["--largest", "150000"], ["--largest", "20000"]),
     "stages": (False, [], []),
+    "commits": (False, [], ["--repeats", "1"]),
+    "trade": (False, [], ["--accuracies", "0.2", "0.05"]),
     "peers": (False, [], ["--sizes", "20k", "160k", "--repeats", "1"]),
 }
 
@@ -34,7 +37,7 @@ BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
 def run(name: str, arguments: list[str]) -> tuple[int, float]:
     """Exit status and wall seconds of one benchmark."""
     command = [sys.executable, str(HERE / f"{name}.py"), *arguments]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "ALULA_BENCH_LOAD": str(LOAD)}
     start = time.perf_counter()
     if BENCHMARKS[name][0]:
         one_thread = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
@@ -51,7 +54,10 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="small sizes")
     parser.add_argument("--only", nargs="+", choices=list(BENCHMARKS), default=list(BENCHMARKS))
     parser.add_argument("--ngsolve", help="an interpreter that can import ngsolve, for the peers")
+    parser.add_argument("--busy", action="store_true", help="measure on a busy machine all the same")
     options = parser.parse_args()
+    if LOAD > QUIET and not options.busy:
+        parser.error(f"the load average is {LOAD:.2f}, above {QUIET:g}: wait until the machine is quiet, or add --busy")
     summary = []
     for name in options.only:
         _, usual, quick = BENCHMARKS[name]

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from figures import HERE, loaded, power, seconds, unknowns_of
+from record import QUIET
 
 PAGE = HERE / "README.md"
 MISSING = "Not measured yet.\n"
@@ -24,7 +25,8 @@ def stamp(record: Record) -> str:
     if "threads" in record:
         told.append(f"{record['threads']} thread{'s' if str(record['threads']) != '1' else ''}")
     if "load_average" in record:
-        told.append(f"load average before {record['load_average']:.1f}")
+        busy = record["load_average"] > QUIET
+        told.append(f"load average before {record['load_average']:.1f}{', a busy machine' if busy else ''}")
     return f"Measured: {'; '.join(told)}.\n"
 
 
@@ -178,6 +180,41 @@ def stages(record: Record) -> str:
     return table(header, rows) + "\n" + stamp(record)
 
 
+def commits(record: Record) -> str:
+    """Whole commands at two commits."""
+    rows = []
+    for row in record["rows"]:
+        ratios = [f"{row[key]['ratio']:.2f}" for key in ("wall_s", "cpu_s")]
+        times = [seconds(row[key][name]) for key in ("wall_s", "cpu_s") for name in ("before", "now")]
+        aim = f"{row['aim']:g}" if row["aim"] else ""
+        rows.append([f"`{row['command']}`", *ratios, aim, *times, f"{row['others']:.0%}"])
+    before, now = record["commits"]["before"], record["commits"]["now"]
+    header = (
+        "command|ratio of wall times|of processor times|aim|wall time before|now|processor time before|now|"
+        "others' share of the processors"
+    )
+    changed = " with changes that are not committed" if record["changed"] else ""
+    said = f"Before is commit {before}, now is {now}{changed}; medians of {len(record['rows'][0]['runs']['now'])}.\n"
+    return "\n".join((said, table(header, rows), stamp(record)))
+
+
+def trade(record: Record) -> str:
+    """Time to a verdict over the accuracy asked for."""
+    rows = []
+    for row in record["rows"]:
+        theirs = [seconds(row[k]) if k in row else "no" for k in ("calculix_wall_s", "calculix_cpu_s")]
+        reached = "none" if row["reached"] is None else f"{100.0 * row['reached']:.2g} %"
+        size = [str(row["meshes"]), f"{row['unknowns']:,}", str(row["variants"])]
+        own = [seconds(row["wall_s"]), seconds(row["cpu_s"])]
+        rows.append([f"{row['case']}, {row['link']}", f"{row['accuracy']:.0%}", reached, *size, *own, *theirs])
+    header = (
+        "link|accuracy asked for|reached|meshes|unknowns of the last|loads solved|wall time|processor time|"
+        "CalculiX on the last mesh, one load, wall time|processor time"
+    )
+    picture = "![Time to a verdict over accuracy](figures/trade.png)\n"
+    return "\n".join((picture, table(header, rows), stamp(record)))
+
+
 SECTIONS: dict[str, Callable[[Record], str]] = {
     "accuracy": accuracy,
     "peers": peers,
@@ -186,6 +223,8 @@ SECTIONS: dict[str, Callable[[Record], str]] = {
     "growth": growth,
     "motion": motion,
     "stages": stages,
+    "commits": commits,
+    "trade": trade,
 }
 
 
