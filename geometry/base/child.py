@@ -2,7 +2,8 @@
 
 A child is stopped at its time limit and on an interruption. It ends by itself when its parent is killed: its
 standard input is a pipe that only the parent holds open, and the end of that pipe is the end of the parent. Programs
-that are not alula's do not look there; the system ends them with their parent (``geometry.base.leash``).
+that are not alula's do not look there; the system ends them with their parent (``geometry.base.leash``). Children that
+answer several requests are ``geometry.base.child_server``'s.
 """
 
 import os
@@ -11,8 +12,9 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
+from typing import Any
 
 from geometry.base.errors import CannotRunError
 
@@ -152,10 +154,78 @@ def run(
     CannotRunError
         After ``stop_all``.
     """
-    with _places.free:
+    with place():
         status, told = _communicate(command, environment, time_limit, folder, output)
-    lines = told.decode(errors="replace").strip().splitlines()
-    return status, (lines or ["it left no message"])[-1]
+    return status, last_line(told)
+
+
+def last_line(told: bytes) -> str:
+    """Return the last line of what a child wrote, or that it wrote nothing.
+
+    Parameters
+    ----------
+    told : bytes
+        Its standard error.
+
+    Returns
+    -------
+    str
+        The line.
+    """
+    return (told.decode(errors="replace").strip().splitlines() or ["it left no message"])[-1]
+
+
+def place() -> AbstractContextManager[object]:
+    """Return the context in which a child may be at work: it waits while as many are as ``at_most`` allows.
+
+    Returns
+    -------
+    context manager
+        For one use.
+    """
+    return _places.free
+
+
+def start(command: list[str], **options: Any) -> subprocess.Popen[bytes]:
+    """Start a child that ``stop_all`` will kill, until it is given to ``forget``.
+
+    Parameters
+    ----------
+    command : list of str
+        Program and arguments.
+    **options : object
+        As for ``subprocess.Popen``.
+
+    Returns
+    -------
+    subprocess.Popen
+        The child.
+
+    Raises
+    ------
+    OSError
+        If it cannot be started.
+    CannotRunError
+        After ``stop_all``.
+    """
+    with _lock:
+        if _stopped.is_set():
+            raise CannotRunError("interrupted")
+        process = subprocess.Popen(command, **options)
+        _running.add(process)
+    return process
+
+
+def forget(process: subprocess.Popen[bytes]) -> None:
+    """Leave a child that has ended out of ``stop_all``.
+
+    Parameters
+    ----------
+    process : subprocess.Popen
+        As ``start`` returned it.
+    """
+    with _lock:
+        _running.discard(process)
 
 
 def _communicate(
@@ -164,14 +234,8 @@ def _communicate(
     """Status of a child and its standard error."""
     read, write = os.pipe()
     try:
-        with _lock:
-            if _stopped.is_set():
-                raise CannotRunError("interrupted")
-            with open(output or os.devnull, "wb") as told_out:
-                process = subprocess.Popen(
-                    command, cwd=folder, env=environment, stdin=read, stdout=told_out, stderr=subprocess.PIPE
-                )
-            _running.add(process)
+        with open(output or os.devnull, "wb") as told_out:
+            process = start(command, cwd=folder, env=environment, stdin=read, stdout=told_out, stderr=subprocess.PIPE)
         with process:
             try:
                 _, told = process.communicate(timeout=time_limit)
@@ -179,7 +243,7 @@ def _communicate(
                 process.kill()
                 raise
             finally:
-                _running.discard(process)
+                forget(process)
     finally:
         os.close(read)
         os.close(write)

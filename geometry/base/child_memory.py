@@ -1,5 +1,6 @@
-"""The memory that a child process may take, so that a runaway fails itself and not the machine."""
+"""The memory that a child process may take for a request, so that a runaway fails itself and not the machine."""
 
+import math
 import os
 import sys
 import threading
@@ -33,33 +34,49 @@ def allowed(wanted: float) -> float:
         return wanted
 
 
-def bound(limit: float, tell: Callable[[], None]) -> None:
-    """End this process once it holds more than a limit of memory (on Linux; elsewhere nothing happens).
+class MemoryGuard:
+    """Ends this process once it holds more memory than its present request may take (on Linux; elsewhere never).
 
     What counts is private memory that can be written, as for ``RLIMIT_DATA``. That limit alone would not do: libraries
     to which it refuses memory say so, say something else, or crash.
 
     Parameters
     ----------
-    limit : float
-        Largest amount of memory [bytes].
     tell : callable
-        Called without arguments before the process ends.
+        Called without arguments before the process ends; it returns False where no request is at work, so that the
+        process goes on.
     """
-    if not sys.platform.startswith("linux"):
-        return
-    import resource
 
-    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    least = min([int(_HARD * limit), *(most for most in (soft, hard) if most != resource.RLIM_INFINITY)])
-    resource.setrlimit(resource.RLIMIT_DATA, (least, hard))
-    page = os.sysconf("SC_PAGE_SIZE")
+    def __init__(self, tell: Callable[[], bool]) -> None:
+        self._tell, self._limit = tell, math.inf
+        if not sys.platform.startswith("linux"):
+            return
+        import resource
 
-    def watch() -> None:
+        self._inherited = resource.getrlimit(resource.RLIMIT_DATA)
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def allow(self, limit: float) -> None:
+        """Set the limit.
+
+        Parameters
+        ----------
+        limit : float
+            Largest amount of memory [bytes].
+        """
+        self._limit = limit
+        if not sys.platform.startswith("linux"):
+            return
+        import resource
+
+        soft, hard = self._inherited
+        bounds = [most for most in (soft, hard) if most != resource.RLIM_INFINITY]
+        least = min([int(_HARD * limit), *bounds]) if math.isfinite(limit) else soft
+        resource.setrlimit(resource.RLIMIT_DATA, (least, hard))
+
+    def _watch(self) -> None:
+        page = os.sysconf("SC_PAGE_SIZE")
         with _STATM.open("rb", buffering=0) as file:
-            while page * int(os.pread(file.fileno(), 200, 0).split()[5]) <= limit:
+            while page * int(os.pread(file.fileno(), 200, 0).split()[5]) <= self._limit or not self._tell():
                 time.sleep(_PERIOD)
-        tell()
         os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()

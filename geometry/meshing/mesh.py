@@ -1,14 +1,13 @@
-"""From bodies to meshes, mass properties and STEP files, each in a child process with a time limit.
+"""From bodies to meshes, mass properties and STEP files, in child processes with limits of time and memory.
 
-The geometry kernel and the mesher can crash or loop for ever, which no exception reports; a child
-process that does so becomes a ``CannotRunError``.
+The geometry kernel and the mesher can crash or loop for ever, which no exception reports; a child process that does so
+becomes a ``CannotRunError``. One that answers waits for a further request, with the solids that it has built.
 """
 
 import os
 import pickle
 import signal
 import subprocess
-import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base import child, child_memory
+from geometry.base.child_server import ChildEndedError, ServerPool
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh_settings import COARSE, MeshSettings
 from geometry.meshing.reentrant import ReentrantEdge
@@ -45,6 +45,7 @@ KERNEL_TIME_LIMIT = 300.0
 """Seconds for tasks of the geometry kernel that mesh nothing."""
 KERNEL_MEMORY_LIMIT = MeshSettings.memory_limit
 """Bytes for the same."""
+_workers = ServerPool()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -210,32 +211,31 @@ def _naming(name: str, task: Callable[..., _T], *arguments: Any) -> _T:
         raise type(error)(f"{name}: {error}") from None
 
 
-def _command(folder: Path) -> list[str]:
-    return child.module_command("geometry.meshing.mesh_worker", str(folder))
+def _command() -> list[str]:
+    return child.module_command("geometry.meshing.mesh_worker")
 
 
-def _run(task: str, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memory: float = KERNEL_MEMORY_LIMIT) -> Any:
+def _run(
+    task: str, body: Body, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memory: float = KERNEL_MEMORY_LIMIT
+) -> Any:
     """Do a task of ``geometry.meshing.mesh_worker`` in a child process and return its result."""
+    memory = child_memory.allowed(memory)
+    request = pickle.dumps((memory, task, body, *arguments))
+    environment = child.environment(PYDANTIC_DISABLE_PLUGINS="__all__")
     try:
-        with tempfile.TemporaryDirectory(prefix="alula-", ignore_cleanup_errors=True) as name:
-            folder = Path(name)
-            memory = child_memory.allowed(memory)
-            (folder / "request").write_bytes(pickle.dumps((memory, task, *arguments)))
-            status, told = child.run(_command(folder), environment=child.environment(), time_limit=time_limit)
-            try:
-                kind, result = pickle.loads((folder / "answer").read_bytes())
-            except Exception:  # none, half of one, or something else
-                raise CannotRunError(_obituary(status, told)) from None
+        with _workers.server(_command(), environment, body) as worker:
+            kind, result = pickle.loads(worker.ask(request, time_limit))
+            if kind != "done":  # who knows in which state the kernel is
+                worker.end()
     except subprocess.TimeoutExpired:
         raise CannotRunError(
             f"the mesher was stopped after its time limit of {time_limit:g} s; increase solid.mesh_size or check with "
             "--fidelity beam"
         ) from None
+    except ChildEndedError as ended:
+        raise CannotRunError(_obituary(ended.status, ended.told)) from None
     except OSError as error:
-        raise CannotRunError(
-            f"the mesher could not be run ({error.strerror or error}); free space in the folder for temporary files "
-            "or name another in TMPDIR"
-        ) from None
+        raise CannotRunError(f"the mesher could not be started ({error.strerror or error})") from None
     if kind == "case":
         raise CaseError(result)
     if kind == "cannot":

@@ -182,6 +182,10 @@ def _checked(
 
 
 def _set_sizes(gmsh: Any, solid: Solid, settings: MeshSettings) -> None:
+    for field in gmsh.model.mesh.field.list():
+        gmsh.model.mesh.field.remove(field)
+    for view in gmsh.view.getTags():
+        gmsh.view.remove(view)
     for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints"):
         gmsh.option.setNumber(f"Mesh.{option}", 0)
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", settings.turn_elements)

@@ -6,8 +6,6 @@ section's smaller size. What this module is given and returns is in mm.
 """
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -49,25 +47,22 @@ class Solid:
     body: Body
 
 
-@contextmanager
-def kernel() -> Iterator[Any]:
-    """Yield gmsh, silent, on one thread and with fixed random numbers; finalise it afterwards."""
+def initialised() -> Any:
+    """Return gmsh, silent, on one thread and with fixed random numbers."""
     import gmsh
 
     gmsh.initialize(argv=[""], readConfigFiles=False, interruptible=False)
-    try:
-        for option, value in {
-            "General.Terminal": 0,
-            "General.NumThreads": 1,
-            "Mesh.RandomSeed": 1,
-            "Geometry.OCCUnionUnify": 0,
-            "Geometry.OCCBoundsUseStl": 0,
-            "Geometry.OCCParallel": 0,
-        }.items():
-            gmsh.option.setNumber(option, value)
-        yield gmsh
-    finally:
-        gmsh.finalize()
+    for option, value in {
+        "General.Terminal": 0,
+        "General.NumThreads": 1,
+        "Mesh.RandomSeed": 1,
+        "Geometry.OCCUnionUnify": 0,
+        "Geometry.OCCBoundsUseStl": 0,
+        "Geometry.OCCParallel": 0,
+    }.items():
+        gmsh.option.setNumber(option, value)
+    gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+    return gmsh
 
 
 def scaled(body: Body, unit: float) -> Body:
@@ -116,12 +111,12 @@ def scaled(body: Body, unit: float) -> Body:
 
 
 def build(gmsh: Any, body: Body) -> Solid:
-    """Build a body in a fresh model of the kernel and name its faces.
+    """Build a body in the present model of the kernel, which is empty, and name its faces.
 
     Parameters
     ----------
     gmsh : module
-        gmsh, initialised by ``kernel``.
+        gmsh, as ``initialised`` returns it.
     body : Body
         The body, in mm.
 
@@ -140,7 +135,6 @@ def build(gmsh: Any, body: Body) -> Solid:
     part, kernel = body.part, Kernel(gmsh)
     unit = min(part.section.width, part.section.height) / SECTION_UNITS
     small = scaled(body, unit)
-    gmsh.model.add("body")
     try:
         solid = small.part.solid(kernel, small)
     except FilletError:
@@ -317,14 +311,17 @@ def write_step(gmsh: Any, solid: Solid, path: Path) -> None:
     gmsh.write(str(unscaled))
     gmsh.model.add("scaled")
     gmsh.option.setNumber("Geometry.OCCScaling", solid.unit)
-    [imported] = gmsh.model.occ.importShapes(str(unscaled))
-    gmsh.model.occ.synchronize()
-    unscaled.unlink()
-    written = gmsh.model.occ.getMass(*imported)
-    if abs(written - volume) > 1e-5 * volume:
-        raise CannotRunError(f"the STEP file would hold {written:.6g} mm³, but the part has {volume:.6g} mm³")
-    gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
-    gmsh.write(str(path))
+    try:
+        [imported] = gmsh.model.occ.importShapes(str(unscaled))
+        gmsh.model.occ.synchronize()
+        unscaled.unlink()
+        written = gmsh.model.occ.getMass(*imported)
+        if abs(written - volume) > 1e-5 * volume:
+            raise CannotRunError(f"the STEP file would hold {written:.6g} mm³, but the part has {volume:.6g} mm³")
+        gmsh.write(str(path))
+    finally:
+        gmsh.option.setNumber("Geometry.OCCScaling", 1.0)
+        gmsh.model.remove()
 
 
 def volume_centroid_inertia(gmsh: Any, solid: Solid) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:

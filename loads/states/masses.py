@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from geometry.base.errors import AlulaError
 from geometry.meshing.mesh import MassProperties, mass_properties
 from geometry.parts.part import Body
 from loads.case.case import Case
@@ -37,7 +38,10 @@ def part_mass(case: Case, link: str) -> PartMass:
     CannotRunError
         Where the kernel fails.
     """
-    solid, density = _measured(case.body(link)), case.material_of(link).density
+    try:
+        solid, density = _measured(case.body(link)), case.material_of(link).density
+    except AlulaError as error:
+        raise type(error)(f"{link}: {error}") from None
     return PartMass(
         mass=solid.volume * density,
         centroid=np.asarray(solid.centroid)[:2],

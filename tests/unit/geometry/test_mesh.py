@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from mesh_measures import shape_quality, volumes_and_moments
 
+import geometry.base.child_server
 import geometry.meshing.mesh
 from geometry.base.child_memory import allowed
 from geometry.base.errors import CannotRunError, CaseError
@@ -115,10 +116,29 @@ def test_bore_has_the_elements_asked_for(mesh: TaggedMesh) -> None:
     assert COARSE.bore_elements <= len(rim) <= COARSE.bore_elements + 1
 
 
-def test_same_input_gives_the_same_mesh(mesh: TaggedMesh) -> None:
-    again = mesh_body(tube_body(), COARSE)
-    assert (again.points == mesh.points).all()
-    assert (again.cells == mesh.cells).all()
+def test_same_input_gives_the_same_mesh_whatever_the_process_has_done(mesh: TaggedMesh) -> None:
+    fresh = mesh_body(tube_body(), COARSE)
+    mesh_body(bar_body(), dataclasses.replace(COARSE, curved=False))
+    mesh_body(tube_body(), dataclasses.replace(COARSE, size_points=fresh.points, size_values=fresh.points[:, 2] + 9.0))
+    reentrant_edges(bar_body("0 mm"))
+    later = mesh_body(tube_body(), COARSE)
+    for again in (fresh, later):
+        assert (again.points == mesh.points).all()
+        assert (again.cells == mesh.cells).all()
+
+
+def test_one_process_serves_bodies_in_turn_and_builds_each_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ALULA_TEST", "none waits with this environment")
+    begun = geometry.base.child_server.ChildServer
+    started: list[object] = []
+    monkeypatch.setattr("geometry.base.child_server.ChildServer", lambda *a: started.append(a) or begun(*a))
+    volumes = [mass_properties(body).volume for body in (tube_body(), bar_body(), tube_body())]
+    assert volumes[0] == volumes[2] != volumes[1]
+    with pytest.raises(CannotRunError, match="memory"):
+        mesh_body(bar_body(), dataclasses.replace(COARSE, memory_limit=7e7))
+    assert len(started) == 1
+    assert mass_properties(tube_body()).volume == volumes[0]  # the limit was that request's, and its process is gone
+    assert len(started) == 2
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0 / 7.0])
@@ -314,8 +334,8 @@ def _step_volume(path: Path) -> float:
     return float(done.stdout.split()[-1])
 
 
-def _instead(script: str) -> Callable[[Path], list[str]]:
-    return lambda folder: [sys.executable, "-c", script, str(folder)]
+def _instead(script: str) -> Callable[[], list[str]]:
+    return lambda: [sys.executable, "-c", script]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are POSIX")
@@ -328,7 +348,7 @@ def _instead(script: str) -> Callable[[Path], list[str]]:
             r"killed \(SIGKILL\), .* memory runs out",
         ),
         ("raise SystemExit('no more disk')", "ended with status 1 and no answer: no more disk"),
-        ("import sys, pathlib; (pathlib.Path(sys.argv[1]) / 'answer').write_bytes(b'')", "status 0 and no answer"),
+        ("import os; os.read(0, 1); os.write(1, bytes([9] + 7 * [0]) + b'half')", "status 0 and no answer"),
     ],
 )
 def test_a_crash_of_the_mesher_is_contained(monkeypatch: pytest.MonkeyPatch, script: str, message: str) -> None:
