@@ -1,5 +1,7 @@
 """Simple tagged meshes for the tests of the solid: a box, a plane bar with two holes, a thick-walled cylinder."""
 
+import dataclasses
+
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
@@ -173,6 +175,27 @@ def bar(
         return named
 
     return _tagged(points, cells, curved, [(0.0, 0.0, hole), (length, 0.0, hole)], pick)
+
+
+def raised(mesh, *, wobble=0.0):
+    """Stand a mesh on z = 0, up to ``wobble``, as an upper half for ``mirrored``: its foot bears no name then."""
+    up = np.array([0.0, 0.0, 1.0])
+    height = np.ptp(mesh.points[:, 2])
+    foot = np.abs(mesh.points[:, 2] - mesh.points[:, 2].min()) < 1e-12
+    surfaces = {name: t for name, t in mesh.surfaces.items() if not name.startswith("bottom")}
+    return dataclasses.replace(
+        mesh,
+        points=mesh.points + height / 2.0 * up + wobble * foot[:, None] * up,
+        surfaces=surfaces,
+        areas=dict.fromkeys(surfaces, 2.0),
+        volume=3.0,
+        centroid=np.array([10.0, 0.0, 0.75]),
+    )
+
+
+def half_bar(*, wobble=0.0, **sizes):
+    """Upper half of the bar, for ``mirrored``."""
+    return raised(bar(height=1.5, **sizes), wobble=wobble)
 
 
 def scikit_fem_mesh(space):

@@ -1,4 +1,10 @@
-"""A link as a free elastic body: displacements under loads that balance."""
+"""A link as a free elastic body: displacements under loads that balance, by halves where it is symmetric about z = 0.
+
+Let R be the reflection in that plane. A load that is its own image, f(Rx) = R f(x), moves the body symmetrically, with
+u_z = 0 on the plane; one that is minus its image moves it antisymmetrically, with u_x = u_y = 0 there. Any load is the
+sum of two such parts, and the upper half alone, so held, answers each of them. Both have the stiffness of the half, and
+nodes on the plane carry half of their load. A part that no load has is not solved.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,17 +15,16 @@ from numpy.typing import NDArray
 from fea.common.link_loads import LinkLoads
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.load_vectors import LoadVectors, Variant
-from fea.solid.solve import Factor, Method, factorise
-from fea.solid.solved import Solved
-from fea.solid.space import DisplacementSpace, displacement_space
-from fea.solid.supports import LineReference, isostatic_supports, rigid_motions
-from fea.solid.traction import (
-    Transfer,
-)
+from fea.solid.solve import Method, factorise
+from fea.solid.space import DisplacementSpace, displacement_space, upper_half
+from fea.solid.supports import LineReference, half_supports, isostatic_supports, rigid_motions
+from fea.solid.traction import Transfer
 from fea.solid.two_level import linear_level
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.records.bearing import NARROW, WIDE, PressureLaw, Span
+
+Real = NDArray[np.float64]
 
 IMBALANCE_LIMIT = 1e-3
 """Resultant of all loads on a link, relative to their sum, above which the link is refused."""
@@ -27,6 +32,8 @@ LARGEST_POISSON_RATIO = 0.4999
 """Above it a solid model is refused: the error of displacements that resist a change of volume has no bound then."""
 NEARLY_INCOMPRESSIBLE = 0.49
 """Poisson's ratio from which that error is told: at 4 elements through a wall 0.1 % here, 3 % at 0.4999."""
+NO_PART = 1e-12
+"""Sum of the nodal forces of a part, relative to the load's, below which it is rounding, which is 1e-16 to 1e-14."""
 REACTION_NOTE = 1e-3
 REACTION_LIMIT = 1e-2
 """Reaction of the six supports, relative to the load: noted above the first, refused above the second."""
@@ -52,6 +59,8 @@ class SolidCase:
         Resultant of the loads relative to their sum.
     strain_energy : float
         Half the work of the loads [N mm].
+    symmetric : bool
+        True where the displacements are their own image in z = 0, so that the upper half tells all.
     """
 
     load: str
@@ -61,6 +70,7 @@ class SolidCase:
     reaction: float
     imbalance: float
     strain_energy: float
+    symmetric: bool = False
 
     @property
     def displacement_max(self) -> float:
@@ -70,7 +80,7 @@ class SolidCase:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolidSolution:
-    """All cases of one link, solved with one factorisation.
+    """All cases of one link.
 
     Attributes
     ----------
@@ -187,19 +197,19 @@ def solve_solid(
     F = np.array([variant.load for variant in variants]).T
     size = np.array([variant.scale for variant in variants])
     imbalance = _imbalance(space, F, size, variants)
-    factor, answer, reactions = _solved(space, F, E=E, nu=nu, method=method, threads=threads)
-    U, reaction = answer.x, np.abs(reactions).max(axis=0) / size
+    free = solve_free(space, F, E=E, nu=nu, method=method, threads=threads)
+    reaction = np.abs(free.reactions).max(axis=0) / size
     reference = LineReference(space, line)
-    rows = zip(variants, U.T, F.T, reaction.tolist(), imbalance.tolist(), strict=True)
+    rows = zip(variants, free.displacement.T, F.T, reaction, imbalance, free.symmetric, strict=True)
     return SolidSolution(
         space=space,
         E=E,
         nu=nu,
         density=density,
         cases=tuple(_case(reference, *row) for row in rows),
-        solver=factor.name,
-        solver_reason=factor.reason,
-        solver_error=answer.error,
+        solver=free.solver,
+        solver_reason=free.reason,
+        solver_error=free.error,
         notes=(*mesh.notes, *_notes(reaction, variants, nu)),
     )
 
@@ -211,35 +221,18 @@ def _case(
     f: NDArray[np.float64],
     reaction: float,
     imbalance: float,
+    symmetric: bool,
 ) -> SolidCase:
     return SolidCase(
         load=variant.name,
         span=variant.span,
         transfer=variant.transfer,
         displacement=reference.relative(u.reshape(-1, 3)),
-        reaction=reaction,
-        imbalance=imbalance,
+        reaction=float(reaction),
+        imbalance=float(imbalance),
         strain_energy=float(u @ f) / 2.0,
+        symmetric=bool(symmetric),
     )
-
-
-def _solved(
-    space: DisplacementSpace, F: NDArray[np.float64], *, E: float, nu: float, method: Method | None, threads: int | None
-) -> tuple[Factor, Solved, NDArray[np.float64]]:
-    """Solve a free body under load vectors (3n, k); also the reactions (6, k) of the supports that hold it."""
-    K = assemble_stiffness(space, E=E, nu=nu)
-    supports = isostatic_supports(space.nodes, space.corners)
-    factor = factorise(
-        K.with_fixed(supports),
-        level=linear_level(space, E=E, nu=nu, fixed=supports),
-        right_hand_sides=F.shape[1],
-        method=method,
-        threads=threads,
-    )
-    free = F.copy()
-    free[supports] = 0.0
-    answer = factor.solved(free)
-    return factor, answer, (K @ answer.x - F)[supports]
 
 
 def _imbalance(
@@ -283,3 +276,114 @@ def _notes(reaction: NDArray[np.float64], variants: Sequence[Variant], nu: float
             "displacements come out too small, by 3 % at 0.4999 with four elements through a wall"
         )
     return tuple(notes)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FreeSolution:
+    """Displacements of a free body under k loads.
+
+    Attributes
+    ----------
+    displacement : ndarray, shape (3n, k)
+        Held isostatically [mm].
+    reactions : ndarray, shape (6, k)
+        Of the supports [N], linear in the loads; those of a half count for both.
+    symmetric : ndarray of bool, shape (k,)
+        True where the displacements are their own image.
+    error : float
+        Largest relative error of a solution in the energy norm.
+    solver, reason : str
+        Name of the solver, and why it was chosen.
+    """
+
+    displacement: Real
+    reactions: Real
+    symmetric: NDArray[np.bool_]
+    error: float
+    solver: str
+    reason: str
+
+
+def solve_free(
+    space: DisplacementSpace, F: Real, *, E: float, nu: float, method: Method | None = None, threads: int | None = None
+) -> FreeSolution:
+    """Solve a free body under load vectors.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    F : ndarray, shape (3n, k)
+        Consistent nodal forces [N]; what does not balance is borne by the supports.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    method : Method or None, optional
+        Solver, by default the one with the least work that fits.
+    threads : int or None, optional
+        Upper bound on the threads of the solver.
+
+    Returns
+    -------
+    FreeSolution
+        Displacements and reactions.
+
+    Raises
+    ------
+    CannotRunError
+        For a mesh with folded elements, or a solver that fails.
+    """
+    half, count = upper_half(space), F.shape[1]
+    body = space if half is None else half.space
+    K = assemble_stiffness(body, E=E, nu=nu)
+
+    told: list[tuple[int, float, str, str]] = []
+
+    def held(load: Real, fixed: NDArray[np.int64], supports: NDArray[np.int64]) -> tuple[Real, Real]:
+        """Return displacements and the reactions of the supports among what is fixed; the factor goes."""
+        level, count = linear_level(body, E=E, nu=nu, fixed=fixed), load.shape[1]
+        factor = factorise(K.with_fixed(fixed), level=level, right_hand_sides=count, method=method, threads=threads)
+        free = load.copy()
+        free[fixed] = 0.0
+        answer = factor.solved(free)
+        told.append((count, answer.error, factor.name, factor.reason))
+        return answer.x, (K @ answer.x - load)[supports]
+
+    if half is None:
+        supports = isostatic_supports(space.nodes, space.corners)
+        displacement, reactions = held(F, supports, supports)
+        symmetric, what = np.zeros(count, dtype=np.bool_), ""
+    else:
+        parts = half.parts(F.reshape(-1, 3, count))
+        loaded = _loaded(*parts)
+        plane = 3 * np.flatnonzero(half.on_plane)
+        conditions = (plane + 2, np.concatenate([plane, plane + 1]))
+        reactions = np.zeros((6, count))
+        rows = zip(
+            parts, loaded, conditions, half_supports(body.nodes, body.corners), np.split(reactions, 2), strict=True
+        )
+        for part, columns, flat, supports, reaction in rows:
+            if columns.any():
+                part[half.on_plane] /= 2.0
+                load = part[..., columns].reshape(body.unknowns, -1)
+                moved, borne = held(load, np.concatenate([flat, supports]), supports)
+                part[..., columns], reaction[:, columns] = moved.reshape(-1, 3, load.shape[1]), 2.0 * borne
+            part[..., ~columns] = 0.0
+        displacement, symmetric, what = half.whole(*parts).reshape(F.shape), ~loaded[1], "half the body, "
+    _, _, solver, reason = max(told)
+    return FreeSolution(
+        displacement=displacement,
+        reactions=reactions,
+        symmetric=symmetric,
+        error=max(error for _, error, _, _ in told),
+        solver=solver,
+        reason=what + reason,
+    )
+
+
+def _loaded(symmetric: Real, antisymmetric: Real) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which loads (k,) have a symmetric part, as one that is zero does, and which an antisymmetric one."""
+    one, other = (np.abs(part).sum(axis=(0, 1)) for part in (symmetric, antisymmetric))
+    least = NO_PART * (one + other)
+    return one >= least, other > least

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
-from geometry.meshing.tagged_mesh import IMAGE_ORDER, TaggedMesh
+from geometry.meshing.tagged_mesh import IMAGE_ORDER, REFLECTION, TaggedMesh
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 """Corner pairs of the mid-nodes 4 to 9 of a quadratic element."""
@@ -89,6 +89,95 @@ class DisplacementSpace:
             if name not in self.surfaces:
                 raise CannotRunError(f"the mesh has no surface '{name}'; it has {', '.join(sorted(self.surfaces))}")
         return np.asarray(self.boundary[np.concatenate([self.surfaces[name] for name in names])])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class UpperHalf:
+    """Half z ≥ 0 of a displacement space that is its own image.
+
+    Attributes
+    ----------
+    space : DisplacementSpace
+        Of the half; its boundary is that of the whole, without the plane z = 0.
+    nodes, images : ndarray of int, shape (h,)
+        Numbers, in the whole, of its nodes and of their images; the same on the plane z = 0.
+    """
+
+    space: DisplacementSpace
+    nodes: NDArray[np.int64]
+    images: NDArray[np.int64]
+
+    @property
+    def on_plane(self) -> NDArray[np.bool_]:
+        """True (h,) for the nodes on the plane z = 0."""
+        return np.asarray(self.nodes == self.images)
+
+    def parts(self, field: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Split a vector field into the part that is its own image and the one that is minus its image.
+
+        Parameters
+        ----------
+        field : ndarray, shape (n, 3, k)
+            At the nodes of the whole.
+
+        Returns
+        -------
+        tuple of 2 ndarray
+            The symmetric and the antisymmetric part (h, 3, k) at the nodes of the half.
+        """
+        upper, image = field[self.nodes], field[self.images] * REFLECTION[:, None]
+        return (upper + image) / 2.0, (upper - image) / 2.0
+
+    def whole(self, symmetric: NDArray[np.float64], antisymmetric: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the field of which these are the ``parts``.
+
+        Parameters
+        ----------
+        symmetric, antisymmetric : ndarray, shape (h, 3, k)
+            At the nodes of the half.
+
+        Returns
+        -------
+        ndarray, shape (n, 3, k)
+            At the nodes of the whole.
+        """
+        count = 2 * len(self.nodes) - np.count_nonzero(self.on_plane)
+        field = np.empty((count, *symmetric.shape[1:]))
+        field[self.images] = (symmetric - antisymmetric) * REFLECTION[:, None]
+        field[self.nodes] = symmetric + antisymmetric
+        return field
+
+
+def upper_half(space: DisplacementSpace) -> UpperHalf | None:
+    """Return the half z ≥ 0 of a space.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+
+    Returns
+    -------
+    UpperHalf or None
+        None where the space is not its own image.
+    """
+    if space.mirror is None:
+        return None
+    elements = len(space.cells) // 2
+    nodes = np.unique(space.cells[:elements])
+    number = np.full(len(space.nodes), -1)
+    number[nodes] = np.arange(len(nodes))
+    inside = number[space.boundary].min(axis=1) >= 0
+    place = np.cumsum(inside) - 1
+    half = DisplacementSpace(
+        nodes=space.nodes[nodes],
+        cells=number[space.cells[:elements]],
+        corners=int(np.searchsorted(nodes, space.corners)),
+        curved=space.curved[:elements],
+        boundary=number[space.boundary[inside]],
+        surfaces={name: place[faces[inside[faces]]] for name, faces in space.surfaces.items()},
+    )
+    return UpperHalf(space=half, nodes=nodes, images=space.mirror[nodes])
 
 
 def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace:

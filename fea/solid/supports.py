@@ -1,4 +1,6 @@
-"""Rigid-body motions: the 3-2-1 support that takes them, and displacements less their part."""
+"""Rigid-body motions: the isostatic supports that take them, and displacements less their part."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +11,9 @@ from geometry.base.errors import CannotRunError
 
 SMALLEST_SINGULAR_VALUE = 1e-6
 """Of the scaled rigid-body motions at the six supports; at length over diameter 1000 a well-spread set has 1e-3."""
+
+IN_PLANE, OUT_OF_PLANE = (0, 1, 5), (2, 3, 4)
+"""Of ``rigid_motions``: those that are their own image in z = 0, and those that are minus their image."""
 
 
 def rigid_motions(nodes: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -72,7 +77,44 @@ def isostatic_supports(nodes: NDArray[np.float64], corners: int) -> NDArray[np.i
     return checked_supports(nodes, np.array(fixed))
 
 
-def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) -> NDArray[np.int64]:
+def half_supports(nodes: NDArray[np.float64], corners: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Fix what the plane z = 0 leaves free of a half body, at corner nodes far apart.
+
+    With u_z = 0 on the plane, as under symmetric loads, the half can still move along it and turn about z; with
+    u_x = u_y = 0, as under antisymmetric ones, it can move along z and turn about x and y.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Positions [mm].
+    corners : int
+        Number of corner nodes, which come first.
+
+    Returns
+    -------
+    tuple of 2 ndarray of int, shape (3,)
+        The fixed unknowns under symmetric and under antisymmetric loads.
+
+    Raises
+    ------
+    CannotRunError
+        If these supports leave a rigid-body motion free.
+    """
+    points = nodes[:corners, :2]
+    first = int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))
+    arm = points - points[first]
+    second = int(np.argmax(np.linalg.norm(arm, axis=1)))
+    across = arm @ np.array([-arm[second, 1], arm[second, 0]])
+    third = int(np.argmax(np.abs(across)))
+    turning = 3 * second + int(np.argmin(np.abs(arm[second])))
+    along = np.array([3 * first, 3 * first + 1, turning])
+    out = 3 * np.array([first, second, third]) + 2
+    return checked_supports(nodes, along, IN_PLANE), checked_supports(nodes, out, OUT_OF_PLANE)
+
+
+def checked_supports(
+    nodes: NDArray[np.float64], unknowns: NDArray[np.int64], motions: Sequence[int] = range(6)
+) -> NDArray[np.int64]:
     """Refuse supports that leave a rigid-body motion free.
 
     Rotations are scaled by the body's size, so that the singular values have no unit.
@@ -83,11 +125,13 @@ def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) ->
         Positions [mm].
     unknowns : ndarray of int
         To be fixed.
+    motions : sequence of int, optional
+        Those of ``rigid_motions`` that are free without them.
 
     Returns
     -------
-    ndarray of int, shape (6,)
-        The same.
+    ndarray of int
+        The same unknowns.
 
     Raises
     ------
@@ -95,10 +139,10 @@ def checked_supports(nodes: NDArray[np.float64], unknowns: NDArray[np.int64]) ->
         Where they leave a rigid-body motion free.
     """
     centre = nodes.mean(axis=0)
-    motions = rigid_motions(nodes, centre).reshape(6, -1)[:, unknowns]
-    motions[3:] /= np.linalg.norm(np.ptp(nodes, axis=0)) / 2.0
-    singular = np.linalg.svd(motions, compute_uv=False)
-    margin = float(singular[5]) if len(singular) == 6 else 0.0
+    moved = rigid_motions(nodes, centre).reshape(6, -1)[:, unknowns]
+    moved[3:] /= np.linalg.norm(np.ptp(nodes, axis=0)) / 2.0
+    singular = np.linalg.svd(moved[list(motions)], compute_uv=False)
+    margin = float(singular[-1]) if len(singular) == len(motions) else 0.0
     if margin < SMALLEST_SINGULAR_VALUE:
         raise CannotRunError(
             f"the supports leave a rigid-body motion free (smallest singular value {margin:.1e}, "

@@ -15,21 +15,9 @@ from geometry.meshing.mirror import mirrored
 Z = np.array([0.0, 0.0, 1.0])
 
 
-def half_bar(curved=True, wobble=0.0):
-    """Upper half of the tests' bar, its cut at z = 0 up to ``wobble``, with what it names there left out."""
-    mesh = meshes.bar(height=1.5, curved=curved)
-    cut = np.abs(mesh.points[:, 2] + 0.75) < 1e-12
-    points = mesh.points + 0.75 * Z + wobble * cut[:, None] * Z
-    surfaces = {name: t for name, t in mesh.surfaces.items() if not name.startswith("bottom")}
-    areas = dict.fromkeys(surfaces, 2.0)
-    return dataclasses.replace(
-        mesh, points=points, surfaces=surfaces, areas=areas, volume=3.0, centroid=np.array([10.0, 0.0, 0.75])
-    )
-
-
 @pytest.mark.parametrize("curved", [True, False])
 def test_a_whole_of_two_halves_measures_what_a_whole_made_at_once_does(curved):
-    whole, reference = mirrored(half_bar(curved)), meshes.bar(height=3.0, layers=4, curved=curved)
+    whole, reference = mirrored(meshes.half_bar(curved=curved)), meshes.bar(height=3.0, layers=4, curved=curved)
     space, plain = displacement_space(whole), displacement_space(reference)
     assert set(whole.surfaces) == set(reference.surfaces)
     for name in reference.surfaces:
@@ -46,7 +34,7 @@ def test_a_whole_of_two_halves_measures_what_a_whole_made_at_once_does(curved):
 
 @pytest.mark.parametrize("curved", [True, False])
 def test_every_point_and_element_has_its_image(curved):
-    half = half_bar(curved)
+    half = meshes.half_bar(curved=curved)
     whole = mirrored(half)
     assert whole.mirror is not None
     on_plane = half.points[:, 2] == 0.0
@@ -64,7 +52,7 @@ def test_every_point_and_element_has_its_image(curved):
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("curved", [True, False])
 def test_a_displacement_space_knows_the_images_of_its_nodes(order, curved):
-    space = displacement_space(mirrored(half_bar(curved)), order=order)
+    space = displacement_space(mirrored(meshes.half_bar(curved=curved)), order=order)
     assert space.mirror is not None
     assert np.array_equal(space.nodes[space.mirror], space.nodes * (1.0, 1.0, -1.0))
     assert np.array_equal(np.sort(space.mirror), np.arange(len(space.nodes)))
@@ -72,13 +60,13 @@ def test_a_displacement_space_knows_the_images_of_its_nodes(order, curved):
 
 
 def test_rounding_at_the_plane_is_taken_off_and_no_node_stands_there_twice():
-    whole = mirrored(half_bar(wobble=1e-11))
+    whole = mirrored(meshes.half_bar(wobble=1e-11))
     assert np.count_nonzero(np.abs(whole.points[:, 2]) < 1e-6) == np.count_nonzero(whole.points[:, 2] == 0.0)
     assert len(np.unique(np.round(whole.points, 8), axis=0)) == len(whole.points)
 
 
 def test_a_half_that_is_not_cut_at_the_plane_is_refused():
-    half = half_bar()
+    half = meshes.half_bar()
     with pytest.raises(CannotRunError, match=r"reaches down to z = -0\.1 mm"):
         mirrored(dataclasses.replace(half, points=half.points - 0.1 * Z))
     with pytest.raises(CannotRunError, match="no face on the plane"):
@@ -92,7 +80,7 @@ def test_a_half_that_is_not_cut_at_the_plane_is_refused():
 
 
 def test_a_mesh_that_claims_a_symmetry_it_lacks_is_refused():
-    whole = mirrored(half_bar())
+    whole = mirrored(meshes.half_bar())
     assert whole.mirror is not None
     for wrong in (
         {"points": whole.points + 1e-9 * Z},
