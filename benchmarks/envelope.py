@@ -26,7 +26,7 @@ import numpy as np
 from record import save
 
 from fea.common.threads import bounded
-from fea.motion.link_envelope import link_envelope
+from fea.motion.link_envelope import link_motion
 from fea.motion.link_history import link_histories
 from fea.solid.solution import solve_solid
 from fea.solid.solve import Method, available_methods
@@ -114,7 +114,7 @@ def _runs(case: Case, link: str, sizes: Sequence[float], threads: int) -> list[d
             return field.peak.value, solution.space.unknowns
 
         def envelope(fatigue: bool) -> tuple[float, int]:
-            result = link_envelope(
+            result = link_motion(
                 displacement_space(mesh),  # noqa: B023
                 link=link,
                 body=case.body(link),
@@ -123,9 +123,8 @@ def _runs(case: Case, link: str, sizes: Sequence[float], threads: int) -> list[d
                 evaluated=np.ones(history.poses, dtype=np.bool_),
                 stated="eye-faces",
                 returns=moved.motion.returns,
-                fatigue=fatigue,
                 threads=threads,
-            )
+            ).envelope(fatigue=fatigue)
             return next(v.stress[0] for v in result.worst.variants if v.span == 180), result.modes
 
         factorised, chosen, whole, fatigued = Best(), Best(), Best(), Best()

@@ -22,7 +22,7 @@ from record import Stopwatch, save  # noqa: E402
 from solvers import NU, E, grid  # noqa: E402
 
 from fea.common.threads import bounded  # noqa: E402
-from fea.motion.link_envelope import link_envelope  # noqa: E402
+from fea.motion.link_envelope import link_motion  # noqa: E402
 from fea.motion.link_history import link_histories  # noqa: E402
 from fea.solid.elasticity import assemble_stiffness  # noqa: E402
 from fea.solid.solution import solve_solid  # noqa: E402
@@ -83,7 +83,7 @@ def envelope(scale: float) -> dict[str, Any]:
         stress_field(solution.space, solution.cases[0].displacement, E=solution.E, nu=solution.nu)
 
     def whole(history: Any, returns: bool) -> None:
-        link_envelope(
+        link_motion(
             displacement_space(mesh),
             link=LINK,
             body=body,
@@ -92,9 +92,8 @@ def envelope(scale: float) -> dict[str, Any]:
             evaluated=np.ones(history.poses, dtype=np.bool_),
             stated="eye-faces",
             returns=returns,
-            fatigue=False,
             threads=1,
-        )
+        ).envelope(fatigue=False)
 
     rows = []
     for poses in ENVELOPE:

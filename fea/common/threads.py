@@ -20,13 +20,15 @@ VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @contextmanager
-def bounded(threads: int | None) -> Iterator[None]:
+def bounded(threads: int | None, *, children: int | None = None) -> Iterator[None]:
     """Limit the threads of every library in what follows; their number is never raised.
 
     Parameters
     ----------
     threads : int or None
         Of each library at most; None leaves what it would use.
+    children : int, optional
+        Child processes at most; as many as threads unless given.
 
     Yields
     ------
@@ -45,7 +47,7 @@ def bounded(threads: int | None) -> Iterator[None]:
     os.environ.update({name: str(_least(threads, value)) for name, value in before.items()})
     try:
         limits = {api: min(threads, used) for api, used in current.items()}
-        with controller.limit(limits=limits), child.at_most(threads):
+        with controller.limit(limits=limits), child.at_most(children or threads):
             yield
     finally:
         for name, value in before.items():

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.motion.fatigue import equivalent_peak, signed_stress
-from fea.motion.peaks import largest_sizes, mode_sizes, size_parts
+from fea.motion.peaks import mode_sizes, size_bounds, size_parts
 from geometry.parts.material import Fatigue, Material
 
 Real = NDArray[np.float64]
@@ -19,7 +19,7 @@ def critical_nodes(stress: Real, combinations: Sequence[Real], material: Materia
 
     The largest cycle of a node goes from its smallest to its largest signed stress. No cycle of signed stresses up to
     some size harms more than the reversed cycle of that size. By this bound a node is left out if it harms less than
-    one already found. The size is first the sum of the modes' sizes, then the largest that the node's stress reaches.
+    one already found.
 
     Parameters
     ----------
@@ -43,18 +43,15 @@ def critical_nodes(stress: Real, combinations: Sequence[Real], material: Materia
 def _critical(stress: Real, parts: Real, own: Real, combination: Real, material: Material) -> tuple[int, Real]:
     fatigue, ultimate = material.fatigue, material.ultimate_strength
     assert fatigue is not None
-    reach = own @ np.abs(combination).max(axis=1)
-    hottest = np.argsort(-reach)[:_BLOCK]
-    best, node, history = _most_harmed(stress, hottest, combination, material)
-    rest = np.flatnonzero(_may_harm(reach, best, fatigue, ultimate))
-    size = largest_sizes(parts[rest], combination)
+    size = size_bounds(parts, own, combination)
     order = np.argsort(-size)
-    for start in range(0, len(order), _BLOCK):
+    best, node, history = _most_harmed(stress, order[:_BLOCK], combination, material)
+    for start in range(_BLOCK, len(order), _BLOCK):
         block = order[start : start + _BLOCK]
         block = block[_may_harm(size[block], best, fatigue, ultimate)]
         if not len(block):
             break
-        harm, worst, signed = _most_harmed(stress, rest[block], combination, material)
+        harm, worst, signed = _most_harmed(stress, block, combination, material)
         if harm > best:
             best, node, history = harm, worst, signed
     return node, history

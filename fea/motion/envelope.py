@@ -1,9 +1,12 @@
 """The whole motion of a case: the least safety factor of each link over all poses and load cases, where and when."""
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,23 +16,22 @@ from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import load_scatter
-from fea.common.threads import bounded_run
+from fea.common.threads import bounded, bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
-from fea.motion.link_envelope import link_envelope
+from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import linkage_outcomes
 from fea.outcomes.linkage import unless_it_gives_way
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
-from fea.refine.refinement import START, Effort, LinkTask, refine_links
+from fea.refine.refinement import START, Effort, refine_links
 from fea.solid.solution import require_compressible
 from fea.solid.space import DisplacementSpace, displacement_space
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
-from geometry.meshing.mesh import mesh_bodies
-from geometry.meshing.tagged_mesh import TaggedMesh
+from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case
 from loads.states.case_motion import CaseMotion, solve_case_motion
 
@@ -50,6 +52,7 @@ class _Envelope:
     loaded: Mapping[str, tuple[LinkLoads, ...]]
     threads: int
     progress: Progress
+    ended: threading.Event = field(default_factory=threading.Event)
 
     @classmethod
     def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
@@ -71,34 +74,59 @@ class _Envelope:
         acting = {history.name for found in self.loaded.values() for history in found}
         return tuple(load_case for load_case in self.sizes if load_case not in acting)
 
-    def solved(self, link: str, space: DisplacementSpace, **options: Any) -> LinkEnvelope:
-        """Solve one link over the motion on one mesh."""
-        case = self.moved.case
-        try:
-            return link_envelope(
-                space,
-                link=link,
-                body=case.body(link),
-                material=case.material_of(link),
-                histories=self.loaded[link],
-                evaluated=self.evaluated,
-                stated=case.drive.transfer if case.drive else None,
-                returns=self.moved.motion.returns,
-                scatter={load_case: load_scatter(case, load_case) for load_case in case.load_cases},
-                threads=self.threads,
-                **options,
-            )
-        except AlulaError as error:
-            raise type(error)(f"{link}: {error}") from None
+    def solved(self, start: MeshSettings, effort: Effort, repetitions: float | None) -> dict[str, LinkEnvelope]:
+        """Solve all links, as many side by side as there may be threads, each by libraries with one thread."""
+        begun = time.perf_counter()
+        with bounded(1, children=self.threads), ThreadPoolExecutor(max_workers=self.threads) as pool:
+            found = {link: pool.submit(self._link, link, start, effort, begun, repetitions) for link in self.loaded}
+            try:
+                return {link: envelope.result() for link, envelope in found.items()}
+            except BaseException:
+                self.ended.set()
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
 
-    def at_worst_pose(self, link: str, mesh: TaggedMesh) -> LinkTask:
-        """Return what is to be solved for a link at the worst pose of every load case, found on a first mesh."""
-        self.progress(f"Finding the worst poses of {link} ...")
-        first = self.solved(link, displacement_space(mesh), fatigue=False)
-        loads = [history.chosen(first.load_cases[history.name].pose) for history in self.loaded[link]]
-        task = link_task(self.moved.case, link, loads)
-        require_compressible(task.nu)
-        return task
+    def _link(
+        self, link: str, start: MeshSettings, effort: Effort, begun: float, repetitions: float | None
+    ) -> LinkEnvelope:
+        """Solve one link: the worst poses on a first mesh, finer ones for those, the whole motion on the finest."""
+        case = self.moved.case
+        self._tell(f"Meshing {link} ...")
+        with _naming(link):
+            mesh = mesh_body(case.body(link), start)
+            motion = self._motion(link, displacement_space(mesh))
+            poses = motion.worst_poses
+            task = link_task(case, link, [history.chosen(poses[history.name]) for history in self.loaded[link]])
+            require_compressible(task.nu)
+        left = replace(effort, time_limit=max(0.0, effort.time_limit - (time.perf_counter() - begun)))
+        refined = refine_links({link: task}, start, left, first={link: mesh}, progress=self._tell)[link]
+        with _naming(link):
+            if len(refined.meshes) > 1:
+                motion = self._motion(link, refined.solution.space)
+            scatter = {load_case: load_scatter(case, load_case) for load_case in case.load_cases}
+            return motion.envelope(repetitions=repetitions, refined=refined, scatter=scatter)
+
+    def _tell(self, message: str) -> None:
+        """Report progress; ends the work on a link once another has failed or the run was interrupted."""
+        if self.ended.is_set():
+            raise CannotRunError("interrupted")
+        self.progress(message)
+
+    def _motion(self, link: str, space: DisplacementSpace) -> LinkMotion:
+        """Solve one link over the motion on one mesh."""
+        poses = int(self.evaluated.sum())
+        self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
+        case = self.moved.case
+        return link_motion(
+            space,
+            link=link,
+            body=case.body(link),
+            material=case.material_of(link),
+            histories=self.loaded[link],
+            evaluated=self.evaluated,
+            stated=case.drive.transfer if case.drive else None,
+            returns=self.moved.motion.returns,
+        )
 
     def outcomes(self, links: Mapping[str, LinkEnvelope]) -> list[CheckOutcome]:
         """Return the outcome of every check; undecided under load cases that load no link."""
@@ -128,7 +156,8 @@ def envelope_case(
     """Check every link of a case over its motion, under every load case.
 
     On a first, coarse mesh the worst pose of every link and load case is found. For these poses the meshes are refined
-    as in a check. The finest mesh then serves the whole motion, with the relative error found at the worst pose.
+    as in a check. The finest mesh then serves the whole motion, with the relative error found at the worst pose. Links
+    are solved side by side.
 
     Parameters
     ----------
@@ -162,20 +191,9 @@ def envelope_case(
     evaluated = _some_poses(moved, growth)
     over = _Envelope.of(moved, evaluated, threads, progress)
     clock("motion")
-    progress(f"Meshing {len(over.loaded)} links ...")
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
-    meshes = mesh_bodies({link: case.body(link) for link in over.loaded}, start)
-    clock("meshing")
-    tasks = {link: over.at_worst_pose(link, meshes[link]) for link in over.loaded}
-    clock("worst poses")
-    refined = refine_links(tasks, start, effort or effort_of(case), threads=threads, progress=progress)
-    clock("refinement")
-    links = {}
-    for link, solid in refined.items():
-        space = solid.solution.space
-        progress(f"Solving {link} over the motion: {len(space.cells)} elements, {int(evaluated.sum())} poses ...")
-        links[link] = over.solved(link, space, repetitions=repetitions, refined=solid, notes=solid.solution.notes)
-    clock("motion of the solids")
+    links = over.solved(start, effort or effort_of(case), repetitions)
+    clock("solids")
     checks = over.outcomes(links)
     idle = [nothing_acts(load_case, over.sizes[load_case]) for load_case in over.idle]
     return EnvelopeResult(
@@ -193,6 +211,15 @@ def envelope_case(
         warnings=(*idle, *_warnings(case, moved, evaluated, growth)),
         timings=clock.stages,
     )
+
+
+@contextmanager
+def _naming(link: str) -> Iterator[None]:
+    """Begin what is said of an error with the link's name."""
+    try:
+        yield
+    except AlulaError as error:
+        raise type(error)(f"{link}: {error}") from None
 
 
 def _some_poses(moved: CaseMotion, growth: float) -> NDArray[np.bool_]:

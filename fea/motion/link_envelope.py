@@ -14,7 +14,7 @@ from fea.motion.critical import critical_nodes
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import fatigue_life, missing_data, strength_at
 from fea.motion.mesh_factors import MeshFactors
-from fea.motion.peaks import Peaks, principal_peaks, von_mises_peaks
+from fea.motion.peaks import Peaks, largest_stress
 from fea.motion.unit_loads import TRANSFERS, unit_loads
 from fea.motion.unit_solutions import UnitSolutions, solve_units
 from fea.refine.convergence import ALONE
@@ -39,7 +39,7 @@ ELSEWHERE, FATIGUE_ELSEWHERE = (
 )
 
 
-def link_envelope(
+def link_motion(
     space: DisplacementSpace,
     *,
     link: str,
@@ -49,14 +49,9 @@ def link_envelope(
     evaluated: NDArray[np.bool_],
     stated: Transfer | None,
     returns: bool,
-    fatigue: bool = True,
-    repetitions: float | None = None,
-    refined: RefinedSolid | None = None,
-    scatter: Mapping[str, Scatter] | None = None,
-    notes: tuple[str, ...] = (),
     threads: int | None = None,
-) -> LinkEnvelope:
-    """Solve one link over a motion.
+) -> "LinkMotion":
+    """Solve one link over a motion, on one mesh.
 
     Parameters
     ----------
@@ -73,50 +68,27 @@ def link_envelope(
         How the drive torque enters, by the case; the other way stands in the band.
     returns : bool
         True where the last pose is the first again; else the motion goes there and back.
-    fatigue : bool, optional
-        False to leave it out.
-    repetitions : float, optional
-        Of the motion that are wanted.
-    refined : RefinedSolid, optional
-        The series of meshes that ended with this one, solved at the worst pose: for the bands.
-    scatter : mapping of str to Scatter, optional
-        Load case -> that of its loads.
-    notes : tuple of str, optional
     threads : int, optional
 
     Returns
     -------
-    LinkEnvelope
+    LinkMotion
 
     Raises
     ------
     CannotRunError
         For loads that do not balance, supports that react, or a failing solver.
     """
-    solved, variants = _solved(space, body, material, histories, evaluated, threads)
-    lacking = _lacking(material, evaluated) if fatigue else "it was not asked for"
-    over = _Motion(solved=solved, material=material, evaluated=evaluated, stated=stated, returns=returns)
-    found = over.envelopes(variants, refined, scatter or {}, repetitions, fatigue=not lacking)
-    worst = min(found.values(), key=lambda load_case: load_case.severity)
-    raw = solved.field(worst.governing.first + int(np.count_nonzero(evaluated[: worst.pose])))
-    return LinkEnvelope(
+    solved, curves = _solved(space, body, material, histories, evaluated, threads)
+    return LinkMotion(
         link=link,
-        measure=stress_measure(brittle=material.brittle),
-        strength=material.allowable,
-        load_cases=found,
-        elements=len(space.cells),
-        unknowns=space.unknowns,
-        units=solved.units,
-        modes=len(solved.combination),
-        solver=solved.solver,
-        solver_reason=solved.solver_reason,
-        solver_error=solved.solver_error,
-        reaction=float(solved.reaction.max()),
-        imbalance=float(solved.imbalance.max()),
-        field=stress_field(space, raw, E=material.youngs_modulus, nu=material.poissons_ratio),
-        displacement=_relative(space, body.pins, raw),
-        no_fatigue=lacking,
-        notes=notes,
+        body=body,
+        material=material,
+        evaluated=evaluated,
+        stated=stated,
+        returns=returns,
+        solved=solved,
+        curves=curves,
     )
 
 
@@ -157,7 +129,7 @@ def _solved(
         threads=threads,
     )
     _balanced(solved)
-    peaks = (principal_peaks if material.brittle else von_mises_peaks)(solved.stress, solved.combination)
+    peaks = largest_stress(solved.stress, solved.combination, brittle=material.brittle)
     curves: dict[str, list[VariantCurve]] = {history.name: [] for history in chosen}
     for number, (name, law, transfer) in enumerate(names):
         curves[name].append(_curve(law, transfer, peaks, number * int(evaluated.sum()), evaluated))
@@ -191,39 +163,106 @@ def _curve(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Motion:
-    """A link solved over a motion, from which the envelopes of its load cases are drawn."""
+class LinkMotion:
+    """A link solved over a motion on one mesh.
 
-    solved: UnitSolutions
+    Attributes
+    ----------
+    link : str
+    body : Body
+    material : Material
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+    stated : Transfer or None
+        How the drive torque enters, by the case.
+    returns : bool
+        True where the last pose is the first again.
+    solved : UnitSolutions
+        Of all loads of all variants.
+    curves : dict of str to list of VariantCurve
+        Load case -> peaks of its variants.
+    """
+
+    link: str
+    body: Body
     material: Material
     evaluated: NDArray[np.bool_]
     stated: Transfer | None
     returns: bool
+    solved: UnitSolutions
+    curves: Mapping[str, Sequence[VariantCurve]]
 
-    def envelopes(
+    @property
+    def worst_poses(self) -> dict[str, int]:
+        """Number of the pose with the largest peak, for every load case."""
+        governing = {name: self._governing(variants) for name, variants in self.curves.items()}
+        return {name: int(np.nanargmax(variant.stress)) for name, variant in governing.items()}
+
+    def envelope(
         self,
-        variants: Mapping[str, Sequence[VariantCurve]],
-        refined: RefinedSolid | None,
-        scatter: Mapping[str, Scatter],
-        repetitions: float | None,
         *,
-        fatigue: bool,
-    ) -> dict[str, LoadCaseEnvelope]:
-        """Return the envelope of every load case, with stated scatter in its bands."""
+        fatigue: bool = True,
+        repetitions: float | None = None,
+        refined: RefinedSolid | None = None,
+        scatter: Mapping[str, Scatter] | None = None,
+    ) -> LinkEnvelope:
+        """Return the envelopes of all load cases, in bands.
+
+        Parameters
+        ----------
+        fatigue : bool, optional
+            False to leave it out.
+        repetitions : float, optional
+            Of the motion that are wanted.
+        refined : RefinedSolid, optional
+            The series of meshes that ended with this one, solved at the worst pose: for the bands.
+        scatter : mapping of str to Scatter, optional
+            Load case -> that of its loads.
+
+        Returns
+        -------
+        LinkEnvelope
+        """
+        solved, material, space = self.solved, self.material, self.solved.space
+        lacking = _lacking(material, self.evaluated) if fatigue else "it was not asked for"
         found = {}
-        for name, curves in variants.items():
-            series, load = MeshFactors.of(refined, name, self.material), scatter.get(name, Scatter())
+        for name, curves in self.curves.items():
+            series, load = MeshFactors.of(refined, name, material), (scatter or {}).get(name, Scatter())
             own = self._estimated(self._by_meshes(name, curves, series), series)
-            own = _scattered(own, self.material, load)
-            if fatigue and own.known:
+            own = _scattered(own, material, load)
+            if not lacking and own.known:
                 own = replace(own, fatigue=self._fatigue(own, series, load, repetitions))
             found[name] = own
-        return found
+        worst = min(found.values(), key=lambda load_case: load_case.severity)
+        raw = solved.field(worst.governing.first + int(np.count_nonzero(self.evaluated[: worst.pose])))
+        return LinkEnvelope(
+            link=self.link,
+            measure=stress_measure(brittle=material.brittle),
+            strength=material.allowable,
+            load_cases=found,
+            elements=len(space.cells),
+            unknowns=space.unknowns,
+            units=solved.units,
+            modes=len(solved.combination),
+            solver=solved.solver,
+            solver_reason=solved.solver_reason,
+            solver_error=solved.solver_error,
+            reaction=float(solved.reaction.max()),
+            imbalance=float(solved.imbalance.max()),
+            field=stress_field(space, raw, E=material.youngs_modulus, nu=material.poissons_ratio),
+            displacement=_relative(space, self.body.pins, raw),
+            no_fatigue=lacking,
+            notes=() if refined is None else refined.solution.notes,
+        )
+
+    def _governing(self, variants: Sequence[VariantCurve]) -> VariantCurve:
+        """The variant of the largest peak, of those with the stated transfer."""
+        return max((v for v in variants if v.transfer in (None, self.stated)), key=lambda v: v.peak)
 
     def _by_meshes(self, name: str, variants: Sequence[VariantCurve], series: MeshFactors) -> LoadCaseEnvelope:
         """Return the envelope in bands by the meshes of the worst pose."""
         own = [v for v in variants if v.transfer in (None, self.stated)]
-        governing = max(own, key=lambda v: v.peak)
+        governing = self._governing(variants)
         pose = int(np.nanargmax(governing.stress))
         value = np.array([v.stress for v in own]).max(axis=0)
         # Under compression the ends of a band change places. Compression does not break a brittle part, so 0 is least.

@@ -175,6 +175,7 @@ def refine_links(
     start: MeshSettings,
     effort: Effort,
     *,
+    first: Mapping[str, TaggedMesh] | None = None,
     threads: int | None = None,
     progress: Progress = lambda message: None,
 ) -> dict[str, RefinedSolid]:
@@ -190,6 +191,8 @@ def refine_links(
         Settings of the first mesh.
     effort : Effort
         What accuracy is asked for and what it may cost.
+    first : dict of str to TaggedMesh, optional
+        First meshes that are there already.
     threads : int or None, optional
         Upper bound on the threads of the libraries; their own choice where it is None.
     progress : Progress, optional
@@ -210,7 +213,7 @@ def refine_links(
     with ThreadPoolExecutor(max_workers=2) as pool:
         try:
             for link in links:
-                link.order_mesh(pool)
+                link.order_mesh(pool, (first or {}).get(link.name))
             while open_links := [link for link in links if not link.done]:
                 for link in open_links:
                     link.advance(pool, threads, time.perf_counter() - begun, progress)
@@ -233,9 +236,13 @@ class _Link:
         self._mesh: Future[TaggedMesh] | None = None
         self._sharp: Future[list[ReentrantEdge]] | None = None
 
-    def order_mesh(self, pool: ThreadPoolExecutor) -> None:
-        """Have the next mesh made, and the re-entrant edges found where they may matter."""
-        self._mesh = pool.submit(mesh_body, self.task.body, self.settings)
+    def order_mesh(self, pool: ThreadPoolExecutor, mesh: TaggedMesh | None = None) -> None:
+        """Have the next mesh made unless it is there, and the re-entrant edges found where they may matter."""
+        if mesh is None:
+            self._mesh = pool.submit(mesh_body, self.task.body, self.settings)
+        else:
+            self._mesh = Future()
+            self._mesh.set_result(mesh)
         if self._sharp is None and (self.task.may_be_sharp or self._growing):
             self._sharp = pool.submit(reentrant_edges, self.task.body)
 

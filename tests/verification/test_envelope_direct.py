@@ -5,8 +5,8 @@ import pytest
 import solid_meshes
 from turning_load import BODY, POSES, RHO, L, history
 
-from fea.motion.link_envelope import link_envelope
-from fea.motion.peaks import von_mises_peaks
+from fea.motion.link_envelope import link_motion
+from fea.motion.peaks import largest_stress
 from fea.motion.unit_loads import TRANSFERS, unit_loads
 from fea.motion.unit_solutions import solve_units
 from fea.solid.solution import solve_solid
@@ -43,7 +43,7 @@ def solved(space):
 
 @pytest.mark.parametrize("pose", [0, 5, 10, 14, 21])
 def test_fields_and_peaks_equal_a_direct_solution(mesh, space, solved, pose):
-    peaks = von_mises_peaks(solved.stress, solved.combination)
+    peaks = largest_stress(solved.stress, solved.combination, brittle=False)
     direct = solve_solid(
         mesh, E=E, nu=NU, density=RHO, loads=[history(space).chosen(pose)], line=("bore:A", "bore:B"), threads=1
     )
@@ -92,10 +92,10 @@ def test_two_forces_of_one_line_need_few_solutions(space):
 
 def test_envelope_of_a_link_finds_the_pose_of_the_largest_direct_peak(mesh, space):
     loads = history(space)
-    found = link_envelope(
+    found = link_motion(
         space, link="bar", body=BODY, material=MATERIAL.model_copy(update={"density": RHO}), histories=[loads],
         evaluated=np.ones(POSES, dtype=bool), stated="bore-shear", returns=True, threads=1,
-    )  # fmt: skip
+    ).envelope()  # fmt: skip
     worst = found.worst
     direct = []
     for pose in range(POSES):

@@ -7,7 +7,7 @@ import pytest
 import solid_meshes
 from turning_load import BODY, POSES, RHO, history
 
-from fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, link_envelope
+from fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, link_motion
 from fea.refine.level import level_of
 from fea.refine.link_series import precision
 from fea.refine.refinement import MeshRecord, RefinedSolid
@@ -39,11 +39,10 @@ def refined_at(mesh, pose):
 
 def enveloped(mesh, refined, *, fatigue=False):
     space = displacement_space(mesh)
-    found = link_envelope(
+    found = link_motion(
         space, link="bar", body=BODY, material=MATERIAL, histories=[history(space)],
-        evaluated=np.ones(POSES, dtype=bool), stated="eye-faces", returns=True,
-        fatigue=fatigue, refined=refined, threads=1,
-    )  # fmt: skip
+        evaluated=np.ones(POSES, dtype=bool), stated="eye-faces", returns=True, threads=1,
+    ).envelope(fatigue=fatigue, refined=refined)  # fmt: skip
     [load_case] = found.load_cases.values()
     return load_case
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fea.common.link_loads import LinkLoads
-from fea.motion.link_envelope import link_envelope
+from fea.motion.link_envelope import link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.unit_loads import unit_loads
 from fea.motion.unit_solutions import solve_units
@@ -84,10 +84,10 @@ def test_stress_at_every_place_of_the_pin_equals_a_direct_solution(case, mesh, h
 
 def test_the_envelope_of_a_slotted_link_has_its_direct_peaks(case, mesh, history: LinkLoads) -> None:
     material = case.material_of(LINK)
-    found = link_envelope(
+    found = link_motion(
         displacement_space(mesh), link=LINK, body=case.body(LINK), material=material, histories=[history],
-        evaluated=np.ones(history.poses, dtype=bool), stated="eye-faces", returns=True, fatigue=False, threads=1,
-    )  # fmt: skip
+        evaluated=np.ones(history.poses, dtype=bool), stated="eye-faces", returns=True, threads=1,
+    ).envelope(fatigue=False)  # fmt: skip
     for pose in (found.worst.pose, 9, 21):
         for field, variant in zip(direct(mesh, history, pose, material), found.worst.variants, strict=True):
             assert variant.transfer is None
