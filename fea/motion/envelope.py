@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from contextvars import copy_context
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -78,7 +79,10 @@ class _Envelope:
         """Solve all links, as many side by side as there may be threads, each by libraries with one thread."""
         begun = time.perf_counter()
         with bounded(1, children=self.threads), ThreadPoolExecutor(max_workers=self.threads) as pool:
-            found = {link: pool.submit(self._link, link, start, effort, begun, repetitions) for link in self.loaded}
+            found = {
+                link: pool.submit(copy_context().run, self._link, link, start, effort, begun, repetitions)
+                for link in self.loaded
+            }
             try:
                 return {link: envelope.result() for link, envelope in found.items()}
             except BaseException:
@@ -90,19 +94,22 @@ class _Envelope:
         self, link: str, start: MeshSettings, effort: Effort, begun: float, repetitions: float | None
     ) -> LinkEnvelope:
         """Solve one link: the worst poses on a first mesh, finer ones for those, the whole motion on the finest."""
-        case = self.moved.case
+        case, poses = self.moved.case, int(self.evaluated.sum())
         self._tell(f"Meshing {link} ...")
         with _naming(link):
             mesh = mesh_body(case.body(link), start)
+            self._tell(f"Finding the worst poses of {link}: {len(mesh.cells)} elements, {poses} poses ...")
             motion = self._motion(link, displacement_space(mesh))
-            poses = motion.worst_poses
-            task = link_task(case, link, [history.chosen(poses[history.name]) for history in self.loaded[link]])
+            worst = motion.worst_poses
+            task = link_task(case, link, [history.chosen(worst[history.name]) for history in self.loaded[link]])
             require_compressible(task.nu)
         left = replace(effort, time_limit=max(0.0, effort.time_limit - (time.perf_counter() - begun)))
         refined = refine_links({link: task}, start, left, first={link: mesh}, progress=self._tell)[link]
         with _naming(link):
             if len(refined.meshes) > 1:
-                motion = self._motion(link, refined.solution.space)
+                space = refined.solution.space
+                self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
+                motion = self._motion(link, space)
             scatter = {load_case: load_scatter(case, load_case) for load_case in case.load_cases}
             return motion.envelope(repetitions=repetitions, refined=refined, scatter=scatter)
 
@@ -114,8 +121,6 @@ class _Envelope:
 
     def _motion(self, link: str, space: DisplacementSpace) -> LinkMotion:
         """Solve one link over the motion on one mesh."""
-        poses = int(self.evaluated.sum())
-        self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
         case = self.moved.case
         return link_motion(
             space,

@@ -130,6 +130,7 @@ def _solved(
     )
     _balanced(solved)
     peaks = largest_stress(solved.stress, solved.combination, brittle=material.brittle)
+    peaks = replace(peaks, node=solved.nodes[peaks.node])
     curves: dict[str, list[VariantCurve]] = {history.name: [] for history in chosen}
     for number, (name, law, transfer) in enumerate(names):
         curves[name].append(_curve(law, transfer, peaks, number * int(evaluated.sum()), evaluated))
@@ -334,7 +335,8 @@ class LinkMotion:
             count = int(np.isfinite(variant.stress).sum())
             parts.append(self.solved.combination[:, variant.first : variant.first + count])
         critical = critical_nodes(self.solved.stress, parts, self.material)
-        for variant, (node, history) in zip(load_case.variants, critical, strict=True):
+        for variant, (number, history) in zip(load_case.variants, critical, strict=True):
+            node = int(self.solved.nodes[number])
             closed = closed_history(history, returns=self.returns)
             life = fatigue_life(closed, self.material)
             factors = series.of_variant(variant)

@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 
 from fea.common import memory
 from fea.motion.unit_loads import UnitLoads
-from fea.solid.elasticity import assemble_stiffness, jacobians, lame_constants, reference_basis
-from fea.solid.solve import Method, factorise
-from fea.solid.space import DisplacementSpace
+from fea.solid.elasticity import jacobians, lame_constants, reference_basis
+from fea.solid.solution import FreeSolution, solve_free
+from fea.solid.solve import Method
+from fea.solid.space import DisplacementSpace, upper_half
 from fea.solid.stress import PAIRS, carry_to_nodes
-from fea.solid.supports import isostatic_supports
-from fea.solid.two_level import linear_level
 
 Real = NDArray[np.float64]
 
@@ -39,8 +38,10 @@ class UnitSolutions:
         Of the link's mesh.
     displacement : ndarray, shape (3 nodes, modes)
         Supported isostatically [mm].
-    stress : ndarray, shape (nodes, 6, modes)
-        Recovered at the nodes [MPa].
+    nodes : ndarray of int, shape (h,)
+        Those that tell all stress: all, or those of the upper half of a body and loads that are their own image.
+    stress : ndarray, shape (h, 6, modes)
+        Recovered at these nodes [MPa].
     combination : ndarray, shape (modes, N)
         Of the modes under N loads.
     reaction : ndarray, shape (N,)
@@ -57,6 +58,7 @@ class UnitSolutions:
 
     space: DisplacementSpace
     displacement: Real
+    nodes: NDArray[np.int64]
     stress: Real
     combination: Real
     reaction: Real
@@ -128,38 +130,35 @@ def solve_units(
     whole = units.wrenches @ coefficients
     whole[3:] -= np.cross(space.nodes.mean(axis=0), whole[:3].T).T
     imbalance = np.maximum(np.linalg.norm(whole[:3], axis=0), np.linalg.norm(whole[3:], axis=0) / size) / scale
-    K = assemble_stiffness(space, E=E, nu=nu)
-    supports = isostatic_supports(space.nodes, space.corners)
-    rows = np.zeros((space.unknowns, 6))
-    rows[supports, np.arange(6)] = 1.0
-    rows = K @ rows
-    factor = factorise(
-        K.with_fixed(supports),
-        level=linear_level(space, E=E, nu=nu, fixed=supports),
-        right_hand_sides=count,
-        method=method,
-        threads=threads,
-    )
     F = np.empty((space.unknowns, count), order="F")  # as solvers take it
     for mode, column in zip(modes.T, F.T, strict=True):
         column[:] = units.vectors @ mode
-    held = F[supports]
-    F[supports] = 0.0
-    answer = factor.solved(F)
-    U = answer.x
-    reaction = np.abs((rows.T @ U - held) @ combination).max(axis=0) / scale
+    free = solve_free(space, F, E=E, nu=nu, method=method, threads=threads)
+    nodes, stress = _stress(space, free, E=E, nu=nu)
     return UnitSolutions(
         space=space,
-        displacement=U,
-        stress=nodal_stress(space, U, E=E, nu=nu),
+        displacement=free.displacement,
+        nodes=nodes,
+        stress=stress,
         combination=combination,
-        reaction=reaction,
+        reaction=np.abs(free.reactions @ combination).max(axis=0) / scale,
         imbalance=imbalance,
         units=units.count,
-        solver=factor.name,
-        solver_reason=factor.reason,
-        solver_error=answer.error,
+        solver=free.solver,
+        solver_reason=free.reason,
+        solver_error=free.error,
     )
+
+
+def _stress(space: DisplacementSpace, free: FreeSolution, *, E: float, nu: float) -> tuple[NDArray[np.int64], Real]:
+    """Return the nodes that tell all stress, those of the upper half if it can, and the stress there."""
+    half = upper_half(space)
+    if half is None or not free.symmetric.all():
+        return np.arange(len(space.nodes)), nodal_stress(space, free.displacement, E=E, nu=nu)
+    upper = free.displacement.reshape(-1, 3, len(free.symmetric))[half.nodes].reshape(half.space.unknowns, -1)
+    stress = nodal_stress(half.space, upper, E=E, nu=nu)
+    stress[half.on_plane, 4:] = 0.0  # yz and xz have the other sign in the images of the elements there
+    return half.nodes, stress
 
 
 def _modes(units: UnitLoads, coefficients: Real, scale: Real) -> tuple[Real, Real]:

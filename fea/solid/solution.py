@@ -348,7 +348,9 @@ def solve_free(
         free[fixed] = 0.0
         answer = factor.solved(free)
         told.append((count, answer.error, factor.name, factor.reason))
-        return answer.x, (K @ answer.x - load)[supports]
+        unit = np.zeros((len(free), len(supports)))
+        unit[supports, np.arange(len(supports))] = 1.0
+        return answer.x, (K @ unit).T @ answer.x - load[supports]
 
     if half is None:
         supports = isostatic_supports(space.nodes, space.corners)

@@ -1,5 +1,7 @@
 """The stress of a whole motion from unit loads, against direct solutions at single poses."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import solid_meshes
@@ -12,6 +14,7 @@ from fea.motion.unit_solutions import solve_units
 from fea.solid.solution import solve_solid
 from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
+from geometry.meshing.mirror import mirrored
 from geometry.parts.material import library
 from loads.records.bearing import NARROW, WIDE
 
@@ -54,6 +57,24 @@ def test_fields_and_peaks_equal_a_direct_solution(mesh, space, solved, pose):
         assert peaks.value[load] == pytest.approx(field.peak.value, rel=EXACT)
         whole = np.einsum("nim,m->ni", solved.stress, solved.combination[:, load])
         assert np.abs(whole - field.nodal).max() < 2.0 * EXACT * field.peak.value
+
+
+def test_the_upper_half_of_a_body_tells_all_its_stress():
+    mirror = mirrored(solid_meshes.half_bar(around=12, radial=2, along=2, layers=1, tail=4.0))
+    found = []
+    for mesh in (mirror, replace(mirror, mirror=None)):
+        space = displacement_space(mesh)
+        loads = history(space)
+        units = unit_loads(space, BODY, [loads], density=RHO)
+        found.append(
+            solve_units(units, units.coefficients(loads, NARROW, TRANSFERS[0]), loads.size(30.0), E=E, nu=NU, threads=1)
+        )
+    half, whole = found
+    assert len(whole.nodes) == len(whole.space.nodes) > 1.6 * len(half.nodes)
+    fields = [np.einsum("nim,ml->lni", one.stress, one.combination[:, ::7]) for one in found]
+    assert np.abs(fields[0] - fields[1][:, half.nodes]).max() < 1e-9 * np.abs(fields[1]).max()
+    peaks = [largest_stress(one.stress, one.combination, brittle=False) for one in found]
+    assert peaks[0].value == pytest.approx(peaks[1].value, rel=1e-9)
 
 
 def test_supports_do_not_react_although_single_unit_loads_do_not_balance(solved):
