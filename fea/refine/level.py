@@ -1,13 +1,15 @@
 """What is kept of a link's solution on one mesh."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.refine.error_estimate import ErrorEstimate, estimate_error
-from fea.solid.solution import SolidSolution
-from fea.solid.stress import stress_field
+from fea.solid.solution import SolidCase, SolidSolution
+from fea.solid.space import UpperHalf, upper_half
+from fea.solid.stress import COMPONENTS, extreme_principal, stress_field
 from loads.records.bearing import Span
 
 _EDGE = (6.0 * np.sqrt(2.0)) ** (1.0 / 3.0)  # edge of a regular tetrahedron over the cube root of its volume
@@ -127,26 +129,48 @@ def level_of(solution: SolidSolution, volume: float) -> Level:
     Level
         What is kept of the mesh.
     """
-    space, figures = solution.space, []
-    weights = np.empty(0)
-    for case in solution.cases:
-        field = stress_field(space, case.displacement, E=solution.E, nu=solution.nu)
-        weights = field.weights.sum(axis=1)
-        figures.append(
-            CaseFigures(
-                von_mises=field.von_mises,
-                principal=field.principal[:, 0],
-                estimate=estimate_error(field, case.displacement, E=solution.E, nu=solution.nu),
-                energy=case.strain_energy,
-                displacement=case.displacement_max,
-                span=case.span,
-            )
-        )
+    space, half = solution.space, upper_half(solution.space)
+    found = [_figures(solution, case, half if case.symmetric else None) for case in solution.cases]
+    volumes = found[0][1]
     return Level(
         nodes=space.nodes,
         cells=space.cells,
         centres=space.nodes[space.cells[:, :4]].mean(axis=1),
-        volumes=weights,
-        chord=abs(float(weights.sum()) / volume - 1.0),
-        figures=tuple(figures),
+        volumes=volumes,
+        chord=abs(float(volumes.sum()) / volume - 1.0),
+        figures=tuple(figures for figures, _ in found),
     )
+
+
+def _figures(
+    solution: SolidSolution, case: SolidCase, half: UpperHalf | None
+) -> tuple[CaseFigures, NDArray[np.float64]]:
+    """Figures of a case and the volumes of the elements, from the upper half alone where one is given.
+
+    Symmetric displacements have the same stress in an element and in its image, but for the sign of yz and xz, and both
+    meet at a node on the plane, whose average thus has none of these two.
+    """
+    space, moved = solution.space, case.displacement
+    if half is not None:
+        space, moved = half.space, moved[half.nodes]
+    field = stress_field(space, moved, E=solution.E, nu=solution.nu)
+    if half is not None:
+        field.nodal[half.on_plane, COMPONENTS.index("yz") :] = 0.0
+    stress, estimate = field.von_mises, estimate_error(field, moved, E=solution.E, nu=solution.nu)
+    tension, volumes = extreme_principal(field.nodal)[0], field.weights.sum(axis=1)
+    if half is not None:
+        stress, tension, volumes = half.both_nodes(stress), half.both_nodes(tension), np.tile(volumes, 2)
+        estimate = ErrorEstimate(
+            energy=np.tile(estimate.energy, 2),
+            stress=np.tile(estimate.stress, 2),
+            energy_norm=math.sqrt(2.0) * estimate.energy_norm,
+        )
+    figures = CaseFigures(
+        von_mises=stress,
+        principal=tension,
+        estimate=estimate,
+        energy=case.strain_energy,
+        displacement=case.displacement_max,
+        span=case.span,
+    )
+    return figures, volumes

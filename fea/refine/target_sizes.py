@@ -136,6 +136,8 @@ def next_sizes(
     corners = space.cells[:, :4]
     finest = np.full(space.corners, np.inf)
     np.minimum.at(finest, corners.ravel(), np.repeat(sizes / factor, 4))
+    if space.mirror is not None:  # what one half asks for, both get: the mesh is made of a half and its image
+        finest = np.minimum(finest, finest[space.mirror[: space.corners]])
     return space.nodes[: space.corners], _rounded(_graded(space, finest))
 
 

@@ -147,6 +147,23 @@ class UpperHalf:
         field[self.nodes] = symmetric + antisymmetric
         return field
 
+    def both_nodes(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return what has the same value at a node and at its image.
+
+        Parameters
+        ----------
+        values : ndarray, shape (h,)
+            At the nodes of the half.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            At the nodes of the whole.
+        """
+        found = np.empty(2 * len(values) - np.count_nonzero(self.on_plane))
+        found[self.nodes] = found[self.images] = values
+        return found
+
 
 def upper_half(space: DisplacementSpace) -> UpperHalf | None:
     """Return the half z ≥ 0 of a space.
@@ -200,10 +217,6 @@ def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace
     CannotRunError
         For an element without positive volume, or a tagged triangle that is no boundary face.
     """
-    from skfem import MeshTet1
-    from skfem.assembly.dofs import Dofs
-    from skfem.element import ElementTetP2
-
     used, corner = np.unique(mesh.cells[:, :4], return_inverse=True)
     corner = corner.reshape(-1, 4)
     points = mesh.points[used]
@@ -212,8 +225,7 @@ def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace
     if order == 1:
         nodes, cells = points, corner
     else:
-        topology = MeshTet1(np.ascontiguousarray(points.T), np.ascontiguousarray(corner.T))
-        cells = Dofs(topology, ElementTetP2()).element_dofs.T.astype(np.int64)
+        cells = np.hstack([corner, len(points) + _edge_numbers(corner)])
         nodes = np.empty((int(cells.max()) + 1, 3))
         nodes[: len(points)] = points
         if mesh.curved:
@@ -244,6 +256,13 @@ def displacement_space(mesh: TaggedMesh, *, order: int = 2) -> DisplacementSpace
         surfaces=_named(boundary, {name: from_point[t] for name, t in mesh.surfaces.items()}, len(used)),
         mirror=None if mesh.mirror is None else _images(cells),
     )
+
+
+def _edge_numbers(corner: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the numbers (m, 6) of the elements' edges, in the order of their corners."""
+    ends = np.sort(corner[:, EDGES], axis=2)
+    _, number = np.unique(ends[..., 0] * (int(corner.max()) + 1) + ends[..., 1], return_inverse=True)
+    return np.asarray(number).reshape(-1, len(EDGES))
 
 
 def _images(cells: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -1,9 +1,12 @@
+import dataclasses
+
 import numpy as np
 import pytest
 import solid_meshes
 
 from fea.refine.target_sizes import GROWTH, MOST_RATIO, SERIES_RATIO, LocalGoal, element_sizes, next_sizes, reduction
 from fea.solid.space import displacement_space
+from geometry.meshing.mirror import mirrored
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +72,14 @@ def test_sizes_grow_slowly(space):
     )
     length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
     assert (np.abs(sizes[edges[:, 0]] - sizes[edges[:, 1]]) <= GROWTH * length * (1.0 + 1e-6)).all()
+
+
+def test_a_mesh_of_two_halves_becomes_finer_in_both():
+    space = displacement_space(mirrored(solid_meshes.half_bar()))
+    peak = dataclasses.replace(goal(space, 0.0), location=np.array([0.75, 0.0, 1.5]))
+    points, sizes = next_sizes(space, [], [peak])
+    above, below = (int(np.argmin(np.linalg.norm(points - (0.75, 0.0, z), axis=1))) for z in (1.5, -1.5))
+    assert sizes[above] == sizes[below] < 0.8 * element_sizes(space)[(space.cells == below).any(axis=1)].mean()
 
 
 def test_rounding_of_the_estimate_leaves_the_sizes_as_they_are(space):
