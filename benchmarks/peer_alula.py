@@ -44,7 +44,8 @@ def main() -> None:
     path, solver, threads = sys.argv[1], sys.argv[2], int(sys.argv[3])
     with bounded(threads):
         space, fixed, load = problem(path)
-        K = assemble_stiffness(space, E=E, nu=NU).with_fixed(fixed)
+        K = assemble_stiffness(space, E=E, nu=NU)
+        K.fix(fixed)
         load[fixed] = 0.0
         level = linear_level(space, E=E, nu=NU, fixed=fixed)
         factor = factorise(K, level=level, method=None if solver == "auto" else solver, threads=threads)

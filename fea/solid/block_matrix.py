@@ -71,8 +71,43 @@ class SymmetricBlockMatrix:
             out[:] = self.product(np.ascontiguousarray(column, dtype=np.float64))
         return found
 
+    def fix(self, unknowns: NDArray[np.int64]) -> Any:
+        """Set rows and columns of these unknowns to zero but for their diagonal entries, here and not in a copy.
+
+        Parameters
+        ----------
+        unknowns : ndarray of int
+            That are fixed.
+
+        Returns
+        -------
+        csr_array, shape (size, size)
+            What was taken away: with it the matrix is the one before.
+        """
+        from scipy.sparse import coo_array
+
+        self.__dict__.pop("product", None)  # it may hold a copy
+        fixed = np.zeros((len(self.indptr) - 1, 3), dtype=np.bool_)
+        fixed.reshape(-1)[unknowns] = True
+        touched = np.any(fixed, axis=1, keepdims=True)[:, 0]
+        rows = np.repeat(np.arange(len(fixed), dtype=np.int32), np.diff(self.indptr))
+        place = np.flatnonzero(touched[rows] | touched[self.indices])
+        row, column = rows[place], self.indices[place]
+        cleared = fixed[row][:, :, None] | fixed[column][:, None, :]
+        cleared[row == column] &= ~np.eye(3, dtype=np.bool_)
+        block, i, j = np.nonzero(cleared)
+        values, i, j = self.blocks[place[block], i, j], i + 3 * row[block], j + 3 * column[block]
+        self.blocks[place] = np.where(cleared, 0.0, self.blocks[place])
+        above = row[block] != column[block]  # diagonal blocks are stored whole
+        i, j = np.concatenate([i, j[above]]), np.concatenate([j, i[above]])
+        return coo_array((np.concatenate([values, values[above]]), (i, j)), shape=(self.size, self.size)).tocsr()
+
+    def copy(self) -> "SymmetricBlockMatrix":
+        """Return a matrix with blocks of its own."""
+        return SymmetricBlockMatrix(indptr=self.indptr, indices=self.indices, blocks=self.blocks.copy())
+
     def with_fixed(self, unknowns: NDArray[np.int64]) -> "SymmetricBlockMatrix":
-        """Return a copy in which rows and columns of these unknowns are zero but for their diagonal entry.
+        """Return a copy in which these unknowns are fixed.
 
         Parameters
         ----------
@@ -82,20 +117,11 @@ class SymmetricBlockMatrix:
         Returns
         -------
         SymmetricBlockMatrix
-            A copy.
+            The copy; what was taken away is lost.
         """
-        fixed = np.zeros((len(self.indptr) - 1, 3), dtype=np.bool_)
-        fixed.reshape(-1)[unknowns] = True
-        touched = np.any(fixed, axis=1, keepdims=True)[:, 0]
-        rows = np.repeat(np.arange(len(fixed), dtype=np.int32), np.diff(self.indptr))
-        place = np.flatnonzero(touched[rows] | touched[self.indices])
-        cleared = fixed[rows[place]][:, :, None] | fixed[self.indices[place]][:, None, :]
-        blocks = self.blocks.copy()
-        blocks[place] = np.where(cleared, 0.0, blocks[place])
-        nodes, components = np.nonzero(fixed)
-        diagonal = self.indptr[nodes]
-        blocks[diagonal, components, components] = self.blocks[diagonal, components, components]
-        return SymmetricBlockMatrix(indptr=self.indptr, indices=self.indices, blocks=blocks)
+        found = self.copy()
+        found.fix(unknowns)
+        return found
 
 
 class _ScipyProduct:

@@ -177,15 +177,14 @@ def assemble_stiffness(
     Raises
     ------
     CannotRunError
-        For a material that is not stable, a folded element, or a matrix that does not fit into memory twice, as it is
-        and with its supports.
+        For a material that is not stable, a folded element, or a matrix that does not fit into memory.
     """
     if not (E > 0.0 and 0.0 <= nu < 0.5):
         raise CannotRunError(f"E = {E} MPa with ν = {nu} is no stable compressible material (E > 0, 0 ≤ ν < 0.5)")
     order = space.order if order is None else order
     cells, count = (space.cells[:, :4], space.corners) if order == 1 else (space.cells, len(space.nodes))
     place = _pattern(cells, count)
-    memory.require(2.0 * 72.0 * place.nnz, f"the stiffness matrix of {3 * count:,} unknowns", memory_limit)
+    memory.require(72.0 * place.nnz, f"the stiffness matrix of {3 * count:,} unknowns", memory_limit)
     blocks = np.zeros((place.nnz, 3, 3))
     first, second = np.triu_indices(cells.shape[1])
     straight, curved = (Kernel(space, order, E, nu) for Kernel in (_StraightElements, _CurvedElements))
@@ -195,11 +194,11 @@ def assemble_stiffness(
             values = kernel(space.nodes[space.cells[chunk]])
             row, column = cells[chunk][:, first], cells[chunk][:, second]
             mirror = row > column
-            target = place[np.minimum(row, column).ravel(), np.maximum(row, column).ravel()]
+            target = place[np.minimum(row, column).ravel(), np.maximum(row, column).ravel()].astype(np.intp)
             for i in range(3):
                 for j in range(3):
                     # The block of a pair whose nodes stand in descending order belongs below the diagonal.
-                    value = values[i, j] if i == j else np.where(mirror, values[j, i], values[i, j])
+                    value = values[:, i, j] if i == j else np.where(mirror, values[:, j, i], values[:, i, j])
                     np.add.at(blocks[:, i, j], target, value.ravel())
     return SymmetricBlockMatrix(indptr=place.indptr, indices=place.indices, blocks=blocks)
 
@@ -221,34 +220,34 @@ def _pattern(cells: NDArray[np.int64], count: int) -> Any:
 
 
 class _StraightElements:
-    """Stiffness blocks (3, 3, k, pairs) of straight-sided elements."""
+    """Stiffness blocks (k, 3, 3, pairs) of straight-sided elements."""
 
     def __init__(self, space: DisplacementSpace, order: int, E: float, nu: float) -> None:
         W, _, gradient = _gradients(space, order, 2)
         first, second = np.triu_indices(gradient.shape[1])
         reference = np.einsum("q,qpk,qpl->klp", W, gradient[:, first], gradient[:, second])
         self.reference = np.ascontiguousarray(reference.reshape(9, -1))
-        self.lam, self.mu = lame_constants(E, nu)
+        self.lame = lame_constants(E, nu)
 
     def __call__(self, nodes: NDArray[np.float64]) -> NDArray[np.float64]:
         inverse, determinant = jacobians(nodes[:, :4], _LINEAR[None])
         G = inverse[:, 0]
-        outer = np.einsum("k,kip,kjq->ijkpq", determinant[:, 0], G, G)
-        laplace = self.mu * (outer[0, 0] + outer[1, 1] + outer[2, 2])
-        S = self.lam * outer + self.mu * outer.transpose(1, 0, 2, 3, 4)
-        for i in range(3):
-            S[i, i] += laplace
-        return np.asarray((S.reshape(-1, 9) @ self.reference).reshape(3, 3, len(nodes), -1))
+        outer = np.einsum("k,kip,kjq->kijpq", determinant[:, 0], G, G)
+        S = _law(outer.reshape(-1, 3, 3, 9), *self.lame)
+        return np.asarray((S.reshape(-1, 9) @ self.reference).reshape(len(nodes), 3, 3, -1))
 
 
 class _CurvedElements:
-    """Stiffness blocks (3, 3, k, pairs) of curved elements."""
+    """Stiffness blocks (k, 3, 3, pairs) of curved elements."""
 
     def __init__(self, space: DisplacementSpace, order: int, E: float, nu: float) -> None:
         self.W, self.geometry, gradient = _gradients(space, order, CURVED_DEGREE)
         self.gradient = np.ascontiguousarray(gradient.transpose(0, 2, 1))
-        self.first, self.second = np.triu_indices(gradient.shape[1])
-        self.lam, self.mu = lame_constants(E, nu)
+        b = gradient.shape[1]
+        first, second = np.triu_indices(b)
+        i, j = np.arange(3)[:, None, None], np.arange(3)[:, None]
+        self.place = (3 * b * (b * i + first) + b * j + second).ravel()  # in a matrix (3b, 3b)
+        self.lame = lame_constants(E, nu)
 
     def __call__(self, nodes: NDArray[np.float64]) -> NDArray[np.float64]:
         k, b = len(nodes), self.gradient.shape[2]
@@ -257,13 +256,19 @@ class _CurvedElements:
         G = inverse @ self.gradient
         G *= np.sqrt(determinant * self.W)[:, :, None, None]
         G = G.reshape(k, len(self.W), 3 * b)
-        M = (G.transpose(0, 2, 1) @ G).reshape(k, 3, b, 3, b)[:, :, self.first, :, self.second]
-        M = M.transpose(2, 3, 1, 0)  # [i, j, k, pair]
-        laplace = self.mu * (M[0, 0] + M[1, 1] + M[2, 2])
-        K = self.lam * M + self.mu * M.transpose(1, 0, 2, 3)
-        for i in range(3):
-            K[i, i] += laplace
-        return np.asarray(K)
+        M = np.take((G.transpose(0, 2, 1) @ G).reshape(k, -1), self.place, axis=1)
+        return _law(M.reshape(k, 3, 3, -1), *self.lame)
+
+
+def _law(M: NDArray[np.float64], lam: float, mu: float) -> NDArray[np.float64]:
+    """Stiffness λ M_ij + μ M_ji + μ δ_ij M_ll of products M (k, 3, 3, ...) of gradients; M is overwritten."""
+    K = lam * M
+    M *= mu
+    K += M.swapaxes(1, 2)
+    laplace = M[:, 0, 0] + M[:, 1, 1] + M[:, 2, 2]
+    for i in range(3):
+        K[:, i, i] += laplace
+    return K
 
 
 def _gradients(

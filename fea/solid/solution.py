@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.link_loads import LinkLoads
+from fea.solid.block_matrix import SymmetricBlockMatrix
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.load_vectors import LoadVectors, Variant
 from fea.solid.solve import Method, factorise
@@ -340,21 +341,22 @@ def solve_free(
 
     told: list[tuple[int, float, str, str]] = []
 
-    def held(load: Real, fixed: NDArray[np.int64], supports: NDArray[np.int64]) -> tuple[Real, Real]:
-        """Return displacements and the reactions of the supports among what is fixed; the factor goes."""
+    def held(
+        K: SymmetricBlockMatrix, load: Real, fixed: NDArray[np.int64], supports: NDArray[np.int64]
+    ) -> tuple[Real, Real]:
+        """Return displacements and the reactions of the supports among what is fixed, in K too; the factor goes."""
         level, count = linear_level(body, E=E, nu=nu, fixed=fixed), load.shape[1]
-        factor = factorise(K.with_fixed(fixed), level=level, right_hand_sides=count, method=method, threads=threads)
+        removed = K.fix(fixed)
+        factor = factorise(K, level=level, right_hand_sides=count, method=method, threads=threads)
         free = load.copy()
         free[fixed] = 0.0
         answer = factor.solved(free)
         told.append((count, answer.error, factor.name, factor.reason))
-        unit = np.zeros((len(free), len(supports)))
-        unit[supports, np.arange(len(supports))] = 1.0
-        return answer.x, (K @ unit).T @ answer.x - load[supports]
+        return answer.x, removed[supports] @ answer.x - load[supports]
 
     if half is None:
         supports = isostatic_supports(space.nodes, space.corners)
-        displacement, reactions = held(F, supports, supports)
+        displacement, reactions = held(K, F, supports, supports)
         symmetric, what = np.zeros(count, dtype=np.bool_), ""
     else:
         parts = half.parts(F.reshape(-1, 3, count))
@@ -365,11 +367,13 @@ def solve_free(
         rows = zip(
             parts, loaded, conditions, half_supports(body.nodes, body.corners), np.split(reactions, 2), strict=True
         )
+        again = all(columns.any() for columns in loaded)
         for part, columns, flat, supports, reaction in rows:
             if columns.any():
                 part[half.on_plane] /= 2.0
                 load = part[..., columns].reshape(body.unknowns, -1)
-                moved, borne = held(load, np.concatenate([flat, supports]), supports)
+                matrix, again = K.copy() if again else K, False
+                moved, borne = held(matrix, load, np.concatenate([flat, supports]), supports)
                 part[..., columns], reaction[:, columns] = moved.reshape(-1, 3, load.shape[1]), 2.0 * borne
             part[..., ~columns] = 0.0
         displacement, symmetric, what = half.whole(*parts).reshape(F.shape), ~loaded[1], "half the body, "

@@ -22,7 +22,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.elasticity import jacobians, reference_basis, stress
+from fea.solid.elasticity import jacobians, lame_constants, reference_basis
 from fea.solid.quadrature import SurfaceQuadrature, face_quadrature
 from fea.solid.space import DisplacementSpace
 from geometry.base.errors import CannotRunError
@@ -190,7 +190,7 @@ class StressField:
         ndarray, shape (n,)
             Stress [MPa].
         """
-        return self.principal[:, 0] if brittle else self.von_mises
+        return extreme_principal(self.nodal)[0] if brittle else self.von_mises
 
     @property
     def peak(self) -> Peak:
@@ -287,7 +287,8 @@ def stress_field(space: DisplacementSpace, displacement: NDArray[np.float64], *,
     X, W, phi, _ = reference_basis(space, space.order)
     shape = (len(space.cells), len(W))
     at_points, weights = np.empty((*shape, 6)), np.empty(shape)
-    for part, sigma, volume in element_stress(space, displacement, space.order, E=E, nu=nu):
+    every = np.arange(len(space.cells))
+    for part, sigma, volume in element_stress(space, displacement, space.order, every, E=E, nu=nu):
         at_points[part], weights[part] = sigma, volume
     return StressField(
         space=space,
@@ -299,8 +300,14 @@ def stress_field(space: DisplacementSpace, displacement: NDArray[np.float64], *,
 
 
 def element_stress(
-    space: DisplacementSpace, displacement: NDArray[np.float64], degree: int, *, E: float, nu: float
-) -> Iterator[tuple[slice, NDArray[np.float64], NDArray[np.float64]]]:
+    space: DisplacementSpace,
+    displacement: NDArray[np.float64],
+    degree: int,
+    members: NDArray[np.int64],
+    *,
+    E: float,
+    nu: float,
+) -> Iterator[tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]]:
     """Yield the elements' own stress at the points of a rule.
 
     Parameters
@@ -311,6 +318,8 @@ def element_stress(
         At the nodes [mm].
     degree : int
         Of the integration rule.
+    members : ndarray of int
+        Elements.
     E : float
         Young's modulus [MPa].
     nu : float
@@ -318,17 +327,45 @@ def element_stress(
 
     Yields
     ------
-    tuple of slice, ndarray and ndarray
-        Which elements, their stress (k, q, 6) [MPa] and the points' volumes (k, q) [mm³].
+    tuple of 3 ndarray
+        Which elements (k,), their stress (k, q, 6) [MPa] and the points' volumes (k, q) [mm³].
     """
     _, W, _, gradient = reference_basis(space, degree)
-    for start in range(0, len(space.cells), _CHUNK):
-        part = slice(start, start + _CHUNK)
+    q, b, _ = gradient.shape
+    local = np.ascontiguousarray(gradient.transpose(0, 2, 1)).reshape(3 * q, b)
+    for start in range(0, len(members), _CHUNK):
+        part = members[start : start + _CHUNK]
         cells = space.cells[part]
         inverse, determinant = jacobians(space.nodes[cells], gradient)
-        slopes = inverse @ gradient.transpose(0, 2, 1)  # [k, q, i, b] = ∂φb/∂x_i
-        tensor = stress((slopes @ displacement[cells][:, None]).swapaxes(-1, -2), E, nu)
-        yield part, np.stack([tensor[..., i, j] for i, j in PAIRS], axis=-1), determinant * W
+        slopes = inverse @ (local @ displacement[cells]).reshape(inverse.shape)  # ∂u_j/∂x_i at [k, q, i, j]
+        yield part, components(slopes, E, nu), determinant * W
+
+
+def components(slopes: NDArray[np.float64], E: float, nu: float) -> NDArray[np.float64]:
+    """Return the stress components of displacement gradients.
+
+    Parameters
+    ----------
+    slopes : ndarray, shape (..., 3, 3)
+        Of the displacement, ∂u_j/∂x_i.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    ndarray, shape (..., 6)
+        Stress [MPa].
+    """
+    lam, mu = lame_constants(E, nu)
+    found = np.empty((*slopes.shape[:-2], 6))
+    dilatation = lam * (slopes[..., 0, 0] + slopes[..., 1, 1] + slopes[..., 2, 2])
+    for number, (i, j) in enumerate(PAIRS):
+        found[..., number] = mu * (slopes[..., i, j] + slopes[..., j, i])
+        if i == j:
+            found[..., number] += dilatation
+    return found
 
 
 def carry_to_nodes(X: NDArray[np.float64], local: int) -> NDArray[np.float64]:
@@ -355,7 +392,7 @@ def carry_to_nodes(X: NDArray[np.float64], local: int) -> NDArray[np.float64]:
 def _averaged(space: DisplacementSpace, X: NDArray[np.float64], at_points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Extrapolate from the integration points X (3, q) to each element's nodes and average over elements."""
     carry = carry_to_nodes(X, space.cells.shape[1])
-    values = np.einsum("bq,kqs->kbs", carry, at_points, optimize=True)
+    values = carry @ at_points
     node = space.cells.ravel()
     sums = [np.bincount(node, values[..., i].ravel(), minlength=len(space.nodes)) for i in range(6)]
     return np.column_stack(sums) / np.bincount(node, minlength=len(space.nodes))[:, None]

@@ -68,7 +68,8 @@ class LinearLevel:
     def stiffness(self) -> SymmetricBlockMatrix:
         """Return the stiffness of the linear displacements, with what is fixed of them."""
         K = assemble_stiffness(self.space, E=self.E, nu=self.nu, order=1)
-        return K.with_fixed(self.fixed[self.fixed < K.size])
+        K.fix(self.fixed[self.fixed < K.size])
+        return K
 
 
 def linear_level(space: DisplacementSpace, *, E: float, nu: float, fixed: NDArray[np.int64]) -> LinearLevel | None:

@@ -143,3 +143,13 @@ def test_fixing_keeps_the_matrix_symmetric_and_the_original_unchanged(system):
         assert diagonal[unknown] == free.full().diagonal()[unknown] > 0.0
     free_rows = np.setdiff1d(np.arange(free.size), fixed)
     assert abs((full - free.full())[free_rows][:, free_rows]).max() == 0.0
+
+
+def test_fixing_in_place_returns_what_it_takes_away(system):
+    free, fixed_matrix, rhs, fixed = system
+    K = free.copy()
+    before = K @ rhs
+    removed = K.fix(fixed)
+    np.testing.assert_array_equal(K.blocks, fixed_matrix.blocks)
+    assert abs(K.full() + removed - free.full()).max() < 1e-15 * abs(free.full()).max()  # full() mirrors one triangle
+    np.testing.assert_allclose(K @ rhs + removed @ rhs, before, rtol=0.0, atol=1e-12 * np.abs(before).max())

@@ -1,5 +1,6 @@
 import dataclasses
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -41,6 +42,19 @@ def test_points_that_no_element_uses_are_left_out():
     np.testing.assert_allclose(space.nodes, expected.nodes)
     np.testing.assert_array_equal(space.cells, expected.cells)
     assert surface_quadrature(space, "end:1").measure == pytest.approx(1.1 * 0.9, rel=1e-12)
+
+
+def test_rounding_of_a_mesher_leaves_edges_straight_and_a_bow_does_not():
+    mesh = solid_meshes.box(counts=(3, 2, 2), curved=True)
+    middle = mesh.cells[:, 4:]
+    noise = np.zeros_like(mesh.points)
+    noise[np.unique(middle)] = 1e-11 * np.random.default_rng(1).normal(size=(len(np.unique(middle)), 3))
+    space = displacement_space(replace(mesh, points=mesh.points + noise))
+    assert not space.curved.any()
+    np.testing.assert_array_equal(space.nodes[space.cells[:, 4]], space.nodes[space.cells[:, :2]].mean(axis=1))
+    noise[middle[0, 0]] = 1e-6
+    bowed = displacement_space(replace(mesh, points=mesh.points + noise))
+    assert set(np.flatnonzero(bowed.curved)) == set(np.flatnonzero((middle == middle[0, 0]).any(axis=1)))
 
 
 def test_curved_volume_and_surface_come_near_the_circle():
