@@ -227,6 +227,7 @@ def check_case(
     fidelity: str = "auto",
     threads: int = 2,
     effort: Effort | None = None,
+    frames: Mapping[str, LargeDisplacement] | None = None,
     progress: Progress = lambda message: None,
 ) -> CheckResult:
     """Check a case: every link under every load case, against every check.
@@ -243,6 +244,8 @@ def check_case(
     threads : int, optional
     effort : Effort, optional
         Accuracy of solid models and what it may cost; by default what the case says.
+    frames : mapping of str to LargeDisplacement, optional
+        Those of an earlier check of the very same case, which are solved anew otherwise.
     progress : callable
         Called with a sentence before every stage that may take long.
 
@@ -262,7 +265,7 @@ def check_case(
     clock = Clock()
     statics = solve_case_statics(case, name)
     clock("pose and statics")
-    moved = {
+    moved = frames or {
         load_case: examine(case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
     }

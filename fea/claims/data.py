@@ -110,7 +110,9 @@ def _yes(fact: bool) -> str:
     return "yes" if fact else "no"
 
 
-def case_tree(case: Case, name: str, *, fidelity: str = "solid", threads: int = 2) -> Tree:
+def case_tree(
+    case: Case, name: str, *, fidelity: str = "solid", threads: int = 2, known: CheckResult | None = None
+) -> Tree:
     """Return the quantities of a case.
 
     Parameters
@@ -123,15 +125,18 @@ def case_tree(case: Case, name: str, *, fidelity: str = "solid", threads: int = 
         "solid" or "beam", which leaves out the branch ``solid``.
     threads : int, optional
         Upper bound on the threads of a solver.
+    known : CheckResult, optional
+        A check; if it is of this case, its frames are not solved again.
 
     Returns
     -------
     Tree
         Its quantities, each computed when it is first asked for.
     """
+    frames = None if known is None or known.case != case else known.frames
     parts = Tree(
         statics=lambda: solve_case_statics(case, name),
-        beam=lambda: check_case(case, name=name, fidelity="beam", threads=threads),
+        beam=lambda: check_case(case, name=name, fidelity="beam", threads=threads, frames=frames),
         solid=lambda: check_case(
             case, name=name, fidelity="solid", threads=threads, effort=replace(effort_of(case), stated=True)
         ),

@@ -9,6 +9,7 @@ from typing import Any
 
 from fea.claims.audit import ClaimResult, Finding, Names, check_claim
 from fea.claims.data import Tree, case_tree, flapping_tree, system_tree
+from fea.outcomes.result import CheckResult
 from geometry.base.errors import CaseError
 from geometry.mechanisms.flapping import FlappingWing
 from loads.case.case_file import built_in_cases, read_case, read_companion
@@ -26,7 +27,12 @@ FIDELITIES = ("solid", "beam")
 
 
 def check_claims(
-    name: str, *, overrides: Iterable[str] = (), fidelity: str = "solid", threads: int = 2
+    name: str,
+    *,
+    overrides: Iterable[str] = (),
+    fidelity: str = "solid",
+    threads: int = 2,
+    known: CheckResult | None = None,
 ) -> tuple[ClaimResult, ...]:
     """Re-derive the claims of a case or of a source document.
 
@@ -41,6 +47,8 @@ def check_claims(
         "beam" leaves out the claims that need a solid model: they cannot be re-derived then.
     threads : int, optional
         Upper bound on the threads of a solver.
+    known : CheckResult, optional
+        A check whose frames are not solved again where it is of the very case that a claim is about.
 
     Returns
     -------
@@ -57,7 +65,7 @@ def check_claims(
     overrides = tuple(overrides)
     if overrides and name in sources() and name not in built_in_cases():
         raise CaseError(f"--set: '{name}' is a source document, not a case; name a case to set its entries anew")
-    solve = partial(_tree_of, threads=threads, fidelity=fidelity)
+    solve = partial(_tree_of, threads=threads, fidelity=fidelity, known=known)
     found: list[ClaimResult] = []
     for source in sources():
         record = read_source(source)
@@ -67,7 +75,7 @@ def check_claims(
             found += _check_source(record, name, partial(solve, overrides={name: overrides}))
     if name in built_in_cases() or not found:
         case = read_case(name, overrides)
-        tree = case_tree(case, name, fidelity=fidelity, threads=threads)
+        tree = case_tree(case, name, fidelity=fidelity, threads=threads, known=known)
         found += [check_claim(claim, Names(tree, {}, claim.not_stated)) for claim in case.claims]
     return tuple(found)
 
@@ -91,12 +99,17 @@ def check_all(*, fidelity: str = "solid", threads: int = 2) -> dict[str, tuple[C
 
 
 def _tree_of(
-    system: System | str, *, fidelity: str, threads: int, overrides: Mapping[str, tuple[str, ...]] | None = None
+    system: System | str,
+    *,
+    fidelity: str,
+    threads: int,
+    known: CheckResult | None,
+    overrides: Mapping[str, tuple[str, ...]] | None = None,
 ) -> Mapping[str, Any]:
     """Return the quantities of a system, or of a built-in case by its name."""
     if isinstance(system, str):
         case = read_case(system, (overrides or {}).get(system, ()))
-        return case_tree(case, system, fidelity=fidelity, threads=threads)
+        return case_tree(case, system, fidelity=fidelity, threads=threads, known=known)
     return system_tree(system, fidelity=fidelity, threads=threads)
 
 

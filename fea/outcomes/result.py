@@ -269,3 +269,8 @@ class CheckResult:
     timings: Mapping[str, float]
     warnings: tuple[str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
+
+    @property
+    def frames(self) -> Mapping[str, LargeDisplacement]:
+        """Load case -> what became of its frame in large displacement."""
+        return {name: found.large_displacement for name, found in self.load_cases.items()}

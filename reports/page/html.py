@@ -3,10 +3,8 @@
 import base64
 import math
 from collections.abc import Mapping
-from functools import cache
 from typing import Any
 
-from fea.claims.audit import ClaimResult
 from fea.claims.sources import check_claims
 from fea.common.verdict import Quantity, Subject, Verdict, reason_for
 from fea.frame.joint_forces import PINNED_STATICS
@@ -59,13 +57,8 @@ def _claims(result: CheckResult) -> dict[str, Any] | None:
     """Return the findings on published figures of a case; None where there are none."""
     if not result.case.claims and result.name not in built_in_cases():
         return None
-    found = _findings(result.name)
+    found = check_claims(result.name, fidelity="beam", known=result)
     return {"count": count(found), "rows": as_records(found)} if found else None
-
-
-@cache
-def _findings(name: str) -> tuple[ClaimResult, ...]:
-    return check_claims(name, fidelity="beam")
 
 
 def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:

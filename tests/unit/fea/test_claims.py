@@ -8,6 +8,7 @@ import pytest
 import solved
 from pydantic import ValidationError
 
+import fea.check.run
 import fea.claims.data
 from fea.claims.audit import Finding, Names, check_claim
 from fea.claims.sources import check_claims
@@ -307,6 +308,23 @@ def test_a_source_and_its_cases():
     # The override reaches them.
     assert {result.claim.name: result for result in part}["pose.CD-text"].finding is Finding.DOES_NOT_HOLD
     assert {result.claim.name: result for result in whole}["pose.CD-text"].finding is Finding.HOLDS
+
+
+def test_a_check_that_is_there_is_not_made_again(monkeypatch):
+    """The page once solved all frames of its case a second time."""
+    whole = {result.claim.name: result for result in solved.claims()["owl-wing"]}
+    known = solved.by_hand("owl-wing-static")
+    heavier = solved.by_hand("owl-wing-static", 'load_cases.weight.forces.0.force=["0 N", "-0.5 N"]')
+    sought = []
+    original = fea.check.run.examine
+    monkeypatch.setattr(fea.check.run, "examine", lambda *what: sought.append(what) or original(*what))
+    found = check_claims("owl-wing-static", fidelity="beam", known=known)
+    assert sought == []
+    by_hand = [result for result in found if result.finding is not Finding.CANNOT_BE_REDERIVED]
+    assert len(by_hand) > 80
+    assert all(result == whole[result.claim.name] for result in by_hand)
+    assert check_claims("owl-wing-static", fidelity="beam", known=heavier) == found  # the frames of another case
+    assert len(sought) == len(known.load_cases)
 
 
 def test_unknown_names_are_refused():
