@@ -16,6 +16,7 @@ from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError, core_schema
 
 from geometry.base.model import refusal
+from geometry.base.usual_units import CELSIUS, USUAL
 
 INTERNAL_UNITS = {
     "length": "mm",
@@ -109,7 +110,7 @@ def parse(text: object, dimension: str) -> float:
         raise refusal(f"the {dimension} must be one finite number and its unit; {_comma_remedy(text) or example}")
     if not unit:
         raise refusal(f"the {dimension} needs its unit; {example}")
-    conversion = _conversion(unit, dimension)
+    conversion = _usual(unit, dimension) or _conversion(unit, dimension)
     if conversion is None:
         raise refusal(f'"{unit}" is not a unit of {dimension}; {example}')
     factor, offset = conversion
@@ -141,6 +142,14 @@ def _split(text: str) -> tuple[float | None, str]:
     if not match or (match[2] and not match[2][0].isalpha() and match[2][0] not in "°/"):
         return None, ""
     return float(match[1]), match[2]
+
+
+def _usual(unit: str, dimension: str) -> tuple[float, float] | None:
+    """Return factor and offset of a unit of the table; None where it has none of this dimension."""
+    if dimension == "temperature" and unit in CELSIUS:
+        return 1.0, 0.0
+    known = USUAL.get(dimension, {}).get(unit)
+    return known and (known[0], 0.0)
 
 
 @cache

@@ -7,11 +7,22 @@ from functools import lru_cache
 
 from geometry.base.errors import CaseError
 from geometry.base.units import TYPOGRAPHY, registry
+from geometry.base.usual_units import ROOTS, USUAL
 from loads.text.explain import printable
 
 Dimensions = tuple[tuple[str, Fraction], ...]
 ANGLE: Dimensions = (("radian", Fraction(1)),)
 _UNIT_NAME = r"[A-Za-zµμ°Ω%]+(?![\w.(])(?:(?:\^|\*\*)-?[1-4](?![\d.]))?"
+_USUAL: dict[str, tuple[float, Dimensions]] = {
+    unit: (root, tuple((name, Fraction(power)) for name, power in ROOTS[dimension].items()))
+    for dimension, units in USUAL.items()
+    for unit, (_, root) in units.items()
+} | {
+    "%": (0.01, ()),
+    "Hz": (1.0, (("second", Fraction(-1)),)),
+    "N*mm*s": (1.0, (("gram", Fraction(1)), ("meter", Fraction(2)), ("second", Fraction(-1)))),
+}
+"""The units of ``USUAL``, and those of published figures that no entry of a case has."""
 UNIT = re.compile(rf"{_UNIT_NAME}(?:[*/]{_UNIT_NAME})*")
 """A unit without spaces; a name before a dot, a bracket or a letter is none."""
 
@@ -121,6 +132,10 @@ def unit_of(text: str) -> tuple[float, Dimensions]:
     """
     if not text:
         return 1.0, ()
+    return _USUAL.get(text) or _by_pint(text)
+
+
+def _by_pint(text: str) -> tuple[float, Dimensions]:
     plain = text.translate(TYPOGRAPHY).replace("%", "percent")
     try:
         if not UNIT.fullmatch(plain) or len(plain) > 64:

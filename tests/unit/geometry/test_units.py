@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 from geometry.base import units
 from geometry.base.model import CaseModel
 from geometry.base.units import EXAMPLES, INTERNAL_UNITS, NOT_NEGATIVE, POSITIVE, parse
+from geometry.base.usual_units import CELSIUS, USUAL
 
 # (dimension, text, value in alula's unit), worked out by hand from the definitions of the units.
 KNOWN = [
@@ -60,6 +61,15 @@ KNOWN = [
 @pytest.mark.parametrize(("dimension", "text", "value"), KNOWN)
 def test_known_conversions(dimension: str, text: str, value: float) -> None:
     assert parse(text, dimension) == pytest.approx(value, rel=1e-9, abs=1e-12)
+
+
+def test_usual_units_are_those_of_pint() -> None:
+    """To the last digit: a case gives the same numbers whichever of both reads it."""
+    assert set(USUAL) | {"temperature"} == set(INTERNAL_UNITS)
+    for dimension, known in USUAL.items():
+        for unit, (factor, _) in known.items():
+            assert units._conversion(unit, dimension) == (factor, 0.0), (dimension, unit)
+    assert {units._conversion(unit, "temperature") for unit in CELSIUS} == {(1.0, 0.0)}
 
 
 def test_every_dimension_is_tested_and_its_example_and_unit_parse() -> None:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from geometry.base.errors import CaseError
 from loads.sources.expression import LONGEST, evaluate, evaluate_number
-from loads.sources.quantity import Value
+from loads.sources.quantity import _USUAL, Value, _by_pint
 
 LENGTHS = {("a",): Value.of(3, "mm"), ("link", "whole-wing"): Value.of(4, "cm"), ("kind",): "open"}
 
@@ -60,6 +60,12 @@ def test_arithmetic(text, expected):
 )
 def test_units(text, unit, expected):
     assert number(text, unit) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+def test_usual_units_are_those_of_pint():
+    assert len(_USUAL) > 40
+    for unit, known in _USUAL.items():
+        assert _by_pint(unit) == known, unit
 
 
 def test_angles_are_exact():
