@@ -1,8 +1,6 @@
-"""The drawing of the linkage in its pose with joint forces, loads and drive torque (matplotlib, PNG)."""
+"""The drawing of the linkage in its pose with joint forces, loads and drive torque, as PNG."""
 
-import io
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,48 +9,20 @@ from fea.outcomes.result import CheckResult
 from loads.records.aero import shares
 from loads.records.applied import LineLoad, PointLoad, in_axes
 from loads.states.actions import stated_loads
+from reports.figures.canvas import Canvas, extent
 from reports.figures.labels import along, place_labels
+from reports.figures.plot import Axes, ticks, widest
+from reports.figures.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, TORQUE, WIDTH
 from reports.words.wording import number, turning
 
 Real = NDArray[np.float64]
 
-INK = "#1c2733"
-LINK = "#9fb1c1"
-GROUND = "#5d6b78"
-JOINT_FORCE = "#c8460b"
-LOAD = "#0067a8"
-TORQUE = "#00795a"
-DPI = 200
-WIDTH = 7.4
-"""Inches; fonts are in points, so this sets how large they read on the page."""
-STYLE = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9.0,
-    "axes.edgecolor": GROUND,
-    "axes.labelcolor": INK,
-    "text.color": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "axes.linewidth": 0.6,
-}
 _ARROW = 0.2
 """Length of the largest force's arrow, as a share of the linkage's size."""
-
-
-def as_png(figure: Any) -> bytes:
-    """Return a matplotlib figure as PNG, without a date, so that equal drawings are equal bytes.
-
-    Parameters
-    ----------
-    figure : object
-
-    Returns
-    -------
-    bytes
-    """
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
-    return stream.getvalue()
+_RIGHT, _BELOW, _ABOVE = 7.0, 62.0, 7.0
+"""Room about the drawing [points]."""
+_LETTERS = 8.5
+"""Size of labels [points]."""
 
 
 def linkage_drawing(result: CheckResult, load_case: str) -> bytes:
@@ -71,38 +41,11 @@ def linkage_drawing(result: CheckResult, load_case: str) -> bytes:
     bytes
         A PNG.
     """
-    from matplotlib import rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    with rc_context(STYLE):
-        sheet = _Sheet(result, load_case)
-        low, high = sheet.extent
-        right, bottom, top = 0.1, 0.85, 0.1  # inches
-        digits = len(f"{np.abs([low[1], high[1]]).max():.0f}")
-        left = 0.62 + 0.08 * max(digits - 3, 0)  # room for the numbers of the y axis
-        wide = WIDTH - left - right
-        tall = min(max(wide * (high - low)[1] / (high - low)[0], 2.6), 8.0)
-        per_inch = max((high - low) / (wide, tall))
-        middle, half = (low + high) / 2.0, per_inch * np.array([wide, tall]) / 2.0
-        height = tall + bottom + top
-        figure = Figure(figsize=(WIDTH, height), dpi=DPI)
-        FigureCanvasAgg(figure)
-        axes = figure.add_axes((left / WIDTH, bottom / height, wide / WIDTH, tall / height))
-        axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
-        axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-        axes.grid(color="#e8ecef", linewidth=0.5)
-        axes.set_axisbelow(True)
-        axes.set_xlabel("x [mm]")
-        axes.set_ylabel("y [mm]")
-        sheet.draw(axes)
-        figure.legend(
-            handles=sheet.legend(), loc="lower center", ncols=3, frameon=False, fontsize=8.5, handlelength=2.2
-        )
-        return as_png(figure)
+    drawing = _Drawing(result, load_case)
+    return drawing.draw().png()
 
 
-class _Sheet:
+class _Drawing:
     """Positions and forces of one load case, and how to draw them."""
 
     def __init__(self, result: CheckResult, load_case: str) -> None:
@@ -127,7 +70,18 @@ class _Sheet:
         tips = [at + f * self.per_newton for _, at, f in (*self._joint_forces(), *self._loads())]
         everything = np.vstack([corners, *[t[None] for t in tips]])
         margin = 0.11 * self.size
-        self.extent = everything.min(axis=0) - margin, everything.max(axis=0) + margin
+        self._lay_out(everything.min(axis=0) - margin, everything.max(axis=0) + margin)
+
+    def _lay_out(self, low: Real, high: Real) -> None:
+        """Choose sheet and scale, the same along x and y, for what lies between two corners."""
+        left = 32.0 + widest(ticks(float(low[1]), float(high[1]), most=9))
+        wide = 72.0 * WIDTH - left - _RIGHT
+        tall = min(max(wide * (high - low)[1] / (high - low)[0], 187.0), 576.0)
+        half = max((high - low) / (wide, tall)) * np.array([wide, tall]) / 2.0
+        (x0, y0), (x1, y1) = (low + high) / 2.0 - half, (low + high) / 2.0 + half
+        self.sheet = Canvas(72.0 * WIDTH, tall + _ABOVE + _BELOW)
+        box = (left, _ABOVE, left + wide, _ABOVE + tall)
+        self.axes = Axes(box=box, x=(float(x0), float(x1)), y=(float(y0), float(y1)))
 
     def _joint_forces(self) -> list[tuple[str, Real, Real]]:
         """(label, point, force) of every joint force that is not nil."""
@@ -168,68 +122,75 @@ class _Sheet:
                     found.append((label, np.asarray(sum(ends) / len(ends)), vector))
         return found
 
-    def draw(self, axes: Any) -> None:
+    def draw(self) -> Canvas:
         """Draw everything; labels last, where there is room."""
-        thickness = 0.011 * self.size
-        obstacles: list[Real] = []
+        sheet, axes, at = self.sheet, self.axes, self.axes.at
+        axes.scale_x(sheet, "x [mm]", grid=True)
+        axes.scale_y(sheet, "y [mm]", label_at=12.0, grid=True)
+        axes.frame(sheet)
+        obstacles = [*self._links(), *self._joints()]
+        labels: list[tuple[Real, str, str]] = []
+        arrows = [(*entry, JOINT_FORCE) for entry in self._joint_forces()]
+        arrows += [(*entry, LOAD) for entry in self._loads()]
+        for text, place, force, colour in arrows:
+            tip = place + force * self.per_newton
+            sheet.arrow(at(place), at(tip), colour)
+            obstacles.append(along(place, tip))
+            labels.append((at(tip[None]), text, colour))
+        for place, middle, moment, radius, text, colour in self._moments():
+            arc = self._arc(place, middle, moment, radius, colour)
+            labels.append((at(arc[::6]), text, colour))
+            obstacles.append(arc)
+        names = [(at(place[None]), name, INK) for name, place in self.pose.points.items()]
+        for link in self.linkage.moving:
+            pieces = [(self.points[link, a], self.points[link, b]) for a, b in self.linkage.links[link].pieces]
+            a, b = max(pieces, key=lambda ab: float(np.linalg.norm(ab[1] - ab[0])))
+            middles = np.array([0.5 * a + 0.5 * b, 0.7 * a + 0.3 * b, 0.3 * a + 0.7 * b])
+            names.append((at(middles), f"link {link}", GROUND))
+        place_labels(sheet, axes.box, [*names, *labels], at(np.vstack(obstacles)), size=_LETTERS)
+        self._legend()
+        return sheet
+
+    def _links(self) -> list[Real]:
+        """Draw the links; returns points of them."""
+        thickness, found = 0.011 * self.size, []
         for link, record in self.linkage.links.items():
             for a, b in ((self.points[link, one], self.points[link, other]) for one, other in record.pieces):
                 if np.linalg.norm(b - a) <= 1e-9 * self.size:
                     continue
                 if link == self.linkage.ground:
-                    axes.plot(*np.array([a, b]).T, color=GROUND, linewidth=0.8, linestyle=(0, (6, 4)), zorder=1)
+                    self._line([a, b], 0.8, dashes=(4.8, 3.2))
                 else:
-                    self._bar(axes, a, b, thickness)
+                    self._bar(a, b, thickness)
                 normal = np.array([a[1] - b[1], b[0] - a[0]]) / np.linalg.norm(b - a)
                 sides = (-1.0, 0.0, 1.0) if link != self.linkage.ground else (0.0,)
-                obstacles += [along(a + side * thickness * normal, b + side * thickness * normal) for side in sides]
+                found += [along(a + side * thickness * normal, b + side * thickness * normal) for side in sides]
+        return found
+
+    def _joints(self) -> list[Real]:
+        """Draw the joints; returns points of them."""
+        found = []
         for name, joint in self.linkage.joints.items():
             at = self._joint(name)
             if joint.type != "revolute":
-                obstacles.append(self._guide(axes, name, at))
+                found.append(self._guide(name, at))
             elif self.linkage.ground in joint.links:
-                obstacles.append(self._support(axes, name, at))
-            axes.plot(*at, marker="o", markersize=5.5, markerfacecolor="white", markeredgecolor=INK, zorder=6)
-            obstacles.append(at[None])
-        labels: list[tuple[Real, str, str]] = []
-        arrows = [(*entry, JOINT_FORCE) for entry in self._joint_forces()]
-        arrows += [(*entry, LOAD) for entry in self._loads()]
-        for text, at, force, colour in arrows:
-            tip = at + force * self.per_newton
-            self._arrow(axes, at, tip, colour)
-            obstacles.append(along(at, tip))
-            labels.append((tip[None], text, colour))
-        for at, middle, moment, radius, text, colour in self._moments():
-            arc = self._arc(axes, at, middle, moment, radius, colour)
-            labels.append((arc[::6], text, colour))
-            obstacles.append(arc)
-        names = [(at[None], name, INK) for name, at in self.pose.points.items()]
-        for link in self.linkage.moving:
-            pieces = [(self.points[link, a], self.points[link, b]) for a, b in self.linkage.links[link].pieces]
-            a, b = max(pieces, key=lambda ab: float(np.linalg.norm(ab[1] - ab[0])))
-            names.append((np.array([0.5 * a + 0.5 * b, 0.7 * a + 0.3 * b, 0.3 * a + 0.7 * b]), f"link {link}", GROUND))
-        place_labels(axes, [*names, *labels], np.vstack(obstacles), fontsize=8.5)
+                found.append(self._support(name, at))
+            self.sheet.disc(self.axes.at(at), 2.75, "#ffffff", INK, 1.0)
+            found.append(at[None])
+        return found
 
-    @staticmethod
-    def _bar(axes: Any, a: Real, b: Real, thickness: float) -> None:
-        from matplotlib.patches import FancyBboxPatch
-        from matplotlib.transforms import Affine2D
+    def _line(self, points: list[Real], width: float, dashes: tuple[float, float] | None = None) -> None:
+        self.sheet.line(self.axes.at(points), GROUND, width, dashes)
 
-        length, angle = float(np.linalg.norm(b - a)), math.atan2(b[1] - a[1], b[0] - a[0])
-        bar = FancyBboxPatch(
-            (0.0, -thickness / 2.0),
-            length,
-            thickness,
-            boxstyle=f"round,pad={thickness / 2.0},rounding_size={thickness}",
-            facecolor=LINK,
-            edgecolor=INK,
-            linewidth=0.6,
-            zorder=2,
-        )
-        bar.set_transform(Affine2D().rotate(angle).translate(*a) + axes.transData)
-        axes.add_patch(bar)
+    def _bar(self, a: Real, b: Real, thickness: float) -> None:
+        """Draw a bar with round ends about its points."""
+        angle = math.atan2(b[1] - a[1], b[0] - a[0])
+        turn = np.linspace(-0.5, 0.5, 13) * np.pi + angle
+        end = thickness * np.column_stack([np.cos(turn), np.sin(turn)])
+        self.sheet.area(self.axes.at(np.vstack([b + end, a - end])), LINK, INK, 0.6)
 
-    def _support(self, axes: Any, joint: str, at: Real) -> Real:
+    def _support(self, joint: str, at: Real) -> Real:
         """Hatched support of a joint to the ground, on the side where no link is; returns its points."""
         others = [
             self.points[link, point] - at
@@ -246,14 +207,14 @@ class _Sheet:
         depth, half = 0.034 * self.size, 0.024 * self.size
         base = at + side * depth
         triangle = np.array([at, base + across * half, base - across * half])
-        axes.fill(*triangle.T, facecolor="white", edgecolor=GROUND, linewidth=0.9, zorder=3)
-        axes.plot(*np.array([base - across * 1.6 * half, base + across * 1.6 * half]).T, color=GROUND, linewidth=1.1)
+        self.sheet.area(self.axes.at(triangle), "#ffffff", GROUND, 0.9)
+        self._line([base - across * 1.6 * half, base + across * 1.6 * half], 1.1)
         for step in np.linspace(-1.5, 1.5, 7):
             start = base + across * half * step
-            axes.plot(*np.array([start, start + (side * 0.6 - across * 0.4) * half]).T, color=GROUND, linewidth=0.7)
+            self._line([start, start + (side * 0.6 - across * 0.4) * half], 0.7)
         return np.vstack([along(at, base + side * half), along(base - across * 1.6 * half, base + across * 1.6 * half)])
 
-    def _guide(self, axes: Any, name: str, at: Real) -> Real:
+    def _guide(self, name: str, at: Real) -> Real:
         """Draw the two sides of the slot or guide that a pin or slider runs in; returns their points."""
         joint = self.linkage.joints[name]
         along_angle = self.pose.angles[joint.links[0]] + joint.direction
@@ -262,19 +223,8 @@ class _Sheet:
         reach = 0.09 * self.size * way
         edges = [along(at - reach + s, at + reach + s) for s in (-side, side)]
         for edge in edges:
-            axes.plot(*edge.T, color=GROUND, linewidth=1.1, zorder=5)
+            self._line([edge[0], edge[-1]], 1.1)
         return np.vstack(edges)
-
-    @staticmethod
-    def _arrow(axes: Any, start: Real, end: Real, colour: str) -> None:
-        axes.annotate(
-            "",
-            xy=tuple(end),
-            xytext=tuple(start),
-            arrowprops={"arrowstyle": "-|>,head_length=0.55,head_width=0.22", "color": colour, "linewidth": 1.5,
-                        "shrinkA": 0.0, "shrinkB": 0.0},
-            zorder=7,
-        )  # fmt: skip
 
     def _moments(self) -> list[tuple[Real, float, float, float, str, str]]:
         """(place, direction of its middle, moment, radius, label, colour) of the drive torque and of stated moments."""
@@ -290,26 +240,30 @@ class _Sheet:
                 found.append((self.points[load.link, load.point], angle, moment, 0.055, text, LOAD))
         return found
 
-    def _arc(self, axes: Any, at: Real, middle: float, moment: float, radius: float, colour: str) -> Real:
+    def _arc(self, at: Real, middle: float, moment: float, radius: float, colour: str) -> Real:
         """Draw a moment as an arc about a point, clear of the link that points to its middle; returns its points."""
         sweep = np.linspace(-1.0, 1.0, 40) * math.radians(60.0) * math.copysign(1.0, moment) + middle
         arc = at + radius * self.size * np.column_stack([np.cos(sweep), np.sin(sweep)])
-        axes.plot(*arc[:-3].T, color=colour, linewidth=1.5, zorder=7)
-        self._arrow(axes, arc[-5], arc[-1], colour)
+        self.sheet.line(self.axes.at(arc[:-4]), colour, 1.5)
+        self.sheet.arrow(self.axes.at(arc[-5]), self.axes.at(arc[-1]), colour)
         return np.asarray(arc)
 
-    def legend(self) -> list[Any]:
-        """Proxies for the legend, with the scale of the arrows."""
-        from matplotlib.lines import Line2D
-
+    def _legend(self) -> None:
+        """Say below the drawing what the colours mean, with the scale of the arrows."""
         key = _round_down(self.largest)
         scale = f"; {number(key, 1)} N is {number(key * self.per_newton, 2)} mm long" if key > 0.0 else ""
-        handles = [Line2D([], [], color=JOINT_FORCE, linewidth=1.5, label=f"joint force{scale}")]
+        entries = [(JOINT_FORCE, f"joint force{scale}")]
         if self._loads() or any(colour == LOAD for *_, colour in self._moments()):
-            handles.append(Line2D([], [], color=LOAD, linewidth=1.5, label="applied load"))
+            entries.append((LOAD, "applied load"))
         if self.reactions.drive is not None and self.reactions.drive_torque != 0.0:
-            handles.append(Line2D([], [], color=TORQUE, linewidth=1.5, label="drive torque"))
-        return handles
+            entries.append((TORQUE, "drive torque"))
+        mark, gap, space = 19.0, 6.0, 16.0
+        widths = [mark + gap + extent(text, _LETTERS)[0] for _, text in entries]
+        x, y = (self.sheet.width - sum(widths) - space * (len(widths) - 1)) / 2.0, self.sheet.height - 12.0
+        for (colour, text), wide in zip(entries, widths, strict=True):
+            self.sheet.line([(x, y), (x + mark, y)], colour, 1.5)
+            self.sheet.write(text, (x + mark + gap, y), anchor="left middle", size=_LETTERS)
+            x += wide + space
 
 
 def _round_down(value: float) -> float:

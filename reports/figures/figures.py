@@ -2,14 +2,13 @@
 
 The bodies are rendered in a child process (``figures_worker.py``), since the graphics library can crash
 where no display or no software renderer is to be had; then the pictures are left out with one warning.
-Scales, labels and the colour bar are drawn around the renderings by matplotlib.
+Scales, labels and the colour bar are drawn around the renderings.
 """
 
 import json
 import subprocess
 import tempfile
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -18,18 +17,19 @@ from numpy.typing import NDArray
 
 from fea.outcomes.result import LinkResult, SolidResult
 from geometry.base import child
-from reports.figures.drawings import DPI, INK, STYLE, WIDTH, as_png
+from reports.figures.canvas import SIZE, Canvas, faint
 from reports.figures.labels import heights, stacked, write_stacked
+from reports.figures.plot import Axes
 from reports.figures.scene import Scene, View, round_scale, scene_of
+from reports.figures.style import INK, WIDTH
 from reports.words.wording import fixed, number, plain
 
 Real = NDArray[np.float64]
 
 TIME_LIMIT = 180.0
 """Seconds for the renderings of one check."""
-COLOUR_MAP = "YlOrRd"
-_WORKERS = 2
-"""Children that render at the same time."""
+_COLOURS = ("#ffffcc", "#ffeda0", "#fed976", "#feb24c", "#fd8d3c", "#fc4e2a", "#e31a1c", "#bd0026", "#800026")
+"""From no stress to the largest: YlOrRd of ColorBrewer (Brewer, Harrower & Penn State University, 2013)."""
 
 
 def stress_plots(
@@ -121,21 +121,14 @@ def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str,
                     "up": view.up.tolist(),
                     "half_height": view.half_height,
                     "limits": _limits(scene),
-                    "colours": COLOUR_MAP,
+                    "colours": colours().tolist(),
                     "cut": view.cut,
                 }
         # Software rendering first: it gives the same picture with and without a display.
         choices: tuple[dict[str, str], ...] = ({"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}, {})
         for choice in choices:
             left = {key: view for key, view in views.items() if not (folder / f"{key}.npy").exists()}
-            shares = [dict(list(left.items())[i::_WORKERS]) for i in range(_WORKERS)]
-
-            def run(share: dict[str, Any], choice: dict[str, str] = choice) -> str:
-                return _run_worker(folder, share, choice, time_limit)
-
-            with ThreadPoolExecutor(max_workers=_WORKERS) as pool:
-                troubles = list(pool.map(run, filter(None, shares)))
-            trouble = next(filter(None, troubles), "")
+            trouble = _run_worker(folder, left, choice, time_limit)
             if not trouble:
                 break
         found = {}
@@ -166,78 +159,75 @@ def _run_worker(folder: Path, views: dict[str, Any], choice: dict[str, str], tim
     return f"rendering failed ({told})" if status else ""
 
 
+def colours() -> NDArray[np.uint8]:
+    """Return 256 colours (256, 3) from no stress to the largest.
+
+    Returns
+    -------
+    array
+        Red, green and blue from 0 to 255.
+    """
+    fixed = np.array([[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in _COLOURS])
+    places = np.linspace(0.0, 1.0, 256)
+    mixed = [np.interp(places, np.linspace(0.0, 1.0, len(fixed)), channel) for channel in fixed.T]
+    return np.column_stack(mixed).round().astype(np.uint8)
+
+
+_SIDE, _MARGIN, _GAP = 209.0, 7.2, 36.0
+"""Size of the close view, room about the views, room between them [points]."""
+
+
 def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float]) -> bytes:
     """Put both renderings, the colour bar and the labels on one sheet."""
-    from matplotlib import rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-    from matplotlib.figure import Figure
+    wide = 72.0 * WIDTH - 2.0 * _MARGIN
+    shares = scene.strip.share(np.array([[x, 0.0, 0.0] for x in points.values()]).reshape(-1, 3))[:, 0]
+    names = stacked(points, wide * shares)
+    top = 12.0 + heights(names)
+    middle = top + wide * scene.strip.half_height / scene.strip.half_width
+    sheet = Canvas(72.0 * WIDTH, middle + _GAP + _SIDE + _MARGIN)
+    upper = Axes(box=(_MARGIN, top, _MARGIN + wide, middle), x=(0.0, 1.0), y=(0.0, 1.0))
+    lower = Axes(box=(_MARGIN, middle + _GAP, _MARGIN + _SIDE, middle + _GAP + _SIDE), x=(0.0, 1.0), y=(0.0, 1.0))
+    sheet.picture(strip, upper.box)
+    sheet.picture(close, lower.box)
+    lower.frame(sheet)
+    write_stacked(sheet, names, _MARGIN, top)
+    title = "around the largest stress" + ("" if scene.close.cut is None else ", cut open")
+    sheet.write(title, ((lower.box[0] + lower.box[2]) / 2.0, lower.box[1] - 4.0), anchor="center bottom", size=8.5)
+    for axes, view, spots in ((upper, scene.strip, scene.deformed), (lower, scene.close, scene.points)):
+        at = axes.at(view.share(spots[scene.hottest]))
+        share = 0.45 if axes is upper and scene.far_side else 1.0
+        for colour, width in (("#ffffff", 3.0), (INK, 1.2)):
+            sheet.ring(at, 5.5, colour if share == 1.0 else faint(colour, share), width)
+    _scale_bar(sheet, upper, scene.strip, (0.012, 0.0), 5.8)
+    _scale_bar(sheet, lower, scene.close, (0.04, 0.04), 0.0)
+    left, high = _MARGIN + _SIDE + 39.6, lower.box[1]
+    _colour_bar(sheet, scene, (left, high + 20.0, 72.0 * WIDTH - 33.0, high + 32.3))
+    largest = float(np.linalg.norm(scene.displacement, axis=1).max())
+    lines = (
+        *peak_lines(scene),
+        "    (faint above: on the far side)\n" if scene.far_side else "",
+        f"upper picture: deformed, × {plain(scene.scale)}",
+        f"    largest displacement {number(largest, 3)} mm",
+        "    grey line: undeformed",
+        "lower picture: undeformed",
+    )
+    for k, line in enumerate("\n".join(lines).split("\n")):
+        sheet.write(line.lstrip(), (left + 3.0 * (len(line) - len(line.lstrip())), high + 79.0 + 1.55 * SIZE * k),
+                    anchor="left top")  # fmt: skip
+    return sheet.png()
 
-    low, high = _limits(scene)
-    with rc_context(STYLE):
-        side, margin, below, gap = 2.9, 0.1, 0.1, 0.5  # inches
-        wide = WIDTH - 2.0 * margin
-        shares = scene.strip.share(np.array([[x, 0.0, 0.0] for x in points.values()]).reshape(-1, 3))[:, 0]
-        names = stacked(points, wide * shares)
-        top = 0.17 + heights(names)
-        tall = wide * scene.strip.half_height / scene.strip.half_width
-        height = top + tall + gap + side + below
-        figure = Figure(figsize=(WIDTH, height), dpi=DPI)
-        FigureCanvasAgg(figure)
 
-        def box(left: float, bottom: float, width: float, tallness: float) -> Any:
-            return figure.add_axes((left / WIDTH, bottom / height, width / WIDTH, tallness / height))
-
-        upper = box(margin, below + side + gap, wide, tall)
-        upper.imshow(strip, extent=(0, 1, 0, 1), aspect="auto", interpolation="lanczos")
-        write_stacked(upper, names, wide)
-        _scale_bar(upper, scene.strip, wide, below_image=True)
-        lower = box(margin, below, side, side)
-        lower.imshow(close, extent=(0, 1, 0, 1), aspect="auto", interpolation="lanczos")
-        _scale_bar(lower, scene.close, side, below_image=False)
-        lower.set_title(
-            "around the largest stress" + ("" if scene.close.cut is None else ", cut open"), fontsize=8.5, pad=4.0
-        )
-        for axes, view, spots in ((upper, scene.strip, scene.deformed), (lower, scene.close, scene.points)):
-            at = view.share(spots[scene.hottest])
-            faint = 0.45 if axes is upper and scene.far_side else 1.0
-            for colour, width in (("white", 3.0), (INK, 1.2)):
-                axes.plot(*at, marker="o", markersize=11.0, markerfacecolor="none", markeredgecolor=colour,
-                          markeredgewidth=width, alpha=faint, clip_on=False)  # fmt: skip
-            axes.set_xlim(0.0, 1.0)
-            axes.set_ylim(0.0, 1.0)
-            axes.set_xticks([])
-            axes.set_yticks([])
-            axes.spines[:].set_visible(axes is lower)
-        bar = figure.add_axes(((margin + side + 0.55) / WIDTH, (below + side - 0.45) / height,
-                               (WIDTH - margin - side - 1.0) / WIDTH, 0.17 / height))  # fmt: skip
-        legend = figure.colorbar(
-            ScalarMappable(norm=Normalize(low, high), cmap=COLOUR_MAP),
-            cax=bar,
-            orientation="horizontal",
-            extend="max" if scene.top < scene.values.max() else "neither",
-        )
-        legend.set_label(f"{scene.measure} [MPa]")
-        legend.outline.set_linewidth(0.6)
-        largest = float(np.linalg.norm(scene.displacement, axis=1).max())
-        figure.text(
-            (margin + side + 0.55) / WIDTH,
-            (below + side - 1.1) / height,
-            "\n".join(
-                (
-                    *peak_lines(scene),
-                    "    (faint above: on the far side)\n" if scene.far_side else "",
-                    f"upper picture: deformed, × {plain(scene.scale)}",
-                    f"    largest displacement {number(largest, 3)} mm",
-                    "    grey line: undeformed",
-                    "lower picture: undeformed",
-                )
-            ),
-            va="top",
-            linespacing=1.45,
-        )
-        return as_png(figure)
+def _colour_bar(sheet: Canvas, scene: Scene, box: tuple[float, float, float, float]) -> None:
+    """Draw the scale of the colours; it ends in a tip where some stress lies beyond it."""
+    _, top, right, bottom = box
+    table = colours()
+    if scene.top < scene.values.max():
+        tip = [(right, top), (right + 8.0, (top + bottom) / 2.0), (right, bottom)]
+        sheet.area(tip, "#{:02x}{:02x}{:02x}".format(*table[-1]), INK, 0.6)
+    sheet.picture(np.tile(table, (4, 1, 1)), box)
+    axes = Axes(box=box, x=_limits(scene), y=(0.0, 1.0))
+    axes.frame(sheet)
+    axes.scale_x(sheet, f"{scene.measure} [MPa]", most=7)
 
 
 def peak_lines(scene: Scene) -> tuple[str, ...]:
@@ -265,15 +255,9 @@ def _place(value: float) -> str:
     return fixed(float(value), 1)
 
 
-def _scale_bar(axes: Any, view: View, wide: float, *, below_image: bool) -> None:
-    from matplotlib.patheffects import withStroke
-
+def _scale_bar(sheet: Canvas, axes: Axes, view: View, at: tuple[float, float], below: float) -> None:
+    """Draw a round length, so many points below a place of a view."""
     length = round_scale(0.45 * view.half_width)
-    share = length / (2.0 * view.half_width)
-    y = 0.04 if not below_image else -0.08 / (wide * view.half_height / view.half_width)
-    left = 0.04 if not below_image else 0.012
-    axes.plot([left, left + share], [y, y], color=INK, linewidth=2.0, clip_on=False, solid_capstyle="butt")
-    axes.annotate(
-        f"{plain(length)} mm", (left + share, y), xytext=(4, 0), textcoords="offset points", va="center", fontsize=8.5,
-        annotation_clip=False, path_effects=[withStroke(linewidth=2.0, foreground="white")],
-    )  # fmt: skip
+    ends = axes.at([at, (at[0] + length / (2.0 * view.half_width), at[1])]) + np.array([0.0, below])
+    sheet.line(ends, INK, 2.0)
+    sheet.write(f"{plain(length)} mm", ends[1] + np.array([4.0, 0.0]), anchor="left middle", size=8.5, halo=2.0)

@@ -1,31 +1,36 @@
 """Placing labels on a drawing so that they cover neither each other nor what is drawn."""
 
-import itertools
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from reports.figures.canvas import Canvas, extent, faint
+
+Real = NDArray[np.float64]
 
 _DIRECTIONS = 24
 _REACHES = (0.6, 1.2, 2.0, 3.0, 4.2, 6.0, 8.0)
 """Distances that are tried, in heights of the label's text."""
 _LEADER = 2.5
 """Distance beyond which a label gets a line to its anchor."""
-
-
-_COVERS = 6.0
-"""Cost of a label over anything drawn, in heights of its text by which it would rather move away."""
+_COVERS, _MORE = 6.0, 0.3
+"""Cost of a label over anything drawn, in heights of its text by which it would rather move away; and of each point."""
+_CLASH, _OUTSIDE = 8.0, 30.0
+"""The same of each square point over another label, and of each point by which it leaves the drawing."""
+_CELL = 0.7
+"""Points; as fine as two pixels."""
 
 
 def place_labels(
-    axes: Any,
-    labels: Sequence[tuple[NDArray[np.float64], str, str]],
-    obstacles: NDArray[np.float64],
+    sheet: Canvas,
+    inside: tuple[float, float, float, float],
+    labels: Sequence[tuple[Real, str, str]],
+    obstacles: Real,
     *,
-    fontsize: float,
+    size: float,
 ) -> None:
     """Write labels beside their anchors, where they cover least.
 
@@ -33,51 +38,59 @@ def place_labels(
 
     Parameters
     ----------
-    axes : object
-        A matplotlib Axes with final limits and size.
+    sheet : Canvas
+    inside : tuple of 4 float
+        Left, top, right, bottom of where they may stand [points].
     labels : sequence of tuple
-        Anchors (k, 2), of which one is chosen; text; colour.
+        Anchors (k, 2) on the sheet, of which one is chosen; text; colour.
     obstacles : array
-        Points (n, 2) of what is drawn, in data coordinates.
-    fontsize : float
-        In points.
+        Points (n, 2) of what is drawn, on the sheet.
+    size : float
+        Of the letters [points].
     """
-    from matplotlib.patheffects import withStroke
-
-    figure = axes.figure
-    renderer = figure.canvas.get_renderer()
-    inside = axes.get_window_extent(renderer)
-    drawn = axes.transData.transform(obstacles)
-    taken: list[tuple[float, float, float, float]] = []
+    angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    ways = np.column_stack([np.cos(angles), np.sin(angles)])
+    reaches = np.repeat(_REACHES, _DIRECTIONS)
+    drawn, taken = _Crowd(sheet, obstacles), np.zeros((0, 4))
     for anchors, content, colour in labels:
-        text = axes.text(*anchors[0], content, fontsize=fontsize, color=colour, ha="center", va="center", zorder=10)
-        text.set_path_effects([withStroke(linewidth=2.0, foreground="white")])
-        box = text.get_window_extent(renderer)
-        half = np.array([box.width, box.height]) / 2.0 + 2.0
-        line = fontsize * figure.dpi / 72.0
-        best: tuple[float, NDArray[np.float64], float, NDArray[np.float64]] | None = None
-        for at, reach, k in itertools.product(axes.transData.transform(anchors), _REACHES, range(_DIRECTIONS)):
-            angle = 2.0 * math.pi * k / _DIRECTIONS
-            way = np.array([math.cos(angle), math.sin(angle)])
-            centre = at + way * (reach * line + float(np.abs(way) @ half))
-            low, high = centre - half, centre + half
-            covered = int(np.count_nonzero(((drawn > low) & (drawn < high)).all(axis=1)))
-            clash = sum(
-                max(0.0, min(high[0], x1) - max(low[0], x0)) * max(0.0, min(high[1], y1) - max(low[1], y0))
-                for x0, y0, x1, y1 in taken
-            )
-            outside = float(np.maximum(0.0, [*(inside.min - low), *(high - inside.max)]).sum())
-            cost = reach + (_COVERS + 0.3 * covered if covered else 0.0) + clash + 10.0 * outside
-            if best is None or cost < best[0]:
-                best = (cost, centre, reach, at)
-        assert best is not None
-        _, centre, reach, at = best
-        taken.append((*(centre - half), *(centre + half)))
-        back = axes.transData.inverted()
-        text.set_position(back.transform(centre))
-        if reach > _LEADER:
-            ends = back.transform([at, centre + (at - centre) * min(1.0, half[1] / abs(at - centre).max())])
-            axes.plot(*ends.T, color=colour, linewidth=0.5, alpha=0.6, zorder=4)
+        half = np.array(extent(content, size)) / 2.0 + 0.7
+        steps = reaches[:, None] * size * np.tile(ways, (len(_REACHES), 1)) + np.tile(
+            ways * (np.abs(ways) @ half)[:, None], (len(_REACHES), 1)
+        )
+        centres = (anchors[:, None] + steps).reshape(-1, 2)
+        boxes = np.hstack([centres - half, centres + half])
+        covered = drawn.inside(boxes)
+        common = np.minimum(boxes[:, None, 2:], taken[:, 2:]) - np.maximum(boxes[:, None, :2], taken[:, :2])
+        clash = np.prod(np.maximum(common, 0.0), axis=2).sum(axis=1)
+        outside = np.maximum(0.0, np.hstack([inside[:2] - boxes[:, :2], boxes[:, 2:] - inside[2:]])).sum(axis=1)
+        cost = np.tile(reaches, len(anchors)) + np.where(covered > 0, _COVERS + _MORE * covered, 0.0)
+        best = int(np.argmin(cost + _CLASH * clash + _OUTSIDE * outside))
+        centre, at = centres[best], anchors[best // len(steps)]
+        taken = np.vstack([taken, boxes[best]])
+        if reaches[best % len(steps)] > _LEADER:
+            near = centre + (at - centre) * min(1.0, half[1] / float(np.abs(at - centre).max()))
+            sheet.line([at, near], faint(colour, 0.6), 0.5)
+        sheet.write(content, centre, colour=colour, size=size, halo=2.0)
+
+
+class _Crowd:
+    """How many points of what is drawn lie in a box, by sums over cells of the sheet."""
+
+    def __init__(self, sheet: Canvas, points: Real) -> None:
+        self.shape = np.array([math.ceil(sheet.width / _CELL), math.ceil(sheet.height / _CELL)])
+        cells = np.floor(points / _CELL).astype(np.int64)
+        cells = cells[((cells >= 0) & (cells < self.shape)).all(axis=1)]
+        counts = np.zeros(self.shape + 1, dtype=np.int64)
+        np.add.at(counts, tuple(cells.T + 1), 1)
+        self.sums = counts.cumsum(axis=0).cumsum(axis=1)
+
+    def inside(self, boxes: Real) -> NDArray[np.int64]:
+        """Return the number of points in boxes (k, 4)."""
+        low = np.clip(np.floor(boxes[:, :2] / _CELL).astype(np.int64), 0, self.shape)
+        high = np.clip(np.ceil(boxes[:, 2:] / _CELL).astype(np.int64), 0, self.shape)
+        (x0, y0), (x1, y1) = low.T, high.T
+        s = self.sums
+        return np.asarray(s[x1, y1] - s[x0, y1] - s[x1, y0] + s[x0, y0])
 
 
 def along(start: NDArray[np.float64], end: NDArray[np.float64], count: int = 240) -> NDArray[np.float64]:
@@ -105,7 +118,7 @@ class Stacked:
     ----------
     text : str
     at : float
-        Place along the axis [inches].
+        Place along the axis [points].
     row : int
         From below.
     """
@@ -122,16 +135,13 @@ def stacked(names: Iterable[str], at: Iterable[float]) -> tuple[Stacked, ...]:
     ----------
     names : iterable of str
     at : iterable of float
-        Place of each along the axis [inches]; names of one place stand together, others move to a higher row.
+        Place of each along the axis [points]; names of one place stand together, others move to a higher row.
 
     Returns
     -------
     tuple of Stacked
         Names of one place are joined; others move to a higher row.
     """
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.textpath import TextPath
-
     together: dict[float, list[str]] = {}
     for name, place in zip(names, at, strict=True):
         near = next((known for known in together if abs(known - place) < _TOGETHER), float(place))
@@ -140,10 +150,7 @@ def stacked(names: Iterable[str], at: Iterable[float]) -> tuple[Stacked, ...]:
     found = []
     for place, group in sorted(together.items()):
         text = ", ".join(group)
-        drawn = TextPath(
-            (0.0, 0.0), text.replace("$", r"\$"), prop=FontProperties(weight="bold", size=_NAME_SIZE), usetex=False
-        )
-        half = float(drawn.get_extents().width) / 72.0 / 2.0 + _NAME_GAP
+        half = extent(text, _NAME_SIZE, bold=True)[0] / 2.0 + _NAME_GAP
         row = next((k for k, end in enumerate(ends) if end <= place - half), len(ends))
         ends[row : row + 1] = [place + half]
         found.append(Stacked(text=text, at=place, row=row))
@@ -151,7 +158,7 @@ def stacked(names: Iterable[str], at: Iterable[float]) -> tuple[Stacked, ...]:
 
 
 def heights(names: Sequence[Stacked]) -> float:
-    """Return the height that stacked names need [inches].
+    """Return the height that stacked names need [points].
 
     Parameters
     ----------
@@ -164,33 +171,23 @@ def heights(names: Sequence[Stacked]) -> float:
     return _NAME_ROW * (1 + max((name.row for name in names), default=0))
 
 
-def write_stacked(axes: Any, names: Sequence[Stacked], width: float) -> None:
+def write_stacked(sheet: Canvas, names: Sequence[Stacked], left: float, bottom: float) -> None:
     """Write stacked names above an axis.
 
     Parameters
     ----------
-    axes : object
-        A matplotlib Axes.
+    sheet : Canvas
     names : sequence of Stacked
-    width : float
-        Of the axes [inches].
+    left : float
+        Where the axis begins [points].
+    bottom : float
+        Above what they stand [points].
     """
     for name in names:
-        axes.annotate(
-            name.text,
-            (name.at / width, 1.0),
-            xycoords="axes fraction",
-            xytext=(0, 3 + 72.0 * _NAME_ROW * name.row),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontweight="bold",
-            fontsize=_NAME_SIZE,
-            parse_math=False,
-            annotation_clip=False,
-        )
+        place = (left + name.at, bottom - 3.0 - _NAME_ROW * name.row)
+        sheet.write(name.text, place, anchor="center bottom", size=_NAME_SIZE, bold=True)
 
 
-_TOGETHER = 0.005
-_NAME_SIZE, _NAME_ROW, _NAME_GAP = 9.0, 0.18, 0.03
-"""Points; inches."""
+_TOGETHER = 0.36
+_NAME_SIZE, _NAME_ROW, _NAME_GAP = 9.0, 13.0, 2.2
+"""Points."""

@@ -1,0 +1,42 @@
+"""Colours, letters and size that all pictures share, and a matplotlib figure as PNG."""
+
+import io
+from typing import Any
+
+INK = "#1c2733"
+LINK = "#9fb1c1"
+GROUND = "#5d6b78"
+GRID = "#e8ecef"
+JOINT_FORCE = "#c8460b"
+LOAD = "#0067a8"
+TORQUE = "#00795a"
+DPI = 200
+WIDTH = 7.4
+"""Inches; fonts are in points, so this sets how large they read on the page."""
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.edgecolor": GROUND,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.linewidth": 0.6,
+}
+"""Of what matplotlib draws."""
+
+
+def as_png(figure: Any) -> bytes:
+    """Return a matplotlib figure as PNG, without a date, so that equal drawings are equal bytes.
+
+    Parameters
+    ----------
+    figure : object
+
+    Returns
+    -------
+    bytes
+    """
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None})
+    return stream.getvalue()
