@@ -17,6 +17,11 @@ FRAMES = 60
 SECONDS = 3.0
 """Length of one full turn, or of the way there and back."""
 _COLOURS = 64
+_SAMPLES = 4
+"""Frames by which the colours are chosen: all hold the same things."""
+_STEPS = np.uint8(0xFC)
+"""Bits of a colour that are kept: Pillow finds the nearest colour of a palette in steps of 4."""
+_PLACES = np.array([1 << 16, 1 << 8, 1])
 _DPI = 80
 
 
@@ -46,18 +51,21 @@ def draw_animation(motion: Motion, path: Path) -> None:
     frames = []
     with quiet_glyphs():
         title.set_text(motion.coordinate)
+        moving = [*(line for line, _ in drawn), *axes.texts, title]  # names stand above the links
+        for artist in moving:
+            artist.set_animated(True)
         canvas.draw()
         figure.set_layout_engine("none")  # laid out once: a layout of its own per frame would shake
+        still = canvas.copy_from_bbox(figure.bbox)
         for angle, here in zip(angles, points, strict=True):
+            canvas.restore_region(still)
             for line, columns in drawn:
                 line.set_data(here[columns].real, here[columns].imag)
             title.set_text(f"{motion.coordinate} at {motion.told(angle):.1f} {motion.unit}")
-            canvas.draw()
-            frames.append(np.array(canvas.buffer_rgba())[..., :3])
-    # Colours are chosen for all frames together, or they would flicker.
-    strip = Image.fromarray(np.concatenate(frames)).quantize(_COLOURS, dither=Image.Dither.NONE)
-    height, width = frames[0].shape[:2]
-    pictures = [strip.crop((0, i * height, width, (i + 1) * height)) for i in range(len(frames))]
+            for artist in moving:
+                axes.draw_artist(artist)
+            frames.append(np.asarray(canvas.buffer_rgba())[..., :3] & _STEPS)
+    pictures = _indexed(frames)
     pictures[0].save(
         path,
         save_all=True,
@@ -66,6 +74,20 @@ def draw_animation(motion: Motion, path: Path) -> None:
         loop=0,
         optimize=True,
     )
+
+
+def _indexed(frames: list[NDArray[np.uint8]]) -> list[Image.Image]:
+    """Return frames (height, width, 3) in the colours that are most frequent in some of them, or they would flicker."""
+    found, counts = np.unique(
+        np.concatenate(frames[:: len(frames) // _SAMPLES]).reshape(-1, 3) @ _PLACES, return_counts=True
+    )
+    colours = found[np.argsort(-counts, kind="stable")[:_COLOURS], None] // _PLACES % 256
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(colours.astype(np.uint8).tobytes())
+    pictures = [Image.fromarray(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    for picture in pictures:
+        picture.putpalette(np.rint(colours * (255.0 / _STEPS)).astype(np.uint8).tobytes())
+    return pictures
 
 
 def _angles(motion: Motion) -> Real:
