@@ -6,23 +6,24 @@ estimate asks (``fea.refine.target_sizes``), until every limit lies outside the 
 asked for; or until a limit of time, unknowns or number of meshes stops it, which the link's numbers then say.
 """
 
-import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from fea.common.link_loads import LinkLoads
-from fea.refine.convergence import ALONE, FORMAL_ORDER, SERIES, GridConvergence
+from fea.common.threads import bounded
+from fea.refine.convergence import ALONE, SERIES, GridConvergence
 from fea.refine.level import Level, level_of
 from fea.refine.link_series import CasePrecision, Eye, PeakQuantity, energy_errors, goals, precision
 from fea.refine.singular import NEARLY, element_exponents, loaded_edge
-from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, element_sizes, next_sizes, reduction
+from fea.refine.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction, series_ratio
 from fea.solid.solution import SolidSolution, solve_solid
-from geometry.base.errors import AlulaError, CaseError
+from geometry.base import child
+from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
 from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.part import Body
@@ -179,9 +180,7 @@ def refine_links(
     threads: int | None = None,
     progress: Progress = lambda message: None,
 ) -> dict[str, RefinedSolid]:
-    """Mesh and solve every link as often as its numbers need it; the next meshes are made while one is solved.
-
-    Raises what ``mesh_body`` and ``solve_solid`` raise on a link's first mesh, with the link's name before it.
+    """Mesh and solve every link as often as its numbers need it, as many links side by side as there may be threads.
 
     Parameters
     ----------
@@ -194,7 +193,8 @@ def refine_links(
     first : dict of str to TaggedMesh, optional
         First meshes that are there already.
     threads : int or None, optional
-        Upper bound on the threads of the libraries; their own choice where it is None.
+        That work at once: links side by side, and libraries where there are fewer links. None leaves the libraries
+        their own choice, and takes one link after another.
     progress : Progress, optional
         Called with a sentence before each step.
 
@@ -210,15 +210,23 @@ def refine_links(
     """
     links = [_Link(name, task, start, effort) for name, task in tasks.items()]
     begun = time.perf_counter()
-    with ThreadPoolExecutor(max_workers=2) as pool:
+    beside = max(min(threads or 1, len(links)), 1)
+    own = None if threads is None else max(threads // beside, 1)
+    with bounded(own, children=threads), ThreadPoolExecutor(2) as meshers, ThreadPoolExecutor(beside) as solvers:
         try:
             for link in links:
-                link.order_mesh(pool, (first or {}).get(link.name))
-            while open_links := [link for link in links if not link.done]:
-                for link in open_links:
-                    link.advance(pool, threads, time.perf_counter() - begun, progress)
+                link.order_mesh(meshers, (first or {}).get(link.name))
+            # Links take turns, mesh by mesh, so that a limit of time leaves each of them with about as many.
+            turns = {solvers.submit(link.advance, meshers, begun, progress): link for link in links}
+            while turns:
+                for turn in wait(turns, return_when=FIRST_COMPLETED).done:
+                    link = turns.pop(turn)
+                    turn.result()
+                    if not link.done:
+                        turns[solvers.submit(link.advance, meshers, begun, progress)] = link
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            solvers.shutdown(wait=False, cancel_futures=True)
+            meshers.shutdown(wait=False, cancel_futures=True)
             raise
     return {link.name: link.result() for link in links}
 
@@ -233,27 +241,24 @@ class _Link:
         self.precision: tuple[CasePrecision, ...] = ()
         self.solution: SolidSolution | None = None
         self.stopped, self.done, self.far = "", False, False
-        self._mesh: Future[TaggedMesh] | None = None
+        self._mesh: Callable[[], TaggedMesh] | None = None
         self._sharp: Future[list[ReentrantEdge]] | None = None
 
     def order_mesh(self, pool: ThreadPoolExecutor, mesh: TaggedMesh | None = None) -> None:
         """Have the next mesh made unless it is there, and the re-entrant edges found where they may matter."""
-        if mesh is None:
-            self._mesh = pool.submit(mesh_body, self.task.body, self.settings)
-        else:
-            self._mesh = Future()
-            self._mesh.set_result(mesh)
+        self._mesh = (lambda: mesh) if mesh else pool.submit(mesh_body, self.task.body, self.settings).result
         if self._sharp is None and (self.task.may_be_sharp or self._growing):
             self._sharp = pool.submit(reentrant_edges, self.task.body)
 
-    def advance(self, pool: ThreadPoolExecutor, threads: int | None, elapsed: float, progress: Progress) -> None:
+    def advance(self, pool: ThreadPoolExecutor, start: float, progress: Progress) -> None:
         """Solve on the mesh that was ordered, judge the series and order the next one if need be."""
         assert self._mesh is not None
-        called = time.perf_counter()
         try:
-            mesh = self._mesh.result()
+            mesh = self._mesh()
+            if child.stopped():
+                raise CannotRunError("interrupted")
             begun = time.perf_counter()
-            solution = self._solved(mesh, threads, progress)
+            solution = self._solved(mesh, progress)
         except (AlulaError, MemoryError) as error:
             if not self.levels:
                 raise type(error)(f"{self.name}: {error}") from None
@@ -273,7 +278,7 @@ class _Link:
             self.done = True
         elif len(self.levels) >= self.effort.max_meshes:
             self._stop(f"the largest number of meshes, {len(self.levels)}, is reached")
-        elif elapsed + time.perf_counter() - called > self.effort.time_limit:
+        elif time.perf_counter() - start > self.effort.time_limit:
             self._stop(f"the time limit of {self.effort.time_limit:g} s is used up")
         else:
             self._refine(pool)
@@ -291,16 +296,14 @@ class _Link:
             sharp_edges=len(self.edges),
         )
 
-    def _solved(self, mesh: TaggedMesh, threads: int | None, progress: Progress) -> SolidSolution | None:
+    def _solved(self, mesh: TaggedMesh, progress: Progress) -> SolidSolution | None:
         unknowns = 3 * len(mesh.points)
         if self.levels and unknowns > self.effort.max_unknowns:
             self._stop(f"the next mesh has {unknowns:,} unknowns, more than the {self.effort.max_unknowns:,} allowed")
             return None
         progress(f"Solving {self.name}, mesh {len(self.levels) + 1}: {len(mesh.cells)} elements ...")
         task = self.task
-        return solve_solid(
-            mesh, E=task.E, nu=task.nu, density=task.density, loads=task.loads, line=task.line, threads=threads
-        )
+        return solve_solid(mesh, E=task.E, nu=task.nu, density=task.density, loads=task.loads, line=task.line)
 
     def _stop(self, reason: str) -> None:
         self.stopped, self.done = reason, True
@@ -385,7 +388,7 @@ class _Link:
             brittle=self.task.brittle,
             edges=self.edges,
             section=self.task.section,
-            ratios=[_ratio(self._deciding(case), accuracy) for case in self.precision],
+            ratios=[series_ratio(self._deciding(case), accuracy) for case in self.precision],
         )
         points, sizes = next_sizes(self.solution.space, factors, wanted)
         self.settings = replace(self.settings, size_points=points, size_values=sizes)
@@ -393,11 +396,3 @@ class _Link:
             turn = round(SERIES_RATIO * self.settings.turn_elements)
             self.settings = replace(self.settings, turn_elements=turn)
         self.order_mesh(pool)
-
-
-def _ratio(series: GridConvergence, accuracy: float) -> float:
-    """Of the sizes at a peak, last mesh over next one, so that two further meshes narrow its band to an accuracy."""
-    if not len(series.values) >= SERIES or not math.isfinite(series.index):
-        return SERIES_RATIO
-    order = min(max(series.order or 1.0, 1.0), FORMAL_ORDER)
-    return min(max(math.pow(series.index / accuracy, 0.5 / order), SERIES_RATIO), MOST_RATIO)

@@ -9,12 +9,14 @@ sizes fall so far that the estimate there becomes a stated share of it, and in a
 next mesh to count in a series for the observed order.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.refine.convergence import FORMAL_ORDER, SERIES, GridConvergence
 from fea.solid.space import EDGES, DisplacementSpace
 
 SERIES_RATIO = 1.5
@@ -157,3 +159,24 @@ def _graded(space: DisplacementSpace, sizes: NDArray[np.float64]) -> NDArray[np.
         np.minimum.at(sizes, pairs[:, 1], before[pairs[:, 0]] + length)
         if (before - sizes <= 1e-9 * before).all():
             return sizes
+
+
+def series_ratio(series: GridConvergence, accuracy: float) -> float:
+    """Return the ratio of the sizes at a peak, last mesh over next one, so that two further meshes narrow its band.
+
+    Parameters
+    ----------
+    series : GridConvergence
+        Of the peak on the meshes so far.
+    accuracy : float
+        Width of the band over the peak that is aimed at.
+
+    Returns
+    -------
+    float
+        From ``SERIES_RATIO`` to ``MOST_RATIO``.
+    """
+    if not len(series.values) >= SERIES or not math.isfinite(series.index):
+        return SERIES_RATIO
+    order = min(max(series.order or 1.0, 1.0), FORMAL_ORDER)
+    return min(max(math.pow(series.index / accuracy, 0.5 / order), SERIES_RATIO), MOST_RATIO)

@@ -1,15 +1,23 @@
 """Which mesh comes next, and when one mesh is enough."""
 
+import dataclasses
 import math
+import threading
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import solid_meshes
 
+from fea.common.link_loads import LinkLoads, PinLoad
+from fea.refine import refinement
 from fea.refine.convergence import grid_convergence
-from fea.refine.refinement import _Link, _ratio
-from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO
+from fea.refine.refinement import START, Effort, LinkTask, _Link, refine_links
+from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, series_ratio
+from geometry.base.errors import CannotRunError
 from geometry.meshing.mesh import ReentrantEdge
+from geometry.meshing.mirror import mirrored
+from geometry.parts.part import Bar, Body, Pin
 
 EDGE = ReentrantEdge(points=np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]), angle=1.5 * math.pi)
 
@@ -17,10 +25,10 @@ EDGE = ReentrantEdge(points=np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]), angle
 def test_sizes_fall_so_that_two_further_meshes_reach_the_accuracy():
     found = grid_convergence((1.0, 0.6, 0.4), [10.0 + 6.0 * size**2 for size in (1.0, 0.6, 0.4)], estimate=0.9)
     wanted = found.index / 3.0**2
-    assert _ratio(found, wanted) == pytest.approx(math.sqrt(3.0), rel=1e-6)
-    assert _ratio(found, 1e-6) == MOST_RATIO
-    assert _ratio(found, 1.0) == SERIES_RATIO
-    assert _ratio(grid_convergence([1.0], [10.0], estimate=5.0), 0.01) == SERIES_RATIO
+    assert series_ratio(found, wanted) == pytest.approx(math.sqrt(3.0), rel=1e-6)
+    assert series_ratio(found, 1e-6) == MOST_RATIO
+    assert series_ratio(found, 1.0) == SERIES_RATIO
+    assert series_ratio(grid_convergence([1.0], [10.0], estimate=5.0), 0.01) == SERIES_RATIO
 
 
 @pytest.mark.parametrize(("share", "enough"), [(0.2, True), (0.3, False)])
@@ -31,3 +39,87 @@ def test_one_mesh_is_not_enough_near_a_sharp_edge_that_may_bear_much(share, enou
         precision=[], edges=[EDGE], levels=[level], task=SimpleNamespace(section=3.0), _limits=lambda: ()
     )
     assert _Link._far(link) is enough
+
+
+BODY = Body(
+    part=Bar(
+        shape="bar",
+        material="resin",
+        width="5 mm",
+        thickness="3 mm",
+        eye_diameter="5 mm",
+        eye_thickness="3 mm",
+        fillet_radius="0 mm",
+    ),
+    pins=(Pin(name="A", x=0.0, y=0.0, diameter=1.5), Pin(name="B", x=20.0, y=0.0, diameter=1.5)),
+    ends=(),
+    holes=(),
+)
+
+
+def pulled(force):
+    """A bar in tension whose limits no mesh decides, so that the largest number of meshes ends it."""
+    pins = tuple(
+        PinLoad(name=p.name, centre=np.array([p.x, 0, 0]), diameter=1.5, wrench=np.array([f, 0, 0, 0, 0, 0]))
+        for p, f in zip(BODY.pins, (-force, force), strict=True)
+    )
+    return LinkTask(
+        body=BODY,
+        loads=(LinkLoads(name="pull", pins=pins),),
+        E=2900.0,
+        nu=0.38,
+        density=1.2e-9,
+        line=("bore:A", "bore:B"),
+        brittle=False,
+        stress_limits=(),
+        displacement_limits=(),
+    )
+
+
+@pytest.fixture
+def coarse(monkeypatch):
+    """Every mesh is the same coarse one, made at once; nothing is sharp."""
+    mesh = dataclasses.replace(mirrored(solid_meshes.half_bar(layers=1)), volume=250.0)
+    monkeypatch.setattr(refinement, "mesh_body", lambda body, settings: mesh)
+    monkeypatch.setattr(refinement, "reentrant_edges", lambda body: [])
+
+
+EFFORT = Effort(accuracy=0.01, stated=True, max_meshes=2)
+
+
+def test_links_are_solved_side_by_side_with_the_same_result(coarse, monkeypatch):
+    tasks = {name: pulled(force) for name, force in (("one", 1.0), ("two", 2.0), ("three", 3.0))}
+    alone = refine_links(tasks, START, EFFORT)
+    met, solve = threading.Barrier(2, timeout=60.0), refinement.solve_solid
+
+    def together(*arguments, **options):
+        with lock:
+            calls.append(None)
+            early = len(calls) <= 2
+        if early:
+            seen.append(met.wait())
+        return solve(*arguments, **options)
+
+    lock, calls, seen = threading.Lock(), [], []
+    monkeypatch.setattr(refinement, "solve_solid", together)
+    beside = refine_links(tasks, START, EFFORT, threads=2)
+    assert sorted(seen) == [0, 1], "two links were never solved at once"
+    assert list(beside) == list(tasks)
+    for name, found in beside.items():
+        assert [m.elements for m in found.meshes] == [m.elements for m in alone[name].meshes]
+        assert found.stopped == "the largest number of meshes, 2, is reached"
+        assert found.precision[0].von_mises.values == pytest.approx(alone[name].precision[0].von_mises.values, rel=1e-9)
+
+
+@pytest.mark.parametrize("threads", [None, 2])
+def test_a_link_that_fails_ends_the_others_with_its_name(coarse, monkeypatch, threads):
+    def failing(mesh, *, loads, **options):
+        if loads[0].pins[1].wrench[0] == 2.0:
+            raise CannotRunError("its loads do not balance")
+        return solve(mesh, loads=loads, **options)
+
+    solve = refinement.solve_solid
+    monkeypatch.setattr(refinement, "solve_solid", failing)
+    with pytest.raises(CannotRunError, match=r"^two: its loads do not balance$"):
+        refine_links({"one": pulled(1.0), "two": pulled(2.0)}, START, EFFORT, threads=threads)
+    assert refine_links({}, START, EFFORT, threads=2) == {}
