@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.motion.fatigue import equivalent_peak, signed_stress
-from fea.motion.peaks import mode_sizes, size_bounds, size_parts
-from geometry.parts.material import Fatigue, Material
+from fea.motion.peaks import ModeMeasures, signed_bounds
+from geometry.parts.material import Material
 
 Real = NDArray[np.float64]
 
@@ -17,9 +17,8 @@ _BLOCK = 128
 def critical_nodes(stress: Real, combinations: Sequence[Real], material: Material) -> list[tuple[int, Real]]:
     """Return the node that fatigues first, for each of several motions.
 
-    The largest cycle of a node goes from its smallest to its largest signed stress. No cycle of signed stresses up to
-    some size harms more than the reversed cycle of that size. By this bound a node is left out if it harms less than
-    one already found.
+    The largest cycle of a node goes from its smallest to its largest signed stress. A node is left out if the cycle
+    between bounds on these harms no more than the cycle of one already found.
 
     Parameters
     ----------
@@ -35,20 +34,17 @@ def critical_nodes(stress: Real, combinations: Sequence[Real], material: Materia
     list of tuple of (int, ndarray, shape (n,))
         The node, and the history of its signed stress [MPa].
     """
-    parts = size_parts(stress, whole=material.brittle)
-    own = mode_sizes(parts)
-    return [_critical(stress, parts, own, combination, material) for combination in combinations]
+    modes = ModeMeasures.of(stress)
+    return [_critical(stress, modes, combination, material) for combination in combinations]
 
 
-def _critical(stress: Real, parts: Real, own: Real, combination: Real, material: Material) -> tuple[int, Real]:
-    fatigue, ultimate = material.fatigue, material.ultimate_strength
-    assert fatigue is not None
-    size = size_bounds(parts, own, combination)
-    order = np.argsort(-size)
+def _critical(stress: Real, modes: ModeMeasures, combination: Real, material: Material) -> tuple[int, Real]:
+    bound = _largest_harm(*signed_bounds(modes, combination, brittle=material.brittle), material)
+    order = np.argsort(-bound)
     best, node, history = _most_harmed(stress, order[:_BLOCK], combination, material)
     for start in range(_BLOCK, len(order), _BLOCK):
         block = order[start : start + _BLOCK]
-        block = block[_may_harm(size[block], best, fatigue, ultimate)]
+        block = block[bound[block] > best]
         if not len(block):
             break
         harm, worst, signed = _most_harmed(stress, block, combination, material)
@@ -57,11 +53,15 @@ def _critical(stress: Real, parts: Real, own: Real, combination: Real, material:
     return node, history
 
 
-def _may_harm(size: Real, best: float, fatigue: Fatigue, ultimate: float | None) -> NDArray[np.bool_]:
-    """Whether reversed cycles of so large stresses (k,) harm more than ``best``."""
-    cycles = np.column_stack([2.0 * size, np.zeros_like(size), np.ones_like(size)])
-    may = equivalent_peak(cycles, fatigue, ultimate) > best
-    return may if ultimate is None else may | (size >= ultimate)
+def _largest_harm(low: Real, high: Real, material: Material) -> Real:
+    """Return what no cycle between two signed stresses (k,) exceeds in harm: a wider cycle does no less.
+
+    By Goodman's line that holds up to the ultimate strength, beyond which nothing is said.
+    """
+    assert material.fatigue is not None
+    cycles = np.column_stack([high - low, (high + low) / 2.0, np.ones_like(high)])
+    harm = equivalent_peak(cycles, material.fatigue, material.ultimate_strength)
+    return harm if material.ultimate_strength is None else np.where(high >= material.ultimate_strength, np.inf, harm)
 
 
 def _most_harmed(

@@ -112,17 +112,15 @@ def largest_stress(stress: Real, combination: Real, *, brittle: bool) -> Peaks:
     -------
     Peaks
     """
-    runs, search = _Runs.of(combination), _Search(stress, combination, brittle=brittle)
-    parts = deviator(stress)
-    mean = stress[:, :3].mean(axis=1) if brittle else np.zeros((len(stress), 1))
+    runs, search, modes = _Runs.of(combination), _Search(stress, combination, brittle=brittle), ModeMeasures.of(stress)
     length = 2.0 / 3.0 if brittle else 1.0
-    own = np.abs(mean) + length * mode_sizes(parts)
+    own = (np.abs(modes.mean) if brittle else 0.0) + length * modes.sizes
     ends = combination[:, runs.ends]
     order = np.argsort(-(own @ np.abs(combination).max(axis=1)))
     for block in _blocks(order, 5 * len(runs.ends)):
-        at_ends = length * np.sqrt(_squares(parts[block], ends))
+        at_ends = length * np.sqrt(_squares(modes.parts[block], ends))
         if brittle:
-            at_ends += mean[block] @ ends
+            at_ends += modes.mean[block] @ ends
         if not np.isfinite(search.value).all():
             search.begin(runs, block[np.argmax(at_ends, axis=0)])
         least = np.array([search.value[runs.loads(run)].min() for run in range(len(runs.ends) - 1)])
@@ -169,39 +167,19 @@ def _blocks(nodes: NDArray[np.int64], width: int) -> Iterator[NDArray[np.int64]]
 
 
 def _squares(parts: Real, combination: Real) -> Real:
-    """Squared sizes (nodes, N) of parts (nodes, k, m)."""
-    nodes, k, m = parts.shape
-    products = (parts.reshape(nodes * k, m) @ combination).reshape(nodes, k, -1)
+    """Squared von Mises stresses (nodes, N) from the deviators (nodes, 5, m) of modes."""
+    nodes, five, m = parts.shape
+    products = (parts.reshape(nodes * five, m) @ combination).reshape(nodes, five, -1)
     return np.asarray(np.einsum("kin,kin->kn", products, products))
 
 
-def size_parts(stress: Real, *, whole: bool) -> Real:
-    """Return numbers, linear in the stress, whose length over k is the size of the stress.
-
-    Parameters
-    ----------
-    stress : ndarray, shape (nodes, 6, m)
-        Components [MPa].
-    whole : bool
-        True for the Frobenius norm, which no principal stress exceeds, as size; False for the von Mises stress.
-
-    Returns
-    -------
-    ndarray, shape (nodes, k, m)
-        [MPa]
-    """
-    if not whole:
-        return deviator(stress)
-    return np.asarray(stress * np.sqrt([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])[:, None])
-
-
 def mode_sizes(parts: Real) -> Real:
-    """Return the size of the stress of each mode by itself.
+    """Return the von Mises stress of each mode by itself.
 
     Parameters
     ----------
-    parts : ndarray, shape (nodes, k, m)
-        From ``size_parts`` [MPa].
+    parts : ndarray, shape (nodes, 5, m)
+        From ``deviator`` [MPa].
 
     Returns
     -------
@@ -211,25 +189,71 @@ def mode_sizes(parts: Real) -> Real:
     return np.asarray(np.sqrt(np.einsum("kim,kim->km", parts, parts)))
 
 
-def size_bounds(parts: Real, own: Real, combination: Real) -> Real:
-    """Return an upper bound on the sizes that the stress of each node has under any load.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ModeMeasures:
+    """Numbers of m modes from which bounds on their sums' stresses follow.
+
+    Attributes
+    ----------
+    parts : ndarray, shape (nodes, 5, m)
+        From ``deviator`` [MPa].
+    sizes : ndarray, shape (nodes, m)
+        Von Mises stress of each mode by itself [MPa].
+    mean : ndarray, shape (nodes, m)
+        Mean of the direct stresses [MPa].
+    """
+
+    parts: Real
+    sizes: Real
+    mean: Real
+
+    @classmethod
+    def of(cls, stress: Real) -> "ModeMeasures":
+        """Return the numbers of modes.
+
+        Parameters
+        ----------
+        stress : ndarray, shape (nodes, 6, m)
+            Components [MPa].
+
+        Returns
+        -------
+        ModeMeasures
+        """
+        parts = deviator(stress)
+        return cls(parts=parts, sizes=mode_sizes(parts), mean=stress[:, :3].mean(axis=1))
+
+
+def signed_bounds(modes: ModeMeasures, combination: Real, *, brittle: bool) -> tuple[Real, Real]:
+    """Return bounds between which the signed stress of each node stays under all loads.
+
+    It is at most the largest principal stress and at least the smallest one, for ductile materials of the size of the
+    von Mises stress.
 
     Parameters
     ----------
-    parts : ndarray, shape (nodes, k, m)
-        Of m modes, from ``size_parts`` [MPa].
-    own : ndarray, shape (nodes, m)
-        Their ``mode_sizes`` [MPa].
+    modes : ModeMeasures
     combination : ndarray, shape (m, N)
         Of the modes under N loads.
+    brittle : bool
+        As for ``fea.motion.fatigue.signed_stress``.
 
     Returns
     -------
-    ndarray, shape (nodes,)
-        [MPa]
+    tuple of 2 ndarray, shape (nodes,)
+        The lower and the upper bound [MPa].
     """
-    runs, found = _Runs.of(combination), np.empty(len(parts))
-    for block in _blocks(np.arange(len(parts)), parts.shape[1] * len(runs.ends)):
-        at_ends = np.sqrt(_squares(parts[block], combination[:, runs.ends]))
-        found[block] = runs.bounds(at_ends, own[block]).max(axis=1)
-    return found
+    runs = _Runs.of(combination)
+    ends = combination[:, runs.ends]
+    low, high = np.empty((2, len(modes.parts)))
+    for block in _blocks(np.arange(len(low)), 5 * len(runs.ends)):
+        size, own = np.sqrt(_squares(modes.parts[block], ends)), modes.sizes[block]
+        if brittle:
+            mean, own = modes.mean[block] @ ends, np.abs(modes.mean[block]) + 2.0 / 3.0 * own
+            low[block], high[block] = (
+                sign * runs.bounds(sign * mean + 2.0 / 3.0 * size, own).max(axis=1) for sign in (-1.0, 1.0)
+            )
+        else:
+            high[block] = runs.bounds(size, own).max(axis=1)
+            low[block] = -high[block]
+    return low, high

@@ -22,9 +22,10 @@ from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.motion import envelope
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
+from fea.motion.fatigue import signed_stress
 from fea.motion.link_envelope import closed_history, link_motion
 from fea.motion.link_history import link_histories
-from fea.motion.peaks import deviator, largest_stress, mode_sizes, size_bounds, size_parts
+from fea.motion.peaks import ModeMeasures, deviator, largest_stress, signed_bounds
 from fea.motion.unit_solutions import nodal_stress
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.buckling import buckling_outcomes
@@ -217,12 +218,12 @@ def test_peaks_are_those_of_all_nodes_under_all_loads(loads, smooth):
         found = largest_stress(stress, combination, brittle=brittle)
         assert found.value == pytest.approx(values.max(axis=1), rel=1e-10)
         assert found.node.tolist() == values.argmax(axis=1).tolist()
-        parts = size_parts(stress, whole=brittle)
-        sizes = np.abs(principal(whole)).max(axis=(0, 2)) if brittle else von_mises(whole).max(axis=0)
-        bounds = size_bounds(parts, mode_sizes(parts), combination)
-        assert (bounds >= sizes * (1.0 - 1e-12)).all()
-        if smooth and loads > 100 and not brittle:
-            assert np.median(bounds / sizes) < 1.05
+        low, high = signed_bounds(ModeMeasures.of(stress), combination, brittle=brittle)
+        signed = signed_stress(whole, brittle=brittle)
+        assert (low <= signed.min(axis=0) + 1e-12).all()
+        assert (high >= signed.max(axis=0) - 1e-12).all()
+        if smooth and loads > 100:
+            assert np.median((high - low) / np.ptp(signed, axis=0)) < 1.25
 
 
 def test_the_deviators_length_is_the_von_mises_stress():
