@@ -35,10 +35,15 @@ def factors_over_motion(case: Case, link: str, history: LinkLoads) -> ColumnFact
     ColumnFactors
     """
     largest, force = axial_compression(case, link, history)
-    found = link_factors(case, link, hand_section(case.body(link)), force)
-    idle = largest <= 0.0
-    value, least, most = (np.where(idle, np.inf, factor) for factor in (found.value, found.least, found.most))
-    return ColumnFactors(value=value, least=least, most=most)
+    pressed = ~(largest <= 0.0)
+    found = link_factors(case, link, hand_section(case.body(link)), replace(force, values=force.values[..., pressed]))
+
+    def everywhere(factor: Real) -> Real:
+        every = np.full(len(pressed), np.inf)
+        every[pressed] = factor
+        return every
+
+    return ColumnFactors(value=everywhere(found.value), least=everywhere(found.least), most=everywhere(found.most))
 
 
 def with_second_order(case: Case, link: str, history: LinkLoads, evaluated: NDArray[np.bool_]) -> LinkLoads:
