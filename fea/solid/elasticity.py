@@ -140,6 +140,23 @@ def jacobians(
     return cofactor, determinant
 
 
+def linear_gradients(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the gradients of the linear functions of straight-sided elements.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (k, 4, 3)
+        Of each element [mm].
+
+    Returns
+    -------
+    ndarray, shape (k, 3, 4)
+        ∂N_a/∂x_i at [i, a] [1/mm].
+    """
+    inverse, _ = jacobians(corners, _LINEAR[None])
+    return np.asarray(inverse[:, 0] @ _LINEAR.T)
+
+
 def assemble_stiffness(
     space: DisplacementSpace,
     *,
@@ -164,8 +181,8 @@ def assemble_stiffness(
     nu : float
         Poisson's ratio.
     order : int or None, optional
-        1 for the linear displacements within a quadratic space, at its corner nodes (curved elements stay curved); by
-        default the order of the space.
+        1 for linear displacements on the corner nodes of a quadratic space, on straight-sided elements; by default the
+        order of the space.
     memory_limit : float or None, optional
         Bytes that the whole process may hold, by default what the system leaves.
 
@@ -187,8 +204,9 @@ def assemble_stiffness(
     memory.require(72.0 * place.nnz, f"the stiffness matrix of {3 * count:,} unknowns", memory_limit)
     blocks = np.zeros((place.nnz, 3, 3))
     first, second = np.triu_indices(cells.shape[1])
-    straight, curved = (Kernel(space, order, E, nu) for Kernel in (_StraightElements, _CurvedElements))
-    for kernel, members in ((straight, np.flatnonzero(~space.curved)), (curved, np.flatnonzero(space.curved))):
+    curved = space.curved & (order == 2)
+    straight = _StraightElements(space, order, E, nu), np.flatnonzero(~curved)
+    for kernel, members in (straight, (_CurvedElements(space, E, nu), np.flatnonzero(curved))):
         for start in range(0, len(members), _CHUNK):
             chunk = members[start : start + _CHUNK]
             values = kernel(space.nodes[space.cells[chunk]])
@@ -223,7 +241,9 @@ class _StraightElements:
     """Stiffness blocks (k, 3, 3, pairs) of straight-sided elements."""
 
     def __init__(self, space: DisplacementSpace, order: int, E: float, nu: float) -> None:
-        W, _, gradient = _gradients(space, order, 2)
+        _, W, _, gradient = reference_basis(space, 2)
+        if order < space.order:
+            gradient = np.broadcast_to(_LINEAR, (len(W), *_LINEAR.shape))
         first, second = np.triu_indices(gradient.shape[1])
         reference = np.einsum("q,qpk,qpl->klp", W, gradient[:, first], gradient[:, second])
         self.reference = np.ascontiguousarray(reference.reshape(9, -1))
@@ -240,10 +260,10 @@ class _StraightElements:
 class _CurvedElements:
     """Stiffness blocks (k, 3, 3, pairs) of curved elements."""
 
-    def __init__(self, space: DisplacementSpace, order: int, E: float, nu: float) -> None:
-        self.W, self.geometry, gradient = _gradients(space, order, CURVED_DEGREE)
-        self.gradient = np.ascontiguousarray(gradient.transpose(0, 2, 1))
-        b = gradient.shape[1]
+    def __init__(self, space: DisplacementSpace, E: float, nu: float) -> None:
+        _, self.W, _, self.geometry = reference_basis(space, CURVED_DEGREE)
+        self.gradient = np.ascontiguousarray(self.geometry.transpose(0, 2, 1))
+        b = self.geometry.shape[1]
         first, second = np.triu_indices(b)
         i, j = np.arange(3)[:, None, None], np.arange(3)[:, None]
         self.place = (3 * b * (b * i + first) + b * j + second).ravel()  # in a matrix (3b, 3b)
@@ -269,13 +289,3 @@ def _law(M: NDArray[np.float64], lam: float, mu: float) -> NDArray[np.float64]:
     for i in range(3):
         K[:, i, i] += laplace
     return K
-
-
-def _gradients(
-    space: DisplacementSpace, order: int, degree: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Weights (q,), gradients of the geometry's basis (q, B, 3) and of the displacements' (q, b, 3)."""
-    _, W, _, gradient = reference_basis(space, degree)
-    if order == space.order:
-        return W, gradient, gradient
-    return W, gradient, np.broadcast_to(_LINEAR, (len(W), *_LINEAR.shape))
