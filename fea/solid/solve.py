@@ -11,7 +11,9 @@ on one core of an AMD EPYC server (cubes have the fullest factors: memory is est
     SuperLU        cubes of 15,000 unknowns: 1.4 s and 0.17 GB; 47,000: 36 s and 1.4 GB
                    bar of 160,000: 102 s and 4.4 GB
     two levels     bar of 160,000 unknowns, ν = 0.38: 0.4 s, and 0.04 s for each of 19 iterations
-                   tube of 123,000, all in all, one right-hand side: 1.1 s
+    links from the mesher, set-up and each right-hand side, by PARDISO and by two levels (17 to 22 iterations):
+                   48,000 unknowns: 0.87 + 0.02 s, 0.12 + 0.42 s; 62,000: 1.16 + 0.03 s, 0.20 + 0.63 s
+                   98,000: 2.46 + 0.04 s, 0.34 + 0.76 s; 107,000: 2.67 + 0.05 s, 0.42 + 0.94 s
 """
 
 from dataclasses import dataclass
@@ -37,10 +39,11 @@ SLENDER = 60.0
 """Slenderness from which a factorisation is taken: linear elements bend so stiffly that the two-level cycle takes 52
 iterations at a slenderness of 19 (30 diameters), 132 at 62, 376 at 187 and more than it may beyond, while a factor's
 work grows with the length alone: 785,000 unknowns of a tube of 1000 diameters took 15 s and 2.2 GB, all in all."""
-WORTH_FACTORISING: dict[DirectMethod, tuple[float, int]] = {"pardiso": (20_000.0, 1), "superlu": (1_250.0, 3)}
+WORTH_FACTORISING: dict[DirectMethod, tuple[float, int]] = {"pardiso": (33_000.0, 0), "superlu": (1_250.0, 3)}
 """(a, b): for k right-hand sides a factorisation takes less work up to a (k + b) unknowns.
 
-By the figures above, links between bars and tubes in work and with 31 iterations for a right-hand side (ν = 0.38)."""
+By the figures above: for one right-hand side both take the same work at some 33,000 unknowns of a link, for two at
+80,000, for four at 140,000."""
 _NAMES = {"pardiso": "MKL PARDISO", "superlu": "SuperLU", "two-level": "conjugate gradients over linear elements"}
 
 

@@ -36,7 +36,7 @@ def _choice(unknowns, *, nu=0.38, right_hand_sides=1, direct="pardiso", room=16e
     ("unknowns", "options", "method", "reason"),
     [
         (20_000, {}, "pardiso", "small enough"),
-        (160_000, {}, "two-level", "more than 40,000 unknowns, up to which MKL PARDISO takes less work"),
+        (160_000, {}, "two-level", "more than 33,000 unknowns, up to which MKL PARDISO takes less work"),
         (160_000, {"right_hand_sides": 60}, "pardiso", "60 right-hand sides: small enough"),
         (160_000, {"nu": 0.495}, "pardiso", "ν = 0.495 is above 0.49"),
         (550_000, {"right_hand_sides": 10}, "two-level", "takes less work"),
@@ -62,6 +62,11 @@ def test_choice_and_reason(unknowns, options, method, reason, monkeypatch):
         (37_011, 1, 0.67, 0.26),
         (37_011, 4, 0.69, 0.69),
         (37_011, 16, 0.74, 2.78),
+        (47_664, 1, 0.89, 0.54),
+        (62_031, 2, 1.22, 1.46),
+        (98_475, 2, 2.54, 1.86),
+        (98_475, 4, 2.62, 3.38),
+        (107_349, 4, 2.87, 4.18),
         (123_000, 1, 3.5, 1.1),
         (160_000, 1, 9.9, 1.2),
         (160_000, 4, 10.2, 3.4),
@@ -69,7 +74,7 @@ def test_choice_and_reason(unknowns, options, method, reason, monkeypatch):
     ],
 )
 def test_what_takes_less_work_is_chosen(unknowns, right_hand_sides, factorised, iterated, monkeypatch):
-    """Or takes below 1 s. Seconds of one core, of links (37,011: benchmarks/results/growth.json; 123,000) and a bar."""
+    """Or takes below 1 s. Seconds of one core, of links from the mesher (37,011: growth.json) and a bar (160,000)."""
     chosen, _ = _choice(unknowns, right_hand_sides=right_hand_sides, monkeypatch=monkeypatch)
     taken = iterated if chosen == "two-level" else factorised
     assert taken <= max(1.0, min(factorised, iterated))
