@@ -13,6 +13,7 @@ from geometry.base.errors import CannotRunError
 CURVED_DEGREE = 5  # 14 points with positive weights
 _LINEAR = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # gradients
 _CHUNK = 1024  # elements at a time: some 10 MB of working memory, which caches hold in part
+_GROUP = 16 * _CHUNK  # elements whose blocks are looked up at once: scipy reads the whole pattern each time
 
 
 def lame_constants(E: float, nu: float) -> tuple[float, float]:
@@ -207,17 +208,18 @@ def assemble_stiffness(
     curved = space.curved & (order == 2)
     straight = _StraightElements(space, order, E, nu), np.flatnonzero(~curved)
     for kernel, members in (straight, (_CurvedElements(space, E, nu), np.flatnonzero(curved))):
-        for start in range(0, len(members), _CHUNK):
-            chunk = members[start : start + _CHUNK]
-            values = kernel(space.nodes[space.cells[chunk]])
-            row, column = cells[chunk][:, first], cells[chunk][:, second]
+        for group in (members[i : i + _GROUP] for i in range(0, len(members), _GROUP)):
+            row, column = cells[group][:, first], cells[group][:, second]
             mirror = row > column
             target = place[np.minimum(row, column).ravel(), np.maximum(row, column).ravel()].astype(np.intp)
-            for i in range(3):
-                for j in range(3):
-                    # The block of a pair whose nodes stand in descending order belongs below the diagonal.
-                    value = values[:, i, j] if i == j else np.where(mirror, values[:, j, i], values[:, i, j])
-                    np.add.at(blocks[:, i, j], target, value.ravel())
+            target = target.reshape(row.shape)
+            for part in (slice(i, i + _CHUNK) for i in range(0, len(group), _CHUNK)):
+                values, where = kernel(space.nodes[space.cells[group[part]]]), target[part].ravel()
+                for i in range(3):
+                    for j in range(3):
+                        # The block of a pair whose nodes stand in descending order belongs below the diagonal.
+                        value = values[:, i, j] if i == j else np.where(mirror[part], values[:, j, i], values[:, i, j])
+                        np.add.at(blocks[:, i, j], where, value.ravel())
     return SymmetricBlockMatrix(indptr=place.indptr, indices=place.indices, blocks=blocks)
 
 
