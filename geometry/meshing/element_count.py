@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.meshing.solid_model import Solid
+from geometry.meshing.mesh_target import MeshTarget
 
 Sizes = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Element sizes (n,) at points (n, 3), in scaled units."""
@@ -27,8 +27,8 @@ _SAMPLES = 200
 _SQUARE = np.modf(np.arange(1, _SAMPLES + 1)[:, None] * np.array([0.7548776662466927, 0.5698402909980532]))[0]
 
 
-def estimated_elements(gmsh: Any, solid: Solid, sizes: Sizes, turn_elements: int) -> float:
-    """Estimate the number of tetrahedra.
+def estimated_elements(gmsh: Any, target: MeshTarget, sizes: Sizes, turn_elements: int) -> float:
+    """Estimate the number of tetrahedra of a whole body.
 
     It is ``PER_SIZE`` (∫dA/h² + ∫dV/h³), h the size at each point, on surfaces at most what their curvature allows.
     Sizes inside are those at a quarter and three quarters of the depth V/A from the surface, on the coarser side of it:
@@ -37,9 +37,9 @@ def estimated_elements(gmsh: Any, solid: Solid, sizes: Sizes, turn_elements: int
     Parameters
     ----------
     gmsh : module
-        gmsh, with the solid as its model.
-    solid : Solid
-        The solid.
+        gmsh, with the solid in its present model.
+    target : MeshTarget
+        What will be meshed.
     sizes : callable
         Element sizes at points.
     turn_elements : int
@@ -50,13 +50,9 @@ def estimated_elements(gmsh: Any, solid: Solid, sizes: Sizes, turn_elements: int
     float
         The estimate, right within a factor of ``SAFETY``.
     """
-    occ = gmsh.model.occ
-    volume = occ.getMass(3, solid.volume)
-    faces = [face for _, face in gmsh.model.getBoundary([(3, solid.volume)], oriented=False)]
-    areas = {face: occ.getMass(2, face) for face in faces}
-    depth = volume / sum(areas.values())
+    depth = target.volume / sum(target.areas.values())
     total = 0.0
-    for face, area in areas.items():
+    for face, area in target.areas.items():
         low, high = (np.array(bound) for bound in gmsh.model.getParametrizationBounds(2, face))
         place = (low + _SQUARE * (high - low)).ravel()
         points = np.array(gmsh.model.getValue(2, face, place)).reshape(-1, 3)
@@ -72,4 +68,4 @@ def estimated_elements(gmsh: Any, solid: Solid, sizes: Sizes, turn_elements: int
             step = share * depth * normals
             density += depth / 2.0 * np.maximum(sizes(points + step), sizes(points - step)) ** -3.0
         total += area * float(np.average(density, weights=patch))
-    return PER_SIZE * total
+    return PER_SIZE * total * (2.0 if target.half else 1.0)

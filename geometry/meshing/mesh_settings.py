@@ -27,6 +27,8 @@ class MeshSettings:
         Growth of the element edge per distance from a hole or fillet.
     curved : bool
         Whether elements are quadratic and follow round surfaces (10 nodes), else straight (4 nodes).
+    halves : bool
+        Whether of a body that is symmetric about z = 0 the upper half is meshed and mirrored.
     size_points, size_values : ndarray, optional
         Points (n, 3) and the element edges there (n,), interpolated linearly between [mm]; they replace all sizes above
         but for ``turn_elements``.
@@ -45,6 +47,7 @@ class MeshSettings:
     fillet_size: float = 0.8
     growth: float = 0.5
     curved: bool = True
+    halves: bool = True
     size_points: NDArray[np.float64] | None = None
     size_values: NDArray[np.float64] | None = None
     time_limit: float = 300.0

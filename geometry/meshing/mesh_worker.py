@@ -11,6 +11,7 @@ import os
 import pickle
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass, field
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -20,52 +21,66 @@ from geometry.base.child_memory import MemoryGuard
 from geometry.base.child_server import ChildService
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.system_libraries import advice
-from geometry.meshing.solid_model import Solid, build, initialised, volume_centroid_inertia, write_step
+from geometry.meshing.mesh_settings import MeshSettings
+from geometry.meshing.mesh_target import MeshTarget, mesh_target
+from geometry.meshing.solid_model import Solid, build, initialised, present, volume_centroid_inertia, write_step
 from geometry.parts.body import Body
 
 MOST_SOLIDS = 16
 """Solids that are kept at most; each takes a few megabytes."""
 
 
-def _mesh(gmsh: Any, solid: Solid, *arguments: Any) -> object:
+@dataclass
+class _Built:
+    """A body that has been built in a model of gmsh's, and what is meshed of it where halves are allowed, or not."""
+
+    model: str
+    solid: Solid
+    targets: dict[bool, MeshTarget] = field(default_factory=dict)
+
+
+def _mesh(gmsh: Any, built: _Built, settings: MeshSettings) -> object:
     from geometry.meshing.mesher import mesh_solid
 
+    present(gmsh, built.solid.tag)
+    if settings.halves not in built.targets:
+        built.targets[settings.halves] = mesh_target(gmsh, built.solid, halves=settings.halves)
     try:
-        return mesh_solid(gmsh, solid, *arguments)
+        return mesh_solid(gmsh, built.targets[settings.halves], settings)
     finally:
         gmsh.model.mesh.clear()
         with suppress(OSError, AttributeError):  # glibc alone keeps what was freed, and has this to give it back
             ctypes.CDLL(None).malloc_trim(0)
 
 
-def _reentrant(gmsh: Any, solid: Solid) -> object:
+def _mass(gmsh: Any, built: _Built) -> object:
+    return volume_centroid_inertia(gmsh, built.solid)
+
+
+def _reentrant(gmsh: Any, built: _Built) -> object:
     from geometry.meshing.reentrant import find_reentrant_edges
 
-    return find_reentrant_edges(gmsh, solid)
+    present(gmsh, built.solid.tag)
+    return find_reentrant_edges(gmsh, built.solid)
 
 
-def _step(gmsh: Any, solid: Solid, path: str) -> None:
+def _step(gmsh: Any, built: _Built, path: str) -> None:
     os.chdir(Path(path).parent)  # gmsh takes names in UTF-8 alone, and a path need not be
     draft = Path(".draft.step")  # no body's, since a name begins with a letter or a digit
-    write_step(gmsh, solid, draft)
+    write_step(gmsh, built.solid, draft)
     draft.rename(Path(path).name)
 
 
-TASKS: dict[str, Callable[..., object]] = {
-    "mesh": _mesh,
-    "mass": volume_centroid_inertia,
-    "step": _step,
-    "reentrant": _reentrant,
-}
-"""What the worker does with gmsh, the solid of a body and further arguments."""
+TASKS: dict[str, Callable[..., object]] = {"mesh": _mesh, "mass": _mass, "step": _step, "reentrant": _reentrant}
+"""What the worker does with gmsh, a body that has been built, and further arguments."""
 
 
 class _Worker:
-    """gmsh, loaded at the first request, and the solids that it holds."""
+    """gmsh, loaded at the first request, and the bodies that have been built."""
 
     def __init__(self) -> None:
         self._gmsh: Any = None
-        self._solids: dict[Body, tuple[str, Solid]] = {}
+        self._built: dict[tuple[Body, bool], _Built] = {}
         self._count = 0
 
     def answer(self, task: str, body: Body, *arguments: Any) -> tuple[str, object]:
@@ -76,7 +91,7 @@ class _Worker:
             return "cannot", f"gmsh could not be loaded ({error}); {advice()}"
         try:
             self._gmsh = self._gmsh or initialised()
-            return "done", TASKS[task](self._gmsh, self._solid(body), *arguments)
+            return "done", TASKS[task](self._gmsh, self._of(body, task), *arguments)
         except CaseError as error:
             return "case", str(error)
         except CannotRunError as error:
@@ -87,26 +102,24 @@ class _Worker:
             # gmsh raises bare Exceptions that carry its last message.
             return "cannot", f"gmsh failed: {error or type(error).__name__}"
 
-    def _solid(self, body: Body) -> Solid:
-        """Return the solid of a body, whose model becomes the present one."""
+    def _of(self, body: Body, task: str) -> _Built:
+        """Return a body as it was built or is now, and make its model the present one."""
         model = self._gmsh.model
-        if body in self._solids:
-            name, solid = self._solids[body]
-            model.setCurrent(name)
-            return solid
-        if len(self._solids) == MOST_SOLIDS:
-            oldest, _ = self._solids.pop(next(iter(self._solids)))
-            model.setCurrent(oldest)
+        key = body, task == "step"  # a model that is written to a file must hold no half
+        if key in self._built:
+            model.setCurrent(self._built[key].model)
+            return self._built[key]
+        if len(self._built) == MOST_SOLIDS:
+            model.setCurrent(self._built.pop(next(iter(self._built))).model)
             model.remove()
         self._count += 1
         model.add(name := str(self._count))
         try:
-            solid = build(self._gmsh, body)
+            self._built[key] = _Built(name, build(self._gmsh, body))
         except BaseException:
             model.remove()
             raise
-        self._solids[body] = name, solid
-        return solid
+        return self._built[key]
 
 
 def main() -> None:

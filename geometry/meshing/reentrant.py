@@ -63,7 +63,7 @@ def find_reentrant_edges(gmsh: Any, solid: "Solid") -> list[ReentrantEdge]:
         low, high = (bound[0] for bound in gmsh.model.getParametrizationBounds(1, tag))
         angle = 0.0
         for at in _STATIONS:
-            here = _material_angle(gmsh, solid.volume, tag, faces, low + (high - low) * at)
+            here = _material_angle(gmsh, solid.tag, tag, faces, low + (high - low) * at)
             angle = max(angle, here)
             if here < math.pi:
                 break  # convex here, so all along: asking the kernel is slow where a part has many faces

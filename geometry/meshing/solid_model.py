@@ -1,4 +1,4 @@
-"""Links as solids of gmsh's OpenCASCADE kernel, with the faces that loads and checks refer to.
+"""Links as solids of gmsh's OpenCASCADE kernel.
 
 Runs in a child process only (see ``geometry.meshing.mesh``), since the kernel can crash or loop for ever.
 OpenCASCADE works to 1e-7 in whatever unit, so a body is built in a unit of its own: a tenth of its
@@ -17,7 +17,7 @@ from geometry.base.errors import CannotRunError, CaseError
 from geometry.parts.body import Body, patch_span
 from geometry.parts.eyes import flush
 from geometry.parts.features import HoleRow, Pin, PlainEnd
-from geometry.parts.kernel import ON_SURFACE, Entity, FilletError, Kernel
+from geometry.parts.kernel import Entity, FilletError, Kernel
 
 SECTION_UNITS = 10.0
 """Smaller size of a section, in the unit in which it is built."""
@@ -31,18 +31,15 @@ class Solid:
 
     Attributes
     ----------
-    volume : int
+    tag : int
         Its tag.
-    faces : dict of str to list of int
-        Tags of the faces of each named surface.
     unit : float
         Size of the unit in which it is built [mm].
     body : Body
         The body, in that unit.
     """
 
-    volume: int
-    faces: dict[str, list[int]]
+    tag: int
     unit: float
     body: Body
 
@@ -111,7 +108,7 @@ def scaled(body: Body, unit: float) -> Body:
 
 
 def build(gmsh: Any, body: Body) -> Solid:
-    """Build a body in the present model of the kernel, which is empty, and name its faces.
+    """Build a body in the present model of the kernel, which is empty.
 
     Parameters
     ----------
@@ -137,6 +134,7 @@ def build(gmsh: Any, body: Body) -> Solid:
     small = scaled(body, unit)
     try:
         solid = small.part.solid(kernel, small)
+        tools = small.part.cavities(kernel, small)
     except FilletError:
         arms = ", or turn an arm further from what is beside it" if any(pin.foot for pin in body.pins) else ""
         raise CaseError(
@@ -144,11 +142,27 @@ def build(gmsh: Any, body: Body) -> Solid:
             f"{part.eye_diameter:g} mm by {part.eye_thickness:g} mm; reduce it, increase eye_diameter or "
             f"eye_thickness, or move the pins further apart{arms}"
         ) from None
-    holes = [e for pin in small.pins for e in kernel.upright(pin, pin.diameter, 2.0 * small.part.eye_thickness)]
-    solid = _imprint(kernel, small, kernel.cut(solid, holes + _hole_rows(kernel, small)))
+    for pin in small.pins:
+        tools += kernel.upright(pin, pin.diameter, 2.0 * small.part.eye_thickness)
+    tools += _hole_rows(kernel, small)  # one cut, since a second one works on all faces that the first one made
+    solid = _imprint(kernel, small, kernel.cut(solid, tools))
     kernel.occ.synchronize()
     kernel.only(gmsh.model.getEntities(3))
-    return Solid(volume=solid[1], faces=_named_faces(gmsh, small), unit=unit, body=small)
+    return Solid(tag=solid[1], unit=unit, body=small)
+
+
+def present(gmsh: Any, tag: int) -> None:
+    """Show a single solid to mesher and queries, of those that the kernel has in the present model.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh.
+    tag : int
+        Tag of the solid.
+    """
+    gmsh.model.occ.synchronize()
+    gmsh.model.removeEntities([solid for solid in gmsh.model.getEntities(3) if solid[1] != tag], recursive=True)
 
 
 def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
@@ -233,59 +247,6 @@ def _hole_rows(kernel: Kernel, body: Body) -> list[Entity]:
     return holes
 
 
-def _points_on_face(gmsh: Any, tag: int) -> NDArray[np.float64]:
-    """Return points (n, 3) of the surface that carries a face (they may lie outside its borders)."""
-    low, high = gmsh.model.getParametrizationBounds(2, tag)
-    at = np.array([[a, b] for a in (0.1, 0.45, 0.8) for b in (0.2, 0.6, 0.9)])
-    uv = np.asarray(low) + at * (np.asarray(high) - np.asarray(low))
-    return np.asarray(gmsh.model.getValue(2, tag, uv.ravel())).reshape(-1, 3)
-
-
-def _named_faces(gmsh: Any, body: Body) -> dict[str, list[int]]:
-    part = body.part
-    names = [f"{kind}:{pin.name}" for pin in body.pins for kind in ("bore", "top", "bottom")]
-    faces: dict[str, list[int]] = {name: [] for name in names + [f"end:{end.name}" for end in body.ends]}
-    for _, tag in gmsh.model.getEntities(2):
-        points = _points_on_face(gmsh, tag)
-        centre = np.asarray(gmsh.model.occ.getCenterOfMass(2, tag))
-        flat = gmsh.model.getType(2, tag) == "Plane"
-        for pin in sorted(body.pins, key=lambda p: float(p.distance(centre[0], centre[1])))[:1]:
-            # The middle of a large face with a hole may lie in an eye as well, but not its borders.
-            box = gmsh.model.getBoundingBox(2, tag)
-            corners = (max(float(pin.distance(x, pin.y)) for x in box[0::3]), max(abs(y - pin.y) for y in box[1::3]))
-            off = max(float(pin.distance(centre[0], centre[1])), *(corner - 1e-3 for corner in corners))
-            for side, height in (("top", part.eye_thickness / 2.0), ("bottom", -part.eye_thickness / 2.0)):
-                if flat and np.abs(points[:, 2] - height).max() < ON_SURFACE and off < part.eye_diameter / 2.0:
-                    faces[f"{side}:{pin.name}"].append(tag)
-        for pin in body.pins:
-            distance = pin.distance(points[:, 0], points[:, 1])
-            if (pin.slot > 0.0 or not flat) and np.abs(distance - pin.diameter / 2.0).max() < ON_SURFACE:
-                faces[f"bore:{pin.name}"].append(tag)
-        for end in body.ends:
-            low, high = patch_span(body, end)
-            if low < centre[0] < high and _on_outside(body, points):
-                faces[f"end:{end.name}"].append(tag)
-    for name, tags in faces.items():
-        if not tags:
-            raise CannotRunError(f"the part came out without surface '{name}'; change its dimensions a little")
-    return faces
-
-
-def _on_outside(body: Body, points: NDArray[np.float64]) -> bool:
-    """Return whether a face belongs to the outer surface of a round part, or to the four sides of a flat one.
-
-    The top of an arm lies in the plane of the bar's, but beyond its width.
-    """
-    section = body.part.section
-    if section.round:
-        return bool(np.abs(np.hypot(points[:, 1], points[:, 2]) - section.half_y).max() < ON_SURFACE)
-    offsets = ((points[:, 1], section.half_y), (points[:, 2], section.half_z))
-    within = np.abs(points[:, 1]).max() < section.half_y + ON_SURFACE
-    return bool(within) and any(
-        bool(np.abs(np.abs(offset.mean()) - half) < ON_SURFACE > np.ptp(offset)) for offset, half in offsets
-    )
-
-
 def write_step(gmsh: Any, solid: Solid, path: Path) -> None:
     """Write a solid as STEP in mm.
 
@@ -306,7 +267,7 @@ def write_step(gmsh: Any, solid: Solid, path: Path) -> None:
     CannotRunError
         Where the volume in the file is another.
     """
-    volume = gmsh.model.occ.getMass(3, solid.volume) * solid.unit**3
+    volume = gmsh.model.occ.getMass(3, solid.tag) * solid.unit**3
     unscaled = path.with_suffix(".brep")
     gmsh.write(str(unscaled))
     gmsh.model.add("scaled")
@@ -344,9 +305,9 @@ def volume_centroid_inertia(gmsh: Any, solid: Solid) -> tuple[float, NDArray[np.
         Inertia tensor (3, 3) about the centroid, for unit density [mm⁵].
     """
     occ = gmsh.model.occ
-    inertia = np.asarray(occ.getMatrixOfInertia(3, solid.volume)).reshape(3, 3)
+    inertia = np.asarray(occ.getMatrixOfInertia(3, solid.tag)).reshape(3, 3)
     return (
-        occ.getMass(3, solid.volume) * solid.unit**3,
-        np.asarray(occ.getCenterOfMass(3, solid.volume)) * solid.unit,
+        occ.getMass(3, solid.tag) * solid.unit**3,
+        np.asarray(occ.getCenterOfMass(3, solid.tag)) * solid.unit,
         inertia * solid.unit**5,
     )

@@ -54,7 +54,7 @@ class PartKind(CaseModel):
 
     @abstractmethod
     def solid(self, kernel: Kernel, body: "Body") -> Entity:
-        """Build the part without its pin holes, slots and rows of holes.
+        """Build the part without its pin holes, slots, rows of holes and ``cavities``.
 
         Parameters
         ----------
@@ -73,6 +73,23 @@ class PartKind(CaseModel):
         FilletError
             Where a fillet does not fit.
         """
+
+    def cavities(self, kernel: Kernel, body: "Body") -> list[Entity]:
+        """Build what is cut out of the part besides its holes.
+
+        Parameters
+        ----------
+        kernel : Kernel
+            The geometry kernel.
+        body : Body
+            The body, in the kernel's unit.
+
+        Returns
+        -------
+        list of Entity
+            Solids.
+        """
+        return []
 
     @abstractmethod
     def fine_places(self, body: "Body", size: float, share: float) -> list[tuple[float, str]]:

@@ -3,6 +3,7 @@
 gmsh itself is loaded in a child process alone (``geometry.meshing``), which hands it to ``Kernel``.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -38,7 +39,9 @@ class Kernel:
         self.occ = gmsh.model.occ
 
     def cylinder(self, start: Vector, axis: Vector, radius: float) -> Entity:
-        """Make a cylinder.
+        """Make a cylinder, the seam of its face in the plane of its axis if that lies in z = 0.
+
+        A cut along that plane then leaves each half one face.
 
         Parameters
         ----------
@@ -54,7 +57,10 @@ class Kernel:
         Entity
             The solid.
         """
-        return 3, self.occ.addCylinder(*start, *axis, radius)
+        solid = 3, self.occ.addCylinder(*start, *axis, radius)
+        if axis[2] == 0.0 in axis[:2]:  # along x or y, where the kernel begins at +z
+            self.occ.rotate([solid], *start, *axis, math.pi / 2.0)
+        return solid
 
     def box(self, corner: Vector, sides: Vector, turn: float = 0.0, about: tuple[float, float] = (0.0, 0.0)) -> Entity:
         """Make a box, and turn it in the plane.

@@ -75,10 +75,9 @@ class Tube(Straight):
         radius = self.outer_diameter / 2.0
         return [kernel.cylinder((low, 0, 0), (high - low, 0, 0), radius) for low, high in itertools.pairwise(stations)]
 
-    def solid(self, kernel: Kernel, body: Body) -> Entity:
-        """As ``PartKind.solid``: with its bore."""
-        solid = super().solid(kernel, body)
-        return kernel.cut(solid, [self._hollow(kernel, body, *span) for span in self._hollow_spans(body)])
+    def cavities(self, kernel: Kernel, body: Body) -> list[Entity]:
+        """As ``PartKind.cavities``: the bore."""
+        return [self._hollow(kernel, body, *span) for span in self._hollow_spans(body)]
 
     @property
     def _hollow_fillet(self) -> float:
