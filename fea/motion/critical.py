@@ -14,7 +14,7 @@ Real = NDArray[np.float64]
 _BLOCK = 128
 
 
-def critical_nodes(stress: Real, combinations: Sequence[Real], material: Material) -> list[tuple[int, Real]]:
+def critical_nodes(modes: ModeMeasures, combinations: Sequence[Real], material: Material) -> list[tuple[int, Real]]:
     """Return the node that fatigues first, for each of several motions.
 
     The largest cycle of a node goes from its smallest to its largest signed stress. A node is left out if the cycle
@@ -22,8 +22,7 @@ def critical_nodes(stress: Real, combinations: Sequence[Real], material: Materia
 
     Parameters
     ----------
-    stress : ndarray, shape (nodes, 6, m)
-        Of m modes [MPa].
+    modes : ModeMeasures
     combinations : sequence of ndarray, shape (m, n)
         Of the modes at the n poses of each motion.
     material : Material
@@ -34,11 +33,11 @@ def critical_nodes(stress: Real, combinations: Sequence[Real], material: Materia
     list of tuple of (int, ndarray, shape (n,))
         The node, and the history of its signed stress [MPa].
     """
-    modes = ModeMeasures.of(stress)
-    return [_critical(stress, modes, combination, material) for combination in combinations]
+    return [_critical(modes, combination, material) for combination in combinations]
 
 
-def _critical(stress: Real, modes: ModeMeasures, combination: Real, material: Material) -> tuple[int, Real]:
+def _critical(modes: ModeMeasures, combination: Real, material: Material) -> tuple[int, Real]:
+    stress = modes.stress
     bound = _largest_harm(*signed_bounds(modes, combination, brittle=material.brittle), material)
     order = np.argsort(-bound)
     best, node, history = _most_harmed(stress, order[:_BLOCK], combination, material)

@@ -129,7 +129,7 @@ def _solved(
         threads=threads,
     )
     _balanced(solved)
-    peaks = largest_stress(solved.stress, solved.combination, brittle=material.brittle)
+    peaks = largest_stress(solved.measures, solved.combination, brittle=material.brittle)
     peaks = replace(peaks, node=solved.nodes[peaks.node])
     curves: dict[str, list[VariantCurve]] = {history.name: [] for history in chosen}
     for number, (name, law, transfer) in enumerate(names):
@@ -334,7 +334,7 @@ class LinkMotion:
         for variant in load_case.variants:
             count = int(np.isfinite(variant.stress).sum())
             parts.append(self.solved.combination[:, variant.first : variant.first + count])
-        critical = critical_nodes(self.solved.stress, parts, self.material)
+        critical = critical_nodes(self.solved.measures, parts, self.material)
         for variant, (number, history) in zip(load_case.variants, critical, strict=True):
             node = int(self.solved.nodes[number])
             closed = closed_history(history, returns=self.returns)

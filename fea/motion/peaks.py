@@ -96,13 +96,12 @@ def deviator(stress: Real) -> Real:
     return np.stack([root / 2.0 * (xx - yy), (xx + yy) / 2.0 - zz, root * xy, root * yz, root * xz], axis=1)
 
 
-def largest_stress(stress: Real, combination: Real, *, brittle: bool) -> Peaks:
+def largest_stress(modes: "ModeMeasures", combination: Real, *, brittle: bool) -> Peaks:
     """Return the largest stress of all nodes under each load.
 
     Parameters
     ----------
-    stress : ndarray, shape (nodes, 6, m)
-        Of m modes at the nodes [MPa].
+    modes : ModeMeasures
     combination : ndarray, shape (m, N)
         Of the modes under N loads.
     brittle : bool
@@ -112,21 +111,25 @@ def largest_stress(stress: Real, combination: Real, *, brittle: bool) -> Peaks:
     -------
     Peaks
     """
-    runs, search, modes = _Runs.of(combination), _Search(stress, combination, brittle=brittle), ModeMeasures.of(stress)
+    runs, search = _Runs.of(combination), _Search(modes.stress, combination, brittle=brittle)
     length = 2.0 / 3.0 if brittle else 1.0
     own = (np.abs(modes.mean) if brittle else 0.0) + length * modes.sizes
-    ends = combination[:, runs.ends]
+    ends, least = combination[:, runs.ends], None
     order = np.argsort(-(own @ np.abs(combination).max(axis=1)))
+    left: list[list[NDArray[np.int64]]] = [[] for _ in runs.ends[1:]]
     for block in _blocks(order, 5 * len(runs.ends)):
         at_ends = length * np.sqrt(_squares(modes.parts[block], ends))
         if brittle:
             at_ends += modes.mean[block] @ ends
-        if not np.isfinite(search.value).all():
+        if least is None:
             search.begin(runs, block[np.argmax(at_ends, axis=0)])
-        least = np.array([search.value[runs.loads(run)].min() for run in range(len(runs.ends) - 1)])
-        may = runs.bounds(at_ends, own[block]) >= least - _ROUNDING * np.abs(least)
+            least = np.array([search.value[runs.loads(run)].min() for run in range(len(left))])
+            least -= _ROUNDING * np.abs(least)
+        may = runs.bounds(at_ends, own[block]) >= least
         for run in np.flatnonzero(may.any(axis=0)).tolist():
-            search.look(block[may[:, run]], runs.loads(run))
+            left[run].append(block[may[:, run]])
+    for run, nodes in enumerate(left):
+        search.look(np.concatenate([order[:1], *nodes]), runs.loads(run))
     return Peaks(value=search.value, node=search.node)
 
 
@@ -195,6 +198,8 @@ class ModeMeasures:
 
     Attributes
     ----------
+    stress : ndarray, shape (nodes, 6, m)
+        Components [MPa].
     parts : ndarray, shape (nodes, 5, m)
         From ``deviator`` [MPa].
     sizes : ndarray, shape (nodes, m)
@@ -203,6 +208,7 @@ class ModeMeasures:
         Mean of the direct stresses [MPa].
     """
 
+    stress: Real
     parts: Real
     sizes: Real
     mean: Real
@@ -221,7 +227,7 @@ class ModeMeasures:
         ModeMeasures
         """
         parts = deviator(stress)
-        return cls(parts=parts, sizes=mode_sizes(parts), mean=stress[:, :3].mean(axis=1))
+        return cls(stress=stress, parts=parts, sizes=mode_sizes(parts), mean=stress[:, :3].mean(axis=1))
 
 
 def signed_bounds(modes: ModeMeasures, combination: Real, *, brittle: bool) -> tuple[Real, Real]:

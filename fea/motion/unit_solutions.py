@@ -7,11 +7,13 @@ One factorisation and one solution per mode then serve every pose.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.common import memory
+from fea.motion.peaks import ModeMeasures
 from fea.motion.unit_loads import UnitLoads
 from fea.solid.elasticity import jacobians, lame_constants, reference_basis
 from fea.solid.solution import FreeSolution, solve_free
@@ -67,6 +69,11 @@ class UnitSolutions:
     solver: str
     solver_reason: str
     solver_error: float
+
+    @cached_property
+    def measures(self) -> ModeMeasures:
+        """Numbers of the modes from which peaks are found."""
+        return ModeMeasures.of(self.stress)
 
     def field(self, load: int) -> Real:
         """Return the displacements under one of the loads.

@@ -215,7 +215,7 @@ def test_peaks_are_those_of_all_nodes_under_all_loads(loads, smooth):
         combination = rng.normal(size=(7, loads)) * rng.uniform(0.01, 10.0, size=loads)
     whole = np.einsum("nim,mp->pni", stress, combination)
     for brittle, values in ((False, von_mises(whole)), (True, principal(whole)[..., 0])):
-        found = largest_stress(stress, combination, brittle=brittle)
+        found = largest_stress(ModeMeasures.of(stress), combination, brittle=brittle)
         assert found.value == pytest.approx(values.max(axis=1), rel=1e-10)
         assert found.node.tolist() == values.argmax(axis=1).tolist()
         low, high = signed_bounds(ModeMeasures.of(stress), combination, brittle=brittle)
@@ -234,7 +234,7 @@ def test_the_deviators_length_is_the_von_mises_stress():
 def test_stress_of_a_compressed_link_may_have_no_tension():
     stress = np.zeros((4, 6, 1))
     stress[:, :3, 0] = -np.arange(1.0, 5.0)[:, None]
-    peaks = largest_stress(stress, np.array([[1.0, 2.0]]), brittle=True)
+    peaks = largest_stress(ModeMeasures.of(stress), np.array([[1.0, 2.0]]), brittle=True)
     assert peaks.value.tolist() == [-1.0, -2.0]
     assert peaks.node.tolist() == [0, 0]
 

@@ -16,6 +16,7 @@ from fea.motion.fatigue import (
     strength_at,
     turning_points,
 )
+from fea.motion.peaks import ModeMeasures
 from geometry.parts.material import Fatigue, library
 
 PVC = library()["pvc-u"]
@@ -145,7 +146,7 @@ def test_critical_node_is_that_of_all_nodes(material):
     stress = rng.normal(size=(900, 6, 4)) * rng.uniform(0.1, 1.0, size=(900, 1, 1))
     angle = np.linspace(0.0, 2.0 * math.pi, 40, endpoint=False)
     combination = np.array([np.cos(angle), np.sin(angle), 0.5 * np.cos(2 * angle), np.ones(40)])
-    ((node, history),) = critical_nodes(stress, [combination], material)
+    ((node, history),) = critical_nodes(ModeMeasures.of(stress), [combination], material)
     signed = signed_stress(np.einsum("nim,mp->npi", stress, combination), brittle=material.brittle)
     size, mean = np.ptp(signed, axis=1), (signed.max(axis=1) + signed.min(axis=1)) / 2.0
     harm = equivalent_peak(np.column_stack([size, mean, mean]), material.fatigue, material.ultimate_strength)
