@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.deflection import flexibility
-from fea.frame.jet import Jet, cross, dot, stack, unit
+from fea.frame.jet import EPSILON, Bilinear, Jet, cross, dot, stack, unit
 from fea.frame.model import FrameModel, Guide
 from fea.frame.system import line_load_effect, natural_flexibility
 from geometry.base.errors import CannotRunError
@@ -115,7 +115,7 @@ class CorotationalElements:
         potential = v.map(natural[:, None, :]) - self._work_on_chord(displacements, rotations, self.loads)
         return _response(potential)
 
-    def natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, tuple[Jet, Jet, Jet]]:
+    def natural(self, displacements: Floats, rotations: Floats) -> tuple[Jet, Jet]:
         """Return the natural deformations and the element's axes.
 
         Parameters
@@ -127,47 +127,44 @@ class CorotationalElements:
 
         Returns
         -------
-        tuple of Jet and tuple of 3 Jet
-            Natural deformations (m, 6) and the element's axes, (m, 3) each.
+        tuple of 2 Jet
+            Natural deformations (m, 6), and the element's axes x, y, z one after the other (m, 9).
         """
-        chord = self._point(1, displacements, rotations) - self._point(0, displacements, rotations)
-        length2 = dot(chord, chord)
+        first, second = (self._point(end, displacements, rotations) for end in (0, 1))
+        chord = second - first
         e1 = unit(chord)
-        ends = [[_turned(rotations[:, k], self.axes[:, :, j], 6 * k + 3) for j in range(3)] for k in range(2)]
-        e3 = unit(cross(e1, ends[0][1] + ends[1][1]))
-        e2 = cross(e3, e1)
-        angles = [_rotation_vector((e1, e2, e3), triad) for triad in ends]
-        length = self.lengths[:, None]
-        lengthening = length2.power(0.5)
+        triads = stack(*(_turned(rotations[:, k], self.axes.swapaxes(1, 2), 6 * k + 3) for k in range(2)))
+        e3 = unit(cross(e1, triads.map(_MEAN_Y)))
+        axes = stack(e1, cross(e3, e1), e3)
+        angles = _rotation_vectors(axes, triads)
+        lengthening = dot(chord, chord).power(0.5)
         # From the ends' difference in displacement, so that no rounding error of the positions comes in.
         parted = displacements[:, 1] - displacements[:, 0]
         for end, sign in ((0, -1.0), (1, 1.0)):
             parted = parted + sign * np.einsum("mij,mj->mi", rotations[:, end] - np.eye(3), self.arms[:, end])
-        original = self.lengths[:, None] * self.axes[:, :, 0]
+        length = self.lengths[:, None]
+        original = length * self.axes[:, :, 0]
         grown = ((2.0 * original + parted) * parted).sum(axis=1, keepdims=True)
         lengthening = Jet(
             value=grown / (lengthening.value + length),
             gradient=lengthening.gradient,
             hessian=lengthening.hessian,
         )
-        a, b = angles
-        lengthening = lengthening + (_bowing(a[[2]], b[[2]]) + _bowing(a[[1]], b[[1]])).times(length / 30.0)
-        return stack(lengthening, a[[2]], b[[2]], a[[1]], b[[1]], b[[0]] - a[[0]]), (e1, e2, e3)
+        lengthening = lengthening + angles.form(_BOWING).times(length / 30.0)
+        return stack(lengthening, angles.map(_NATURAL)), axes
 
     def _point(self, end: int, displacements: Floats, rotations: Floats) -> Jet:
         """Position of a beam's end."""
-        arm = _turned(rotations[:, end], self.arms[:, end], 6 * end + 3)
-        gradient = arm.gradient.copy()
-        gradient[:, :, 6 * end : 6 * end + 3] += np.eye(3)
+        arm = _turned(rotations[:, end], self.arms[:, end, None], 6 * end + 3)
+        arm.gradient[:, :, 6 * end : 6 * end + 3] += np.eye(3)
         origin = (self.start, self.end)[end]
-        return Jet(value=arm.value + origin + displacements[:, end], gradient=gradient, hessian=arm.hessian)
+        return Jet(value=arm.value + origin + displacements[:, end], gradient=arm.gradient, hessian=arm.hessian)
 
     def _work_on_chord(self, displacements: Floats, rotations: Floats, loads: Floats) -> Jet:
         """Potential (m, 1) of the line loads (m, 2, 3) at the chord, counted as work done."""
-        first, last = loads[:, 0], loads[:, 1]
-        third = self.lengths[:, None] / 6.0
-        start, end = (self._point(k, displacements, rotations) for k in range(2))
-        return dot(start, _constant((2.0 * first + last) * third)) + dot(end, _constant((first + 2.0 * last) * third))
+        points = stack(*(self._point(k, displacements, rotations) for k in range(2)))
+        shares = np.array([[2.0, 1.0], [1.0, 2.0]]) * self.lengths[:, None, None] / 6.0
+        return points.map((shares @ loads).reshape(-1, 1, 6))
 
     def potential(self, displacements: Floats, rotations: Floats, factor: float) -> Jet:
         """Return the strain energy less the work of the line loads.
@@ -186,12 +183,36 @@ class CorotationalElements:
         Jet
             (m, 1) [N·mm].
         """
-        loads = factor * self.loads
         v, axes = self.natural(displacements, rotations)
-        local = stack(*(dot(e, _constant(loads[:, k])) for k in range(2) for e in axes))
+        loads = factor * self.loads
+        if not loads.any():
+            return v.form(self.stiffness).times(0.5)
+        onto_axes = np.einsum("mkj,ab->mkabj", loads, np.eye(3)).reshape(-1, 6, 9)
+        local = axes.map(onto_axes)
         strained = v - local.map(self.load_bends)
-        stored = dot(strained, strained.map(self.stiffness)) - dot(local, local.map(self.load_sags))
+        stored = strained.form(self.stiffness) - local.form(self.load_sags)
         return stored.times(0.5) - self._work_on_chord(displacements, rotations, loads)
+
+
+_MEAN_Y = np.zeros((3, 18))
+"""Twice the mean of both ends' y axes, from the triads of both ends."""
+_MEAN_Y[:, 3:6] = _MEAN_Y[:, 12:15] = np.eye(3)
+_NATURAL = np.zeros((5, 6))
+"""Natural deformations 1 to 5 from the rotation vectors of both ends."""
+_NATURAL[[0, 1, 2, 3, 4, 4], [2, 5, 1, 4, 3, 0]] = [1.0, 1.0, 1.0, 1.0, 1.0, -1.0]
+_BOWING = np.zeros((6, 6))
+"""30/L times the lengthening of the axis as its ends turn by a and b: 2 a² - a b + 2 b² in either plane."""
+for _a, _b in ((1, 4), (2, 5)):
+    _BOWING[np.ix_([_a, _b], [_a, _b])] = [[2.0, -0.5], [-0.5, 2.0]]
+_SINES = np.zeros((6, 9, 18))
+"""Sines of the turns from axes e to triads t of both ends: half of e_j · t_i - e_i · t_j, over cyclic i, j of x, y, z."""
+for _end in range(2):
+    for _turn in range(3):
+        _i, _j = (_turn + 1) % 3, (_turn + 2) % 3
+        for _k in range(3):
+            _SINES[3 * _end + _turn, 3 * _j + _k, 9 * _end + 3 * _i + _k] = 0.5
+            _SINES[3 * _end + _turn, 3 * _i + _k, 9 * _end + 3 * _j + _k] = -0.5
+_sines = Bilinear(_SINES)
 
 
 def guide_gap(guide: Guide, displacements: Floats, rotations: Floats) -> tuple[float, ElementResponse]:
@@ -211,9 +232,9 @@ def guide_gap(guide: Guide, displacements: Floats, rotations: Floats) -> tuple[f
     tuple of float and ElementResponse
         Gap [mm, rad], and what a unit of the guide's force does to both nodes.
     """
-    normal = _turned(rotations[None, 0], guide.normal[None], 3)
+    normal = _turned(rotations[None, 0], guide.normal[None, None], 3)
     if guide.axis is not None:
-        gap = dot(_turned(rotations[None, 1], guide.axis[None], 9), normal)
+        gap = dot(_turned(rotations[None, 1], guide.axis[None, None], 9), normal)
     else:
         apart = _constant(displacements[None, 1] - displacements[None, 0])
         apart.gradient[0, :, :3], apart.gradient[0, :, 6:9] = -np.eye(3), np.eye(3)
@@ -227,11 +248,6 @@ def _response(potential: Jet) -> ElementResponse:
     for k in (3, 9):
         tangent[:, k : k + 3, k : k + 3] -= 0.5 * _skew(forces[:, k : k + 3])
     return ElementResponse(forces=forces, tangent=tangent)
-
-
-def _bowing(a: Jet, b: Jet) -> Jet:
-    """30/L times the lengthening of the axis as its ends turn by a and b: 2 a² - a b + 2 b²."""
-    return (a * a + b * b).times(2.0) - a * b
 
 
 def _own_deflection(model: FrameModel, i: int) -> Floats:
@@ -268,45 +284,62 @@ def _constant(values: Floats) -> Jet:
 
 
 def _turned(rotations: Floats, vectors: Floats, first: int) -> Jet:
-    """Vectors (m, 3) turned by exp(δ) R, with the spin δ the variables from ``first`` on, at δ = 0.
+    """Vectors (m, v, 3) turned by exp(δ) R, with the spin δ the variables from ``first`` on, at δ = 0; (m, 3 v).
 
     exp(δ) w = w + δ × w + δ × (δ × w)/2 + ... holds all that two derivatives see.
     """
-    w = np.einsum("mij,mj->mi", rotations, vectors)
-    out = _constant(w)
+    w = vectors @ rotations.swapaxes(1, 2)
+    m, c = len(w), 3 * w.shape[1]
+    out = _constant(w.reshape(m, c))
     spin = slice(first, first + 3)
-    out.gradient[:, :, spin] = -_skew(w)
-    eye = np.eye(3)
-    half = np.einsum("ij,mk->mijk", eye, w) / 2.0
-    out.hessian[:, :, spin, spin] = half + half.swapaxes(2, 3) - np.einsum("mi,jk->mijk", w, eye)
+    out.gradient[:, :, spin] = (w @ _ONCE).reshape(m, c, 3)
+    out.hessian[:, :, spin, spin] = (w @ _TWICE).reshape(m, c, 3, 3)
     return out
 
 
-def _rotation_vector(axes: tuple[Jet, Jet, Jet], triad: list[Jet]) -> Jet:
-    """Rotation vector (m, 3), in the element's axes, that turns these axes into a triad; below a right angle."""
-    e1, e2, e3 = axes
-    t1, t2, t3 = triad
-    sine = stack(dot(e3, t2) - dot(e2, t3), dot(e1, t3) - dot(e3, t1), dot(e2, t1) - dot(e1, t2)).times(0.5)
-    trace = sum(np.einsum("mi,mi->m", e.value, t.value) for e, t in zip(axes, triad, strict=True))
-    if np.any(np.asarray(trace) <= 1.0 + 1e-3):
+_ONCE = EPSILON.transpose(2, 0, 1).reshape(3, 9)
+"""First derivatives of the components of exp(δ) w by δ, from w."""
+_TWICE = np.zeros((3, 3, 3, 3))
+"""Second derivatives: (δ_ij w_k + δ_ik w_j)/2 - w_i δ_jk by component i and spins j, k."""
+for _i in range(3):
+    for _j in range(3):
+        _TWICE[_j, _i, _i, _j] += 0.5
+        _TWICE[_j, _i, _j, _i] += 0.5
+        _TWICE[_i, _i, _j, _j] -= 1.0
+_TWICE = _TWICE.reshape(3, 27)
+
+
+def _rotation_vectors(axes: Jet, triads: Jet) -> Jet:
+    """Rotation vectors (m, 6), in the element's axes, that turn these axes into both triads; below a right angle."""
+    traces = np.einsum("mi,mki->mk", axes.value, triads.value.reshape(-1, 2, 9))
+    if np.any(traces <= 1.0 + 1e-3):
         raise CannotRunError("a beam bends by a right angle within one element; divide it into more elements")
+    sine = _sines(axes, triads).rows(3)
     s = dot(sine, sine)
-    return sine * s.apply(*_arc_sine_ratio(s.value))
+    return (sine * s.apply(*_arc_sine_ratio(s.value))).rows(6)
+
+
+_SERIES = np.array([1.0, 1 / 6, 3 / 40, 5 / 112, 35 / 1152, 63 / 2816, 231 / 13312, 143 / 10240, 6435 / 557056])
+_POWERS = np.arange(len(_SERIES))
+"""Of f = asin(√s)/√s by s."""
 
 
 def _arc_sine_ratio(s: Floats) -> tuple[Floats, Floats, Floats]:
     """Return f = asin(√s)/√s and its first two derivatives by s; by series below s = 0.01."""
-    series = np.array([1.0, 1 / 6, 3 / 40, 5 / 112, 35 / 1152, 63 / 2816, 231 / 13312, 143 / 10240, 6435 / 557056])
     small = s < 0.01
-    polynomial = np.polynomial.Polynomial(series)
+    n = _POWERS
+    powers = np.where(small, s, 0.0)[..., None] ** n
+    series = (
+        powers @ _SERIES,
+        powers[..., :-1] @ (n * _SERIES)[1:],
+        powers[..., :-2] @ (n * (n - 1) * _SERIES)[2:],
+    )
+    if small.all():
+        return series
     x = np.where(small, 0.25, s)
     root, rest = np.sqrt(x), 1.0 - x
     f = np.arcsin(root) / root
     # f satisfies 2 s f' = 1/√(1 - s) - f.
     first = (1.0 / np.sqrt(rest) - f) / (2.0 * x)
     second = (0.5 * rest**-1.5 - first) / (2.0 * x) - first / x
-    return (
-        np.where(small, polynomial(s), f),
-        np.where(small, polynomial.deriv()(s), first),
-        np.where(small, polynomial.deriv(2)(s), second),
-    )
+    return np.where(small, series[0], f), np.where(small, series[1], first), np.where(small, series[2], second)

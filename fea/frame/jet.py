@@ -6,6 +6,7 @@ Evaluating Derivatives, 2nd ed., 2008, chapter 13).
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,20 +120,12 @@ class Jet:
         x, n = self.value, exponent
         return self.apply(x**n, n * x ** (n - 1.0), n * (n - 1.0) * x ** (n - 2.0))
 
-    def sum(self) -> "Jet":
-        """Return the sum of the components, as one component."""
-        return Jet(
-            value=self.value.sum(axis=1, keepdims=True),
-            gradient=self.gradient.sum(axis=1, keepdims=True),
-            hessian=self.hessian.sum(axis=1, keepdims=True),
-        )
-
     def map(self, matrices: Floats) -> "Jet":
         """Combine the components linearly.
 
         Parameters
         ----------
-        matrices : ndarray, shape (m, d, c)
+        matrices : ndarray, shape (m, d, c) or (d, c)
             Constants.
 
         Returns
@@ -141,10 +134,66 @@ class Jet:
             d components.
         """
         return Jet(
-            value=np.einsum("mdc,mc->md", matrices, self.value),
-            gradient=np.einsum("mdc,mck->mdk", matrices, self.gradient),
-            hessian=np.einsum("mdc,mckl->mdkl", matrices, self.hessian),
+            value=np.matmul(matrices, self.value[..., None])[..., 0],
+            gradient=np.matmul(matrices, self.gradient),
+            hessian=_combined(matrices, self.hessian),
         )
+
+    def form(self, matrices: Floats) -> "Jet":
+        """Return the quadratic form of the components.
+
+        Parameters
+        ----------
+        matrices : ndarray, shape (m, c, c) or (c, c)
+            Constant, symmetric.
+
+        Returns
+        -------
+        Jet
+            One component.
+        """
+        slope = np.matmul(matrices, self.value[..., None]).swapaxes(1, 2)
+        curvature = self.gradient.swapaxes(1, 2) @ np.matmul(matrices, self.gradient)
+        return Jet(
+            value=slope @ self.value[..., None],
+            gradient=2.0 * slope @ self.gradient,
+            hessian=2.0 * (_combined(slope, self.hessian) + curvature[:, None]),
+        ).flat()
+
+    def flat(self) -> "Jet":
+        """Return the same with its components in one row."""
+        m, k = len(self.value), self.gradient.shape[-1]
+        return Jet(
+            value=self.value.reshape(m, -1),
+            gradient=self.gradient.reshape(m, -1, k),
+            hessian=self.hessian.reshape(m, -1, k, k),
+        )
+
+    def rows(self, count: int) -> "Jet":
+        """Share the components of every point out to several points.
+
+        Parameters
+        ----------
+        count : int
+            Components of each of the new points.
+
+        Returns
+        -------
+        Jet
+            ``count`` components at more points, or the other way round.
+        """
+        k = self.gradient.shape[-1]
+        return Jet(
+            value=self.value.reshape(-1, count),
+            gradient=self.gradient.reshape(-1, count, k),
+            hessian=self.hessian.reshape(-1, count, k, k),
+        )
+
+
+def _combined(matrices: Floats, hessian: Floats) -> Floats:
+    """Combine the components (m, c) of Hessians by matrices (m, d, c) or (d, c)."""
+    m, c, k, _ = hessian.shape
+    return np.matmul(matrices, hessian.reshape(m, c, k * k)).reshape(m, -1, k, k)
 
 
 def stack(*parts: Jet) -> Jet:
@@ -182,7 +231,47 @@ def dot(a: Jet, b: Jet) -> Jet:
     Jet
         One component.
     """
-    return (a * b).sum()
+    first, second = a.value[:, None], b.value[:, None]
+    mixed = a.gradient.swapaxes(1, 2) @ b.gradient
+    return Jet(
+        value=(a.value * b.value).sum(axis=1, keepdims=True),
+        gradient=first @ b.gradient + second @ a.gradient,
+        hessian=_combined(first, b.hessian) + _combined(second, a.hessian) + (mixed + mixed.swapaxes(1, 2))[:, None],
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Bilinear:
+    """Sums of products of components of two jets.
+
+    Attributes
+    ----------
+    tensor : ndarray, shape (d, c, e)
+        Weight of the product of component c of the first and e of the second jet in sum d.
+    """
+
+    tensor: Floats
+
+    def __call__(self, a: Jet, b: Jet) -> Jet:
+        """Return the sums."""
+        d, c, e = self.tensor.shape
+        by_a = (b.value @ self.tensor.reshape(d * c, e).T).reshape(-1, d, c)
+        by_b = (a.value @ self.tensor.transpose(1, 0, 2).reshape(c, d * e)).reshape(-1, d, e)
+        first, second = self._pairs
+        weights = self.tensor[np.arange(d)[:, None], first, second][..., None]
+        mixed = (a.gradient[:, first] * weights).swapaxes(2, 3) @ b.gradient[:, second]
+        return Jet(
+            value=np.matmul(by_a, a.value[..., None])[..., 0],
+            gradient=by_a @ a.gradient + by_b @ b.gradient,
+            hessian=_combined(by_a, a.hessian) + _combined(by_b, b.hessian) + mixed + mixed.swapaxes(2, 3),
+        )
+
+    @cached_property
+    def _pairs(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """(d, n) each: the components whose products stand in each sum; all sums have as many."""
+        sums, first, second = np.nonzero(self.tensor)
+        count = len(sums) // len(self.tensor)
+        return first.reshape(-1, count), second.reshape(-1, count)
 
 
 def cross(a: Jet, b: Jet) -> Jet:
@@ -200,7 +289,14 @@ def cross(a: Jet, b: Jet) -> Jet:
     Jet
         Three components.
     """
-    return a[[1, 2, 0]] * b[[2, 0, 1]] - a[[2, 0, 1]] * b[[1, 2, 0]]
+    return _CROSS(a, b)
+
+
+EPSILON = np.zeros((3, 3, 3))
+"""The permutation symbol: (a × b)_i is the sum of EPSILON[i, j, k] a_j b_k."""
+for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+    EPSILON[_i, _j, _k], EPSILON[_i, _k, _j] = 1.0, -1.0
+_CROSS = Bilinear(EPSILON)
 
 
 def unit(a: Jet) -> Jet:

@@ -317,11 +317,18 @@ class FrameModel:
         ndarray, shape (3, 3)
             Rows: local x, y, z in global axes.
         """
-        start, end = self.ends(i)
-        x = (end - start) / np.linalg.norm(end - start)
-        y = np.cross(self.elements[i].z_axis, x)
-        y /= np.linalg.norm(y)
-        return np.vstack([x, y, np.cross(x, y)])
+        return np.asarray(self._axes[i])
+
+    @cached_property
+    def _axes(self) -> Floats:
+        """(m, 3, 3) of all elements."""
+        a, b = np.array([e.nodes for e in self.elements]).T
+        arms = np.array([e.offsets for e in self.elements])
+        x = self.nodes[b] + arms[:, 1] - self.nodes[a] - arms[:, 0]
+        x /= np.linalg.norm(x, axis=1, keepdims=True)
+        y = np.cross([e.z_axis for e in self.elements], x)
+        y /= np.linalg.norm(y, axis=1, keepdims=True)
+        return np.stack([x, y, np.cross(x, y)], axis=1)
 
     def line_load(self, i: int) -> tuple[Floats, Floats]:
         """Return the force per length at both ends of an element.
