@@ -1,13 +1,12 @@
 """Newton's method along the equilibrium path of a frame in large displacement."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.frame.corotational_element import CorotationalElements, ElementResponse, guide_gap
-from fea.frame.kinematic_chain import KinematicChain, Step, present_axes, turned
+from fea.frame.kinematic_chain import KinematicChain, Places
 from fea.frame.model import FrameModel, Guide
 from geometry.base.errors import CannotRunError
 
@@ -96,6 +95,10 @@ class EquilibriumPath:
         self.chain = KinematicChain(model)
         self.elements = CorotationalElements(model)
         self.pairs = np.array([e.nodes for e in model.elements])
+        guided = [[-1 if node is None else node for node in (g.carrier, g.pin)] for g in model.guides]
+        self.size = self.chain.count + len(guided)
+        self.places = Places(self.chain, self.pairs, self.size)
+        self.guided = Places(self.chain, np.array(guided, dtype=np.int64).reshape(-1, 2), self.size)
         self.state = State(
             displacements=np.zeros((n, 3)),
             rotations=np.tile(np.eye(3), (n, 1, 1)),
@@ -225,13 +228,9 @@ class EquilibriumPath:
     def _moved(self, state: State, change: Floats) -> State:
         places = self.chain.translations
         displacements = state.displacements + np.where(places >= 0, change[places], 0.0)
-        rotations = state.rotations.copy()
-        for node, steps in enumerate(self.chain.nodes):
-            axes = present_axes(steps, state.rotations)
-            rotations[node] = turned(steps, axes, change, state.rotations[node])
         return State(
             displacements=displacements,
-            rotations=rotations,
+            rotations=self.chain.turned(state.rotations, change[: self.chain.count]),
             guide_forces=state.guide_forces + change[self.chain.count :],
         )
 
@@ -252,34 +251,37 @@ class EquilibriumPath:
         tuple of 2 ndarray
             What is left over (k + g,) and its derivative (k + g, k + g).
         """
-        count, size = self.chain.count, self.chain.count + len(self.model.guides)
-        residual, tangent = np.zeros(size), np.zeros((size, size))
+        count, model = self.chain.count, self.model
+        axes = self.chain.axes(state.rotations)
+        residual, tangent = np.zeros(self.size), np.zeros((self.size, self.size))
+        moments = np.zeros((len(model.nodes) + 1, 3))  # the last row is that of the ground
 
-        def add(nodes: Sequence[int | None], forces: Floats, stiffness: Floats) -> tuple[NDArray[np.int64], Floats]:
-            numbers, T = self._place(nodes, state)
-            np.add.at(residual, numbers, T @ forces)
-            np.add.at(tangent, (numbers[:, None], numbers), T @ stiffness @ T.T)
-            for end, node in enumerate(nodes):
-                steps = [] if node is None else self.chain.nodes[node]
-                _carry(tangent, steps, present_axes(steps, state.rotations), forces[6 * end + 3 : 6 * end + 6])
-            return numbers, T
+        def add(places: Places, forces: Floats, stiffness: Floats) -> Floats:
+            T = places.matrices(axes)
+            np.add(residual, places.gathered((T @ forces[..., None])[..., 0]), out=residual)
+            np.add(tangent, places.gathered(T @ stiffness @ T.swapaxes(1, 2)), out=tangent)
+            np.add.at(moments, places.nodes, forces.reshape(-1, 2, 6)[..., 3:])
+            return T
 
-        for pair, forces, stiffness in zip(self.pairs, answer.forces, answer.tangent, strict=True):
-            add(pair, forces, stiffness)
-        for j, (guide, force) in enumerate(zip(self.model.guides, state.guide_forces, strict=True), start=count):
-            residual[j], unit = self._gap(guide, state)
-            numbers, T = add((guide.carrier, guide.pin), force * unit.forces[0], force * unit.tangent[0])
-            column = np.zeros(size)
-            np.add.at(column, numbers, T @ unit.forces[0])
-            tangent[:, j] += column
-            tangent[j] += column
-        for load in self.model.loads:
+        add(self.places, answer.forces, answer.tangent)
+        if model.guides:
+            gaps, units = zip(*(self._gap(guide, state) for guide in model.guides), strict=True)
+            unit = np.concatenate([u.forces for u in units])
+            bent = np.concatenate([u.tangent for u in units])
+            T = add(self.guided, state.guide_forces[:, None] * unit, state.guide_forces[:, None, None] * bent)
+            ways = np.zeros((len(gaps), self.size + 1))
+            np.add.at(ways, (np.arange(len(gaps))[:, None], self.guided.numbers), (T @ unit[..., None])[..., 0])
+            tangent[:, count:] += ways[:, :-1].T
+            tangent[count:] += ways[:, :-1]
+            residual[count:] = gaps
+        for load in model.loads:
             places = self.chain.translations[load.node]
             np.add.at(residual, places[places >= 0], -factor * load.wrench[:3][places >= 0])
-            steps = self.chain.nodes[load.node]
-            axes = present_axes(steps, state.rotations)
-            np.add.at(residual, [s.number for s in steps], -factor * (axes @ load.wrench[3:]))
-            _carry(tangent, steps, axes, -factor * load.wrench[3:])
+            numbers = [step.number for step in self.chain.nodes[load.node]]
+            np.add.at(residual, numbers, -factor * (axes[numbers] @ load.wrench[3:]))
+            moments[load.node] -= factor * load.wrench[3:]
+        pin, before, gain = self.chain.carried(axes, moments)
+        np.add.at(tangent, (pin, before), gain)
         return residual, tangent
 
     def _gap(self, guide: Guide, state: State) -> tuple[float, ElementResponse]:
@@ -288,25 +290,6 @@ class EquilibriumPath:
         displacements = np.array([np.zeros(3) if node is None else state.displacements[node] for node in nodes])
         rotations = np.array([np.eye(3) if node is None else state.rotations[node] for node in nodes])
         return guide_gap(guide, displacements, rotations)
-
-    def _place(self, nodes: Sequence[int | None], state: State) -> tuple[NDArray[np.int64], Floats]:
-        """Numbers (c,) of the unknowns that move two nodes, and (c, 12) how each moves them; None: the ground."""
-        numbers: list[int] = []
-        columns: list[Floats] = []
-        for end, node in enumerate(nodes):
-            if node is None:
-                continue
-            steps = self.chain.nodes[node]
-            for k, number in enumerate(self.chain.translations[node]):
-                if number >= 0:
-                    numbers.append(int(number))
-                    columns.append(np.eye(12)[6 * end + k])
-            for step, axis in zip(steps, present_axes(steps, state.rotations), strict=True):
-                numbers.append(step.number)
-                column = np.zeros(12)
-                column[6 * end + 3 : 6 * end + 6] = axis
-                columns.append(column)
-        return np.array(numbers, dtype=np.int64), np.array(columns).reshape(-1, 12)
 
     def free(self, bordered: Floats) -> Floats:
         """Return the scaled stiffness of the motions that the guides allow.
@@ -350,11 +333,3 @@ class EquilibriumPath:
             residual=self._measure(residual),
             stable=bool(np.linalg.eigvalsh((scaled + scaled.T) / 2.0).min(initial=1.0) > 0.0),
         )
-
-
-def _carry(tangent: Floats, steps: list[Step], axes: Floats, moment: Floats) -> None:
-    """Add what a moment gains about a pin's axis when the steps before it turn that axis: (ω × a) · moment."""
-    for j, step in enumerate(steps):
-        if step.carrier is not None:
-            for i in range(j):
-                tangent[step.number, steps[i].number] += np.cross(axes[i], axes[j]) @ moment

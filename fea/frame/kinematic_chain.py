@@ -72,6 +72,81 @@ class KinematicChain:
                 self._grow(root)
         self.count = len(self.turns)
         self.is_turn = np.array(self.turns, dtype=bool)
+        self._table()
+
+    def _table(self) -> None:
+        """Set up what ``axes``, ``turned`` and ``carried`` need of all nodes at once."""
+        self._axes = np.zeros((self.count, 3))
+        self._carriers = np.full(self.count, -1)
+        levels: list[tuple[int, int, int]] = []
+        pairs: list[tuple[int, int, int]] = []
+        for node, steps in enumerate(self.nodes):
+            pins = 0
+            for j, step in enumerate(steps):
+                self._axes[step.number] = step.axis
+                if step.carrier is not None:
+                    self._carriers[step.number] = step.carrier
+                    pins += 1
+                    pairs += [(node, before.number, step.number) for before in steps[:j]]
+                levels.append((node, pins, step.number))
+        self._levels = np.array(levels, dtype=np.int64).reshape(-1, 3).T
+        self._pairs = np.array(pairs, dtype=np.int64).reshape(-1, 3).T
+
+    def axes(self, rotations: Floats) -> Floats:
+        """Return the present axes of all unknowns; zero for displacements.
+
+        Parameters
+        ----------
+        rotations : ndarray, shape (n, 3, 3)
+            Of the nodes.
+
+        Returns
+        -------
+        ndarray, shape (count, 3)
+        """
+        carried = np.einsum("kij,kj->ki", rotations[self._carriers], self._axes)
+        return np.where(self._carriers[:, None] >= 0, carried, self._axes)
+
+    def turned(self, rotations: Floats, increments: Floats) -> Floats:
+        """Return the rotations of the nodes after increments of the unknowns; free turns first, then the pins.
+
+        Parameters
+        ----------
+        rotations : ndarray, shape (n, 3, 3)
+            Before.
+        increments : ndarray, shape (count,)
+            Of the unknowns [rad].
+
+        Returns
+        -------
+        ndarray, shape (n, 3, 3)
+        """
+        spins = self.axes(rotations) * increments[:, None]
+        node, level, number = self._levels
+        after = rotations
+        for k in range(int(level.max(initial=-1)), -1, -1):
+            vectors = np.zeros((len(rotations), 3))
+            np.add.at(vectors, node[level == k], spins[number[level == k]])
+            after = rotations_of(vectors) @ after
+        return after
+
+    def carried(self, axes: Floats, moments: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats]:
+        """Return what moments gain about the pins' axes when the turns before these turn them: (ω × a) · moment.
+
+        Parameters
+        ----------
+        axes : ndarray, shape (count, 3)
+            Present axes of the unknowns.
+        moments : ndarray, shape (n, 3)
+            On the nodes [N·mm].
+
+        Returns
+        -------
+        tuple of ndarray
+            Numbers of the pins' unknowns, of the turns before them, and the gains.
+        """
+        node, before, pin = self._pairs
+        return pin, before, np.einsum("pi,pi->p", np.cross(axes[before], axes[pin]), moments[node])
 
     def _unknown(self, *, turn: bool) -> int:
         self.turns.append(turn)
@@ -131,52 +206,84 @@ class KinematicChain:
         return steps
 
 
-def present_axes(steps: list[Step], rotations: Floats) -> Floats:
-    """Return the present axes of the steps of a chain.
+class Places:
+    """How the unknowns of a frame move pairs of nodes, and what forces and stiffness of such pairs add to them.
+
+    Attributes
+    ----------
+    numbers : ndarray of int, shape (p, c)
+        Of the unknowns that move each pair; ``size`` for none.
+    """
+
+    def __init__(self, chain: KinematicChain, pairs: NDArray[np.int64], size: int) -> None:
+        self.size, self.nodes = size, pairs
+        depth = max((len(steps) for steps in chain.nodes), default=0)
+        own = np.full((len(chain.nodes) + 1, 3 + depth), size)  # the last row is that of the ground, -1
+        own[:-1, :3] = np.where(chain.translations >= 0, chain.translations, size)
+        for node, steps in enumerate(chain.nodes):
+            own[node, 3 : 3 + len(steps)] = [step.number for step in steps]
+        self.numbers = own[pairs].reshape(len(pairs), 2 * own.shape[1])
+        self._flat = (self.numbers[:, :, None] * (size + 1) + self.numbers[:, None]).ravel()
+        self._depth = depth
+
+    def matrices(self, axes: Floats) -> Floats:
+        """Return how the unknowns move the nodes.
+
+        Parameters
+        ----------
+        axes : ndarray, shape (k, 3)
+            Present axes of the unknowns.
+
+        Returns
+        -------
+        ndarray, shape (p, c, 12)
+            Displacements and spins of both nodes for each unknown.
+        """
+        padded = np.vstack([axes, np.zeros((self.size + 1 - len(axes), 3))])
+        width = 3 + self._depth
+        found = np.zeros((len(self.numbers), 2 * width, 12))
+        for end in range(2):
+            found[:, end * width : end * width + 3, 6 * end : 6 * end + 3] = np.eye(3)
+            turns = slice(end * width + 3, (end + 1) * width)
+            found[:, turns, 6 * end + 3 : 6 * end + 6] = padded[self.numbers[:, turns]]
+        return found
+
+    def gathered(self, values: Floats) -> Floats:
+        """Return the sums over all pairs of what each adds to its unknowns.
+
+        Parameters
+        ----------
+        values : ndarray, shape (p, c) or (p, c, c)
+            Forces, or stiffness.
+
+        Returns
+        -------
+        ndarray, shape (size,) or (size, size)
+            Sums.
+        """
+        size = self.size
+        if values.ndim == 2:
+            return np.bincount(self.numbers.ravel(), values.ravel(), size + 1)[:size]
+        found = np.bincount(self._flat, values.ravel(), (size + 1) ** 2)
+        return np.asarray(found.reshape(size + 1, size + 1)[:size, :size])
+
+
+def rotations_of(vectors: Floats) -> Floats:
+    """Return the rotation matrices of rotation vectors, by Rodrigues' formula.
 
     Parameters
     ----------
-    steps : list of Step
-        Of a chain.
-    rotations : ndarray, shape (n, 3, 3)
-        Of the nodes.
+    vectors : ndarray, shape (n, 3)
+        [rad].
 
     Returns
     -------
-    ndarray, shape (k, 3)
-        Axes.
+    ndarray, shape (n, 3, 3)
     """
-    return np.array([s.axis if s.carrier is None else rotations[s.carrier] @ s.axis for s in steps]).reshape(-1, 3)
-
-
-def turned(steps: list[Step], axes: Floats, increments: Floats, rotation: Floats) -> Floats:
-    """Return the rotation at the end of a chain after its steps' increments; free turns first, then the pins.
-
-    Parameters
-    ----------
-    steps : list of Step
-        Of a chain.
-    axes : ndarray, shape (k, 3)
-        Of these steps.
-    increments : ndarray
-        Of all unknowns [rad].
-    rotation : ndarray, shape (3, 3)
-        Before.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Rotation after.
-    """
-    from scipy.spatial.transform import Rotation
-
-    spins: list[Floats] = []
-    for step, axis in zip(steps, axes, strict=True):
-        spin = axis * increments[step.number]
-        if step.carrier is None and spins:
-            spins[0] = spins[0] + spin
-        else:
-            spins.append(spin)
-    for spin in reversed(spins):
-        rotation = Rotation.from_rotvec(spin).as_matrix() @ rotation
-    return rotation
+    angle = np.linalg.norm(vectors, axis=1)[:, None, None]
+    x, y, z = vectors.T
+    o = np.zeros_like(x)
+    skew = np.array([[o, -z, y], [z, o, -x], [-y, x, o]]).transpose(2, 0, 1)
+    # np.sinc(t) is sin(πt)/(πt); (1 - cos a)/a² is half the square of sin(a/2)/(a/2).
+    half = np.sinc(angle / (2.0 * np.pi))
+    return np.asarray(np.eye(3) + np.sinc(angle / np.pi) * skew + 0.5 * half**2 * (skew @ skew))
