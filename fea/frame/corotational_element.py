@@ -64,13 +64,14 @@ class CorotationalElements:
         for i, e in enumerate(model.elements):
             length = self.lengths[i]
             self.stiffness[i] = np.linalg.inv(natural_flexibility(e.section, e.young, e.poisson, length))
+            self.loads[i] = e.load_first, e.load_last
+            if not self.loads[i].any():
+                continue
             for k, q in enumerate(np.eye(6)):
                 self.load_bends[i, :, k] = line_load_effect(e.section, e.young, length, q[:3], q[3:])[0]
             # The work along the chord goes to both ends alike, so lengthening is not coupled to the load.
             self.load_bends[i, 0] = 0.0
             self.load_sags[i] = _own_deflection(model, i)
-            first, last = model.line_load(i)
-            self.loads[i] = np.array([first, last]) @ model.axes(i)
 
     def respond(self, displacements: Floats, rotations: Floats, factor: float) -> ElementResponse:
         """Evaluate all elements.
@@ -205,7 +206,7 @@ _BOWING = np.zeros((6, 6))
 for _a, _b in ((1, 4), (2, 5)):
     _BOWING[np.ix_([_a, _b], [_a, _b])] = [[2.0, -0.5], [-0.5, 2.0]]
 _SINES = np.zeros((6, 9, 18))
-"""Sines of the turns from axes e to triads t of both ends: half of e_j · t_i - e_i · t_j, over cyclic i, j of x, y, z."""
+"""Sines of the turns from axes e to the triads t of both ends: (e_j · t_i - e_i · t_j)/2, with i and j cyclic."""
 for _end in range(2):
     for _turn in range(3):
         _i, _j = (_turn + 1) % 3, (_turn + 2) % 3
@@ -258,18 +259,20 @@ def _own_deflection(model: FrameModel, i: int) -> Floats:
     """
     e, length = model.elements[i], model.length(i)
     along, shear, _, _, about_y, about_z = flexibility(e.section, e.young, e.poisson)
-    nodes, weights = np.polynomial.legendre.leggauss(4)
-    t = (1.0 + nodes) / 2.0
+    t = (1.0 + _NODES) / 2.0
     # Per unit load at the first and at the last end, over the span from 0 to 1: N - mean N, V and M.
     n = np.array([-(t - t**2 / 2.0) + 1.0 / 3.0, -(t**2) / 2.0 + 1.0 / 6.0]) * length
     v = np.array([1.0 / 3.0 - t + t**2 / 2.0, 1.0 / 6.0 - t**2 / 2.0]) * length
     m = np.array([t / 3.0 - t**2 / 2.0 + t**3 / 6.0, t / 6.0 - t**3 / 6.0]) * length**2
-    dx = weights * length / 2.0
+    dx = _WEIGHTS * length / 2.0
     out = np.zeros((6, 6))
     out[np.ix_([0, 3], [0, 3])] = n * dx @ n.T * along
     for axis, bending in ((1, about_z), (2, about_y)):
         out[np.ix_([axis, axis + 3], [axis, axis + 3])] = m * dx @ m.T * bending + v * dx @ v.T * shear
     return out
+
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def _skew(w: Floats) -> Floats:

@@ -16,6 +16,8 @@ _TOLERANCE = 1e-9
 _MOST_ROUNDING = 1e-6
 _LARGEST_TURN = 0.3
 _DIVERGED = 100.0
+_DENSE = 100
+"""Unknowns up to which a dense factorisation is quicker than a sparse one, and has no threads."""
 _JUMP = 4.0
 """A step this much longer than the tangent at its start or at its end predicts has jumped to another branch.
 
@@ -197,15 +199,21 @@ class EquilibriumPath:
         return self.assemble(answer, state, factor)
 
     def _solve(self, tangent: Floats, right: Floats) -> Floats:
-        # A sparse factorisation, single-threaded: threads that wait for each other cost more than matrices this small.
+        # Single-threaded either way: threads that wait for each other cost more than matrices this small.
+        from scipy.linalg.lapack import dgesv
         from scipy.sparse import csc_matrix
         from scipy.sparse.linalg import splu
 
+        matrix, scaled = tangent * np.outer(self.unit, self.unit), right * self.unit
+        if len(right) <= _DENSE:
+            *_, found, singular = dgesv(matrix, scaled)
+            if singular:
+                raise CannotRunError("the tangent stiffness of the frame is singular")
+            return np.asarray(found * self.unit)
         try:
-            scaled = splu(csc_matrix(tangent * np.outer(self.unit, self.unit))).solve(right * self.unit)
+            return np.asarray(splu(csc_matrix(matrix)).solve(scaled) * self.unit)
         except RuntimeError as error:
             raise CannotRunError(f"the tangent stiffness of the frame is singular: {error}") from None
-        return np.asarray(scaled * self.unit)
 
     def _size(self, change: Floats) -> float:
         """Norm of the displacements of all nodes in a change of the unknowns."""

@@ -226,22 +226,17 @@ def _residual(model: FrameModel, left_over: Floats, reactions: Floats) -> float:
     scale = model.load_scale
     if scale == 0.0:
         return 0.0
-    middle = model.nodes.mean(axis=0)
-    total = np.zeros(6)
-
-    def add(point: Floats, wrench: Floats) -> None:
-        total[:3] += wrench[:3]
-        total[3:] += wrench[3:] + np.cross(point - middle, wrench[:3])
-
-    for point, wrench in zip(model.nodes, reactions, strict=True):
-        add(point, wrench)
-    for load in model.loads:
-        add(model.nodes[load.node], load.wrench)
-    for i in range(len(model.elements)):
-        start, end = model.ends(i)
-        first, last = (q @ model.axes(i) * model.length(i) / 6.0 for q in model.line_load(i))
-        # Simpson's rule with the load at both ends and in the middle: exact for the force and its moment.
-        for point, force in ((start, first), ((start + end) / 2.0, 2.0 * (first + last)), (end, last)):
-            add(point, np.concatenate([force, np.zeros(3)]))
+    # Simpson's rule for the line loads, at both ends and in the middle: exact for the force and its moment.
+    starts, ends = np.array([model.ends(i) for i in range(len(model.elements))]).swapaxes(0, 1)
+    lengths = np.linalg.norm(ends - starts, axis=1)[:, None] / 6.0
+    first, last = (
+        np.array(q) * lengths for q in zip(*((e.load_first, e.load_last) for e in model.elements), strict=True)
+    )
+    loaded = [load.node for load in model.loads]
+    wrenches = np.array([load.wrench for load in model.loads]).reshape(-1, 6)
+    points = np.vstack([model.nodes, model.nodes[loaded], starts, (starts + ends) / 2.0, ends])
+    forces = np.vstack([reactions[:, :3], wrenches[:, :3], first, 2.0 * (first + last), last])
+    moments = np.cross(points - model.nodes.mean(axis=0), forces).sum(axis=0)
+    total = np.concatenate([forces.sum(axis=0), moments + reactions[:, 3:].sum(axis=0) + wrenches[:, 3:].sum(axis=0)])
     sizes = np.array([1.0, 1.0, 1.0, *[1.0 / model.size] * 3])
     return float(max(np.abs(left_over * sizes).max(), np.abs(total * sizes).max())) / scale

@@ -2,7 +2,8 @@
 
 import unicodedata
 from collections.abc import Iterable
-from typing import Annotated
+from itertools import pairwise
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError
@@ -13,9 +14,39 @@ from geometry.base.errors import CaseError
 class CaseModel(BaseModel):
     """A frozen record of the case file: unknown keys, NaN and infinity are refused."""
 
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False, use_attribute_docstrings=True
-    )
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> dict[str, Any]:
+        """Describe each entry by the text that stands below it in the source.
+
+        pydantic's ``use_attribute_docstrings`` does the same, but reads the source of every record at each start.
+        """
+        schema: dict[str, Any] = handler(core_schema)
+        entries = handler.resolve_ref_schema(schema).get("properties", {})
+        for record in reversed(cls.__mro__):
+            if issubclass(record, CaseModel) and record is not CaseModel:
+                for name, text in _entry_texts(record).items():
+                    field = cls.model_fields.get(name)  # None for what no case file states
+                    if field is not None and field.description is None:
+                        entries[field.alias or name]["description"] = text
+        return schema
+
+
+def _entry_texts(record: type) -> dict[str, str]:
+    """Return the texts below the entries of a record, by the entries' names."""
+    import ast
+    import inspect
+    import textwrap
+
+    [body] = ast.parse(textwrap.dedent(inspect.getsource(record))).body
+    assert isinstance(body, ast.ClassDef)
+    found = {}
+    for entry, below in pairwise(body.body):
+        match entry, below:
+            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                found[name] = inspect.cleandoc(text)
+    return found
 
 
 def refusal(rule: str) -> PydanticCustomError:
