@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.common.ties import first_largest
 from geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
@@ -117,7 +118,7 @@ class Piecewise:
         tuple of float, Side and float
             Station [mm], side and value.
         """
-        best: tuple[float, Side, float] = (float(self.breaks[0]), "after", -np.inf)
+        peaks: list[tuple[float, Side, float]] = []
         for c, x0, x1 in zip(self.coefficients, self.breaks[:-1], self.breaks[1:], strict=True):
             h = float(x1 - x0)
 
@@ -126,13 +127,12 @@ class Piecewise:
 
             grid = np.linspace(0.0, h, SAMPLES if np.any(c[:, 2:]) else 2)
             found = [value(s) for s in grid]
-            i = int(np.argmax(found))
+            i = first_largest(found)
             s, peak = float(grid[i]), found[i]
             if 0 < i < len(grid) - 1:
                 s, peak = _golden(value, float(grid[i - 1]), float(grid[i + 1]), s, peak)
-            if peak > best[2]:
-                best = (float(x1), "before", peak) if i == len(grid) - 1 else (float(x0) + s, "after", peak)
-        return best
+            peaks.append((float(x1), "before", peak) if i == len(grid) - 1 else (float(x0) + s, "after", peak))
+        return peaks[first_largest([peak for _, _, peak in peaks])]
 
 
 def _golden(value: Callable[[float], float], low: float, high: float, s: float, peak: float) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from fea.check.load_growth import Growths
 from fea.check.solid_result import solid_result
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
+from fea.common.ties import first_largest
 from fea.outcomes.result import HandResult, LinkResult
 from geometry.parts.material import Material
 from loads.case.case import Case
@@ -65,7 +66,8 @@ def _hand_result(
     x, worst = hand.worst
     if bands is not None and not bands.outside:
         von_mises, principal, moved = bands.von_mises, bands.principal, bands.displacement
-        x = max(bands.locations, key=lambda row: (row.principal if material.brittle else row.von_mises).high).location.x
+        rows = sorted(bands.locations, key=lambda row: row.location.x)
+        x = rows[first_largest([(r.principal if material.brittle else r.von_mises).high for r in rows])].location.x
         notes: tuple[str, ...] = ()
     else:
         tension = max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0)

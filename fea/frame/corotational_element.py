@@ -296,7 +296,7 @@ def _turned(rotations: Floats, vectors: Floats, first: int) -> Jet:
     out = _constant(w.reshape(m, c))
     spin = slice(first, first + 3)
     out.gradient[:, :, spin] = (w @ _ONCE).reshape(m, c, 3)
-    out.hessian[:, :, spin, spin] = (w @ _TWICE).reshape(m, c, 3, 3)
+    out.hessian[:, :, spin, spin] = (w @ _TWICE.reshape(3, 27)).reshape(m, c, 3, 3)
     return out
 
 
@@ -309,7 +309,6 @@ for _i in range(3):
         _TWICE[_j, _i, _i, _j] += 0.5
         _TWICE[_j, _i, _j, _i] += 0.5
         _TWICE[_i, _i, _j, _j] -= 1.0
-_TWICE = _TWICE.reshape(3, 27)
 
 
 def _rotation_vectors(axes: Jet, triads: Jet) -> Jet:

@@ -193,7 +193,7 @@ class Jet:
 def _combined(matrices: Floats, hessian: Floats) -> Floats:
     """Combine the components (m, c) of Hessians by matrices (m, d, c) or (d, c)."""
     m, c, k, _ = hessian.shape
-    return np.matmul(matrices, hessian.reshape(m, c, k * k)).reshape(m, -1, k, k)
+    return np.asarray(np.matmul(matrices, hessian.reshape(m, c, k * k)).reshape(m, -1, k, k))
 
 
 def stack(*parts: Jet) -> Jet:

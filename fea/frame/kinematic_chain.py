@@ -263,9 +263,9 @@ class Places:
         """
         size = self.size
         if values.ndim == 2:
-            return np.bincount(self.numbers.ravel(), values.ravel(), size + 1)[:size]
+            return np.asarray(np.bincount(self.numbers.ravel(), values.ravel(), size + 1)[:size], dtype=np.float64)
         found = np.bincount(self._flat, values.ravel(), (size + 1) ** 2)
-        return np.asarray(found.reshape(size + 1, size + 1)[:size, :size])
+        return np.asarray(found.reshape(size + 1, size + 1)[:size, :size], dtype=np.float64)
 
 
 def rotations_of(vectors: Floats) -> Floats:

@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
+from fea.common.ties import first_largest
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.bearing import bearing_outcome
-from fea.outcomes.buckling import column_outcome, first_largest, worst_column
+from fea.outcomes.buckling import column_outcome, worst_column
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.pins import pin_outcome, stress_of
 from geometry.parts.material import Material

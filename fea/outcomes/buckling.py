@@ -39,6 +39,7 @@ from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind
+from fea.common.ties import first_largest
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
 from geometry.parts.part import Section
@@ -173,20 +174,6 @@ def worst_column(
     value, least, most = (float(f[counted].min()) for f in (factors.value, factors.least, factors.most))
     outermost, pressed = holding(case, link).outermost, float(compression[pose])
     return Column(pose=pose, compression=pressed, outermost=outermost, value=value, least=least, most=most)
-
-
-def first_largest(values: Real) -> int:
-    """Return the number of the first of the largest values: both ends of a turn are one pose, whatever rounding says.
-
-    Parameters
-    ----------
-    values : ndarray, shape (P,)
-
-    Returns
-    -------
-    int
-    """
-    return int(np.argmax(values >= values.max() * (1.0 - 1e-9)))
 
 
 def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
