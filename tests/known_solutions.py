@@ -49,6 +49,13 @@ def _polar(x, radial, hoop, shear, axial):
     return out
 
 
+def law(gradient, E, nu):
+    """Stress (..., 3, 3) of displacement gradients: σ = E/(1+ν) (ε + ν/(1−2ν) tr ε I) (Timoshenko-Goodier, art. 6)."""
+    strain = (gradient + np.swapaxes(gradient, -1, -2)) / 2.0
+    dilatation = np.trace(strain, axis1=-2, axis2=-1)[..., None, None]
+    return E / (1.0 + nu) * (strain + nu / (1.0 - 2.0 * nu) * dilatation * np.eye(3))
+
+
 def tensor(sigma):
     """Components (..., 6) as (..., 3, 3)."""
     return sigma[..., [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(*sigma.shape[:-1], 3, 3)

@@ -34,31 +34,6 @@ def lame_constants(E: float, nu: float) -> tuple[float, float]:
     return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
 
 
-def stress(gradient: NDArray[np.float64], E: float, nu: float) -> NDArray[np.float64]:
-    """Return the stress σ = λ tr(ε) I + 2μ ε of displacement gradients.
-
-    Parameters
-    ----------
-    gradient : ndarray, shape (..., 3, 3)
-        Of the displacement, ∂u_i/∂x_j.
-    E : float
-        Young's modulus [MPa].
-    nu : float
-        Poisson's ratio.
-
-    Returns
-    -------
-    ndarray, shape (..., 3, 3)
-        Stress [MPa].
-    """
-    lam, mu = lame_constants(E, nu)
-    sigma = mu * (gradient + np.swapaxes(gradient, -1, -2))
-    dilatation = lam * np.trace(gradient, axis1=-2, axis2=-1)
-    for i in range(3):
-        sigma[..., i, i] += dilatation
-    return sigma
-
-
 def reference_basis(
     space: DisplacementSpace, degree: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
