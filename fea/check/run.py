@@ -7,6 +7,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from fea.beam.theory import CantileverCheck, uniform_cantilever
+from fea.check.case_statics import CaseStatics, solve_case_statics
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.link_result import link_result
@@ -16,7 +17,7 @@ from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
-from fea.frame.joint_forces import PINNED_STATICS, JointForces, joint_forces, ways_to_hold
+from fea.frame.joint_forces import PINNED_STATICS, ways_to_hold
 from fea.frame.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.buckling import buckling_outcomes
@@ -30,52 +31,15 @@ from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
 from geometry.base.errors import CaseError
-from geometry.linkage.pose import NEAR_DEAD_POINT, Pose
+from geometry.linkage.pose import NEAR_DEAD_POINT
 from loads.case.case import Case
-from loads.case.case_file import read_companion
-from loads.records.applied import Load, PartMass
 from loads.records.check_spec import BearingCheck, MotorCheck, PinCheck
-from loads.sources.published_statics import StaticsAudit, audit
-from loads.states.actions import acting_loads, needs_masses, placed
-from loads.states.masses import part_masses
 from loads.statics.statics import Reactions
 from loads.text.shares import parse_accuracy
 
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
 BY_HAND = ("beam", "frame")
-
-
-@dataclass(frozen=True, kw_only=True)
-class CaseStatics:
-    """Pose, loads and reactions of every load case of a case.
-
-    Attributes
-    ----------
-    case : Case
-    pose : Pose
-        Undeformed; the same for all load cases.
-    loads : mapping of str to tuple of Load
-        Load case -> what acts.
-    forces : mapping of str to JointForces
-        Load case -> joint forces.
-    masses : mapping of str to PartMass
-        Link -> its mass; empty where no load case needs them.
-    audit : StaticsAudit or None
-        Comparison with published statics, where the case names some.
-    """
-
-    case: Case
-    pose: Pose
-    loads: Mapping[str, tuple[Load, ...]]
-    forces: Mapping[str, JointForces]
-    masses: Mapping[str, PartMass]
-    audit: StaticsAudit | None
-
-    @property
-    def reactions(self) -> Mapping[str, Reactions]:
-        """Joint reactions of every load case, in the undeformed pose."""
-        return {load_case: forces.reactions for load_case, forces in self.forces.items()}
 
 
 def effort_of(
@@ -112,44 +76,6 @@ def effort_of(
         raise CaseError(f"accuracy: it is '{accuracy}', but {error.message()}") from None
     effort = Effort(max_unknowns=max_unknowns, time_limit=time_limit)
     return effort if stated is None else replace(effort, accuracy=stated, stated=True)
-
-
-def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
-    """Solve pose and statics of every load case.
-
-    Parameters
-    ----------
-    case : Case
-    name : str, optional
-        Path or built-in name of the case, for companion files.
-
-    Returns
-    -------
-    CaseStatics
-
-    Raises
-    ------
-    CaseError
-        For a pose that cannot be assembled or has no single equilibrium.
-    """
-    pose = case.solve_pose()
-    masses = part_masses(case) if needs_masses(case) else {}
-    loads = {
-        load_case: acting_loads(case, stated, placed(pose, stated.speed), masses)
-        for load_case, stated in case.load_cases.items()
-    }
-    forces = {load_case: joint_forces(case, pose, loads[load_case]) for load_case in loads}
-    found = None
-    if case.published_statics is not None:
-        published = case.published_statics
-        found = audit(
-            published,
-            read_companion(name, published.exact),
-            read_companion(name, published.printed),
-            pose,
-            next(iter(loads.values())),
-        )
-    return CaseStatics(case=case, pose=pose, loads=loads, forces=forces, masses=masses, audit=found)
 
 
 @dataclass(frozen=True, kw_only=True)

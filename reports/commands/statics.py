@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from fea.check.run import CaseStatics
+from fea.check.case_statics import CaseStatics
 from geometry.base.version import result_stamp
 from loads.statics.statics import Reactions
 from loads.statics.system import System

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.check.run import check_case, solve_case_statics
+from fea.check.case_statics import solve_case_statics
+from fea.check.run import check_case
 from fea.common.verdict import Verdict
 from geometry.base.errors import CaseError
 from loads.case.case_file import LARGEST_FILE, read_case, validate

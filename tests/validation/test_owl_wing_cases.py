@@ -7,7 +7,8 @@ import pytest
 import solved
 
 from fea.check.anchor import wrenches_on_ground
-from fea.check.run import check_case, solve_case_statics
+from fea.check.case_statics import solve_case_statics
+from fea.check.run import check_case
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case
 from loads.records.aero import air_loads

@@ -8,7 +8,8 @@ import pytest
 from arm_case import ARM
 
 from fea.beam.cut_free import link_loads
-from fea.check.run import check_case, solve_case_statics
+from fea.check.case_statics import solve_case_statics
+from fea.check.run import check_case
 from fea.check.solid_result import link_task
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field, von_mises

@@ -15,7 +15,7 @@ from result_paths import compare
 
 from fea.beam.cut_free import beam_loads, link_loads
 from fea.beam.theory import check_beam
-from fea.check.run import solve_case_statics
+from fea.check.case_statics import solve_case_statics
 from fea.common.band import Band
 from fea.common.source import SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict

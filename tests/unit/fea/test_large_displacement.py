@@ -9,7 +9,8 @@ from edited_cases import edited
 
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import internal_forces
-from fea.check.run import check_case, solve_case_statics
+from fea.check.case_statics import solve_case_statics
+from fea.check.run import check_case
 from fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
 from fea.common.verdict import LINKAGE, Verdict
 from fea.frame.build import build_frame

@@ -8,7 +8,7 @@ import pytest
 import solved
 from typer.testing import CliRunner
 
-from fea.check.run import solve_case_statics
+from fea.check.case_statics import solve_case_statics
 from loads.case.case_file import read_case
 from reports.page.html import render
 from reports.tables.frames import shown_components

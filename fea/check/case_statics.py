@@ -1,0 +1,84 @@
+"""Pose and joint forces of every load case, and a published system beside them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from fea.frame.joint_forces import JointForces, joint_forces
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.case.case_file import read_companion
+from loads.records.applied import Load, PartMass
+from loads.sources.published_statics import StaticsAudit, audit
+from loads.states.actions import acting_loads, needs_masses, placed
+from loads.states.masses import part_masses
+from loads.statics.statics import Reactions
+
+
+@dataclass(frozen=True, kw_only=True)
+class CaseStatics:
+    """Pose, loads and reactions of every load case of a case.
+
+    Attributes
+    ----------
+    case : Case
+    pose : Pose
+        Undeformed; the same for all load cases.
+    loads : mapping of str to tuple of Load
+        Load case -> what acts.
+    forces : mapping of str to JointForces
+        Load case -> joint forces.
+    masses : mapping of str to PartMass
+        Link -> its mass; empty where no load case needs them.
+    audit : StaticsAudit or None
+        Comparison with published statics, where the case names some.
+    """
+
+    case: Case
+    pose: Pose
+    loads: Mapping[str, tuple[Load, ...]]
+    forces: Mapping[str, JointForces]
+    masses: Mapping[str, PartMass]
+    audit: StaticsAudit | None
+
+    @property
+    def reactions(self) -> Mapping[str, Reactions]:
+        """Joint reactions of every load case, in the undeformed pose."""
+        return {load_case: forces.reactions for load_case, forces in self.forces.items()}
+
+
+def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
+    """Solve pose and statics of every load case.
+
+    Parameters
+    ----------
+    case : Case
+    name : str, optional
+        Path or built-in name of the case, for companion files.
+
+    Returns
+    -------
+    CaseStatics
+
+    Raises
+    ------
+    CaseError
+        For a pose that cannot be assembled or has no single equilibrium.
+    """
+    pose = case.solve_pose()
+    masses = part_masses(case) if needs_masses(case) else {}
+    loads = {
+        load_case: acting_loads(case, stated, placed(pose, stated.speed), masses)
+        for load_case, stated in case.load_cases.items()
+    }
+    forces = {load_case: joint_forces(case, pose, loads[load_case]) for load_case in loads}
+    found = None
+    if case.published_statics is not None:
+        published = case.published_statics
+        found = audit(
+            published,
+            read_companion(name, published.exact),
+            read_companion(name, published.printed),
+            pose,
+            next(iter(loads.values())),
+        )
+    return CaseStatics(case=case, pose=pose, loads=loads, forces=forces, masses=masses, audit=found)
