@@ -26,8 +26,6 @@ OWNERS = {
     "skfem": ("fea/*.py",),
     "pypardiso": ("fea/solid/*.py",),
     "pyvista": ("reports/figures/*.py",),
-    "vtk": ("reports/figures/*.py",),
-    "vtkmodules": ("reports/figures/*.py",),
     "meshio": ("reports/page/export.py",),
 }
 

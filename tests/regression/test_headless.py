@@ -37,7 +37,7 @@ def test_a_graphics_library_that_is_missing_or_crashes(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, broken: str, told: str
 ) -> None:
     """The worker is the real one; the library that it imports is not."""
-    (tmp_path / "vtkmodules.py").write_text(broken)
+    (tmp_path / "pyvista.py").write_text(broken)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     pictures, warnings = figures.plots_of({"AE": scene(), "GF": scene()}, {"AE": {}, "GF": {}})
     assert pictures == {}
@@ -55,7 +55,7 @@ def test_without_display(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_worker_reads_its_request_and_no_more(tmp_path: Path) -> None:
     """A request for nothing draws nothing and imports no graphics library."""
-    (tmp_path / "vtkmodules.py").write_text("raise SystemExit(9)")
+    (tmp_path / "pyvista.py").write_text("raise SystemExit(9)")
     (tmp_path / "none.json").write_text(json.dumps({}))
     command = child.module_command("reports.figures.figures_worker", str(tmp_path), "none.json")
     environment = child.environment() | {"PYTHONPATH": f"{Path(figures.__file__).parents[1]}:{tmp_path}"}
