@@ -37,6 +37,9 @@ verify: setup ## the converged studies, on fine meshes
 bench: setup ## measure speed, accuracy and growth: an hour or so (BENCH="--quick": minutes)
 	$(BIN)/python benchmarks/run.py $(BENCH)
 
+coverage: setup ## how many error bands of drawn links hold the truth, and how wide they are: an hour or so
+	$(ONE_THREAD) $(BIN)/python -m benchmarks.coverage $(or $(COVERAGE),--anew)
+
 golden: setup ## renew the golden results, after a change that is meant (GOLDEN="hand-*": only those)
 	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m golden $(GOLDEN)
 

@@ -26,7 +26,8 @@ from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from geometry.meshing.mesh import MeshSettings, mesh_body
-from geometry.parts.part import RIM, Bar, Body, HoleRow, Pin, PlainEnd, Tube
+from geometry.parts.eyes import RIM
+from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 FILE = Path(__file__).resolve().parents[1] / "fea" / "calibration.toml"
 KEPT = Path(__file__).with_name("results") / "calibration.json"

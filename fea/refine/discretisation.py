@@ -121,8 +121,7 @@ def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> S
     if series.kind == "one mesh":
         text = "estimated on one mesh, fourfold"
     elif series.kind == "two meshes":
-        width = "fourfold estimate" if series.multiple is not None else f"factor {series.factor:g}"
-        text = f"two meshes, no observed order: {width}"
+        text = f"two meshes, no observed order: {series.rule}"
     else:
         text = f"grid convergence over {len(series.values)} meshes, {series.rule}"
     if sharp_edges:

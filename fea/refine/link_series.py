@@ -16,8 +16,6 @@ from fea.refine.target_sizes import LocalGoal
 from geometry.meshing.mesh import ReentrantEdge
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
-DISPLACEMENT_ORDER = 3.0
-"""Of the displacements of quadratic elements."""
 CHORD = 2.0
 """Relative error of a bending stiffness over that of the volume, on a mesh whose straight sides cut corners."""
 NOT_RESOLVED = 0.3
@@ -367,7 +365,6 @@ def _displacement(levels: Sequence[Level], number: int) -> GridConvergence:
         [size for _, size in chosen],
         [levels[i].figures[number].displacement for i, _ in chosen],
         estimate=missing * last.displacement,
-        formal_order=DISPLACEMENT_ORDER,
     )
 
 
