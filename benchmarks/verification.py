@@ -61,8 +61,8 @@ def band_rows(found: "list[tuple[Benchmark, Study]]") -> Iterator[str]:
 
 def convergence_rows(found: "list[tuple[Benchmark, Study]]") -> Iterator[str]:
     yield (
-        "| problem | quantity | relative sizes | unknowns | values | kind | observed order | factor "
-        "| grid convergence index |\n|---|---|---|--:|--:|---|--:|--:|--:|\n"
+        "| problem | quantity | relative sizes | unknowns | values | kind | observed order | factor on the estimate "
+        "| index |\n|---|---|---|--:|--:|---|--:|--:|--:|\n"
     )
     for benchmark, study in found:
         band = study.band
