@@ -40,7 +40,8 @@ def test_what_hand_calculation_leaves_open_a_solid_decides():
     assert found.decision.model == "solid"
     assert "the limit, 18 MPa, lies inside, so finite elements decided" in found.decision.why
     precision = found.solid.precision[0]
-    assert precision.low("von_mises") < 7.07 < precision.high("von_mises") < 18.0  # 7.07 MPa: on a mesh of its own
+    # 7.464 MPa: on 169,000 elements, ten times finer at the peak than the first mesh; 7.466 MPa on 62,000.
+    assert precision.low("von_mises") < 7.464 < precision.high("von_mises") < 18.0
 
 
 def test_frame_is_another_name_of_beam():

@@ -9,6 +9,7 @@ import pytest
 
 from geometry.base.errors import CannotRunError
 from geometry.meshing.mesh_settings import COARSE
+from geometry.meshing.mesh_target import MeshTarget
 from geometry.meshing.mesher import _checked
 from geometry.meshing.tagged_mesh import TaggedMesh
 
@@ -17,15 +18,19 @@ POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0,
 
 def checked(*, area: float = 0.5, volume: float = 1.0 / 6.0, cell: tuple[int, ...] = (0, 1, 2, 3)) -> TaggedMesh:
     """What the mesher makes of the unit tetrahedron, whose face below is ``top:A``, if the kernel states these."""
-    occ: Any = SimpleNamespace(
-        getMass=lambda dimension, tag: area if dimension == 2 else volume, getCenterOfMass=lambda *_: (0.25,) * 3
+    gmsh = SimpleNamespace(model=SimpleNamespace(mesh=SimpleNamespace(getElementsByType=lambda *_: (None, [0, 1, 2]))))
+    solid: Any = SimpleNamespace(unit=1.0)
+    target = MeshTarget(
+        solid=solid,
+        tag=1,
+        cut=[],
+        areas={7: area},
+        surfaces={"top:A": [7]},
+        volume=volume,
+        centroid=np.full(3, 0.25),
     )
-    gmsh = SimpleNamespace(
-        model=SimpleNamespace(occ=occ, mesh=SimpleNamespace(getElementsByType=lambda *_: (None, [0, 1, 2])))
-    )
-    solid: Any = SimpleNamespace(faces={"top:A": [7]}, volume=1, unit=1.0)
     settings = dataclasses.replace(COARSE, curved=False)
-    return _checked(gmsh, solid, settings, POINTS, np.array([cell]), np.arange(4), (), settings.chord_error)
+    return _checked(gmsh, target, settings, POINTS, np.array([cell]), np.arange(4), (), settings.chord_error)
 
 
 def test_a_mesh_that_agrees_is_taken() -> None:
