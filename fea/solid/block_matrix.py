@@ -24,12 +24,12 @@ class SymmetricBlockMatrix:
     indices : ndarray of int, shape (b,)
         Block column of every block, ascending, beginning with the diagonal.
     blocks : ndarray
-        (b, 3, 3).
+        (b, 3, 3), in double or single precision.
     """
 
     indptr: NDArray[np.int32]
     indices: NDArray[np.int32]
-    blocks: NDArray[np.float64]
+    blocks: NDArray[Any]
 
     @property
     def size(self) -> int:
@@ -65,10 +65,10 @@ class SymmetricBlockMatrix:
     def __matmul__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Multiply with (size,) or (size, k)."""
         if x.ndim == 1:
-            return self.product(np.ascontiguousarray(x, dtype=np.float64))
+            return self.product(np.ascontiguousarray(x, dtype=self.blocks.dtype))
         found = np.empty(x.shape, order="F")
         for column, out in zip(x.T, found.T, strict=True):
-            out[:] = self.product(np.ascontiguousarray(column, dtype=np.float64))
+            out[:] = self.product(np.ascontiguousarray(column, dtype=self.blocks.dtype))
         return found
 
     def fix(self, unknowns: NDArray[np.int64]) -> Any:
@@ -105,6 +105,10 @@ class SymmetricBlockMatrix:
     def copy(self) -> "SymmetricBlockMatrix":
         """Return a matrix with blocks of its own."""
         return SymmetricBlockMatrix(indptr=self.indptr, indices=self.indices, blocks=self.blocks.copy())
+
+    def rounded(self) -> "SymmetricBlockMatrix":
+        """Return a copy in single precision."""
+        return SymmetricBlockMatrix(indptr=self.indptr, indices=self.indices, blocks=self.blocks.astype(np.float32))
 
     def with_fixed(self, unknowns: NDArray[np.int64]) -> "SymmetricBlockMatrix":
         """Return a copy in which these unknowns are fixed.

@@ -6,11 +6,12 @@ import solid_meshes
 from scipy.sparse import csr_array
 
 from fea.solid import two_level
+from fea.solid.direct import PardisoFactor
 from fea.solid.elasticity import assemble_stiffness
-from fea.solid.solve import factorise
+from fea.solid.solve import available_methods, factorise
 from fea.solid.space import EDGES, displacement_space
 from fea.solid.supports import isostatic_supports, rigid_motions
-from fea.solid.two_level import LinearLevel, linear_level
+from fea.solid.two_level import LinearLevel, TwoLevelFactor, linear_level
 from geometry.base.errors import CannotRunError
 
 E = 2900.0
@@ -234,6 +235,30 @@ def test_works_without_mkl(monkeypatch):
     factor = factorise(replace(K), level=level, method="two-level")
     assert factor.name == "conjugate gradients over linear elements by SuperLU"
     np.testing.assert_allclose(factor.solve(rhs), expected.x, rtol=0.0, atol=1e-8 * np.abs(expected.x).max())
+
+
+@pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")
+@pytest.mark.parametrize(("length", "precision"), [(8, np.float32), (100, np.float64), (200, np.float64)])
+def test_linear_elements_are_factorised_in_single_precision_where_rounding_spares_bending(length, precision):
+    """At 100 the single factor errs by more than bending itself, at 200 it is not positive definite."""
+    K, level, rhs = _system(solid_meshes.box(upper=(length, 1.0, 1.0), counts=(length, 1, 1)))
+    factor = factorise(K, level=level, method="two-level", threads=1)
+    assert factor.solver._coarse._K.blocks.dtype == precision
+    solved = factor.solved(rhs)
+    assert solved.iterations <= TwoLevelFactor(K, level, PardisoFactor(level.stiffness())).solve(rhs).iterations + 1
+    _agrees_with_factorisation(K, rhs, solved)
+
+
+@pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")
+def test_factor_in_single_precision_takes_half_of_the_memory_and_solves_to_single_precision():
+    K, _, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), columns=2)
+    double, single = PardisoFactor(K), PardisoFactor(K.rounded())
+    assert single.memory == pytest.approx(0.5 * double.memory, rel=0.05)
+    rhs = np.column_stack([1e-60 * rhs[:, 0], 1e60 * rhs[:, 1], np.zeros(K.size)])  # beyond the range of single numbers
+    for found, exact in zip(single.apply(rhs).T, double.apply(rhs).T, strict=True):
+        np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-3 * np.abs(exact).max())
+    x = np.random.default_rng(4).normal(size=K.size)
+    np.testing.assert_allclose(K.rounded() @ x, K @ x, rtol=0.0, atol=1e-5 * np.abs(K @ x).max())
 
 
 def test_only_quadratic_displacements_have_linear_ones_below():
