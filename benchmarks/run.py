@@ -29,6 +29,7 @@ BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
     "accuracy": (False, ["--largest", "150000"], ["--largest", "20000"]),
     "stages": (False, [], []),
     "commits": (False, [], ["--repeats", "1"]),
+    "iterations": (False, [], []),
     "trade": (False, [], ["--accuracies", "0.2", "0.05"]),
     "peers": (False, [], ["--sizes", "20k", "160k", "--repeats", "1"]),
 }

@@ -215,6 +215,22 @@ def trade(record: Record) -> str:
     return "\n".join((picture, table(header, rows), stamp(record)))
 
 
+def iterations(record: Record) -> str:
+    """Iterations on the last meshes of links."""
+    rows = [
+        [
+            f"{r['case']}, {r['link']}",
+            f"{r['unknowns']:,}",
+            f"{r['poissons_ratio']:g}",
+            str(r["loads"]),
+            str(r["iterations"]),
+        ]
+        for r in record["rows"]
+    ]
+    header = f"link|unknowns|Poisson's ratio|loads|iterations to {record['tolerance']:g} in energy"
+    return table(header, rows) + "\n" + stamp(record)
+
+
 SECTIONS: dict[str, Callable[[Record], str]] = {
     "accuracy": accuracy,
     "peers": peers,
@@ -225,6 +241,7 @@ SECTIONS: dict[str, Callable[[Record], str]] = {
     "stages": stages,
     "commits": commits,
     "trade": trade,
+    "iterations": iterations,
 }
 
 
