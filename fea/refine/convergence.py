@@ -27,7 +27,7 @@ FORMAL_ORDER = 2.0
 SAFETY = 1.25
 """Factor on the extrapolated error of three meshes (Roache)."""
 ALONE, SEVERAL = 4.0, 2.25
-"""Least band over the estimate, of one or two meshes and of more: training links need 3.65 and 2.04, one apart."""
+"""Least band over the estimate, of one or two meshes and of more: training links needed 3.65 and 2.04, one apart."""
 LEAST_RATIO = 1.15
 """Of the sizes of successive meshes: what meshes that are closer than this differ by is scatter."""
 SERIES = 3
