@@ -25,7 +25,8 @@ _MESHER = {
 }
 
 # Without a display VTK renders through EGL, or else OSMesa; Mesa dropped the latter in 25.1, so EGL is what we ask for.
-_RENDERERS = ("libEGL.so.1", "libOSMesa.so.8")
+OSMESA = "libOSMesa.so.8"
+_RENDERERS = ("libEGL.so.1", OSMESA)
 _RENDERER_PACKAGE = "libegl1"
 
 

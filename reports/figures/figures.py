@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from fea.outcomes.result import LinkResult, SolidResult
 from geometry.base import child
+from geometry.base.system_libraries import OSMESA, loads
 from reports.figures.canvas import SIZE, Canvas, faint
 from reports.figures.labels import heights, stacked, write_stacked
 from reports.figures.plot import Axes
@@ -124,9 +125,7 @@ def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str,
                     "colours": colours().tolist(),
                     "cut": view.cut,
                 }
-        # Software rendering first: it gives the same picture with and without a display.
-        choices: tuple[dict[str, str], ...] = ({"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}, {})
-        for choice in choices:
+        for choice in _renderers():
             left = {key: view for key, view in views.items() if not (folder / f"{key}.npy").exists()}
             trouble = _run_worker(folder, left, choice, time_limit)
             if not trouble:
@@ -137,6 +136,15 @@ def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str,
             if all(path.exists() for path in pair):
                 found[scene_name] = (np.load(pair[0]), np.load(pair[1]))
     return found, trouble
+
+
+def _renderers() -> tuple[dict[str, str], ...]:
+    """Return the environments to render in, the best first.
+
+    OSMesa gives the same picture with and without a display; where its library is missing, VTK would crash with it.
+    """
+    own: dict[str, str] = {}
+    return ({"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}, own) if loads(OSMESA) else (own,)
 
 
 def _command(folder: Path) -> list[str]:

@@ -61,9 +61,15 @@ def test_a_missing_library_is_tried_again_with_another_renderer(solid, monkeypat
         return "rendering crashed"
 
     monkeypatch.setattr(figures, "_run_worker", run)
+    monkeypatch.setattr(figures, "loads", lambda library: True)
     figures.stress_plots(solid, POINTS)
     software = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}
     assert tried == [software, {}]
+
+
+def test_a_renderer_whose_library_is_missing_is_not_tried(monkeypatch):
+    monkeypatch.setattr(figures, "loads", lambda library: False)
+    assert figures._renderers() == ({},)
 
 
 def test_the_scene_states_a_round_scale_that_shows(solid):
