@@ -283,7 +283,7 @@ def trade(record: dict[str, Any]) -> plt.Figure:
     """Time to a verdict over the accuracy asked for, link by link, beside CalculiX on the last mesh."""
     links = list(dict.fromkeys((r["case"], r["link"]) for r in record["rows"]))
     figure, axes = plt.subplots(1, 2, figsize=(12, 4.8), sharey=True)
-    for ax, key, title in zip(axes, ("wall_s", "cpu_s"), ("wall time", "processor time"), strict=True):
+    for ax, key, title in zip(axes, ("wall_s", "cpu_s"), ("wall time", "processor time, mesher apart"), strict=True):
         for (case, link), colour, marker in zip(links, (BLUE, ORANGE, GREEN, PURPLE), "o^sD", strict=False):
             rows = [r for r in record["rows"] if (r["case"], r["link"]) == (case, link)]
             asked = [100.0 * r["accuracy"] for r in rows]

@@ -208,8 +208,8 @@ def trade(record: Record) -> str:
         own = [seconds(row["wall_s"]), seconds(row["cpu_s"])]
         rows.append([f"{row['case']}, {row['link']}", f"{row['accuracy']:.0%}", reached, *size, *own, *theirs])
     header = (
-        "link|accuracy asked for|reached|meshes|unknowns of the last|loads solved|wall time|processor time|"
-        "CalculiX on the last mesh, one load, wall time|processor time"
+        "link|accuracy asked for|reached|meshes|unknowns of the last|loads solved|wall time|"
+        "processor time, mesher apart|CalculiX on the last mesh, one load, wall time|processor time"
     )
     picture = "![Time to a verdict over accuracy](figures/trade.png)\n"
     return "\n".join((picture, table(header, rows), stamp(record)))
