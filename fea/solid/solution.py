@@ -338,7 +338,6 @@ def solve_free(
     half, count = upper_half(space), F.shape[1]
     body = space if half is None else half.space
     K = assemble_stiffness(body, E=E, nu=nu)
-
     told: list[tuple[int, float, str, str]] = []
 
     def held(
