@@ -93,7 +93,7 @@ def _panel(sheet: Canvas, axes: Axes, x: Real, values: Real, label: str, colour:
         axes.scale_y(sheet, label, label_at=_LABEL, most=1)
         sheet.write("zero all along", axes.at([x.mean(), 0.0]) - (0.0, 4.0), anchor="center bottom", size=8.5)
         return
-    axes.scale_y(sheet, label, label_at=_LABEL, most=4)
+    unit = 10.0 ** axes.scale_y(sheet, label, label_at=_LABEL, most=4)
     for pick, sign in ((np.argmax, 1), (np.argmin, -1)):
         i = int(pick(values))
         if sign * values[i] <= 0.0:
@@ -105,7 +105,7 @@ def _panel(sheet: Canvas, axes: Axes, x: Real, values: Real, label: str, colour:
         sheet.disc(place, 1.6, colour)
         side = "left" if share < 0.08 else "right" if share > 0.92 else "center"
         sheet.write(
-            number(float(values[i])),
+            number(float(values[i]) / unit),
             place - (0.0, 4.0 * sign),
             anchor=f"{side} {'bottom' if sign > 0 else 'top'}",
             colour=colour,

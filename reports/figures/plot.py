@@ -78,7 +78,7 @@ class Axes:
             sheet.write(text, (x, bottom + _TICK + 3.0), anchor="center top")
         sheet.write(_with_power(label, power), ((left + right) / 2.0, bottom + _TICK + 17.0), anchor="center top")
 
-    def scale_y(self, sheet: Canvas, label: str, *, label_at: float, most: int = 9, grid: bool = False) -> None:
+    def scale_y(self, sheet: Canvas, label: str, *, label_at: float, most: int = 9, grid: bool = False) -> int:
         """Draw ticks, numbers and label to the left of the rectangle.
 
         Parameters
@@ -91,6 +91,11 @@ class Axes:
             Number of steps between ticks, at most.
         grid : bool, optional
             True for lines across the rectangle.
+
+        Returns
+        -------
+        int
+            The power of ten by which its numbers are to be multiplied, as its label says.
         """
         left, top, right, bottom = self.box
         places = ticks(*self.y, most=most)
@@ -102,6 +107,7 @@ class Axes:
             sheet.line([(left - _TICK, y), (left, y)], INK, 0.8)
             sheet.write(text, (left - _TICK - 3.0, y), anchor="right middle")
         sheet.write(_with_power(label, power), (label_at, (top + bottom) / 2.0), turned=True)
+        return power
 
     def frame(self, sheet: Canvas, sides: str = "left bottom right top") -> None:
         """Draw sides of the rectangle.

@@ -230,6 +230,15 @@ def test_forces_out_of_the_plane_get_panels_of_their_own(result):
     assert_legible(sheet)
 
 
+def test_extreme_values_have_the_unit_of_their_axis(result):
+    pull = np.array([6.3e-4, 0.0, 0.0, 0.0, 0.0, 0.0])
+    loads = BeamLoads(
+        points=tuple(PointLoad(point=np.array([x, 0.0]), wrench=s * pull) for x, s in ((0.0, -1.0), (10.0, 1.0)))
+    )
+    texts = written(diagrams._sheet(check_beam(loads, result.case.parts["tube"].section, 40.0), {"A": 0.0}))
+    assert texts >= {"N [10⁻⁶ N]", "500", "630.0"}
+
+
 def test_the_worst_load_case_is_drawn(result):
     from reports.page.pictures import governing_load_cases
 
