@@ -1,13 +1,6 @@
-"""From bodies to meshes, mass properties and STEP files, in child processes with limits of time and memory.
-
-The geometry kernel and the mesher can crash or loop for ever, which no exception reports; a child process that does so
-becomes a ``CannotRunError``. One that answers waits for a further request, with the solids that it has built.
-"""
+"""From bodies to meshes, mass properties and STEP files, in child processes with limits of time and memory."""
 
 import os
-import pickle
-import signal
-import subprocess
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -17,9 +10,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base import child, child_memory
-from geometry.base.child_server import ChildEndedError, ServerPool
-from geometry.base.errors import AlulaError, CannotRunError, CaseError
+from geometry.base.errors import AlulaError
+from geometry.base.kernel_child import KernelWords, ask_kernel
 from geometry.meshing.mesh_settings import COARSE, MeshSettings
 from geometry.meshing.reentrant import ReentrantEdge
 from geometry.meshing.tagged_mesh import TaggedMesh
@@ -45,7 +37,12 @@ KERNEL_TIME_LIMIT = 300.0
 """Seconds for tasks of the geometry kernel that mesh nothing."""
 KERNEL_MEMORY_LIMIT = MeshSettings.memory_limit
 """Bytes for the same."""
-_workers = ServerPool()
+_WORDS = KernelWords(
+    who="the mesher",
+    late="increase solid.mesh_size or check with --fidelity beam",
+    large="increase solid.mesh_size",
+    crashed="change the part's dimensions or the mesh size a little",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -211,47 +208,7 @@ def _naming(name: str, task: Callable[..., _T], *arguments: Any) -> _T:
         raise type(error)(f"{name}: {error}") from None
 
 
-def _command() -> list[str]:
-    return child.module_command("geometry.meshing.mesh_worker")
-
-
 def _run(
     task: str, body: Body, *arguments: Any, time_limit: float = KERNEL_TIME_LIMIT, memory: float = KERNEL_MEMORY_LIMIT
 ) -> Any:
-    """Do a task of ``geometry.meshing.mesh_worker`` in a child process and return its result."""
-    memory = child_memory.allowed(memory)
-    request = pickle.dumps((memory, task, body, *arguments))
-    environment = child.environment(PYDANTIC_DISABLE_PLUGINS="__all__")
-    try:
-        with _workers.server(_command(), environment, body) as worker:
-            kind, result = pickle.loads(worker.ask(request, time_limit))
-            if kind != "done":  # who knows in which state the kernel is
-                worker.end()
-    except subprocess.TimeoutExpired:
-        raise CannotRunError(
-            f"the mesher was stopped after its time limit of {time_limit:g} s; increase solid.mesh_size or check with "
-            "--fidelity beam"
-        ) from None
-    except ChildEndedError as ended:
-        raise CannotRunError(_obituary(ended.status, ended.told)) from None
-    except OSError as error:
-        raise CannotRunError(f"the mesher could not be started ({error.strerror or error})") from None
-    if kind == "case":
-        raise CaseError(result)
-    if kind == "cannot":
-        raise CannotRunError(result)
-    if kind == "memory":
-        raise CannotRunError(
-            f"the mesher needed more than the {memory / 1e9:.3g} GB of memory that it may take; "
-            "increase solid.mesh_size"
-        )
-    return result
-
-
-def _obituary(status: int, told: str) -> str:
-    if status == -signal.SIGKILL:
-        return "the mesher was killed (SIGKILL), as the system does when memory runs out; increase solid.mesh_size"
-    if status < 0:
-        name = signal.Signals(-status).name
-        return f"the mesher crashed ({name}); change the part's dimensions or the mesh size a little"
-    return f"the mesher ended with status {status} and no answer: {told}"
+    return ask_kernel(task, body, *arguments, words=_WORDS, time_limit=time_limit, memory=memory)

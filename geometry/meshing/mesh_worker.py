@@ -1,6 +1,7 @@
 """The child process in which the geometry kernel and the mesher run: ``python -m geometry.meshing.mesh_worker``.
 
-A request is pickled: a limit of memory [bytes], the name of a task, a body and further arguments. So is its answer:
+A request is pickled: a limit of memory [bytes], the name of a task, a body (or, for a task about a file, its path and
+digest) and further arguments. So is its answer:
 ("done", result), ("case", sentence) or ("cannot", sentence) for an error, or ("memory", ""). Solids that have been
 built serve later requests.
 """
@@ -21,6 +22,7 @@ from geometry.base.child_memory import MemoryGuard
 from geometry.base.child_server import ChildService
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.system_libraries import advice
+from geometry.imported.solid import facts_of_file
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesh_target import MeshTarget, mesh_target
 from geometry.meshing.solid_model import Solid, build, initialised, present, volume_centroid_inertia, write_step
@@ -73,6 +75,8 @@ def _step(gmsh: Any, built: _Built, path: str) -> None:
 
 TASKS: dict[str, Callable[..., object]] = {"mesh": _mesh, "mass": _mass, "step": _step, "reentrant": _reentrant}
 """What the worker does with gmsh, a body that has been built, and further arguments."""
+FILE_TASKS: dict[str, Callable[..., object]] = {"facts": facts_of_file}
+"""What it does with gmsh, in a model of its own, with the path and the digest of a STEP file, and further arguments."""
 
 
 class _Worker:
@@ -83,7 +87,7 @@ class _Worker:
         self._built: dict[tuple[Body, bool], _Built] = {}
         self._count = 0
 
-    def answer(self, task: str, body: Body, *arguments: Any) -> tuple[str, object]:
+    def answer(self, task: str, subject: Any, *arguments: Any) -> tuple[str, object]:
         """Do a task and return its answer, with every error as a sentence."""
         try:
             import_module("gmsh")
@@ -91,7 +95,9 @@ class _Worker:
             return "cannot", f"gmsh could not be loaded ({error}); {advice()}"
         try:
             self._gmsh = self._gmsh or initialised()
-            return "done", TASKS[task](self._gmsh, self._of(body, task), *arguments)
+            if task in FILE_TASKS:
+                return "done", self._about_file(FILE_TASKS[task], *subject, *arguments)
+            return "done", TASKS[task](self._gmsh, self._of(subject, task), *arguments)
         except CaseError as error:
             return "case", str(error)
         except CannotRunError as error:
@@ -101,6 +107,14 @@ class _Worker:
         except Exception as error:
             # gmsh raises bare Exceptions that carry its last message.
             return "cannot", f"gmsh failed: {error or type(error).__name__}"
+
+    def _about_file(self, task: Callable[..., object], *arguments: Any) -> object:
+        """Do a task in a model of its own."""
+        self._gmsh.model.add("file")
+        try:
+            return task(self._gmsh, *arguments)
+        finally:
+            self._gmsh.model.remove()
 
     def _of(self, body: Body, task: str) -> _Built:
         """Return a body as it was built or is now, and make its model the present one."""

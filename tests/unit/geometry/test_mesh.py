@@ -352,13 +352,13 @@ def _instead(script: str) -> Callable[[], list[str]]:
     ],
 )
 def test_a_crash_of_the_mesher_is_contained(monkeypatch: pytest.MonkeyPatch, script: str, message: str) -> None:
-    monkeypatch.setattr(geometry.meshing.mesh, "_command", _instead(script))
+    monkeypatch.setattr(geometry.base.kernel_child, "_command", _instead(script))
     with pytest.raises(CannotRunError, match=message):
         mesh_body(bar_body(), COARSE)
 
 
 def test_an_endless_mesher_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(geometry.meshing.mesh, "_command", _instead("while True: pass"))
+    monkeypatch.setattr(geometry.base.kernel_child, "_command", _instead("while True: pass"))
     with pytest.raises(CannotRunError, match=r"stopped after its time limit of 0\.5 s"):
         mesh_body(bar_body(), dataclasses.replace(COARSE, time_limit=0.5))
 

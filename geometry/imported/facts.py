@@ -1,0 +1,79 @@
+"""Records of what is found in a STEP file, in mm in the file's own frame."""
+
+from dataclasses import dataclass
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bore:
+    """A round or long hole of a solid.
+
+    Attributes
+    ----------
+    name : str
+        "bore 1", "bore 2", ...: along the part's longest direction, then across it.
+    axis : tuple of 3 float
+        Unit vector.
+    centre : tuple of 3 float
+        Middle of the hole along its axis; of a slot, between its two ends as well [mm].
+    diameter : float
+        Of the hole; the width of a slot [mm].
+    length : float
+        From the first to the last of the wall, along the axis [mm].
+    through : bool
+        False where the hole ends in the material.
+    spans : tuple of tuple of 2 float
+        Where the wall is, along the axis from the centre [mm]: one span for a plain hole, two for a fork.
+    slot : float
+        Distance of the centres of a slot's round ends; 0.0 for a round hole [mm].
+    slot_axis : tuple of 3 float
+        Unit vector along a slot; zeros for a round hole.
+    around : bool
+        True where the part's outside is round about the same axis, as of a tube.
+    """
+
+    name: str
+    axis: Vector
+    centre: Vector
+    diameter: float
+    length: float
+    through: bool
+    spans: tuple[tuple[float, float], ...]
+    slot: float
+    slot_axis: Vector
+    around: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartFacts:
+    """What is found in a file that holds one solid.
+
+    Attributes
+    ----------
+    volume : float
+        [mm³].
+    surface : float
+        Area of the surface [mm²].
+    centroid : tuple of 3 float
+        [mm].
+    inertia : tuple of 3 tuple of 3 float
+        Inertia tensor about the centroid for unit density, products of inertia with their minus sign [mm⁵].
+    low : tuple of 3 float
+        Least coordinates [mm].
+    high : tuple of 3 float
+        Largest coordinates [mm].
+    bores : tuple of Bore
+        The holes, in the order of their names.
+    digest : str
+        SHA-256 of the file's content, in hexadecimal.
+    """
+
+    volume: float
+    surface: float
+    centroid: Vector
+    inertia: tuple[Vector, Vector, Vector]
+    low: Vector
+    high: Vector
+    bores: tuple[Bore, ...]
+    digest: str

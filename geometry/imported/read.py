@@ -1,0 +1,97 @@
+"""What is found in a STEP file, asked of the geometry kernel in its child process."""
+
+import hashlib
+from pathlib import Path
+
+from geometry.base.errors import CaseError
+from geometry.base.kernel_child import KernelWords, ask_kernel
+from geometry.imported.facts import PartFacts
+
+LARGEST_FILE = 200_000_000
+"""Bytes."""
+TIME_LIMIT = 120.0
+"""Seconds in which the kernel has to read a file and find its bores."""
+MEMORY_LIMIT = 3e9
+"""Bytes for the same."""
+_FIRST, _LAST, _TAIL = b"ISO-10303-21;", b"END-ISO-10303-21;", 4096
+"""What a STEP file begins and ends with (ISO 10303-21), and how far from its end that is looked for [bytes]."""
+_SIMPLER = "export the part alone, without threads, lettering and other fine details"
+_known: dict[str, PartFacts] = {}
+
+
+def part_facts(path: Path) -> PartFacts:
+    """Return what is found in a STEP file of one solid; a file of the same content is read only once.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    PartFacts
+        Volume, centroid, inertia, bounds and bores.
+
+    Raises
+    ------
+    CaseError
+        Where it is no STEP file of one solid.
+    CannotRunError
+        Where the kernel fails, crashes or exceeds a limit.
+    """
+    digest = file_digest(path)
+    if digest not in _known:
+        _known[digest] = ask_kernel(
+            "facts", (str(path.absolute()), digest), words=_words(path), time_limit=TIME_LIMIT, memory=MEMORY_LIMIT
+        )
+    return _known[digest]
+
+
+def file_digest(path: Path) -> str:
+    """Return the SHA-256 of a STEP file's content; refuse what is no STEP file at first sight.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    str
+        In hexadecimal.
+
+    Raises
+    ------
+    CaseError
+        Where there is no such file, or it is too large, no STEP file or cut off.
+    """
+    try:
+        if path.is_dir():
+            raise CaseError(f"'{path}' is a folder; name the STEP file in it")
+        if not path.is_file():
+            raise CaseError(f"there is no file '{path}'; name an existing STEP file")
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise CaseError(f"'{path}' has more than the {LARGEST_FILE / 1e6:.0f} MB that are read; {_SIMPLER}")
+        with path.open("rb") as stream:
+            start = stream.read(_TAIL).removeprefix(b"\xef\xbb\xbf").lstrip()
+            stream.seek(max(0, size - _TAIL))
+            end = stream.read()
+            if not start.startswith(_FIRST):
+                what = "is empty" if size == 0 else f"is no STEP file: it does not begin with {_FIRST.decode()}"
+                raise CaseError(f"'{path}' {what}; export the part as STEP (AP203, AP214 or AP242)")
+            if _LAST not in end:
+                raise CaseError(f"'{path}' is cut off: it does not end with {_LAST.decode()}; export the part anew")
+            stream.seek(0)
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError as error:
+        raise CaseError(f"'{path}' cannot be read ({error.strerror}); check its permissions") from None
+
+
+def _words(path: Path) -> KernelWords:
+    return KernelWords(
+        who=f"the geometry kernel, reading '{path.name}',",
+        late=_SIMPLER,
+        large=_SIMPLER,
+        crashed="export the part anew",
+    )

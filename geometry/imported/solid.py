@@ -1,0 +1,105 @@
+"""The one solid of a STEP file, in the geometry kernel.
+
+Runs in the kernel's child process only. Lengths are in mm, whatever the unit of the file.
+"""
+
+import os
+from typing import Any
+
+from geometry.base.errors import CaseError
+from geometry.imported.bores import find_bores
+from geometry.imported.facts import PartFacts, Vector
+
+_SHOWN = 4
+"""Solids whose sizes are named at most."""
+
+
+def import_solid(gmsh: Any, path: str) -> int:
+    """Read a STEP file into the present model of the kernel, which is empty.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, initialised to read in mm.
+    path : str
+        The file.
+
+    Returns
+    -------
+    int
+        Tag of its solid.
+
+    Raises
+    ------
+    CaseError
+        Where the file cannot be read, or holds another number of solids than one.
+    """
+    occ, name = gmsh.model.occ, os.path.basename(path)
+    try:
+        with open(path, "rb") as stream:  # gmsh takes names in UTF-8 alone, and a path need not be
+            found = occ.importShapes(f"/dev/fd/{stream.fileno()}", highestDimOnly=True, format="step")
+    except OSError as error:
+        raise CaseError(f"'{name}' cannot be read ({error.strerror})") from None
+    except Exception:  # gmsh raises bare Exceptions
+        raise CaseError(f"'{name}' cannot be read as STEP by the geometry kernel; export the part anew") from None
+    occ.synchronize()
+    solids = [tag for dimension, tag in found if dimension == 3]
+    if not solids:
+        surfaces = sum(dimension == 2 for dimension, _ in found)
+        what = f"only surfaces without volume ({surfaces})" if surfaces else "no solid"
+        raise CaseError(f"'{name}' holds {what}, and a part is one solid; export the part as a closed solid")
+    if len(solids) > 1:
+        sizes = [_size(gmsh, tag) for tag in solids[:_SHOWN]] + ["..."] * (len(solids) > _SHOWN)
+        raise CaseError(
+            f"'{name}' holds {len(solids)} solids ({'; '.join(sizes)}), and a part is one solid; export each part to "
+            "a file of its own, or join them in the CAD program"
+        )
+    if not occ.getMass(3, solids[0]) > 0.0:
+        raise CaseError(f"the solid of '{name}' encloses no volume; repair it in the CAD program and export it anew")
+    return int(solids[0])
+
+
+def facts_of_file(gmsh: Any, path: str, digest: str) -> PartFacts:
+    """Return what is found in a STEP file.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, its present model empty.
+    path : str
+        The file.
+    digest : str
+        SHA-256 of its content.
+
+    Returns
+    -------
+    PartFacts
+        In mm, in the frame of the file.
+
+    Raises
+    ------
+    CaseError
+        As ``import_solid``.
+    """
+    tag, occ = import_solid(gmsh, path), gmsh.model.occ
+    box, inertia = gmsh.model.getBoundingBox(3, tag), occ.getMatrixOfInertia(3, tag)
+    return PartFacts(
+        volume=float(occ.getMass(3, tag)),
+        surface=float(sum(occ.getMass(2, face) for face in gmsh.model.getAdjacencies(3, tag)[1])),
+        centroid=_vector(occ.getCenterOfMass(3, tag)),
+        inertia=(_vector(inertia[:3]), _vector(inertia[3:6]), _vector(inertia[6:])),
+        low=_vector(box[:3]),
+        high=_vector(box[3:]),
+        bores=find_bores(gmsh, tag),
+        digest=digest,
+    )
+
+
+def _vector(values: Any) -> Vector:
+    x, y, z = map(float, values)
+    return x, y, z
+
+
+def _size(gmsh: Any, tag: int) -> str:
+    box = gmsh.model.getBoundingBox(3, tag)
+    return " x ".join(f"{high - low:.4g}" for low, high in zip(box[:3], box[3:], strict=True)) + " mm"

@@ -1,0 +1,249 @@
+"""Cylindrical faces of a solid, as parts of walls that lie on common cylinders.
+
+Runs in the kernel's child process only.
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Span = tuple[float, float]
+
+NEAR = 1e-3
+"""Share of the radius within which cylinders are the same, and angle [rad] within which axes are parallel."""
+FULL_TURN = math.tau - 0.01
+"""Angle [rad] from which on a wall is round."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Line:
+    """An axis in space.
+
+    Attributes
+    ----------
+    point : array
+        (3,) [mm].
+    axis : array
+        (3,), of unit length; its first component that is not zero is positive.
+    """
+
+    point: Real
+    axis: Real
+
+    def along(self, points: Real) -> Real:
+        """Return the places of points along the axis, from the line's own point.
+
+        Parameters
+        ----------
+        points : array
+            (..., 3) [mm].
+
+        Returns
+        -------
+        array
+            [mm].
+        """
+        return np.asarray((points - self.point) @ self.axis)
+
+    def at(self, place: float) -> Real:
+        """Return the point at a place along the axis.
+
+        Parameters
+        ----------
+        place : float
+            [mm].
+
+        Returns
+        -------
+        array
+            (3,) [mm].
+        """
+        return np.asarray(self.point + place * self.axis)
+
+    def across(self) -> tuple[Real, Real]:
+        """Return two unit vectors (3,), normal to the axis and to each other."""
+        first = np.cross(self.axis, np.eye(3)[int(np.argmin(np.abs(self.axis)))])
+        first /= np.linalg.norm(first)
+        return first, np.cross(self.axis, first)
+
+    def same(self, other: "Line", within: float) -> bool:
+        """Return True if another line is this one.
+
+        Parameters
+        ----------
+        other : Line
+        within : float
+            Distance that does not matter [mm].
+
+        Returns
+        -------
+        bool
+        """
+        arm = other.point - self.point
+        return self.parallel(other) and float(np.linalg.norm(arm - (arm @ self.axis) * self.axis)) < within
+
+    def parallel(self, other: "Line") -> bool:
+        """Return True if another line is parallel to this one.
+
+        Parameters
+        ----------
+        other : Line
+
+        Returns
+        -------
+        bool
+        """
+        return float(np.linalg.norm(np.cross(self.axis, other.axis))) < NEAR
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Wall:
+    """What lies on one cylinder without a gap along its axis.
+
+    Attributes
+    ----------
+    line : Line
+        The axis of the cylinder.
+    radius : float
+        [mm].
+    hollow : bool
+        True where the material is outside of the cylinder.
+    span : tuple of 2 float
+        From where to where along the line [mm].
+    arcs : tuple of tuple of 2 float
+        Where around the line, from ``line.across()[0]``: starts in order, from 0 to 2π, and angles [rad].
+    """
+
+    line: Line
+    radius: float
+    hollow: bool
+    span: Span
+    arcs: tuple[Span, ...]
+
+    @property
+    def turn(self) -> float:
+        """Angle that the wall takes around its axis [rad]."""
+        return sum(angle for _, angle in self.arcs)
+
+    @property
+    def round(self) -> bool:
+        """True where the wall goes all the way round."""
+        return self.turn > FULL_TURN
+
+
+def walls_of(gmsh: Any, solid: int) -> list[Wall]:
+    """Return the cylindrical walls of a solid.
+
+    Faces of one cylinder are one wall, as the two halves into which programs cut a hole, unless there is a gap between
+    them along the axis.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with the solid in its present model.
+    solid : int
+        Its tag.
+
+    Returns
+    -------
+    list of Wall
+    """
+    faces = [_face(gmsh, solid, tag) for tag in gmsh.model.getAdjacencies(3, solid)[1]]
+    cylinders: list[list[Wall]] = []
+    for face in filter(None, faces):
+        for cylinder in cylinders:
+            if _one_cylinder(cylinder[0], face):
+                cylinder.append(face)
+                break
+        else:
+            cylinders.append([face])
+    return [wall for cylinder in cylinders for wall in _joined(cylinder)]
+
+
+def _one_cylinder(one: Wall, other: Wall) -> bool:
+    near = NEAR * one.radius
+    return (
+        one.hollow == other.hollow and abs(one.radius - other.radius) < near and one.line.same(other.line, within=near)
+    )
+
+
+def _face(gmsh: Any, solid: int, tag: int) -> Wall | None:
+    """Return a cylindrical face as a wall; None for a face of another shape."""
+    model = gmsh.model
+    if model.getType(2, tag) != "Cylinder":
+        return None
+    properties = np.asarray(model.getEntityProperties(2, tag)[1])
+    line, radius = Line(point=properties[:3], axis=_upwards(properties[3:6])), float(properties[6])
+    (u0, v0), (u1, v1) = model.getParametrizationBounds(2, tag)
+    points = np.asarray(model.getValue(2, tag, [u0, v0, u0 + 0.01 * (u1 - u0), v0, u0, v1])).reshape(3, 3)
+    places = line.along(points)
+    start, soon, _ = (_angle(line, point) for point in points)
+    onwards = (soon - start) % math.tau < math.pi
+    arc = (start if onwards else (start - (u1 - u0)) % math.tau, min(u1 - u0, math.tau))
+    on_face = _point_on(model, tag, (u0, u1), (v0, v1))
+    inwards = line.at(float(line.along(on_face))) - on_face
+    hollow = not model.isInside(3, solid, list(on_face + NEAR * inwards))
+    return Wall(line=line, radius=radius, hollow=hollow, span=(float(min(places)), float(max(places))), arcs=(arc,))
+
+
+def _point_on(model: Any, tag: int, u: Span, v: Span) -> Real:
+    """Return a point (3,) within a face, whose borders may be anywhere within its bounds."""
+    for count in (1, 2, 4, 8, 16, 32):
+        shares = (np.arange(count) + 0.5) / count
+        for a in u[0] + shares * (u[1] - u[0]):
+            for b in v[0] + shares * (v[1] - v[0]):
+                if model.isInside(2, tag, [a, b], parametric=True):
+                    return np.asarray(model.getValue(2, tag, [a, b]))
+    return np.asarray(model.getValue(2, tag, [sum(u) / 2.0, sum(v) / 2.0]))
+
+
+def _angle(line: Line, point: Real) -> float:
+    first, second = line.across()
+    arm = point - line.point
+    return math.atan2(float(arm @ second), float(arm @ first)) % math.tau
+
+
+def _upwards(axis: Real) -> Real:
+    axis = axis / np.linalg.norm(axis)
+    leading = next(component for component in axis if abs(component) > NEAR)
+    return np.asarray(np.where(np.abs(axis) < 1e-12, 0.0, axis) * math.copysign(1.0, leading))
+
+
+def _joined(faces: list[Wall]) -> Iterable[Wall]:
+    """Yield the walls that faces of one cylinder make: those without a gap between them along the axis."""
+    first = faces[0]
+    shifts = [float(first.line.along(face.line.point)) for face in faces]
+    turns = [_angle(first.line, first.line.point + face.line.across()[0]) for face in faces]
+    pieces = sorted(
+        (
+            ((face.span[0] + shift, face.span[1] + shift), [((start + turn) % math.tau, a) for start, a in face.arcs])
+            for face, shift, turn in zip(faces, shifts, turns, strict=True)
+        ),
+        key=lambda piece: piece[0],
+    )
+    (low, high), arcs = pieces[0]
+    for (start, end), more in [*pieces[1:], ((math.inf, math.inf), [])]:
+        if start > high + NEAR * first.radius:
+            yield Wall(line=first.line, radius=first.radius, hollow=first.hollow, span=(low, high), arcs=_united(arcs))
+            (low, high), arcs = (start, end), []
+        high = max(high, end)
+        arcs = [*arcs, *more]
+
+
+def _united(arcs: list[Span]) -> tuple[Span, ...]:
+    """Return arcs without overlaps, in the order of their starts."""
+    found: list[Span] = []
+    for start, angle in sorted(arcs):
+        if found and start <= sum(found[-1]) + NEAR:
+            found[-1] = found[-1][0], max(sum(found[-1]), start + angle) - found[-1][0]
+        else:
+            found.append((start, angle))
+    if len(found) > 1 and sum(found[-1]) >= found[0][0] + math.tau - NEAR:  # the last one goes on in the first
+        start, angle = found.pop()
+        found[0] = start, max(start + angle, sum(found[0]) + math.tau) - start
+    return tuple((start, min(angle, math.tau)) for start, angle in found)
