@@ -130,7 +130,7 @@ def proportions(body: Body, nu: float) -> dict[str, float]:
     else:
         found["thickness over width"] = part.section.height / width
         found["eye thickness over thickness"] = part.eye_thickness / part.section.height
-    pins = [pin.diameter / part.eye_diameter for pin in body.pins]
+    pins = [pin.diameter / body.ring(pin).diameter for pin in body.pins]
     found |= {"largest pin over eye": max(pins), "smallest pin over eye": min(pins)}
     for row in body.holes:
         across = part.section.across(row.along)
@@ -180,6 +180,8 @@ def uncalibrated(body: Body, nu: float) -> str:
         return "a disc is as wide as it is long, where beam theory does not hold"
     if any(pin.slot > 0.0 for pin in body.pins):
         return "it has a slot"
+    if any(pin.ring is not None for pin in body.pins):
+        return "it has an eye of sizes of its own"
     if body.part.shape not in calibrations():
         return f"no part of shape {body.part.shape} was measured"
     return calibration_of(body.part).outside(body, nu)

@@ -121,7 +121,7 @@ def displacement_estimate(
     float
         Displacement [mm].
     """
-    section, part = beam.section, body.part
+    section = beam.section
     bent = deflection(beam.forces, section, young=young, poisson=poisson, line=line)
     first, last = bent.functions.breaks[0], bent.functions.breaks[-1]
     table = np.array([bent.functions.at(x) for x in np.linspace(first, last, 65)])
@@ -133,9 +133,11 @@ def displacement_estimate(
     ]
     axis = max(float(np.linalg.norm(moved)) for moved in (*table[:, :3], *beyond))
     bending = max(section.half_y, section.half_z) * np.hypot(table[:, 4], table[:, 5])
-    twist = math.hypot(part.eye_diameter, part.eye_thickness) / 2.0 * np.abs(table[:, 3])
-    pinned = max((float(np.linalg.norm(p.wrench[:3])) for p in loads.pins), default=0.0)
-    return float(axis + (bending + twist).max() + pinned / (young * part.eye_thickness))
+    rings = {pin.name: body.ring(pin) for pin in body.pins}
+    corner = max((math.hypot(ring.diameter, ring.thickness) / 2.0 for ring in rings.values()), default=0.0)
+    twist = corner * np.abs(table[:, 3])
+    pinned = max((float(np.linalg.norm(p.wrench[:3])) / rings[p.name].thickness for p in loads.pins), default=0.0)
+    return float(axis + (bending + twist).max() + pinned / young)
 
 
 def shoulder_factors(diameter: float, step: float, radius: float) -> tuple[float, float, float]:
@@ -232,17 +234,17 @@ def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> CriticalLoc
     after = forces_at(beam, pin.x, "after") if pin.x < beam.forces.breaks[-1] else np.zeros(6)
     found = [_bore(body, pin, load, torque, before, after)]
     sides: tuple[tuple[float, Side], ...] = ((pin.x - reach, "after"), (pin.x + reach, "before"))
-    found += [_junction(body, forces_at(beam, x, side), beam.poisson) for x, side in sides if first < x < last]
+    found += [_junction(body, pin, forces_at(beam, x, side), beam.poisson) for x, side in sides if first < x < last]
     far = reach + part.section.width / 2.0
     return CriticalLocation(kind="eye", name=f"the eye at {pin.name}", x=pin.x, low=pin.x - far, high=pin.x + far,
                 estimate=max(found))  # fmt: skip
 
 
-def _junction(body: Body, forces: NDArray[np.float64], poisson: float) -> float:
+def _junction(body: Body, pin: Pin, forces: NDArray[np.float64], poisson: float) -> float:
     """Stress at the fillet between the section and an eye under the section's forces (6,)."""
     part, width = body.part, body.part.section.width
     stress = section_stress(part.section, forces, poisson)
-    tension, bending, torsion = shoulder_factors(width, (part.eye_diameter - width) / 2.0, part.fillet_radius)
+    tension, bending, torsion = shoulder_factors(width, (body.ring(pin).diameter - width) / 2.0, part.fillet_radius)
     direct = tension * abs(stress.axial) + bending * stress.bending
     return math.hypot(direct, math.sqrt(3.0) * (torsion * stress.torsion + stress.shear))
 
@@ -258,8 +260,7 @@ def _bore(
     eye, with the factors of a hole in a plate: 3 in tension and in bending out of the plane, 2 in bending in the plane;
     of a torque that the bore takes by shear.
     """
-    part = body.part
-    wide, thick, hole = part.eye_diameter, part.eye_thickness, pin.diameter
+    wide, thick, hole = body.ring(pin).diameter, body.ring(pin).thickness, pin.diameter
     h = min(max(hole / wide, 0.15), 0.75)
     factor = 12.882 - 52.714 * h + 89.762 * h**2 - 51.667 * h**3
     push = float(np.linalg.norm(load.wrench[:3]) + 6.0 * np.linalg.norm(load.wrench[3:5]) / thick)

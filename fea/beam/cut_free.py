@@ -182,11 +182,12 @@ def _eyes(body: Body, density: float, per_length: float) -> list[tuple[float, fl
     if not part.is_beam:
         return []
     first, last = extent(body)
-    radius, found = part.eye_diameter / 2.0, []
+    found = []
     for pin in body.pins:
         if pin.y == 0.0:
-            volume = (math.pi * radius**2 + part.eye_diameter * pin.slot) * part.eye_thickness
-            volume -= (math.pi * pin.diameter**2 / 4.0 + pin.diameter * pin.slot) * part.eye_thickness
+            ring, radius = body.ring(pin), body.ring(pin).diameter / 2.0
+            volume = (math.pi * radius**2 + ring.diameter * pin.slot) * ring.thickness
+            volume -= (math.pi * pin.diameter**2 / 4.0 + pin.diameter * pin.slot) * ring.thickness
             reach = radius + pin.slot / 2.0
             replaced = min(pin.x + reach, last) - max(pin.x - reach, first)
             found.append((pin.x, density * volume - per_length * replaced))

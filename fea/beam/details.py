@@ -166,8 +166,7 @@ def flank_moments(length: float, at: float, force: float, x: Floats) -> Floats:
 
 
 def _slot(body: Body, pin: Pin, load: PinLoad, forces: Piecewise, poisson: float) -> Detail:
-    part = body.part
-    wide, thick = part.eye_diameter, part.eye_thickness
+    wide, thick = body.ring(pin).diameter, body.ring(pin).thickness
     (flanks,) = (found for found in flanks_of(body) if found.first < pin.x < found.last)
     height, length = flanks.height, flanks.length
     low, high = pin.span
@@ -211,7 +210,7 @@ def _arm(body: Body, pin: Pin, foot: tuple[float, float], load: PinLoad, poisson
     length = float(np.linalg.norm(end - start))
     along = (end - start) / length
     axes = np.array([along, [-along[1], along[0], 0.0], [0.0, 0.0, 1.0]])
-    root = start + along * part.eye_diameter / 2.0
+    root = start + along * body.ring(body.foot(pin)).diameter / 2.0
     moment = load.wrench[3:] + np.cross(end - root, load.wrench[:3])
     stress = section_stress(part.section, np.concatenate([axes @ load.wrench[:3], axes @ moment]), poisson)
     remark = "its own section at the eye from which it starts, under the pin's force alone"

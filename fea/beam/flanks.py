@@ -76,12 +76,12 @@ def flanks_of(body: Body) -> tuple[Flanks, ...]:
 
 
 def _flanks(body: Body, pin: Pin) -> Flanks:
-    height, longer = (body.part.eye_diameter - pin.diameter) / 2.0, pin.diameter / 4.0
+    height, longer = (body.ring(pin).diameter - pin.diameter) / 2.0, pin.diameter / 4.0
     low, high = pin.span
     return Flanks(
         first=low - longer,
         last=high + longer,
         height=height,
         apart=height + pin.diameter,
-        one=rectangle(height, body.part.eye_thickness),
+        one=rectangle(height, body.ring(pin).thickness),
     )

@@ -98,15 +98,16 @@ def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank
     if arm is not None:
         assert arm.foot is not None
         reach = math.hypot(arm.x - arm.foot[0], arm.y - arm.foot[1])
-        holes = [(0.0, _diameter(body, arm.foot)), (reach, arm.diameter)]
+        holes = [(0.0, body.foot(arm)), (reach, arm)]
     else:
-        holes = [(pin.x, pin.diameter) for pin in body.pins if pin.foot is None and pin.slot == 0.0]
+        holes = [(pin.x, pin) for pin in body.pins if pin.foot is None and pin.slot == 0.0]
         for row in body.holes:
             net = _net(part, row)
             soft += [(x - HOLE * row.diameter / 2.0, x + HOLE * row.diameter / 2.0, net) for x in row.positions]
-    for x, diameter in holes:
-        rigid.append((x - RIGID * part.eye_diameter / 2.0, x + RIGID * part.eye_diameter / 2.0))
-        soft.append((x - diameter / 2.0, x + diameter / 2.0, _at_bore(part, diameter)))
+    for x, pin in holes:
+        reach = RIGID * body.ring(pin).diameter / 2.0
+        rigid.append((x - reach, x + reach))
+        soft.append((x - pin.diameter / 2.0, x + pin.diameter / 2.0, _at_bore(body, pin)))
     edges = [x for low, high in (*rigid, *(stretch[:2] for stretch in soft)) for x in (low, high)]
     marks = sorted({start, end, *(x for x in edges if start < x < end)})
     everywhere = _narrowest(body)
@@ -144,12 +145,11 @@ def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
     dict of str to ndarray
         Pin and its give (6,) [mm/N, 1/(N·mm)].
     """
-    part = body.part
-    thick, outer = part.eye_thickness, part.eye_diameter / 2.0
     shear = young / (2.0 + 2.0 * poisson)
     found = {}
     for pin in body.pins:
-        inner = pin.diameter / 2.0
+        ring, inner = body.ring(pin), pin.diameter / 2.0
+        thick, outer = ring.thickness, ring.diameter / 2.0
         mean = (outer + inner) / 2.0
         slender = (mean / (outer - inner)) ** 3
         sink = (SINK[0] + SINK[1] * slender) / (young * thick)
@@ -279,10 +279,6 @@ def _on_nodes(solution: FrameSolution) -> Real:
     return found
 
 
-def _diameter(body: Body, foot: tuple[float, float]) -> float:
-    return next((pin.diameter for pin in body.pins if (pin.x, pin.y) == foot), 0.0)
-
-
 def _factors(area: float, i_y: float, i_z: float) -> Real:
     """Flexibility (6,) over the plain section's, from what is left of its A, I_y, I_z as shares."""
     worst = max(1.0 / area, 1.0 / i_y, 1.0 / i_z)
@@ -306,9 +302,9 @@ def _net(part: PartKind, row: HoleRow) -> Real:
     return _factors(*shares)
 
 
-def _at_bore(part: PartKind, diameter: float) -> Real:
+def _at_bore(body: Body, pin: Pin) -> Real:
     """Factors at a pin's bore, where the eye's net section stands for the plain one; never below 1."""
-    wide, thick, section = part.eye_diameter, part.eye_thickness, part.section
+    wide, thick, diameter, section = body.ring(pin).diameter, body.ring(pin).thickness, pin.diameter, body.part.section
     area = (wide - diameter) * thick / section.area
     i_z = thick * (wide**3 - diameter**3) / 12.0 / section.i_z
     i_y = (wide - diameter) * thick**3 / 12.0 / section.i_y

@@ -15,7 +15,7 @@ from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelo
 from fea.motion.fatigue import fatigue_life, missing_data, strength_at
 from fea.motion.mesh_factors import MeshFactors
 from fea.motion.peaks import Peaks, largest_stress
-from fea.motion.unit_loads import TRANSFERS, unit_loads
+from fea.motion.unit_loads import unit_loads
 from fea.motion.unit_solutions import UnitSolutions, solve_units
 from fea.refine.convergence import ALONE
 from fea.refine.error_estimate import estimate_error
@@ -113,10 +113,9 @@ def _solved(
     names: list[tuple[str, PressureLaw, Transfer | None]] = []
     columns, scales = [], []
     for history in chosen:
-        torque = bool(history.couples) or any(np.any(pin.wrench[:, 5] != 0.0) for pin in history.pins)
         scale = history.size(size)
         for law in LAWS:
-            for transfer in TRANSFERS if torque else (None,):
+            for transfer in units.transfers(history):
                 names.append((history.name, law, transfer))
                 columns.append(units.coefficients(history, law, transfer))
                 scales.append(np.where(scale > 0.0, scale, scale.max()))

@@ -82,6 +82,22 @@ class UnitLoads:
         """Number of unit loads."""
         return len(self.local)
 
+    def transfers(self, loads: LinkLoads) -> tuple[Transfer | None, ...]:
+        """Return the ways in which a link's torques may enter.
+
+        Parameters
+        ----------
+        loads : LinkLoads
+            On the link at the n poses.
+
+        Returns
+        -------
+        tuple of Transfer or None
+            None alone where no torque acts at a pin with flat faces about its hole.
+        """
+        names = [name for name, torque in _torques(loads).items() if np.any(torque != 0.0)]
+        return TRANSFERS if any(self.space.flat_faces(name) for name in names) else (None,)
+
     def coefficients(self, loads: LinkLoads, law: PressureLaw, transfer: Transfer | None) -> Real:
         """Return what multiplies each unit load at n poses.
 
@@ -92,7 +108,7 @@ class UnitLoads:
         law : PressureLaw
             How a pin presses in its hole.
         transfer : Transfer or None
-            Of the torques; None where none acts.
+            Of the torques; None where there is no choice (``transfers``).
 
         Returns
         -------
@@ -283,7 +299,8 @@ class _Builder:
 
     def couple(self, name: str, centre: Real, transfer: Transfer) -> int:
         """Unit torque about a pin."""
-        names = (f"bore:{name}",) if transfer == "bore-shear" else (f"top:{name}", f"bottom:{name}")
+        faces = self._space.flat_faces(name) if transfer == "eye-faces" else ()
+        names = faces or (f"bore:{name}",)
         surface: SurfaceQuadrature = surface_quadrature(self._space, *names)
         column: int = self._add(self._vector(surface, couple_traction(surface, centre, 1.0))).start
         return column

@@ -28,9 +28,10 @@ def clear_sections(body: Body) -> tuple[float, ...]:
     if not part.is_beam:
         return ()
     eyes = [pin for pin in body.pins if pin.foot is None]
-    blocked = [(pin.span[0] - part.eye_diameter / 2, pin.span[1] + part.eye_diameter / 2) for pin in eyes]
+    blocked = [(pin.span[0] - body.ring(pin).diameter / 2, pin.span[1] + body.ring(pin).diameter / 2) for pin in eyes]
     # An arm disturbs the section as far as its own width reaches along the axis.
-    blocked += [(x - part.eye_diameter, x + part.eye_diameter) for x, _ in (pin.foot for pin in body.pins if pin.foot)]
+    feet = [body.foot(pin) for pin in body.pins if pin.foot]
+    blocked += [(pin.x - body.ring(pin).diameter, pin.x + body.ring(pin).diameter) for pin in feet]
     blocked += [(x - row.diameter / 2, x + row.diameter / 2) for row in body.holes for x in row.positions]
     blocked += [(end.x - end.patch, end.x + end.patch) for end in body.ends]
     margins = sorted((low - size, high + size) for low, high in blocked)

@@ -117,6 +117,24 @@ def pin_stress(
     )
 
 
+def eye_thickness(case: Case, joint: str, link: str) -> float:
+    """Return the length of a joint's hole in one of its links.
+
+    Parameters
+    ----------
+    case : Case
+    joint, link : str
+        The link has a part.
+
+    Returns
+    -------
+    float
+        [mm]
+    """
+    body = case.body(link)
+    return body.ring(body.pin(case.linkage.point_of(joint, link))).thickness
+
+
 def eyes(case: Case, joint: str) -> tuple[float, float]:
     """Return the thicknesses of a joint's two eyes; one of a link without part is as thick as the other link's.
 
@@ -136,7 +154,7 @@ def eyes(case: Case, joint: str) -> tuple[float, float]:
         Where neither link has a part.
     """
     links = [link for link in case.joints[joint].links if case.links[link].part is not None]
-    thicknesses = [case.part_of(link).eye_thickness for link in links]
+    thicknesses = [eye_thickness(case, joint, link) for link in links]
     if not thicknesses:
         raise CaseError(f"joints.{joint}: neither link has a part, so the pin's length is unknown; give one a part")
     return thicknesses[0], thicknesses[-1]

@@ -318,8 +318,10 @@ class _Link:
         return any(self._deciding(p).kind == "growing" for p in self.precision)
 
     def _judge(self) -> None:
-        body = self.task.body
-        eyes = [Eye(x=pin.x, y=pin.y, radius=body.part.eye_diameter / 2.0, slot=pin.slot) for pin in body.pins]
+        eyes = []
+        for pin in self.task.body.pins:
+            across = self.task.body.ring(pin).diameter or 2.0 * pin.diameter  # where no ring bounds the eye
+            eyes.append(Eye(x=pin.x, y=pin.y, radius=across / 2.0, slot=pin.slot))
         self.precision = precision(self.levels, self.edges, section=self.task.section, eyes=eyes)
 
     def _settled(self) -> bool:

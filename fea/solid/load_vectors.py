@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.link_loads import LinkLoads
+from fea.common.link_loads import LinkLoads, PinLoad
 from fea.solid.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
 from fea.solid.slot_traction import DEGREE, slot_traction
 from fea.solid.space import DisplacementSpace
@@ -35,7 +35,7 @@ class Variant:
     span : Span
         Loaded angle of the pin holes [degrees].
     transfer : Transfer or None
-        How the drive torque enters; None where the link carries no torque.
+        How the drive torque enters; None where the link carries no torque, or only where no flat face is.
     load : ndarray, shape (3n,)
         Consistent nodal forces [N].
     scale : float
@@ -68,14 +68,15 @@ class LoadVectors:
         laws : sequence of PressureLaw
             Of pin pressure.
         transfers : sequence of Transfer
-            Of the drive torque; they count only where the link carries a torque.
+            Of the drive torque; they count only where the link carries a torque at a pin with flat faces about its
+            hole, since else it can enter through the bore alone.
 
         Returns
         -------
         list of Variant
             One per law and transfer.
         """
-        torque = any(torque != 0.0 for _, torque in self._torques(case))
+        torque = any(torque != 0.0 and self._space.flat_faces(name) for name, torque in self._torques(case))
         scale, rest = self._scale(case), self._spread(case)
         turned = {transfer: self._couples(case, transfer) for transfer in (transfers if torque else (None,))}
         found = []
@@ -124,9 +125,17 @@ class LoadVectors:
             push = slot_traction if pin.slotted else pin_traction
             load += bore.load_vector(push(bore, pin, law), count)
             if pin.wrench[2] != 0.0:
-                face = self._surface(f"{'bottom' if pin.wrench[2] > 0.0 else 'top'}:{pin.name}")
-                load += face.load_vector(thrust_traction(face, pin), count)
+                load += self._thrust(pin, bore)
         return load
+
+    def _thrust(self, pin: PinLoad, bore: SurfaceQuadrature) -> NDArray[np.float64]:
+        """Load vector (3n,) of a pin's force along z: on a flat face, or where there is none evenly in the bore."""
+        count = len(self._space.nodes)
+        if not self._space.flat_faces(pin.name):
+            target = np.array([0.0, 0.0, pin.wrench[2], 0.0, 0.0, 0.0])
+            return np.asarray(bore.load_vector(wrench_density(bore, pin.centre, target), count))
+        face = self._surface(f"{'bottom' if pin.wrench[2] > 0.0 else 'top'}:{pin.name}")
+        return np.asarray(face.load_vector(thrust_traction(face, pin), count))
 
     def _couples(self, case: LinkLoads, transfer: Transfer | None) -> NDArray[np.float64]:
         """Load vector (3n,) of the torques about the pins."""
@@ -136,8 +145,8 @@ class LoadVectors:
         for name, torque in self._torques(case):
             if torque != 0.0:
                 bore = self._surface(f"bore:{name}")
-                faces = (f"top:{name}", f"bottom:{name}")
-                surface = bore if transfer == "bore-shear" else self._surface(*faces)
+                faces = self._space.flat_faces(name) if transfer != "bore-shear" else ()
+                surface = self._surface(*faces) if faces else bore
                 load += surface.load_vector(couple_traction(surface, centres.get(name, bore.centroid), torque), count)
         return load
 

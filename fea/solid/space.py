@@ -67,6 +67,21 @@ class DisplacementSpace:
 
         return ElementTetP1() if self.order == 1 else ElementTetP2()
 
+    def flat_faces(self, pin: str) -> tuple[str, ...]:
+        """Return the names of the flat faces about a pin's hole, on which a torque or a thrust can enter.
+
+        Parameters
+        ----------
+        pin : str
+            Name of the pin.
+
+        Returns
+        -------
+        tuple of str
+            Of both surfaces; empty where the part has no flat ring there.
+        """
+        return tuple(name for name in (f"top:{pin}", f"bottom:{pin}") if name in self.surfaces)
+
     def faces(self, *names: str) -> NDArray[np.int64]:
         """Return the nodes of the boundary faces of the named surfaces together.
 

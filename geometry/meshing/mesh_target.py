@@ -148,23 +148,24 @@ def _points_on_face(gmsh: Any, tag: int) -> NDArray[np.float64]:
 
 def _surfaces(gmsh: Any, body: Body, tags: Iterable[int], kinds: tuple[str, ...]) -> dict[str, list[int]]:
     """Return those of some faces that make up each named surface."""
-    part = body.part
-    names = [f"{kind}:{pin.name}" for pin in body.pins for kind in kinds]
+    flat_rings = [pin for pin in body.pins if body.ring(pin).diameter > 0.0]
+    names = [f"{kind}:{pin.name}" for pin in body.pins for kind in kinds if kind == "bore" or pin in flat_rings]
     faces: dict[str, list[int]] = {name: [] for name in names + [f"end:{end.name}" for end in body.ends]}
     for tag in tags:
         points, box = _points_on_face(gmsh, tag), gmsh.model.getBoundingBox(2, tag)
         centre = np.add(box[:3], box[3:]) / 2.0
         flat = gmsh.model.getType(2, tag) == "Plane"
-        for pin in sorted(body.pins, key=lambda p: float(p.distance(centre[0], centre[1])))[:1]:
+        for pin in sorted(flat_rings, key=lambda p: float(p.distance(centre[0], centre[1])))[:1]:
             # The middle of a large face with a hole may lie in an eye as well, but not its borders.
             corners = (max(float(pin.distance(x, pin.y)) for x in box[0::3]), max(abs(y - pin.y) for y in box[1::3]))
             off = max(float(pin.distance(centre[0], centre[1])), *(corner - 1e-3 for corner in corners))
-            for side, height in (("top", part.eye_thickness / 2.0), ("bottom", -part.eye_thickness / 2.0)):
+            ring = body.ring(pin)
+            for side, height in (("top", ring.high), ("bottom", ring.low)):
                 if (
                     side in kinds
                     and flat
                     and np.abs(points[:, 2] - height).max() < ON_SURFACE
-                    and off < part.eye_diameter / 2.0
+                    and off < ring.diameter / 2.0
                 ):
                     faces[f"{side}:{pin.name}"].append(tag)
         for pin in body.pins:

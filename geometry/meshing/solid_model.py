@@ -81,10 +81,8 @@ def scaled(body: Body, unit: float) -> Body:
     def s(length: float) -> float:
         return round(length / unit, 9)
 
-    part = body.part
-    lengths = {name: s(value) for name, value in part.model_dump().items() if name not in {"shape", "material"}}
     return Body(
-        part=part.model_copy(update=lengths),
+        part=body.part.scaled(s),
         pins=tuple(
             replace(
                 p,
@@ -94,6 +92,7 @@ def scaled(body: Body, unit: float) -> Body:
                 slot=s(p.slot),
                 clearance=s(p.clearance),
                 foot=None if p.foot is None else (s(p.foot[0]), s(p.foot[1])),
+                ring=None if p.ring is None else p.ring.scaled(s),
             )
             for p in body.pins
         ),
@@ -137,13 +136,15 @@ def build(gmsh: Any, body: Body) -> Solid:
         tools = small.part.cavities(kernel, small)
     except FilletError:
         arms = ", or turn an arm further from what is beside it" if any(pin.foot for pin in body.pins) else ""
+        rings = [body.ring(pin) for pin in body.pins]
+        eyes = " and ".join(dict.fromkeys(f"{ring.diameter:g} mm by {ring.thickness:g} mm" for ring in rings))
         raise CaseError(
             f"fillet_radius {part.fillet_radius:g} mm does not fit between the {part.shape} and its eyes of "
-            f"{part.eye_diameter:g} mm by {part.eye_thickness:g} mm; reduce it, increase eye_diameter or "
+            f"{eyes}; reduce it, increase eye_diameter or "
             f"eye_thickness, or move the pins further apart{arms}"
         ) from None
     for pin in small.pins:
-        tools += kernel.upright(pin, pin.diameter, 2.0 * small.part.eye_thickness)
+        tools += kernel.upright(pin, pin.diameter, 2.0 * small.ring(pin).thickness)
     tools += _hole_rows(kernel, small)  # one cut, since a second one works on all faces that the first one made
     solid = _imprint(kernel, small, kernel.cut(solid, tools))
     kernel.occ.synchronize()
@@ -176,9 +177,9 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
         return solid
     borders: list[Entity] = []
     width, height = section.width, section.height
-    if flush(body):
-        for side in (-0.5, 0.5):
-            borders += [_flat_eye(kernel, pin, _ring(body, pin), side * height) for pin in body.pins]
+    flat_eyes = [pin for pin in body.pins if flush(body, pin) and body.ring(pin).diameter > 0.0]
+    for side in (-0.5, 0.5):
+        borders += [_flat_eye(kernel, pin, _ring(body, pin), side * height) for pin in flat_eyes]
     for end in body.ends:
         low, high = patch_span(body, end)
         for side in (-0.5, 0.5):
@@ -201,7 +202,7 @@ def _ring(body: Body, pin: Pin) -> float:
     That of the eye; where the bar's sides pass close to the eye's rim, three quarters of the wall: circle and sides
     would leave cusps between them that no mesh fills.
     """
-    eye, width = body.part.eye_diameter, body.part.section.width
+    eye, width = body.ring(pin).diameter, body.part.section.width
     if body.part.is_beam and eye < CLEAR_EYE * width:
         return pin.diameter + 0.75 * (min(eye, width) - pin.diameter)
     return eye

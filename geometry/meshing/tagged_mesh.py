@@ -30,7 +30,8 @@ class TaggedMesh:
         Elements (m, 4) or (m, 10), node numbers.
     surfaces : mapping of str to ndarray
         Corner nodes (k, 3) of the boundary triangles of each surface: ``bore:A`` is the pin hole at A, ``top:A`` and
-        ``bottom:A`` the flat faces of the eye at A (towards +z and -z), ``end:H`` the loaded patch of a plain end at H.
+        ``bottom:A`` the flat faces of the eye at A (towards +z and -z) where it has such, ``end:H`` the loaded
+        patch of a plain end at H.
     areas : mapping of str to float
         Area of every surface by the geometry kernel [mm²].
     volume : float

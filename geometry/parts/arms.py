@@ -40,7 +40,7 @@ def check_arms(body: Body) -> None:
                 f"needs at least {math.degrees(LEAST_ARM_ANGLE):g}: let it start at most {run:.4g} mm along the axis "
                 f"from {pin.name}"
             )
-        least = half + part.eye_diameter / 2.0 + 2.0 * part.fillet_radius
+        least = half + body.ring(pin).diameter / 2.0 + 2.0 * part.fillet_radius
         if abs(pin.y) <= least:
             raise CaseError(
                 f"{pin.name} is too close to the bar: move it more than {least:.4g} mm off the link's axis (now "
@@ -59,19 +59,20 @@ def check_arms(body: Body) -> None:
 
 def _gaps(body: Body) -> list[tuple[str, str, float]]:
     """Return what must stay apart at arms: two names and the gap between them [mm]."""
-    eye, half = body.part.eye_diameter / 2.0, body.part.section.width / 2.0
+    half = body.part.section.width / 2.0
     gaps = []
     for one, other in itertools.combinations(body.pins, 2):
         places = (one.x, one.y), (other.x, other.y)
         if (one.foot or other.foot) and one.foot != places[1] and other.foot != places[0]:
-            gaps.append((f"the eye at {one.name}", f"the eye at {other.name}", apart(one, other) - 2.0 * eye))
+            clear = apart(one, other) - (body.ring(one).diameter + body.ring(other).diameter) / 2.0
+            gaps.append((f"the eye at {one.name}", f"the eye at {other.name}", clear))
         if one.foot and other.foot and one.foot != other.foot:
             clear = _between((one.foot, places[0]), (other.foot, places[1])) - 2.0 * half
             gaps.append((f"the arm to {one.name}", f"the arm to {other.name}", clear))
     for arm, pin in itertools.product(body.pins, body.pins):
         if arm.foot is not None and pin is not arm and arm.foot != (pin.x, pin.y):
             line = (pin.span[0], pin.y), (pin.span[1], pin.y)
-            clear = _between((arm.foot, (arm.x, arm.y)), line) - eye - half
+            clear = _between((arm.foot, (arm.x, arm.y)), line) - body.ring(pin).diameter / 2.0 - half
             gaps.append((f"the arm to {arm.name}", f"the eye at {pin.name}", clear))
     return gaps
 
@@ -84,7 +85,8 @@ def _check_foot(body: Body, foot: _Point) -> None:
     kernel needs just that.
     """
     first, last = extent(body)
-    half, radius, fillet = body.part.section.width / 2.0, body.part.eye_diameter / 2.0, body.part.fillet_radius
+    pin = next(pin for pin in body.pins if (pin.x, pin.y) == foot)
+    half, radius, fillet = body.part.section.width / 2.0, body.ring(pin).diameter / 2.0, body.part.fillet_radius
     sides = [(0.0, "the bar")] * (last > foot[0]) + [(math.pi, "the bar")] * (first < foot[0])
     for arm in body.pins:
         if arm.foot == foot:
@@ -102,7 +104,7 @@ def _check_foot(body: Body, foot: _Point) -> None:
             continue
         sine = math.sin(angle / 2.0)
         corner = half / sine
-        hidden = radius + (0.0 if flush(body) else fillet) <= (1.0 - TOUCHING) * corner
+        hidden = radius + (0.0 if flush(body, pin) else fillet) <= (1.0 - TOUCHING) * corner
         if not hidden and half + fillet >= (1.0 - TOUCHING) * (radius + fillet) * sine:
             most = (radius * sine - half) / (1.0 - sine) if radius > corner else corner - radius
             raise CaseError(

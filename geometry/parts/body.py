@@ -6,11 +6,12 @@ from ``PartKind`` in a file of its own, and joins ``Part``.
 
 import math
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 from geometry.base.model import CaseModel
-from geometry.parts.features import HoleRow, Pin, PlainEnd
+from geometry.parts.features import HoleRow, Pin, PlainEnd, Ring
 from geometry.parts.kernel import Entity, Kernel
 from geometry.parts.section import Section
 
@@ -32,11 +33,11 @@ class PartKind(CaseModel):
 
         @property
         def eye_diameter(self) -> float:
-            """Outer diameter of the rings about its holes [mm]."""
+            """Outer diameter of the rings about its holes, where a pin has none of its own [mm]."""
 
         @property
         def eye_thickness(self) -> float:
-            """Height of these rings [mm]."""
+            """Height of these rings, which is the holes' length [mm]."""
 
         @property
         def fillet_radius(self) -> float:
@@ -139,6 +140,22 @@ class PartKind(CaseModel):
         """
         return self.section
 
+    def scaled(self, s: Callable[[float], float]) -> Self:
+        """Return the part with its lengths in another unit.
+
+        Parameters
+        ----------
+        s : callable
+            Takes a length to that unit.
+
+        Returns
+        -------
+        Self
+            The part; of the kind itself all fields that are numbers are lengths.
+        """
+        lengths = {name: s(value) for name, value in self.model_dump().items() if isinstance(value, int | float)}
+        return self.model_copy(update=lengths)
+
     def largest_element(self) -> float:
         """Return the largest element edge that its round surfaces bear [unit of its sizes]."""
         return float("inf")
@@ -164,6 +181,52 @@ class Body:
     pins: tuple[Pin, ...]
     ends: tuple[PlainEnd, ...]
     holes: tuple[HoleRow, ...]
+
+    def ring(self, pin: Pin) -> Ring:
+        """Return the flat ring about a hole.
+
+        Parameters
+        ----------
+        pin : Pin
+            One of the pins.
+
+        Returns
+        -------
+        Ring
+            The pin's own, or the one that the part's eye_diameter and eye_thickness make.
+        """
+        half = self.part.eye_thickness / 2.0
+        return pin.ring or Ring(diameter=self.part.eye_diameter, low=-half, high=half)
+
+    def pin(self, name: str) -> Pin:
+        """Return a pin by its name.
+
+        Parameters
+        ----------
+        name : str
+            Name of its point.
+
+        Returns
+        -------
+        Pin
+            The pin.
+        """
+        return next(pin for pin in self.pins if pin.name == name)
+
+    def foot(self, arm: Pin) -> Pin:
+        """Return the pin on the axis from which an arm reaches to another.
+
+        Parameters
+        ----------
+        arm : Pin
+            The pin at the arm's end.
+
+        Returns
+        -------
+        Pin
+            The pin at its foot.
+        """
+        return next(pin for pin in self.pins if (pin.x, pin.y) == arm.foot)
 
 
 def extent(body: Body) -> tuple[float, float]:
@@ -255,11 +318,10 @@ def reference_line(body: Body) -> tuple[float, float]:
     first, last : float
         Stations [mm].
     """
-    on_axis = [pin.x for pin in body.pins if pin.foot is None]
-    if len(on_axis) > 1 and on_axis[0] != on_axis[-1]:
-        return on_axis[0], on_axis[-1]
-    if len(body.pins) == 1:
-        return on_axis[0], on_axis[0]
+    on_axis = [pin for pin in body.pins if pin.foot is None]
+    start, end = on_axis[0].x, on_axis[-1].x
+    if (len(on_axis) > 1 and start != end) or len(body.pins) == 1:
+        return start, end
     first, last = extent(body)
-    half = body.part.eye_diameter / 2.0
-    return on_axis[0], on_axis[0] + (half if last - on_axis[0] >= on_axis[0] - first else -half)
+    half = body.ring(on_axis[0]).diameter / 2.0
+    return start, start + (half if last - start >= start - first else -half)

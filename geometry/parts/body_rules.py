@@ -66,9 +66,10 @@ def _check_features(body: Body) -> None:
 
 
 def _check_range(body: Body) -> None:
-    part, section = body.part, body.part.section
+    section = body.part.section
     small = min(section.width, section.height)
-    sizes = [section.width, section.height, part.eye_diameter, part.eye_thickness]
+    sizes = [section.width, section.height]
+    sizes += [size for pin in body.pins for size in (body.ring(pin).diameter, body.ring(pin).thickness)]
     sizes += [abs(at) for pin in body.pins for at in (*pin.span, pin.y)]
     reach = max(sizes + [abs(end.x) for end in body.ends])
     if not SMALLEST <= small <= LARGEST:
@@ -90,12 +91,12 @@ def _check_range(body: Body) -> None:
 
 
 def _check_pins(body: Body) -> None:
-    part = body.part
     for pin in body.pins:
-        if not 0.0 < pin.diameter < part.eye_diameter:
+        eye = body.ring(pin).diameter
+        if eye > 0.0 and not 0.0 < pin.diameter < eye:
             raise CaseError(
                 f"the pin hole at {pin.name} has a diameter of {pin.diameter:.4g} mm, but must be positive and less "
-                f"than eye_diameter {part.eye_diameter:.4g} mm; reduce pin_diameter or increase eye_diameter"
+                f"than eye_diameter {eye:.4g} mm; reduce pin_diameter or increase eye_diameter"
             )
         if pin.slot > 0.0 and abs(pin.y) > ON_AXIS * pin.diameter:
             raise CaseError(

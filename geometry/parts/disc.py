@@ -71,15 +71,16 @@ class Disc(PartKind):
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: the rings about the holes fit."""
         for pin in body.pins:
-            least = 2.0 * math.hypot(pin.x, pin.y) + self.eye_diameter
+            eye = body.ring(pin).diameter
+            least = 2.0 * math.hypot(pin.x, pin.y) + eye
             if least >= self.diameter:
                 raise CaseError(
                     f"the ring about the hole at {pin.name} does not fit on the disc of {self.diameter:.4g} mm about "
                     f"the origin of the link's frame: set diameter above {least:.4g} mm, reduce eye_diameter "
-                    f"{self.eye_diameter:.4g} mm, or move the pin inwards"
+                    f"{eye:.4g} mm, or move the pin inwards"
                 )
         for one, other in itertools.combinations(body.pins, 2):
-            if apart(one, other) <= self.eye_diameter:
+            if apart(one, other) <= (body.ring(one).diameter + body.ring(other).diameter) / 2.0:
                 raise CaseError(
                     f"the rings about the holes at {one.name} and {other.name} overlap: set eye_diameter below "
                     f"{apart(one, other):.4g} mm, or move the pins further apart"
@@ -93,8 +94,8 @@ class Disc(PartKind):
         """As ``PartKind.fine_places``: narrow rings keep their area only with elements as small as they are wide."""
         return [
             (
-                min((self.eye_diameter - pin.diameter) / 2.0, size),
-                f"Fabs({pin.distance_formula}-{self.eye_diameter / 2.0:.12g})",
+                min((body.ring(pin).diameter - pin.diameter) / 2.0, size),
+                f"Fabs({pin.distance_formula}-{body.ring(pin).diameter / 2.0:.12g})",
             )
             for pin in body.pins
         ]

@@ -25,21 +25,23 @@ TOUCHING = 1e-4
 and on a thick eye at an arm's foot at 1e-5; from 1e-4 on no build failed."""
 
 
-def flush(body: Body) -> bool:
-    """Return whether a body's eyes are as thick as its flat bar.
+def flush(body: Body, pin: Pin) -> bool:
+    """Return whether an eye is as thick as its flat bar.
 
     Parameters
     ----------
     body : Body
         The body.
+    pin : Pin
+        One of its pins.
 
     Returns
     -------
     bool
-        False of tubes, and of bars with thicker eyes.
+        False of tubes, and of thicker eyes of bars.
     """
     section = body.part.section
-    return not section.round and body.part.eye_thickness <= (1.0 + ROUNDING) * section.height
+    return not section.round and body.ring(pin).thickness <= (1.0 + ROUNDING) * section.height
 
 
 def plain_eye(body: Body, pin: Pin) -> bool:
@@ -58,7 +60,7 @@ def plain_eye(body: Body, pin: Pin) -> bool:
         Whether the eye is no thicker and no wider than its bar or arm.
     """
     width = body.part.section.width
-    within = flush(body) and body.part.eye_diameter <= PLAIN_EYE * width
+    within = flush(body, pin) and body.ring(pin).diameter <= PLAIN_EYE * width
     return within and (pin.foot is not None or abs(pin.y) <= ON_AXIS * width)
 
 
@@ -100,7 +102,7 @@ def eye_reach(body: Body, pin: Pin) -> float:
     if pin.foot is not None:
         return 0.0
     part, half = body.part, body.part.section.width / 2.0
-    radius = part.eye_diameter / 2.0 + (0.0 if plain_eye(body, pin) else part.fillet_radius)
+    radius = body.ring(pin).diameter / 2.0 + (0.0 if plain_eye(body, pin) else part.fillet_radius)
     across = max(0.0, abs(pin.y) - half)
     corners = [
         (half + part.fillet_radius) / math.tan(arm_angle(arm) / 2.0) for arm in body.pins if arm.foot == (pin.x, pin.y)
@@ -121,9 +123,9 @@ def _shoulder(body: Body, pin: Pin, side: float) -> float:
         return 0.0
     if pin.foot is not None:
         pin = replace(pin, y=0.0, foot=None)
-    if at_foot or not flush(body):
+    if at_foot or not flush(body, pin):
         return eye_reach(body, pin)
-    radius, across = part.eye_diameter / 2.0, part.section.width / 2.0 + part.fillet_radius - side * pin.y
+    radius, across = body.ring(pin).diameter / 2.0, part.section.width / 2.0 + part.fillet_radius - side * pin.y
     if across - part.fillet_radius >= radius:
         return 0.0
     return max(radius, math.sqrt(max((radius + part.fillet_radius) ** 2 - across**2, 0.0))) + pin.slot / 2.0
@@ -147,7 +149,8 @@ def check_eyes(body: Body) -> None:
     on_axis = [pin for pin in body.pins if pin.foot is None]
     for pin in on_axis:
         at_end = pin.span[0] == first or pin.span[1] == last
-        most = (part.eye_diameter - width) / 2.0 if at_end else part.eye_diameter / 2.0
+        eye = body.ring(pin).diameter
+        most = (eye - width) / 2.0 if at_end else eye / 2.0
         if abs(pin.y) >= most and abs(pin.y) > ON_AXIS * width:
             what = f"cover the end of the {part.shape}" if at_end else f"reach over the axis of the {part.shape}"
             least = 2.0 * abs(pin.y) + (width if at_end else 0.0)
@@ -162,8 +165,9 @@ def check_eyes(body: Body) -> None:
         distance = math.hypot(other.x - one.x, other.y - one.y if other.foot else 0.0)
         shoulders = _shoulder(body, one, side), _shoulder(body, other, side)
         if min(shoulders) > 0.0 and distance <= (1.0 + TOUCHING) * sum(shoulders):
+            eyes = " and ".join(dict.fromkeys(f"{body.ring(pin).diameter:.4g} mm" for pin in (one, other)))
             raise CaseError(
                 f"the eyes at {one.name} and {other.name}, or their fillets, overlap: move the points more than "
                 f"{sum(shoulders):.4g} mm apart (now {distance:.4g} mm), or reduce eye_diameter "
-                f"{part.eye_diameter:.4g} mm or fillet_radius {part.fillet_radius:.4g} mm"
+                f"{eyes} or fillet_radius {part.fillet_radius:.4g} mm"
             )

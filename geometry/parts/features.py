@@ -1,5 +1,6 @@
 """Pins, loaded ends and holes of a link, all along the x axis of its frame."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -55,6 +56,43 @@ class Slot(CaseModel):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Ring:
+    """The flat ring about a hole, on which a torque or a thrust enters.
+
+    Attributes
+    ----------
+    diameter : float
+        Its outer diameter [mm]; 0 where no flat ring is about the hole.
+    low, high : float
+        z of the hole's two rims [mm].
+    """
+
+    diameter: float
+    low: float
+    high: float
+
+    @property
+    def thickness(self) -> float:
+        """Length of the hole [mm]."""
+        return self.high - self.low
+
+    def scaled(self, s: Callable[[float], float]) -> "Ring":
+        """Return the ring with its lengths in another unit.
+
+        Parameters
+        ----------
+        s : callable
+            Takes a length to that unit.
+
+        Returns
+        -------
+        Ring
+            The ring.
+        """
+        return Ring(diameter=s(self.diameter), low=s(self.low), high=s(self.high))
+
+
+@dataclass(frozen=True, kw_only=True)
 class Pin:
     """A pin hole of a link, or a slot: a hole drawn out along x.
 
@@ -72,6 +110,9 @@ class Pin:
         How much wider than the pin the slot is [mm].
     foot : tuple of float, optional
         (x, y) of the pin on the link's axis from which an arm reaches to this one [mm]; None for a pin without arm.
+    ring : Ring, optional
+        The flat ring about its hole; None for the one that the part's eye_diameter and eye_thickness make
+        (``Body.ring`` gives the one that holds).
     """
 
     name: str
@@ -81,6 +122,7 @@ class Pin:
     slot: float = 0.0
     clearance: float = 0.0
     foot: tuple[float, float] | None = None
+    ring: Ring | None = None
 
     @property
     def span(self) -> tuple[float, float]:

@@ -7,11 +7,25 @@ from pydantic import Field
 from geometry.parts.bar import Bar
 from geometry.parts.body import Body
 from geometry.parts.disc import Disc
-from geometry.parts.features import HoleRow, Pin, PlainEnd, Slot
+from geometry.parts.features import HoleRow, Pin, PlainEnd, Ring, Slot
 from geometry.parts.section import Section, rectangle, ring
 from geometry.parts.tube import Tube
 
-__all__ = ["Bar", "Body", "Disc", "HoleRow", "Part", "Pin", "PlainEnd", "Section", "Slot", "Tube", "rectangle", "ring"]
+__all__ = [
+    "Bar",
+    "Body",
+    "Disc",
+    "HoleRow",
+    "Part",
+    "Pin",
+    "PlainEnd",
+    "Ring",
+    "Section",
+    "Slot",
+    "Tube",
+    "rectangle",
+    "ring",
+]
 
 Part = Annotated[Tube | Bar | Disc, Field(discriminator="shape")]
 """Any kind of part; a new kind joins here."""

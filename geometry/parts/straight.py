@@ -92,18 +92,20 @@ class Straight(PartKind):
         raised = [pin for pin in body.pins if not plain_eye(body, pin)]
         for pin in body.pins:
             if pin in raised or pin.foot is not None or {*pin.span} & {*extent(body)}:  # else within the bar
-                diameter = part.eye_diameter if pin in raised else part.section.width
-                solids += kernel.upright(pin, diameter, part.eye_thickness)
+                diameter = body.ring(pin).diameter if pin in raised else part.section.width
+                solids += kernel.upright(pin, diameter, body.ring(pin).thickness)
         # Eye and bar of one thickness must share one flat face while the corners between them are filleted.
         solid = kernel.fuse(solids, unify=not part.section.round)
 
         def to_fillet(p: NDArray[np.float64]) -> bool:
             """Return whether a point lies where a piece meets an eye, or an arm's side the bar's."""
             places = [_on_piece(body, piece, p) for piece in pieces]
-            sides = sum(on_side for on_side, _ in places)
-            at_eye = sides > 0 or (not flush(body) and any(on_top for _, on_top in places))
-            on_eye = any(abs(pin.distance(p[0], p[1]) - part.eye_diameter / 2.0) < ON_SURFACE for pin in raised)
-            return sides > 1 or (at_eye and on_eye)
+            sides, on_top = sum(on_side for on_side, _ in places), any(on_top for _, on_top in places)
+            return sides > 1 or any(
+                abs(pin.distance(p[0], p[1]) - body.ring(pin).diameter / 2.0) < ON_SURFACE
+                and (sides > 0 or (on_top and not flush(body, pin)))
+                for pin in raised
+            )
 
         curves = kernel.curves(to_fillet)
         if part.fillet_radius == 0.0 or not (raised or len(pieces) > 1):
@@ -116,7 +118,7 @@ class Straight(PartKind):
         edge = min((part.fillet_radius or size) * share, size)
 
         def to_eye(pin: Pin) -> str:
-            return f"({pin.distance_formula}-{part.eye_diameter / 2.0:.12g})"
+            return f"({pin.distance_formula}-{body.ring(pin).diameter / 2.0:.12g})"
 
         to_bar = f"(Sqrt(y^2+z^2)-{half:.12g})" if part.section.round else f"(Fabs(y)-{half:.12g})"
         places = []
@@ -124,8 +126,7 @@ class Straight(PartKind):
             pairs = [] if plain_eye(body, pin) else [(to_eye(pin), to_bar)]
             if pin.foot is not None:
                 arm = f"(Fabs({_across(pin)})-{half:.12g})"
-                foot = Pin(name="", x=pin.foot[0], y=0.0, diameter=0.0)
-                at_eyes = [(to_eye(pin), arm), (to_eye(foot), arm)]
+                at_eyes = [(to_eye(pin), arm), (to_eye(body.foot(pin)), arm)]
                 pairs = [*(at_eyes if pairs else []), (arm, to_bar)]
             places += [(edge, f"Max(Sqrt({a}^2+{b}^2)-{part.fillet_radius:.12g},0)") for a, b in pairs]
         return places

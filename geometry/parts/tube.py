@@ -90,11 +90,12 @@ class Tube(Straight):
         The bottom of the bore touches the eye's cylinder and is flat but for a fillet at its rim: a bore that ran on
         to the cylinder would leave a re-entrant edge.
         """
-        bore, radius = self.inner_diameter / 2.0, self.eye_diameter / 2.0
+        bore = self.inner_diameter / 2.0
         first, last = extent(body)
         spans: list[tuple[float, float]] = []
         start = first
         for pin in sorted(body.pins, key=lambda p: p.x):
+            radius = body.ring(pin).diameter / 2.0
             half = math.sqrt(max(radius**2 - max(abs(pin.y) - bore, 0.0) ** 2, 0.0))
             spans.append((start, pin.x - half))
             start = max(start, pin.x + half)

@@ -63,6 +63,7 @@ def check_rules(case: CoreCase) -> None:
     for name, load_case in case.load_cases.items():
         check_loads(case, f"load_cases.{name}", load_case)
     check_masses(case)
+    _check_transfer(case)
     for name, check in case.checks.items():
         _check_check(case, name, check)
     if case.conditions != Conditions():
@@ -92,6 +93,20 @@ def _check_drive(case: CoreCase) -> None:
             f"drive: the linkage has mobility {mobility} (Gruebler) but {drives} drive; they must be equal, so add or "
             "remove joints or links"
         )
+
+
+def _check_transfer(case: CoreCase) -> None:
+    """Refuse a torque that is to enter by flat faces where its part has none about the hole."""
+    drive = case.drive
+    if drive is None or "transfer" not in drive.model_fields_set or drive.transfer != "eye-faces":
+        return
+    for link in set(case.joints[drive.joint].links) & set(case.checked_links):
+        body, point = case.body(link), case.linkage.point_of(drive.joint, link)
+        if any(pin.name == point and body.ring(pin).diameter == 0.0 for pin in body.pins):
+            raise CaseError(
+                f"drive.transfer: the part of link {link} has no flat ring about its hole at {point}, so no torque "
+                'can enter by "eye-faces"; state "bore-shear", or leave transfer out'
+            )
 
 
 def _check_material(case: CoreCase, entry: str, name: str) -> None:

@@ -32,7 +32,8 @@ class DriveSpec(CaseModel):
     """The joint about which it is driven, or the slider along which it is pushed; the reaction goes to the other link
     there."""
     transfer: Literal["eye-faces", "bore-shear"] = "eye-faces"
-    """How the torque enters the driven part: as shear on the eye's flat faces, or on its bore."""
+    """How the torque enters the driven part: as shear on the eye's flat faces, or on its bore. Where the part
+    has no flat ring about that hole it enters through the bore."""
 
 
 class CantileverCalculation(CaseModel):

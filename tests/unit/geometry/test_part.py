@@ -6,7 +6,7 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from geometry.parts.eyes import flush
-from geometry.parts.part import Bar, Body, HoleRow, Part, Section, Tube
+from geometry.parts.part import Bar, Body, HoleRow, Part, Pin, Section, Tube
 
 TUBE: dict[str, Any] = {
     "shape": "tube",
@@ -120,7 +120,8 @@ def test_sizes_at_the_limit_are_allowed() -> None:
     assert Bar.model_validate(BAR | {"eye_thickness": "4 mm", "fillet_radius": "0 mm"}).eye_thickness == 4.0
     assert Bar.model_validate(BAR | {"eye_thickness": "6.05 mm"}).eye_thickness == 6.05
     same = Bar.model_validate(BAR | {"thickness": "0.3 in", "eye_thickness": "7.62 mm"})
-    assert flush(Body(part=same, pins=(), ends=(), holes=()))
+    pin = Pin(name="A", x=0.0, y=0.0, diameter=2.0)
+    assert flush(Body(part=same, pins=(pin,), ends=(), holes=()), pin)
 
 
 @pytest.mark.parametrize(("outer", "diameter", "thickness"), [("5 mm", 8.0, 7.0), ("6 mm", 9.6, 8.0)])
