@@ -23,8 +23,9 @@ _BEYOND = 0.02, 1.35
 def find_bores(gmsh: Any, solid: int) -> tuple[Bore, ...]:
     """Return the bores of a solid.
 
-    A bore is a cylindrical wall around empty space. Walls of one cylinder with nothing but space between them are one
-    bore, as in a fork. Two halves of equal cylinders, open towards each other, are a slot.
+    A bore is a cylindrical wall around empty space that is not narrower at both ends, as a groove is. Walls of one
+    cylinder with nothing but space between them are one bore, as in a fork. Two halves of equal cylinders, open towards
+    each other, are a slot.
 
     Parameters
     ----------
@@ -60,18 +61,16 @@ class _Space:
             return False
         return bool(self._model.isInside(3, self._solid, list(point)))
 
-    def ring(self, line: Line, place: float, radius: float) -> int:
-        """Return at how many of eight points around a line is material."""
+    def ring(self, line: Line, place: float, radius: float) -> Iterator[bool]:
+        """Yield at eight points around a line whether material is there."""
         first, second = line.across()
-        angles = math.tau * np.arange(8) / 8.0 + 0.1
-        return sum(
-            self.material(line.at(place) + radius * (math.cos(a) * first + math.sin(a) * second)) for a in angles
-        )
+        for angle in math.tau * np.arange(8) / 8.0 + 0.1:
+            yield self.material(line.at(place) + radius * (math.cos(angle) * first + math.sin(angle) * second))
 
     def free(self, line: Line, radius: float, span: Span) -> bool:
         """Return True if there is no material within nine tenths of a radius of a line, between two places."""
         places = [span[0] + share * (span[1] - span[0]) for share in (0.02, 0.25, 0.5, 0.75, 0.98)]
-        return not any(self.material(line.at(x)) or self.ring(line, x, 0.9 * radius) for x in places)
+        return not any(self.material(line.at(x)) or any(self.ring(line, x, 0.9 * radius)) for x in places)
 
 
 def _round_bores(space: _Space, hollow: list[Wall]) -> Iterator[Bore]:
@@ -88,7 +87,10 @@ def _round_bores(space: _Space, hollow: list[Wall]) -> Iterator[Bore]:
             ):
                 together.append(wall)
                 walls.remove(wall)
-        yield _bore(space, together[0].line, together[0].radius, [wall.span for wall in together])
+        line, radius, spans = together[0].line, together[0].radius, [wall.span for wall in together]
+        ends = spans[0][0] - _BEYOND[0] * radius, spans[-1][1] + _BEYOND[0] * radius
+        if not all(all(space.ring(line, end, (1.0 - _BEYOND[0]) * radius)) for end in ends):  # else it is a groove
+            yield _bore(space, line, radius, spans)
 
 
 def _bore(space: _Space, line: Line, radius: float, spans: list[Span]) -> Bore:
@@ -117,7 +119,7 @@ def _open(space: _Space, line: Line, radius: float, end: float, way: float) -> b
         place = end + way * beyond
         if space.material(line.at(place)):
             return False
-        if beyond < 2.0 * radius and space.ring(line, place, 1.02 * radius + 0.02 * beyond) <= 4:
+        if beyond < 2.0 * radius and sum(space.ring(line, place, 1.02 * radius + 0.02 * beyond)) <= 4:
             return True
         beyond *= _BEYOND[1]
     return True

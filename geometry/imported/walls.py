@@ -19,6 +19,11 @@ NEAR = 1e-3
 FULL_TURN = math.tau - 0.01
 """Angle [rad] from which on a wall is round."""
 
+_OTHER_SHAPES = ("Plane", "Cone", "Sphere", "Torus")
+"""Shapes of faces that gmsh names, and that are no cylinders."""
+_ALONG, _GRID = 65, 9
+"""Points of a face: along a line across it, by whose angles its turn is told, and on each side of a grid."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Line:
@@ -175,31 +180,70 @@ def _one_cylinder(one: Wall, other: Wall) -> bool:
 def _face(gmsh: Any, solid: int, tag: int) -> Wall | None:
     """Return a cylindrical face as a wall; None for a face of another shape."""
     model = gmsh.model
-    if model.getType(2, tag) != "Cylinder":
+    cylinder = _cylinder(model, tag)
+    if cylinder is None:
         return None
-    properties = np.asarray(model.getEntityProperties(2, tag)[1])
-    line, radius = Line(point=properties[:3], axis=_upwards(properties[3:6])), float(properties[6])
-    (u0, v0), (u1, v1) = model.getParametrizationBounds(2, tag)
-    points = np.asarray(model.getValue(2, tag, [u0, v0, u0 + 0.01 * (u1 - u0), v0, u0, v1])).reshape(3, 3)
-    places = line.along(points)
-    start, soon, _ = (_angle(line, point) for point in points)
-    onwards = (soon - start) % math.tau < math.pi
-    arc = (start if onwards else (start - (u1 - u0)) % math.tau, min(u1 - u0, math.tau))
-    on_face = _point_on(model, tag, (u0, u1), (v0, v1))
+    line, radius = cylinder
+    points = np.concatenate([_points(model, tag, counts) for counts in ((_ALONG, 1), (1, _ALONG))])
+    angles = np.unwrap([_angle(line, point) for point in points]).reshape(2, -1)
+    turns = angles[:, -1] - angles[:, 0]
+    longest = int(np.argmax(np.abs(turns)))
+    arc = float(angles[longest].min() % math.tau), min(float(abs(turns[longest])), math.tau)
+    places = line.along(np.concatenate([points, _points(model, tag, (2, 2))]))
+    on_face = _point_on(model, tag)
     inwards = line.at(float(line.along(on_face))) - on_face
     hollow = not model.isInside(3, solid, list(on_face + NEAR * inwards))
-    return Wall(line=line, radius=radius, hollow=hollow, span=(float(min(places)), float(max(places))), arcs=(arc,))
+    return Wall(line=line, radius=radius, hollow=hollow, span=(float(places.min()), float(places.max())), arcs=(arc,))
 
 
-def _point_on(model: Any, tag: int, u: Span, v: Span) -> Real:
+def _cylinder(model: Any, tag: int) -> tuple[Line, float] | None:
+    """Return axis and radius of a face; None where it is no cylinder.
+
+    Some programs write cylinders as splines or as sweeps; there the normals tell the axis, and points the radius.
+    """
+    kind = model.getType(2, tag)
+    if kind == "Cylinder":
+        values = np.asarray(model.getEntityProperties(2, tag)[1])
+        return Line(point=values[:3], axis=_upwards(values[3:6])), float(values[6])
+    if kind in _OTHER_SHAPES:
+        return None
+    points, normals = _points(model, tag, (_GRID, _GRID)), _points(model, tag, (_GRID, _GRID), normals=True)
+    _, sizes, directions = np.linalg.svd(normals, full_matrices=False)
+    if not sizes[2] < NEAR * sizes[0] < sizes[1]:  # curved twice, or flat
+        return None
+    middle = points.mean(axis=0)
+    line = Line(point=middle, axis=_upwards(directions[2]))
+    first, second = line.across()
+    flat = np.column_stack([(points - middle) @ first, (points - middle) @ second])
+    # Of the circle x² + y² = 2 a x + 2 b y + c, by least squares (I. Kåsa, IEEE Trans. Instrum. Meas. 25 (1976) 8-14).
+    (a, b, c), *_ = np.linalg.lstsq(
+        np.column_stack([2.0 * flat, np.ones(len(flat))]), (flat**2).sum(axis=1), rcond=None
+    )
+    radius = math.sqrt(max(c + a * a + b * b, 0.0))
+    if np.abs(np.hypot(flat[:, 0] - a, flat[:, 1] - b) - radius).max() > NEAR * radius:
+        return None
+    return Line(point=middle + a * first + b * second, axis=line.axis), radius
+
+
+def _points(model: Any, tag: int, counts: tuple[int, int], *, normals: bool = False) -> Real:
+    """Return a grid of points (k, 3) of a face's surface within its bounds, or normals there; its middle for 1."""
+    low, high = np.asarray(model.getParametrizationBounds(2, tag))
+    shares = [np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5]) for count in counts]
+    places = low + (high - low) * np.stack(np.meshgrid(*shares, indexing="ij"), axis=-1).reshape(-1, 2)
+    found = model.getNormal(tag, places.ravel()) if normals else model.getValue(2, tag, places.ravel())
+    return np.asarray(found, dtype=np.float64).reshape(-1, 3)
+
+
+def _point_on(model: Any, tag: int) -> Real:
     """Return a point (3,) within a face, whose borders may be anywhere within its bounds."""
+    low, high = np.asarray(model.getParametrizationBounds(2, tag))
+    middle = (low + high) / 2.0
     for count in (1, 2, 4, 8, 16, 32):
-        shares = (np.arange(count) + 0.5) / count
-        for a in u[0] + shares * (u[1] - u[0]):
-            for b in v[0] + shares * (v[1] - v[0]):
-                if model.isInside(2, tag, [a, b], parametric=True):
-                    return np.asarray(model.getValue(2, tag, [a, b]))
-    return np.asarray(model.getValue(2, tag, [sum(u) / 2.0, sum(v) / 2.0]))
+        for shares in np.ndindex(count, count):
+            place = low + (np.array(shares) + 0.5) / count * (high - low)
+            if model.isInside(2, tag, list(place), parametric=True):
+                return np.asarray(model.getValue(2, tag, list(place)))
+    return np.asarray(model.getValue(2, tag, list(middle)))
 
 
 def _angle(line: Line, point: Real) -> float:

@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 
 import cadquery as cq
+from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
 
 HERE = Path(__file__).resolve().parent
 STAND = cq.Location(cq.Vector(30.0, -20.0, 55.0), cq.Vector(1.0, 2.0, 3.0), 50.0)
@@ -86,6 +87,23 @@ def cross_tube() -> cq.Shape:
     return body.cut(hole(-36.0, 0.0, 3.0, -9.0, 9.0)).cut(hole(36.0, 0.0, 3.0, -9.0, 9.0)).val()
 
 
+def sleeve() -> cq.Shape:
+    """Sleeve of 30 mm, 20 mm long, with a bore of 10 mm, a groove for a ring in it, and a grease hole of 3 mm."""
+    body = hole(0.0, 0.0, 30.0, 0.0, 20.0).cut(hole(0.0, 0.0, 10.0, 0.0, 20.0)).cut(hole(0.0, 0.0, 11.2, 14.0, 15.2))
+    return body.cut(cq.Workplane("YZ").center(0.0, 6.0).circle(1.5).extrude(30.0)).val()
+
+
+def splines() -> cq.Shape:
+    """Strip of 60 by 20 by 5 mm with holes of 5 mm, 40 mm apart, and a mirror image's placement, all faces splines."""
+    body = (
+        cq.Workplane("XY")
+        .box(60.0, 20.0, 5.0)
+        .cut(hole(-20.0, 0.0, 5.0, -9.0, 9.0))
+        .cut(hole(20.0, 0.0, 5.0, -9.0, 9.0))
+    )
+    return cq.Shape.cast(BRepBuilderAPI_NurbsConvert(body.val().wrapped, True).Shape()).mirror("XZ", (3.0, 4.0, 5.0))
+
+
 def inch() -> cq.Shape:
     """Strip of 3 by 1 by 1/4 inch, in mm, with holes of 1/4 inch, 2 inches apart."""
     body = cq.Workplane("XY").box(76.2, 25.4, 6.35)
@@ -106,7 +124,7 @@ def shell() -> cq.Shape:
 
 def main() -> None:
     """Write the files."""
-    for make in (plate, bell_crank, fork, slotted, halves, cross_tube, inch, two_solids, shell):
+    for make in (plate, bell_crank, fork, slotted, halves, cross_tube, sleeve, splines, inch, two_solids, shell):
         shape = make()
         if isinstance(shape, cq.Compound) and len(shape.Solids()) == 1:
             shape = shape.Solids()[0]
