@@ -276,11 +276,12 @@ def _mark(image: Any, draw: Any, mark: Stroke | Area | Raster) -> None:
     if isinstance(mark, Raster):
         from PIL import Image
 
-        left, top, right, bottom = (round(side * scale) for side in mark.box)
-        small = Image.fromarray(mark.pixels).resize(
-            (max(right - left, 1), max(bottom - top, 1)), Image.Resampling.LANCZOS
-        )
-        image.paste(small, (left, top))
+        # On whole pixels of the sheet, so that a picture of that size stays as it is.
+        left, top, right, bottom = mark.box
+        left, top, wide, tall = (round(length * DPI / 72.0) for length in (left, top, right - left, bottom - top))
+        wide, tall = max(wide, 1), max(tall, 1)
+        sized = Image.fromarray(mark.pixels).resize((wide, tall), Image.Resampling.LANCZOS)
+        image.paste(sized.resize((_FINE * wide, _FINE * tall), Image.Resampling.NEAREST), (_FINE * left, _FINE * top))
         return
     at = mark.points * scale
     if isinstance(mark, Area):

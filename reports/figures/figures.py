@@ -21,7 +21,7 @@ from geometry.base.system_libraries import OSMESA, loads
 from reports.figures.canvas import SIZE, Canvas, faint
 from reports.figures.labels import heights, stacked, write_stacked
 from reports.figures.plot import Axes
-from reports.figures.scene import Scene, View, round_scale, scene_of
+from reports.figures.scene import MARGIN, SIDE, Scene, View, round_scale, scene_of
 from reports.figures.style import INK, WIDTH
 from reports.words.wording import fixed, number, plain
 
@@ -181,24 +181,24 @@ def colours() -> NDArray[np.uint8]:
     return np.column_stack(mixed).round().astype(np.uint8)
 
 
-_SIDE, _MARGIN, _GAP = 209.0, 7.2, 36.0
-"""Size of the close view, room about the views, room between them [points]."""
+_GAP = 36.0
+"""Room between the views [points]."""
 
 
 def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float]) -> bytes:
     """Put both renderings, the colour bar and the labels on one sheet."""
-    wide = 72.0 * WIDTH - 2.0 * _MARGIN
+    wide = 72.0 * WIDTH - 2.0 * MARGIN
     shares = scene.strip.share(np.array([[x, 0.0, 0.0] for x in points.values()]).reshape(-1, 3))[:, 0]
     names = stacked(points, wide * shares)
     top = 12.0 + heights(names)
     middle = top + wide * scene.strip.half_height / scene.strip.half_width
-    sheet = Canvas(72.0 * WIDTH, middle + _GAP + _SIDE + _MARGIN)
-    upper = Axes(box=(_MARGIN, top, _MARGIN + wide, middle), x=(0.0, 1.0), y=(0.0, 1.0))
-    lower = Axes(box=(_MARGIN, middle + _GAP, _MARGIN + _SIDE, middle + _GAP + _SIDE), x=(0.0, 1.0), y=(0.0, 1.0))
+    sheet = Canvas(72.0 * WIDTH, middle + _GAP + SIDE + MARGIN)
+    upper = Axes(box=(MARGIN, top, MARGIN + wide, middle), x=(0.0, 1.0), y=(0.0, 1.0))
+    lower = Axes(box=(MARGIN, middle + _GAP, MARGIN + SIDE, middle + _GAP + SIDE), x=(0.0, 1.0), y=(0.0, 1.0))
     sheet.picture(strip, upper.box)
     sheet.picture(close, lower.box)
     lower.frame(sheet)
-    write_stacked(sheet, names, _MARGIN, top)
+    write_stacked(sheet, names, MARGIN, top)
     title = "around the largest stress" + ("" if scene.close.cut is None else ", cut open")
     sheet.write(title, ((lower.box[0] + lower.box[2]) / 2.0, lower.box[1] - 4.0), anchor="center bottom", size=8.5)
     for axes, view, spots in ((upper, scene.strip, scene.deformed), (lower, scene.close, scene.points)):
@@ -208,7 +208,7 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
             sheet.ring(at, 5.5, colour if share == 1.0 else faint(colour, share), width)
     _scale_bar(sheet, upper, scene.strip, (0.012, 0.0), 5.8)
     _scale_bar(sheet, lower, scene.close, (0.04, 0.04), 0.0)
-    left, high = _MARGIN + _SIDE + 39.6, lower.box[1]
+    left, high = MARGIN + SIDE + 39.6, lower.box[1]
     _colour_bar(sheet, scene, (left, high + 20.0, 72.0 * WIDTH - 33.0, high + 32.3))
     largest = float(np.linalg.norm(scene.displacement, axis=1).max())
     lines = (

@@ -18,11 +18,13 @@ SMOOTH_BELOW = 40.0
 """Angle between faces [degrees] above which an edge is drawn sharp."""
 
 
-def render(view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) -> None:
+def render(plotter: Any, view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) -> None:
     """Render one view in parallel projection and save it.
 
     Parameters
     ----------
+    plotter : pyvista.Plotter
+        Takes one view after another: a window of its own for each would double the time.
     view : dict
         ``size`` (width, height) in pixels, ``focus`` and ``toward`` (3,) where the camera looks and from which
         direction, ``up`` (3,), ``half_height`` [mm], ``limits`` of the colours [MPa], ``colours`` (k, 3) from 0 to 255,
@@ -35,8 +37,9 @@ def render(view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) ->
     """
     import pyvista
 
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(view["size"]), lighting="light kit")
-    plotter.set_background("white")
+    plotter.suppress_rendering = True  # until all is in its place
+    plotter.clear_actors()
+    plotter.window_size = list(view["size"])
     if view["cut"] is None:
         body = pyvista.PolyData.from_regular_faces(arrays["points"], arrays["triangles"])
         body["values"] = arrays["values"]
@@ -70,8 +73,9 @@ def render(view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) ->
     plotter.camera.up = tuple(view["up"])
     plotter.camera.parallel_scale = view["half_height"]
     plotter.camera.reset_clipping_range()
+    plotter.suppress_rendering = False
+    plotter.render()
     image = plotter.screenshot(None, return_img=True)
-    plotter.close()
     if np.ptp(image) == 0:
         raise RuntimeError("the picture came out blank")
     # By renaming, so that a crash leaves no half of an image.
@@ -91,9 +95,17 @@ def main(folder: Path, request: str) -> None:
         Name of a JSON file.
     """
     end_with_parent(folder)
-    for name, view in json.loads((folder / request).read_text(encoding="utf-8")).items():
+    views = json.loads((folder / request).read_text(encoding="utf-8"))
+    if not views:
+        return
+    import pyvista
+
+    plotter = pyvista.Plotter(off_screen=True, lighting="light kit")
+    plotter.set_background("white")
+    for name, view in views.items():
         with np.load(folder / view["arrays"]) as stored:
-            render(view, dict(stored), folder / f"{name}.npy")
+            render(plotter, view, dict(stored), folder / f"{name}.npy")
+    plotter.close()
 
 
 if __name__ == "__main__":

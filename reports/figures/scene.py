@@ -11,6 +11,7 @@ from fea.refine.discretisation import Discretisation, MeshStatus
 from fea.solid.stress import StressField
 from geometry.parts.material import stress_measure
 from geometry.parts.part import Section
+from reports.figures.style import DPI, WIDTH
 
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]
@@ -22,8 +23,10 @@ STATUS_NOTES: dict[MeshStatus, str] = {
     "unresolved": "the mesh is too coarse",
 }
 """Why a link's largest stress is no result, by the state of its meshes."""
-_STRIP_WIDTH = 2200
-_CLOSE_SIZE = 880
+MARGIN, SIDE = 7.2, 209.0
+"""Room about the views on their sheet, and size of the close one [points]."""
+_STRIP_WIDTH, _CLOSE_SIZE = (round(length * DPI / 72.0) for length in (72.0 * WIDTH - 2.0 * MARGIN, SIDE))
+"""Pixels, as many as there are on the sheet: the renderer takes several samples of each."""
 _TOWARD = np.array([0.0, -0.42, 0.91]) / np.hypot(0.42, 0.91)
 """From where a link is looked at: pins point at the viewer, tilted so that its side shows."""
 _VISIBLE_SHIFT = 0.08
@@ -234,10 +237,9 @@ def _strip_view(points: Real) -> View:
     middle = (u.min() + u.max()) / 2.0 * right + (v.min() + v.max()) / 2.0 * up
     # A link as tall as long, such as a disc, stands in the middle of a picture half as tall as wide.
     half_width = max(0.515 * float(np.ptp(u)), 2.0 * 0.54 * float(np.ptp(v)))
-    half_height = max(0.54 * float(np.ptp(v)), half_width / 16.0)
-    size = (_STRIP_WIDTH, round(_STRIP_WIDTH * half_height / half_width))
+    tall = math.ceil(_STRIP_WIDTH * max(0.54 * float(np.ptp(v)) / half_width, 1.0 / 16.0))
     return View(right=right, up=up, toward=_TOWARD, focus=middle, half_width=half_width,
-                half_height=half_height, size=size, cut=None)  # fmt: skip
+                half_height=half_width * tall / _STRIP_WIDTH, size=(_STRIP_WIDTH, tall), cut=None)  # fmt: skip
 
 
 def _close_view(points: Real, triangles: Int, hottest: int, reach: float) -> View:
