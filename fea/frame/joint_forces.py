@@ -2,17 +2,20 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.frame.build import build_frame
-from fea.frame.linear import FrameSolution, solve_frame
-from fea.frame.linkage_frame import LinkageFrame, out_of_plane
+from fea.frame.linkage_frame import out_of_plane
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import Load
 from loads.statics.statics import Drive, Reactions, assemble, refuse_dead_point, solve_statics
+
+if TYPE_CHECKING:
+    from fea.frame.linear import FrameSolution
+    from fea.frame.linkage_frame import LinkageFrame
 
 Real = NDArray[np.float64]
 
@@ -42,8 +45,8 @@ class JointForces:
     reactions: Reactions
     model: str
     reason: str
-    frame: LinkageFrame | None = None
-    solution: FrameSolution | None = None
+    frame: "LinkageFrame | None" = None
+    solution: "FrameSolution | None" = None
 
     @property
     def condition(self) -> float:
@@ -88,8 +91,7 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         )
     if not bonded:
         refuse_dead_point(assemble(pose.placement, case.pinned_drive, ()), case.pinned_drive)
-    frame = build_frame(case, pose, loads, held=case.pinned_drive, bonded=bonded)
-    solution = solve_frame(frame.model)
+    frame, solution = _solved(case, pose, loads, case.pinned_drive, bonded=bonded)
     return JointForces(
         reactions=frame.reactions(solution.joint_wrenches, solution.residual),
         model=model,
@@ -97,6 +99,17 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         frame=frame,
         solution=solution,
     )
+
+
+def _solved(
+    case: Case, pose: Pose, loads: Sequence[Load], held: Drive | None, *, bonded: bool
+) -> "tuple[LinkageFrame, FrameSolution]":
+    """Return the frame of the linkage and its solution; most linkages need none, and do not import it."""
+    from fea.frame.build import build_frame
+    from fea.frame.linear import solve_frame
+
+    frame = build_frame(case, pose, loads, held=held, bonded=bonded)
+    return frame, solve_frame(frame.model)
 
 
 def _redundant(case: Case, pose: Pose) -> bool:
@@ -160,7 +173,7 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[WayToHo
     ways = [(f"pinned, held at {link}", drive, False) for link, drive in drives.items()]
     ways.append((f"bonded, {names} built in", next(iter(drives.values())), True))
     for name, drive, bonded in ways:
-        frame = build_frame(case, pose, loads, held=drive, bonded=bonded)
-        moved = frame.at_points(solve_frame(frame.model).displacements)
+        frame, solution = _solved(case, pose, loads, drive, bonded=bonded)
+        moved = frame.at_points(solution.displacements)
         found.append(WayToHold(name=name, displacement=moved[asked.link, asked.at]))
     return tuple(found)

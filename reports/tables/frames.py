@@ -1,15 +1,17 @@
 """Joint forces and their model, large displacement, and pins: as plain data and as lines of text."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fea.frame.joint_forces import PINNED_STATICS
-from fea.outcomes.result import CheckResult, LoadCaseResult
 from loads.statics.statics import Reactions
 from reports.tables.data import entries
 from reports.words.wording import fixed, number
+
+if TYPE_CHECKING:
+    from fea.outcomes.result import CheckResult, LoadCaseResult
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 _ROUNDING = 1e-9
@@ -58,7 +60,7 @@ def reaction_records(reactions: Reactions) -> list[dict[str, Any]]:
     ]
 
 
-def frame_record(case: LoadCaseResult) -> dict[str, Any]:
+def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
     """Return ``joint_forces``, ``large_displacement``, ``pins`` and ``ways_to_hold`` of a load case as plain data.
 
     Parameters
@@ -89,7 +91,7 @@ def frame_record(case: LoadCaseResult) -> dict[str, Any]:
     }
 
 
-def frame_lines(result: CheckResult, case: LoadCaseResult) -> list[str]:
+def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     """Return the lines of the terminal on joint forces and displacements of a load case.
 
     Parameters

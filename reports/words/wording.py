@@ -2,11 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity, Verdict
-from fea.outcomes.result import CheckResult, SectionComparison
 from fea.outcomes.unchecked import unchecked
+
+if TYPE_CHECKING:
+    from fea.outcomes.result import CheckResult, SectionComparison
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _ROUNDING = 1e-12
@@ -136,7 +139,7 @@ def turning(torque: float) -> str:
     return "none" if torque == 0.0 else "clockwise" if torque < 0.0 else "counter-clockwise"
 
 
-def apart(compared: Sequence[SectionComparison]) -> list[SectionComparison]:
+def apart(compared: Sequence["SectionComparison"]) -> list["SectionComparison"]:
     """Return the sections at which hand calculation and solid model differ by more than ``HAND_AGREEMENT``.
 
     Parameters
@@ -150,7 +153,7 @@ def apart(compared: Sequence[SectionComparison]) -> list[SectionComparison]:
     return [c for c in compared if abs(c.difference) > HAND_AGREEMENT]
 
 
-def agreement(compared: Sequence[SectionComparison]) -> str:
+def agreement(compared: Sequence["SectionComparison"]) -> str:
     """Say how well hand calculation and solid model agree over some sections.
 
     Parameters
@@ -167,7 +170,7 @@ def agreement(compared: Sequence[SectionComparison]) -> str:
     return f"they agree within {math.ceil(1000.0 * most - 1e-9) / 10.0:.1f} %"
 
 
-def checks_of(result: CheckResult) -> tuple[CheckOutcome, ...]:
+def checks_of(result: "CheckResult") -> tuple[CheckOutcome, ...]:
     """Return all checks of all load cases.
 
     Parameters
@@ -212,7 +215,7 @@ def tightest(checks: Sequence[CheckOutcome]) -> CheckOutcome:
     return min(checks, key=tightness)
 
 
-def headline(result: CheckResult) -> str:
+def headline(result: "CheckResult") -> str:
     """Return the verdict, what decides it and what no check looks at.
 
     Parameters
@@ -242,7 +245,7 @@ def not_checked(what: tuple[str, ...]) -> str:
     return f"Not checked: {'; '.join(what)}." if what else ""
 
 
-def _headline(result: CheckResult) -> str:
+def _headline(result: "CheckResult") -> str:
     checks = checks_of(result)
     if not checks:
         return "Undecided: the case contains no check."
@@ -290,11 +293,11 @@ def _named(check: CheckOutcome, *, long: bool = False) -> str:
     return f"{check.quantity} of {check.subject.long if long else check.subject}"
 
 
-def _under(result: CheckResult, check: CheckOutcome) -> str:
+def _under(result: "CheckResult", check: CheckOutcome) -> str:
     return f"under load case {check.load_case} " if len(result.load_cases) > 1 else ""
 
 
-def _with_limit(result: CheckResult, check: CheckOutcome) -> str:
+def _with_limit(result: "CheckResult", check: CheckOutcome) -> str:
     """Return a check's quantity, its value with the band, and its limit."""
     unit = f" {check.quantity.unit}".rstrip()
     under = f" {_under(result, check)}".rstrip()
