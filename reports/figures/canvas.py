@@ -22,7 +22,7 @@ Real = NDArray[np.float64]
 
 SIZE = 9.0
 """Of letters [points]."""
-_FINE = 3
+_FINE = 2
 """Lines and areas are drawn this much larger and averaged, which makes their edges smooth."""
 _SHARES = {"left": 0.0, "center": 0.5, "right": 1.0, "top": 0.0, "middle": 0.5, "bottom": 1.0}
 _LINE, _RISE = 1.2, 0.77

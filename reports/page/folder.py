@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,12 +67,14 @@ def write_report(
     CaseError, CannotRunError
         As ``write_folder``.
     """
-    from reports.page.export import write_vtu
     from reports.page.html import render
     from reports.page.pictures import draw_pictures
 
     def fill(folder: Path) -> None:
-        pictures, warnings = draw_pictures(result, progress)
+        with ThreadPoolExecutor(1) as beside:
+            drawn = beside.submit(draw_pictures, result, progress)
+            _write_fields(result, folder / FIELDS)
+            pictures, warnings = drawn.result()
         told = replace(result, warnings=(*result.warnings, *warnings))
         for warning in warnings:
             progress(f"Warning: {warning}")
@@ -80,13 +83,20 @@ def write_report(
         (folder / PICTURES).mkdir()
         for name, picture in pictures.items():
             (folder / PICTURES / f"{name}.png").write_bytes(picture)
-        progress("Writing the VTU files ...")
-        for link in next(iter(result.load_cases.values())).links:
-            found = worst_load_case(result, link).links[link]
-            if isinstance(found, SolidResult):
-                (folder / FIELDS).mkdir(exist_ok=True)
-                write_vtu(folder / FIELDS / f"{link}.vtu", found.governing_case.displacement, found.stress)
         if decks is not None and result.second_opinions:
             shutil.copytree(decks, folder / DECKS)
 
     write_folder(target, "check", fill)
+
+
+def _write_fields(result: CheckResult, folder: Path) -> None:
+    """Write the VTU file of every link that was solved as a solid."""
+    links = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
+    solids = {link: found for link, found in links.items() if isinstance(found, SolidResult)}
+    if not solids:
+        return
+    from reports.page.export import write_vtu
+
+    folder.mkdir()
+    for link, found in solids.items():
+        write_vtu(folder / f"{link}.vtu", found.governing_case.displacement, found.stress)

@@ -1,6 +1,7 @@
 """All pictures of a report, by name."""
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
 from fea.outcomes.result import CheckResult
 from reports.tables.record import worst_load_case
@@ -90,13 +91,14 @@ def draw_pictures(
     from reports.figures.drawings import linkage_drawing
     from reports.figures.figures import stress_plots
 
-    progress("Drawing the linkage and the internal forces ...")
     worst = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
     stations = {link: {point: x for point, (x, _) in result.case.links[link].points.items()} for link in worst}
-    pictures = {linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)}
-    pictures |= {
-        diagram_name(link): internal_force_diagram(found.beam, stations[link]) for link, found in worst.items()
-    }
-    progress("Rendering the stress plots ...")
-    plots, warnings = stress_plots(worst, stations)
+    progress("Drawing the linkage, the internal forces and the stress plots ...")
+    with ThreadPoolExecutor(1) as beside:  # its work is that of a child process
+        rendered = beside.submit(stress_plots, worst, stations)
+        pictures = {linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)}
+        pictures |= {
+            diagram_name(link): internal_force_diagram(found.beam, stations[link]) for link, found in worst.items()
+        }
+        plots, warnings = rendered.result()
     return pictures | {stress_name(link): plot for link, plot in plots.items()}, warnings
