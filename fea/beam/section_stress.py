@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from geometry.parts.part import Section
 
@@ -70,18 +70,34 @@ def section_stress(section: Section, forces: Floats, poisson: float = 0.3) -> Se
         Each by itself and all together.
     """
     n, v_y, v_z, t, m_y, m_z = map(float, forces)
-    if section.round:
-        bending = float(np.hypot(m_y, m_z)) * section.half_y / section.i_z
-    else:
-        bending = abs(m_z) * section.half_y / section.i_z + abs(m_y) * section.half_z / section.i_y
     root = math.sqrt(3.0)
     return SectionStress(
         axial=n / section.area,
-        bending=bending,
+        bending=float(bending_stress(section, m_y, m_z)),
         torsion=equivalent_stress(section, np.array([0.0, 0.0, 0.0, t, 0.0, 0.0]), poisson) / root,
         shear=equivalent_stress(section, np.array([0.0, v_y, v_z, 0.0, 0.0, 0.0]), poisson) / root,
         equivalent=equivalent_stress(section, np.asarray(forces, dtype=np.float64), poisson),
     )
+
+
+def bending_stress(section: Section, m_y: ArrayLike, m_z: ArrayLike) -> Floats:
+    """Return the largest bending stress over a section.
+
+    Parameters
+    ----------
+    section : Section
+        Of the beam.
+    m_y, m_z : array
+        Bending moments [N·mm].
+
+    Returns
+    -------
+    ndarray
+        Stress [MPa].
+    """
+    if section.round:
+        return np.hypot(m_y, m_z) * section.half_y / section.i_z
+    return np.abs(m_z) * section.half_y / section.i_z + np.abs(m_y) * section.half_z / section.i_y
 
 
 def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) -> float:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from fea.beam.loads import BeamLoads
 from fea.beam.piecewise import SAMPLES, Piecewise, Side, integral, values
-from fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
+from fea.beam.section_stress import SectionStress, bending_stress, equivalent_stress, section_stress
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Section
 
@@ -192,7 +192,6 @@ def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: flo
             stations.append(x0 + s)
             rows.append(values(c, s))
     table = np.array(rows)
-    stresses = [section_stress(section, row, poisson) for row in rows]
     x, side, peak = forces.largest(lambda f: equivalent_stress(section, f, poisson))
     n, v_y, v_z, t, m_y, m_z = table.T
     return BeamCheck(
@@ -206,9 +205,9 @@ def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: flo
         t=t,
         m_y=m_y,
         m_z=m_z,
-        axial=np.array([s.axial for s in stresses]),
-        bending=np.array([s.bending for s in stresses]),
-        equivalent=np.array([s.equivalent for s in stresses]),
+        axial=n / section.area,
+        bending=bending_stress(section, m_y, m_z),
+        equivalent=np.array([equivalent_stress(section, row, poisson) for row in rows]),
         worst_x=x,
         worst=section_stress(section, forces.at(x, side), poisson),
         strength=strength,
