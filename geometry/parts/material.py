@@ -10,11 +10,20 @@ from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Text
+from geometry.base.model import CaseModel, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress, Temperature
+from geometry.parts.laminate import ANISOTROPIC, is_laminate
 
 Status = Literal["measured", "datasheet", "handbook", "assumed"]
-TOLD = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "ultimate_strength")
+TOLD = (
+    "density",
+    "youngs_modulus",
+    "poissons_ratio",
+    "yield_strength",
+    "ultimate_strength",
+    "strength_across_layers",
+    "shear_strength_between_layers",
+)
 """Entries whose source and status every card states, where it states the entry."""
 
 
@@ -61,6 +70,14 @@ class Material(CaseModel):
     youngs_modulus_range: Range | None = None
     strength_range: Range | None = None
     """Scatter of the strength that the safety factor uses."""
+    strength_across_layers: Annotated[Stress, POSITIVE] | None = None
+    """Tensile strength of a printed material normal to its layers, measured on specimens built upright."""
+    strength_across_layers_range: Range | None = None
+    """Its scatter."""
+    shear_strength_between_layers: Annotated[Stress, POSITIVE] | None = None
+    """Strength of a printed material against shear along its layers."""
+    shear_strength_between_layers_range: Range | None = None
+    """Its scatter."""
     ultimate_strength_by_diameter: tuple[tuple[Annotated[Length, POSITIVE], Annotated[Stress, POSITIVE]], ...] = ()
     """(largest diameter, least ultimate strength) of drawn wire, rising in diameter. The stated ultimate_strength is
     that of one diameter, and the yield strength keeps its share of it."""
@@ -110,6 +127,12 @@ class Material(CaseModel):
                 "no_strength_to_scale",
                 "ultimate_strength_by_diameter needs ultimate_strength, that of one diameter; state it too",
             )
+        if is_laminate(self.title):
+            raise refusal(f"'{self.title}' {ANISOTROPIC}")
+        layers = "strength_across_layers", "shear_strength_between_layers"
+        for entry, needed in ((layers[1], layers[0]), *((f"{entry}_range", entry) for entry in layers)):
+            if getattr(self, entry) is not None and getattr(self, needed) is None:
+                raise refusal(f"{entry} needs {needed}; state it too")
         if unknown := [entry for entry in (*self.sources, *self.status) if entry not in type(self).model_fields]:
             raise PydanticCustomError(
                 "no_such_entry",
@@ -202,8 +225,12 @@ def stress_measure(*, brittle: bool) -> str:
     return "largest principal" if brittle else "von Mises"
 
 
+def library_text() -> str:
+    """Return the text of the library, ``geometry/materials.toml``."""
+    return files("geometry").joinpath("materials.toml").read_text(encoding="utf-8")
+
+
 @cache
 def library() -> dict[str, Material]:
     """Return the materials that alula ships (``geometry/materials.toml``), by name."""
-    text = files("geometry").joinpath("materials.toml").read_text(encoding="utf-8")
-    return {name: Material.model_validate(card) for name, card in tomllib.loads(text).items()}
+    return {name: Material.model_validate(card) for name, card in tomllib.loads(library_text()).items()}

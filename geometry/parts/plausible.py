@@ -1,8 +1,8 @@
 """Whether the values of a material card are usual for what it is: a slip of a unit is a factor of ten or a thousand.
 
 Name or title say what it is; where neither does, it is bounded loosely by whether it is light or heavy. The ranges are
-those of Ashby, Materials Selection in Mechanical Design, 4th ed., appendix A, rounded outwards, and wider for wire and
-printed parts (assumed).
+those of Ashby, Materials Selection in Mechanical Design, 4th ed., appendix A, rounded outwards, and wider for wire,
+printed parts and plastics filled with metal (assumed).
 """
 
 import re
@@ -38,10 +38,29 @@ class MaterialClass:
     strength: Range
 
 
-CLASSES = (
+DECIDING = (
     MaterialClass(
-        title="steel", words=("steel",), density=(7500, 8200), modulus=(180, 220), strength=(100, 3500)
+        title="a filled or fibre-reinforced plastic",
+        words=("fibre", "fiber", "filled", "reinforced", "laminate", "cfrp", "gfrp"),
+        density=(1000, 4200),
+        modulus=(1, 400),
+        strength=(10, 4000),
     ),
+    MaterialClass(title="a foam", words=("foam", "honeycomb"), density=(10, 1500), modulus=(1e-4, 20),
+                  strength=(0.01, 100)),
+    MaterialClass(
+        title="a ceramic",
+        words=("ceramic", "oxide", "nitride", "carbide", "alumina", "zirconia", "porcelain"),
+        density=(1800, 16000),
+        modulus=(40, 800),
+        strength=(10, 7000),
+    ),
+    MaterialClass(title="a bronze or brass", words=("bronze", "brass"), density=(7300, 9000), modulus=(80, 160),
+                  strength=(30, 1500)),
+)  # fmt: skip
+"""A word of these decides: aluminium oxide is a ceramic, and aluminium bronze a bronze."""
+CLASSES = (
+    MaterialClass(title="steel", words=("steel",), density=(7500, 8200), modulus=(180, 220), strength=(100, 3500)),
     MaterialClass(
         title="an aluminium alloy",
         words=("aluminium", "aluminum", "alu"),
@@ -52,22 +71,9 @@ CLASSES = (
     MaterialClass(
         title="a titanium alloy", words=("titan",), density=(4300, 4900), modulus=(85, 130), strength=(150, 1700)
     ),
-    MaterialClass(
-        title="a copper alloy",
-        words=("copper", "brass", "bronze"),
-        density=(7300, 9000),
-        modulus=(80, 160),
-        strength=(30, 1500),
-    ),
+    MaterialClass(title="copper", words=("copper",), density=(7300, 9000), modulus=(80, 160), strength=(30, 1500)),
     MaterialClass(
         title="a magnesium alloy", words=("magnes",), density=(1700, 2000), modulus=(40, 50), strength=(50, 500)
-    ),
-    MaterialClass(
-        title="a filled or fibre-reinforced plastic",
-        words=("carbon", "glass", "fibre", "fiber", "filled", "reinforced", "laminate", "cfrp", "gfrp"),
-        density=(1000, 2300),
-        modulus=(1, 400),
-        strength=(10, 4000),
     ),
     MaterialClass(
         title="a plastic",
@@ -78,7 +84,11 @@ CLASSES = (
         strength=(5, 200),
     ),
 )  # fmt: skip
-"""The first whose word is found counts: carbon steel is steel, and nylon with glass is filled."""
+"""Of these the first that is named counts: aluminium magnesium alloy is aluminium."""
+PLASTIC, FILLED = CLASSES[-1], DECIDING[0]
+STRENGTHS = ("yield_strength", "ultimate_strength", "strength_across_layers", "shear_strength_between_layers")
+FILLERS = ("glass", "carbon")
+"""Make a plastic a filled one; carbon steel is steel."""
 LIGHT = MaterialClass(
     title="a material lighter than 2300 kg/m³", words=(), density=(20, 2300), modulus=(0.001, 400), strength=(0.1, 4000)
 )
@@ -100,13 +110,21 @@ def class_of(name: str, material: Material) -> MaterialClass:
     Returns
     -------
     MaterialClass
-        The first whose word occurs.
+        One of ``DECIDING``, else the first of ``CLASSES`` that is named.
     """
     told = re.findall(r"[a-z]+", f"{name} {material.title}".lower())
-    for known in CLASSES:
-        if any(word == token if len(word) <= 4 else token.startswith(word) for word in known.words for token in told):
+    for known in DECIDING:
+        if any(_names(token, known) for token in told):
             return known
+    for token in told:
+        for known in CLASSES:
+            if _names(token, known):
+                return FILLED if known is PLASTIC and set(FILLERS) & set(told) else known
     return LIGHT if material.density * 1e12 < LIGHT.density[1] else HEAVY
+
+
+def _names(token: str, known: MaterialClass) -> bool:
+    return any(token == word if len(word) <= 4 else token.startswith(word) for word in known.words)
 
 
 def unusual(name: str, material: Material) -> tuple[str, ...]:
@@ -128,8 +146,7 @@ def unusual(name: str, material: Material) -> tuple[str, ...]:
     values = (
         ("density", 1e12 * material.density, usual.density, "kg/m³"),
         ("youngs_modulus", 1e-3 * material.youngs_modulus, usual.modulus, "GPa"),
-        ("yield_strength", material.yield_strength, usual.strength, "MPa"),
-        ("ultimate_strength", material.ultimate_strength, usual.strength, "MPa"),
+        *((entry, getattr(material, entry), usual.strength, "MPa") for entry in STRENGTHS),
     )
     return tuple(
         f"materials.{name}.{entry} is {value:.4g} {unit}, but {usual.title} usually has {least:g} to {most:g} {unit}; "

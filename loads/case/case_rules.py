@@ -5,6 +5,7 @@ import math
 from geometry.base.errors import CaseError
 from geometry.base.model import check_file_names
 from geometry.parts.body_rules import check_body
+from geometry.parts.laminate import ANISOTROPIC, is_laminate
 from geometry.parts.material import Material
 from geometry.parts.part import Body
 from loads.case.core import CoreCase, check_moving, check_point
@@ -110,6 +111,9 @@ def _check_transfer(case: CoreCase) -> None:
 
 
 def _check_material(case: CoreCase, entry: str, name: str) -> None:
+    known = case.all_materials.get(name)
+    if is_laminate(f"{name} {known.title if known else ''}"):
+        raise CaseError(f"{entry}: '{name}' {ANISOTROPIC}")
     require(entry, name, case.all_materials, "is unknown", "or add a card under [materials]")
 
 

@@ -81,11 +81,13 @@ def under(material: Material, conditions: Conditions) -> Material:
     changed: dict[str, object] = {}
     if conditions.temperature is not None:
         factor = temperature_factor(material, conditions.temperature)
-        for entry in ("yield_strength", "ultimate_strength", "sustained_stress"):
+        layers = "strength_across_layers", "shear_strength_between_layers"
+        for entry in ("yield_strength", "ultimate_strength", "sustained_stress", *layers):
             if getattr(material, entry) is not None:
                 changed[entry] = getattr(material, entry) * factor
-        if material.strength_range is not None:
-            changed["strength_range"] = tuple(factor * bound for bound in material.strength_range)
+        for entry in ("strength_range", *(f"{entry}_range" for entry in layers)):
+            if getattr(material, entry) is not None:
+                changed[entry] = tuple(factor * bound for bound in getattr(material, entry))
     if conditions.duration is not None:
         for entry in ("sustained_stress", "sustained_modulus"):
             if getattr(material, entry) is None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from reports.commands.ending import end_if_stopped, run
+from reports.commands.materials import app as materials
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -314,6 +315,9 @@ def cases() -> None:
     width = max(map(len, built_in_cases()))
     for name in built_in_cases():
         print(f"{name:<{width}}  {read_case(name).title}")
+
+
+app.add_typer(materials)
 
 
 @app.command()

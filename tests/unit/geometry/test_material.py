@@ -119,3 +119,57 @@ def test_every_value_of_the_library_has_a_source_and_a_status() -> None:
 def test_cards_are_frozen() -> None:
     with pytest.raises(ValidationError, match="frozen"):
         Material.model_validate(CARD).density = 1.0
+
+
+@pytest.mark.parametrize(
+    "title",
+    ["Carbon fibre plate, 2 mm", "CFRP", "carbon-plate", "carbonfiber tube", "Carbon", "High-modulus carbon fibre rod",
+     "Carbon/epoxy laminate", "GFRP sheet"],
+)  # fmt: skip
+def test_a_laminate_is_refused(title: str) -> None:
+    with pytest.raises(ValidationError, match=r"is a laminate of fibres.*choose an isotropic material"):
+        Material.model_validate(CARD | {"title": title})
+
+
+@pytest.mark.parametrize(
+    "title",
+    ["Carbon steel plate", "steel, 0.4 % carbon, tube", "high-carbon strip", "Polycarbonate sheet",
+     "Nylon with 15 % carbon fibre", "PLA, carbon-fibre filled", "ABS, carbon black", "Nylon 66 with 30 % glass",
+     "Graphite, carbon, isotropic plate"],
+)  # fmt: skip
+def test_carbon_alone_is_no_laminate(title: str) -> None:
+    assert Material.model_validate(CARD | {"title": title}).title == title
+
+
+LAYERS = {"strength_across_layers": "12 MPa", "shear_strength_between_layers": "6 MPa"}
+
+
+def test_strengths_of_layers_have_their_sources_and_ranges() -> None:
+    told = {k: CARD[k] | dict.fromkeys(LAYERS, v) for k, v in (("sources", "a test"), ("status", "measured"))}
+    card = Material.model_validate(CARD | LAYERS | told)
+    assert (card.strength_across_layers, card.shear_strength_between_layers) == (12.0, 6.0)
+    with pytest.raises(ValidationError, match="sources says nothing of strength_across_layers"):
+        Material.model_validate(CARD | LAYERS)
+    with pytest.raises(ValidationError, match="shear_strength_between_layers needs strength_across_layers"):
+        Material.model_validate(CARD | told | {"shear_strength_between_layers": "6 MPa"})
+    with pytest.raises(ValidationError, match="strength_across_layers_range needs strength_across_layers"):
+        Material.model_validate(CARD | {"strength_across_layers_range": ["1 MPa", "2 MPa"]})
+
+
+PUBLISHED = {  # density, E, strengths: kg/m3, GPa, MPa, MPa
+    "aluminium-6061-t6": (2700, 68.9, 240, 260),
+    "aluminium-7075-t6": (2810, 71.7, 460, 525),
+    "steel-s235": (7850, 210, 235, 360),
+    "steel-304": (8000, 193, 205, 515),
+    "brass-cuzn39pb3": (8470, 96, 200, 430),
+    "pa12-sintered": (930, 1.65, None, 43),
+}
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_published_values_reach_the_library_in_its_units(name: str) -> None:
+    """A slip of a unit or digit in a card would move these numbers, written down from the sources by themselves."""
+    card, (density, modulus, yields, breaks) = library()[name], PUBLISHED[name]
+    assert card.density == pytest.approx(density * 1e-12)
+    assert card.youngs_modulus == pytest.approx(modulus * 1e3)
+    assert (card.yield_strength, card.ultimate_strength) == (yields, breaks)

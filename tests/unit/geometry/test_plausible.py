@@ -21,18 +21,27 @@ USUAL = {
     "spruce": ("Spruce along the grain", 450, 11, 40, 80),
     "balsa": ("Balsa", 160, 3.4, 10, 15),
     "alumina": ("Al2O3 ceramic", 3900, 380, 300, 350),
+    "al2o3": ("Aluminium oxide, 96 %, sintered", 3720, 320, 200, 200),
+    "sic": ("Silicon carbide", 3150, 410, 380, 380),
+    "cual10ni5fe4": ("Aluminium bronze", 7600, 120, 270, 600),
+    "az91": ("Magnesium aluminium zinc AZ91D", 1810, 45, 160, 230),
+    "almg3": ("Aluminium magnesium alloy AlMg3", 2660, 70, 80, 190),
+    "bronzefill": ("PLA, filled with bronze", 3900, 2.5, 20, 25),
+    "alfoam": ("Aluminium foam", 500, 5, 5, 5),
+    "glass": ("Soda-lime glass", 2500, 70, 30, 40),
     "tungsten": ("W", 19300, 400, 900, 1000),
     "rubber": ("Silicone", 1150, 0.005, 4, 8),
 }
 
 
-def card(title, density, modulus, yields, breaks):
+def card(title, density, modulus, yields, breaks, across=None):
     return Material.model_construct(
         title=title,
         density=density * 1e-12,
         youngs_modulus=modulus * 1e3,
         yield_strength=yields,
         ultimate_strength=breaks,
+        strength_across_layers=across,
     )
 
 
@@ -67,11 +76,20 @@ def test_a_strength_ten_times_too_high_for_its_plastic():
     assert said.startswith("materials.pvc.yield_strength is 414 MPa, but a plastic usually has 5 to 200 MPa")
 
 
+def test_a_slip_in_the_strength_across_layers():
+    [said] = unusual("pla", card("PLA", 1240, 2.5, None, 33, 1200))
+    assert said.startswith("materials.pla.strength_across_layers is 1200 MPa, but a plastic usually has 5 to 200 MPa")
+
+
 @pytest.mark.parametrize(
     ("name", "title", "told"),
     [
         ("x", "carbon steel", "steel"),
         ("x", "nylon, glass filled", "a filled or fibre-reinforced plastic"),
+        ("x", "nylon with glass", "a filled or fibre-reinforced plastic"),
+        ("x", "aluminium oxide", "a ceramic"),
+        ("x", "aluminium bronze", "a bronze or brass"),
+        ("pvc-bush", "replaces one of steel", "a plastic"),
         ("pla-fdm", "", "a plastic"),
         ("x", "plate of something", "a material lighter than 2300 kg/m³"),  # pla is no word of it
     ],

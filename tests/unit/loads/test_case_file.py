@@ -70,6 +70,7 @@ BAD = [
     ("pose.angle=5 mm", ["pose.angle", "5 mm", "not a unit of angle", "30 deg"]),
     ("parts.tube.outer_diameter=5 s", ["parts.tube.outer_diameter", "'5 s'", "not a unit of length"]),
     ('load_cases.weight.forces.0.force=["0 N", "1 mm"]', ["load_cases.weight.forces.0.force.1", "'1 mm'", "0.25 N"]),
+    ("parts.tube.material=carbon-plate", ["parts.tube.material", "carbon-plate", "laminate of fibres", "isotropic"]),
     ("parts.tube.material=5 mm", ["parts.tube.material", "5 mm", "unknown", "choose one of", "pvc-u"]),
     # unknown names
     ("pose.coordinate=XX", ["pose.coordinate", "'XX'", "not a moving link", "GF, AE"]),

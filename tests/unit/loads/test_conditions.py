@@ -46,9 +46,12 @@ def test_warm_and_long():
 
 def test_ranges_follow_what_they_belong_to():
     """A strength's range is as warm as the strength; after creep the range of the short-term modulus is void."""
-    card = PVC.model_copy(update={"strength_range": (40.0, 46.0), "youngs_modulus_range": (2400.0, 3200.0)})
+    layers = {"shear_strength_between_layers": 6.0, "strength_across_layers_range": (8.0, 9.0)}
+    card = PVC.model_copy(update=layers | {"strength_range": (40.0, 46.0), "youngs_modulus_range": (2400.0, 3200.0)})
     warm = under(card, Conditions.model_validate({"temperature": "40 degC"}))
     assert warm.strength_range == pytest.approx((28.0, 32.2))
+    assert warm.shear_strength_between_layers == pytest.approx(4.2)
+    assert warm.strength_across_layers_range == pytest.approx((5.6, 6.3))
     assert warm.youngs_modulus_range == (2400.0, 3200.0)
     crept = under(card, Conditions.model_validate({"duration": "10 year"}))
     assert (crept.strength_range, crept.youngs_modulus_range) == ((40.0, 46.0), None)
