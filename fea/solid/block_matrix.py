@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid import mkl
+from fea.common import mkl
 
 Product = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+Vectors = NDArray[np.float64]
+"""(k, n): one contiguous row per right-hand side."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -23,13 +25,13 @@ class SymmetricBlockMatrix:
         Start of every block row.
     indices : ndarray of int, shape (b,)
         Block column of every block, ascending, beginning with the diagonal.
-    blocks : ndarray
-        (b, 3, 3), in double or single precision.
+    blocks : ndarray, shape (b, 3, 3)
+        Entries.
     """
 
     indptr: NDArray[np.int32]
     indices: NDArray[np.int32]
-    blocks: NDArray[Any]
+    blocks: NDArray[np.float64]
 
     @property
     def size(self) -> int:
@@ -46,6 +48,11 @@ class SymmetricBlockMatrix:
         from scipy.sparse import bsr_array
 
         return bsr_array((self.blocks, self.indices, self.indptr), shape=(self.size, self.size))
+
+    def both_triangles(self) -> Any:
+        """Return the whole matrix as a scipy ``bsr_array``; blocks of zeros are left out."""
+        upper = self.upper()
+        return upper + (upper - block_diagonal(self.diagonal)).T.tobsr(blocksize=(3, 3))
 
     def full(self) -> Any:
         """Return the whole matrix as a scipy ``csc_array``."""
@@ -65,10 +72,10 @@ class SymmetricBlockMatrix:
     def __matmul__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Multiply with (size,) or (size, k)."""
         if x.ndim == 1:
-            return self.product(np.ascontiguousarray(x, dtype=self.blocks.dtype))
+            return self.product(np.ascontiguousarray(x, dtype=np.float64))
         found = np.empty(x.shape, order="F")
         for column, out in zip(x.T, found.T, strict=True):
-            out[:] = self.product(np.ascontiguousarray(column, dtype=self.blocks.dtype))
+            out[:] = self.product(np.ascontiguousarray(column, dtype=np.float64))
         return found
 
     def fix(self, unknowns: NDArray[np.int64]) -> Any:
@@ -106,10 +113,6 @@ class SymmetricBlockMatrix:
         """Return a matrix with blocks of its own."""
         return SymmetricBlockMatrix(indptr=self.indptr, indices=self.indices, blocks=self.blocks.copy())
 
-    def rounded(self) -> "SymmetricBlockMatrix":
-        """Return a copy in single precision."""
-        return SymmetricBlockMatrix(indptr=self.indptr, indices=self.indices, blocks=self.blocks.astype(np.float32))
-
     def with_fixed(self, unknowns: NDArray[np.int64]) -> "SymmetricBlockMatrix":
         """Return a copy in which these unknowns are fixed.
 
@@ -126,6 +129,25 @@ class SymmetricBlockMatrix:
         found = self.copy()
         found.fix(unknowns)
         return found
+
+
+def block_diagonal(blocks: NDArray[Any]) -> Any:
+    """Return a scipy ``bsr_array`` of diagonal blocks.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (n, 3, 3)
+        Entries.
+
+    Returns
+    -------
+    bsr_array
+        The matrix.
+    """
+    from scipy.sparse import bsr_array
+
+    nodes = np.arange(len(blocks) + 1)
+    return bsr_array((blocks, nodes[:-1], nodes))
 
 
 class _ScipyProduct:

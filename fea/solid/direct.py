@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common import memory
-from fea.solid import mkl
+from fea.common import memory, mkl
 from fea.solid.block_matrix import SymmetricBlockMatrix
 from fea.solid.solved import Solved, accept, refined
 from geometry.base.errors import CannotRunError
@@ -105,7 +104,7 @@ class PardisoFactor(DirectFactor):
     Parameters
     ----------
     K : SymmetricBlockMatrix
-        The system; in single precision where its blocks are, which halves the factor's memory and the work.
+        The system.
     memory_limit : float or None, optional
         Bytes that the whole process may hold, by default what the system leaves.
 
@@ -133,7 +132,6 @@ class PardisoFactor(DirectFactor):
         self._iparm[0] = 1  # no defaults
         self._iparm[1] = 2  # nested dissection (METIS)
         self._iparm[7] = 0  # no refinement here: it would triple the time of every solution
-        self._iparm[27] = int(K.blocks.dtype == np.float32)
         self._iparm[34] = 1  # zero-based indices
         self._iparm[36] = 3  # block-compressed rows of 3×3 blocks
         self._finalizer = weakref.finalize(self, _release, self._library, self._handle, self._iparm, self._MTYPE)
@@ -155,13 +153,9 @@ class PardisoFactor(DirectFactor):
         ndarray
             Solutions, of the same shape.
         """
-        if self._K.blocks.dtype == np.float64:
-            return np.asarray(self._call(self._SOLVE, np.asfortranarray(rhs, dtype=np.float64)))
-        largest = np.abs(rhs).max(axis=0)  # so that no column leaves the range of single precision
-        scale = np.where(largest > 0.0, largest, 1.0)
-        return np.asarray(self._call(self._SOLVE, np.asfortranarray(rhs / scale, dtype=np.float32))) * scale
+        return np.asarray(self._call(self._SOLVE, np.asfortranarray(rhs, dtype=np.float64)))
 
-    def _call(self, phase: int, b: NDArray[Any] | None) -> NDArray[Any] | None:
+    def _call(self, phase: int, b: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
         x = None if b is None else np.zeros_like(b)
         error = _pardiso(self._library, self._handle, self._iparm, self._MTYPE, phase, self._K, b, x)
         if error:
@@ -177,8 +171,8 @@ def _pardiso(
     mtype: int,
     phase: int,
     K: SymmetricBlockMatrix | None,
-    b: NDArray[Any] | None,
-    x: NDArray[Any] | None,
+    b: NDArray[np.float64] | None,
+    x: NDArray[np.float64] | None,
 ) -> int:
     """Call ``pardiso`` and return its error number."""
 

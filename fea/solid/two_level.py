@@ -4,7 +4,8 @@ The linear displacements on a mesh are a subspace of the quadratic ones. Their s
 of the unknowns and is factorised; what they cannot hold is short-waved and left to Chebyshev smoothing
 with the 3×3 diagonal blocks (Adams, Brezina, Hu and Tuminaro, J. Comput. Phys. 188 (2003) 593-610). How
 well the two divide the work depends on the shape of the elements and on Poisson's ratio, not on their
-number nor on the body's slenderness. On curved elements the linear level is that of straight ones on the same
+number nor on the body's slenderness. Where the linear level is large, smoothed aggregation (``fea.solid.cycle``)
+takes the place of its factor. On curved elements the linear level is that of straight ones on the same
 corners, and a mid-node takes what their linear displacement is where it stands: functions that are linear in the
 reference element alone would lack rigid rotations, and a tube took 40 iterations in place of 21. The cycle remains
 positive definite, since the linear level enters between two equal smoothing steps.
@@ -15,17 +16,20 @@ nears 0.5, and iterations grow as 1/√(1−2ν): the bar of 33,000 takes 17 at 
 0.495. Elements stretched 4 and 10 to 1 take 45 and 124.
 """
 
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.block_matrix import Product, SymmetricBlockMatrix
+from fea.solid.block_matrix import SymmetricBlockMatrix, Vectors
+from fea.solid.cycle import ChebyshevSmoother, SmoothedAggregation, rows
 from fea.solid.direct import DirectFactor
 from fea.solid.elasticity import assemble_stiffness, linear_gradients
 from fea.solid.solved import ENERGY_LIMIT, REFINEMENTS, Solved, accept, energy_error
 from fea.solid.space import EDGES, DisplacementSpace
+from fea.solid.supports import rigid_motions
 from geometry.base.errors import CannotRunError
 
 TOLERANCE = 1e-9
@@ -36,11 +40,7 @@ _BATCH = 8  # columns iterated together: bounds the working memory
 _SMOOTHERS = ((2, 10.0), (3, 16.0))
 """Degree, and ratio of the largest to the smallest eigenvalue treated, on straight elements and where some are curved:
 a mesher's are worse in shape than a grid's, and take 17 to 22 iterations in place of 20 to 29; a grid's 17 for 19."""
-_LANCZOS_STEPS = 12
-_MARGIN = 1.1  # Lanczos finds the largest eigenvalue from below
-
-Vectors = NDArray[np.float64]
-"""(k, n): one contiguous row per right-hand side."""
+_PATIENCE = 40  # iterations, after which smoothed aggregation gives way to a factor: that takes as long as some seven
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -73,8 +73,30 @@ class LinearLevel:
     def stiffness(self) -> SymmetricBlockMatrix:
         """Return the stiffness of the linear displacements, with what is fixed of them."""
         K = assemble_stiffness(self.space, E=self.E, nu=self.nu, order=1)
-        K.fix(self.fixed[self.fixed < K.size])
+        K.fix(self.coarse_fixed)
         return K
+
+    @property
+    def coarse_fixed(self) -> NDArray[np.int64]:
+        """Those of the fixed unknowns that belong to corner nodes."""
+        return self.fixed[self.fixed < 3 * self.space.corners]
+
+    def aggregated(self, factorise: Callable[[SymmetricBlockMatrix], DirectFactor]) -> SmoothedAggregation:
+        """Return a cycle of smoothed aggregation for the system of linear elements.
+
+        Parameters
+        ----------
+        factorise : callable
+            Direct solver of the aggregates' system.
+
+        Returns
+        -------
+        SmoothedAggregation
+            Approximate solver.
+        """
+        corners = self.space.nodes[: self.space.corners]
+        motions = rigid_motions(corners, corners.mean(axis=0))
+        return SmoothedAggregation(self.stiffness(), motions, self.coarse_fixed, factorise)
 
 
 def linear_level(space: DisplacementSpace, *, E: float, nu: float, fixed: NDArray[np.int64]) -> LinearLevel | None:
@@ -108,17 +130,25 @@ class TwoLevelFactor:
         The quadratic system, with its fixed unknowns.
     level : LinearLevel
         The linear elements below.
-    coarse : DirectFactor
-        Their factorised system.
+    coarse : DirectFactor or SmoothedAggregation
+        Their system, prepared for solution.
+    spare : callable, optional
+        Factorises their system, where iterations with ``coarse`` are many.
     """
 
-    def __init__(self, K: SymmetricBlockMatrix, level: LinearLevel, coarse: DirectFactor) -> None:
+    def __init__(
+        self,
+        K: SymmetricBlockMatrix,
+        level: LinearLevel,
+        coarse: DirectFactor | SmoothedAggregation,
+        spare: Callable[[], DirectFactor] | None = None,
+    ) -> None:
         self.name = f"conjugate gradients over linear elements by {coarse.name}"
         self._K = K
-        self._coarse = coarse
+        self._coarse, self._spare = coarse, spare
         self._fixed = level.fixed
         self._transfer = _Transfer(level.space)
-        self._smoother = _ChebyshevSmoother(K, *_SMOOTHERS[int(level.space.curved.any())])
+        self._smoother = ChebyshevSmoother(K, *_SMOOTHERS[int(level.space.curved.any())])
 
     def solve(
         self, rhs: NDArray[np.float64], *, start: NDArray[np.float64] | None = None, tolerance: float = TOLERANCE
@@ -204,6 +234,12 @@ class TwoLevelFactor:
                 active, r, p, rz = active[going], r[going], p[going], rz[going]
             if not len(active):
                 return x, iteration
+            if iteration == _PATIENCE and self._spare is not None:
+                with suppress(CannotRunError):  # it may not fit into memory
+                    self._coarse = self._spare()
+                self._spare = None
+                p = self._cycle(r)
+                rz = _dot(r, p)
             q = self._product(p)
             curvature = _dot(p, q)
             if not (curvature > 0.0).all():
@@ -221,19 +257,16 @@ class TwoLevelFactor:
         )
 
     def _product(self, x: Vectors) -> Vectors:
-        return _rows(self._K.product, x)
+        return rows(self._K.product, x)
 
     def _cycle(self, r: Vectors) -> Vectors:
         """Smooth, correct by the linear elements, smooth: an approximate solution, symmetric in r."""
-        x = self._smoother(r)
-        rest = r - self._product(x)
+        return self._smoother.cycle(r, self._correction)
+
+    def _correction(self, rest: Vectors) -> Vectors:
         coarse = self._transfer.restricted(self._without_fixed(rest))
         coarse[:, self._fixed[self._fixed < coarse.shape[1]]] = 0.0
-        correction = self._without_fixed(self._transfer.prolonged(self._coarse.apply(coarse.T).T))
-        x += correction
-        rest -= self._product(correction)
-        x += self._smoother(rest)
-        return x
+        return self._without_fixed(self._transfer.prolonged(self._coarse.apply(coarse.T).T))
 
     def _without_fixed(self, x: Vectors) -> Vectors:
         x = x.copy()
@@ -275,66 +308,6 @@ class _Transfer:
     def restricted(self, r: Vectors) -> Vectors:
         """Return the transpose of ``prolonged``."""
         return np.array([(self._downward @ row.reshape(-1, 3)).ravel() for row in r])
-
-
-class _ChebyshevSmoother:
-    """Chebyshev polynomial in D⁻¹K for the upper part of its spectrum; D are the 3×3 diagonal blocks.
-
-    Recurrence: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., algorithm 12.1.
-    """
-
-    def __init__(self, K: SymmetricBlockMatrix, degree: int, ratio: float) -> None:
-        self._product = K.product
-        self._degree = degree
-        self._ratio = ratio
-        try:
-            inverse = np.linalg.inv(K.diagonal)
-            root = np.linalg.cholesky(inverse)
-        except np.linalg.LinAlgError as error:
-            raise CannotRunError(
-                "the stiffness matrix has a diagonal block that is not positive definite: a node has no stiffness, or "
-                "an element is folded over"
-            ) from error
-        self._inverse = _block_diagonal(inverse)
-        self.largest = _MARGIN * _largest_eigenvalue(self._product, root)
-
-    def __call__(self, r: Vectors) -> Vectors:
-        """Approximate K⁻¹ r."""
-        smallest = self.largest / self._ratio
-        centre, half = (self.largest + smallest) / 2.0, (self.largest - smallest) / 2.0
-        x = np.empty_like(r)
-        for column, out in zip(r, x, strict=True):
-            rho = half / centre
-            step = (self._inverse @ column) / centre
-            out[:] = step
-            rest = column
-            for _ in range(self._degree - 1):
-                rest = rest - self._product(step)
-                previous, rho = rho, 1.0 / (2.0 * centre / half - rho)
-                step = (rho * previous) * step + (2.0 * rho / half) * (self._inverse @ rest)
-                out += step
-        return x
-
-
-def _largest_eigenvalue(product: Product, root: NDArray[Any]) -> float:
-    """Largest eigenvalue of D⁻¹K, from below, by the blocks (n, 3, 3) of R with RRᵀ = D⁻¹: that of RᵀKR."""
-    from scipy.sparse.linalg import LinearOperator, eigsh
-
-    R = _block_diagonal(root)
-    similar = LinearOperator(R.shape, matvec=lambda x: R.T @ product(R @ x), dtype=np.float64)
-    start = np.random.default_rng(0).normal(size=R.shape[0])
-    return float(eigsh(similar, k=1, ncv=_LANCZOS_STEPS, tol=0.1, v0=start, return_eigenvectors=False)[0])
-
-
-def _block_diagonal(blocks: NDArray[Any]) -> Any:
-    from scipy.sparse import bsr_array
-
-    nodes = np.arange(len(blocks) + 1)
-    return bsr_array((blocks, nodes[:-1], nodes))
-
-
-def _rows(product: Product, x: Vectors) -> Vectors:
-    return np.array([product(row) for row in x])
 
 
 def _dot(a: Vectors, b: Vectors) -> NDArray[np.float64]:

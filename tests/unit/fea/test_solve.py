@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.solid import mkl
+from fea.common import mkl
 from fea.solid.direct import PardisoFactor
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.solve import available_methods, factorise

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.common import memory
-from fea.solid import mkl, solve
+from fea.common import memory, mkl
+from fea.solid import solve
 from fea.solid.elasticity import assemble_stiffness
 from fea.solid.solve import available_methods, direct_memory, factorise, two_level_memory
 from fea.solid.space import displacement_space

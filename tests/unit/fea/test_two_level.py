@@ -5,13 +5,14 @@ import pytest
 import solid_meshes
 from scipy.sparse import csr_array
 
-from fea.solid import two_level
-from fea.solid.direct import PardisoFactor
+from fea.solid import cycle, solve, two_level
+from fea.solid.cycle import SmoothedAggregation
+from fea.solid.direct import DirectFactor
 from fea.solid.elasticity import assemble_stiffness
-from fea.solid.solve import available_methods, factorise
+from fea.solid.solve import factorise
 from fea.solid.space import EDGES, displacement_space
 from fea.solid.supports import isostatic_supports, rigid_motions
-from fea.solid.two_level import LinearLevel, TwoLevelFactor, linear_level
+from fea.solid.two_level import LinearLevel, linear_level
 from geometry.base.errors import CannotRunError
 
 E = 2900.0
@@ -221,12 +222,12 @@ def test_largest_eigenvalue_is_found_from_below():
     for i, block in enumerate(inverse):
         D[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = block
     exact = np.linalg.eigvals(D @ full).real.max()
-    found = two_level._largest_eigenvalue(K.product, np.linalg.cholesky(inverse))
+    found = cycle._largest_eigenvalue(K.product, np.linalg.cholesky(inverse))
     assert 0.95 * exact < found <= exact * (1.0 + 1e-12)
 
 
 def test_works_without_mkl(monkeypatch):
-    from fea.solid import mkl
+    from fea.common import mkl
 
     K, level, rhs = _system(solid_meshes.box(counts=(4, 2, 2)), columns=2)
     expected = _iterated(K, level, rhs)
@@ -237,28 +238,66 @@ def test_works_without_mkl(monkeypatch):
     np.testing.assert_allclose(factor.solve(rhs), expected.x, rtol=0.0, atol=1e-8 * np.abs(expected.x).max())
 
 
-@pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")
-@pytest.mark.parametrize(("length", "precision"), [(8, np.float32), (100, np.float64), (200, np.float64)])
-def test_linear_elements_are_factorised_in_single_precision_where_rounding_spares_bending(length, precision):
-    """At 100 the single factor errs by more than bending itself, at 200 it is not positive definite."""
-    K, level, rhs = _system(solid_meshes.box(upper=(length, 1.0, 1.0), counts=(length, 1, 1)))
+AGGREGATED = {
+    "slenderness 8": solid_meshes.box(upper=(8.0, 1.0, 1.0), counts=(16, 2, 2)),
+    "slenderness 100": solid_meshes.box(upper=(100.0, 1.0, 1.0), counts=(100, 1, 1)),
+    "slenderness 200": solid_meshes.box(upper=(200.0, 1.0, 1.0), counts=(200, 1, 1)),
+    "plate": solid_meshes.box(upper=(20.0, 20.0, 1.0), counts=(20, 20, 1)),
+    "curved ring": solid_meshes.ring(3.0, 5.0, 2.0, around=32),
+}
+
+
+@pytest.mark.parametrize("clamped", [False, True])
+@pytest.mark.parametrize("body", AGGREGATED)
+def test_smoothed_aggregation_takes_the_place_of_the_factor(body, clamped, monkeypatch):
+    K, level, rhs = _system(AGGREGATED[body])
+    if clamped:  # at one end whole, and in one direction on a face: as halves of symmetric bodies are
+        nodes = level.space.nodes
+        held = np.column_stack([nodes[:, 0] < nodes[:, 0].min() + 0.2] * 3)
+        held[:, 2] |= np.isclose(nodes[:, 2].min(), nodes[:, 2])
+        level = replace(level, fixed=np.flatnonzero(held))
+        K = assemble_stiffness(level.space, E=E, nu=0.38).with_fixed(level.fixed)
+        rhs[level.fixed] = 0.0
+    exact = _iterated(K, level, rhs)
+    monkeypatch.setattr(solve, "AGGREGATED_FROM", 0)
     factor = factorise(K, level=level, method="two-level", threads=1)
-    assert factor.solver._coarse._K.blocks.dtype == precision
     solved = factor.solved(rhs)
-    assert solved.iterations <= TwoLevelFactor(K, level, PardisoFactor(level.stiffness())).solve(rhs).iterations + 1
+    assert isinstance(factor.solver._coarse, SmoothedAggregation)
+    assert factor.name == "conjugate gradients over linear elements by smoothed aggregation"
+    assert solved.iterations <= 1.4 * exact.iterations
     _agrees_with_factorisation(K, rhs, solved)
 
 
-@pytest.mark.skipif("pardiso" not in available_methods(), reason="MKL is not installed")
-def test_factor_in_single_precision_takes_half_of_the_memory_and_solves_to_single_precision():
-    K, _, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), columns=2)
-    double, single = PardisoFactor(K), PardisoFactor(K.rounded())
-    assert single.memory == pytest.approx(0.5 * double.memory, rel=0.05)
-    rhs = np.column_stack([1e-60 * rhs[:, 0], 1e60 * rhs[:, 1], np.zeros(K.size)])  # beyond the range of single numbers
-    for found, exact in zip(single.apply(rhs).T, double.apply(rhs).T, strict=True):
-        np.testing.assert_allclose(found, exact, rtol=0.0, atol=1e-3 * np.abs(exact).max())
-    x = np.random.default_rng(4).normal(size=K.size)
-    np.testing.assert_allclose(K.rounded() @ x, K @ x, rtol=0.0, atol=1e-5 * np.abs(K @ x).max())
+def test_cycle_of_smoothed_aggregation_is_symmetric_and_positive_definite():
+    _, level, _ = _system(solid_meshes.box(counts=(4, 2, 2)))
+    M = level.aggregated(factorise_directly).apply(np.eye(3 * level.space.corners))
+    np.testing.assert_allclose(M, M.T, rtol=0.0, atol=1e-12 * np.abs(M).max())
+    seen = np.linalg.eigvals(M @ level.stiffness().full().toarray()).real
+    assert seen.min() > 0.05
+    assert seen.max() < 1.2
+
+
+def factorise_directly(K):
+    return factorise(K, threads=1).solver
+
+
+@pytest.mark.parametrize("fits", [True, False])
+def test_slow_smoothed_aggregation_gives_way_to_a_factor_that_fits(fits, monkeypatch):
+    K, level, rhs = _system(solid_meshes.box(counts=(8, 3, 3)), columns=2)
+    monkeypatch.setattr(solve, "AGGREGATED_FROM", 0)
+    factor = factorise(K, level=level, method="two-level", threads=1)
+    monkeypatch.setattr(two_level, "_PATIENCE", 6)
+    if not fits:
+
+        def refused(*arguments):
+            raise CannotRunError("it needs more memory than there is")
+
+        monkeypatch.setattr(solve, "_direct", refused)
+    solved = factor.solved(rhs)
+    monkeypatch.undo()
+    assert isinstance(factor.solver._coarse, DirectFactor) == fits
+    assert 6 < solved.iterations < 40
+    _agrees_with_factorisation(K, rhs, solved)
 
 
 def test_only_quadratic_displacements_have_linear_ones_below():

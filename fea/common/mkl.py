@@ -80,19 +80,15 @@ def address(values: NDArray[Any] | None) -> ctypes.c_void_p | None:
 class SymmetricProduct:
     """Products of a symmetric matrix of 3×3 blocks, given by its upper block triangle, with vectors.
 
-    Refers to the arrays handed in and copies nothing. Vectors have the precision of the blocks.
+    Refers to the arrays handed in and copies nothing.
     """
 
-    def __init__(self, indptr: NDArray[np.int32], indices: NDArray[np.int32], blocks: NDArray[Any]) -> None:
+    def __init__(self, indptr: NDArray[np.int32], indices: NDArray[np.int32], blocks: NDArray[np.float64]) -> None:
         self._arrays = (indptr, indices, blocks)
         self._library = library()
-        single = blocks.dtype == np.float32
-        create = self._library.mkl_sparse_s_create_bsr if single else self._library.mkl_sparse_d_create_bsr
-        self._multiply = self._library.mkl_sparse_s_mv if single else self._library.mkl_sparse_d_mv
-        self._number = ctypes.c_float if single else ctypes.c_double
         self._handle = ctypes.c_void_p()
         rows = ctypes.c_int(len(indptr) - 1)
-        status = create(
+        status = self._library.mkl_sparse_d_create_bsr(
             ctypes.byref(self._handle), _INDEX_BASE_ZERO, _LAYOUT_ROW_MAJOR, rows, rows, ctypes.c_int(3),
             address(indptr), address(indptr[1:]), address(indices), address(blocks),
         )  # fmt: skip
@@ -100,12 +96,12 @@ class SymmetricProduct:
             raise MemoryError(f"MKL could not take the matrix (status {status})")
         weakref.finalize(self, self._library.mkl_sparse_destroy, self._handle)
 
-    def __call__(self, x: NDArray[Any]) -> NDArray[Any]:
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Multiply with a contiguous vector (n,)."""
         y = np.empty_like(x)
-        status = self._multiply(
-            _OPERATION_NON_TRANSPOSE, self._number(1.0), self._handle, _SYMMETRIC_UPPER,
-            address(x), self._number(0.0), address(y),
+        status = self._library.mkl_sparse_d_mv(
+            _OPERATION_NON_TRANSPOSE, ctypes.c_double(1.0), self._handle, _SYMMETRIC_UPPER,
+            address(x), ctypes.c_double(0.0), address(y),
         )  # fmt: skip
         if status:
             raise MemoryError(f"MKL could not multiply (status {status})")
