@@ -1,13 +1,12 @@
 """Child processes for foreign code that can crash or never end, which no exception reports.
 
-A child is stopped at its time limit and on an interruption. It ends by itself when its parent is killed: its
-standard input is a pipe that only the parent holds open, and the end of that pipe is the end of the parent. Programs
-that are not alula's do not look there; the system ends them with their parent (``geometry.base.leash``). Children that
-answer several requests are ``geometry.base.child_server``'s.
+A child is stopped at its time limit and on an interruption. Its standard input is a pipe that only the parent holds
+open, so that the end of that pipe is the end of the parent. Programs that are not alula's do not look there; the
+system ends them with their parent (``geometry.base.leash``). Children that answer requests are
+``geometry.base.child_server``'s.
 """
 
 import os
-import shutil
 import subprocess
 import sys
 import threading
@@ -261,21 +260,3 @@ def stop_all() -> None:
 def stopped() -> bool:
     """Return True after ``stop_all``: a library may have swallowed the exception that was to end the process."""
     return _stopped.is_set()
-
-
-def end_with_parent(scratch: Path) -> None:
-    """End this child process, and remove the folder that it shared with its parent, once the parent has ended.
-
-    Parameters
-    ----------
-    scratch : Path
-        The shared folder.
-    """
-
-    def wait() -> None:
-        while os.read(sys.stdin.fileno(), 1):
-            pass
-        shutil.rmtree(scratch, ignore_errors=True)
-        os._exit(1)
-
-    threading.Thread(target=wait, daemon=True).start()

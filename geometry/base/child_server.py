@@ -157,6 +157,7 @@ class ServerPool:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._waiting: list[_Waiting] = []
+        self._announced: list[tuple[int, list[str], dict[str, str]]] = []
         atexit.register(self.close)
 
     @contextmanager
@@ -195,6 +196,30 @@ class ServerPool:
                 raise
             if server.alive:
                 self._put(_Waiting(server, started_with, topics | {topic}))
+
+    def start(self, command: list[str], environment: dict[str, str]) -> None:
+        """Start a server that will be asked soon, the first time that it is announced.
+
+        Parameters
+        ----------
+        command : list of str
+            Program and arguments.
+        environment : dict of str to str
+            Its environment variables.
+
+        Raises
+        ------
+        OSError
+            If it cannot be started.
+        CannotRunError
+            After ``stop_all``.
+        """
+        started_with = os.getpid(), command, environment
+        with self._lock:
+            if started_with in self._announced:
+                return
+            self._announced.append(started_with)
+        self._put(_Waiting(ChildServer(command, environment), started_with, set()))
 
     def _take(self, started_with: object, topic: Hashable) -> "_Waiting | None":
         with self._lock:

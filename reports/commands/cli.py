@@ -116,7 +116,8 @@ def check(
         parsed = read_case(case, overrides or ())
         refuse_unusable(output, "check", report_names(parsed))
         effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
-        result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=_progress)
+        tell = _progress if output is None or threads == 1 else _solving
+        result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=tell)
         decks = None
         if second_opinion:
             from reports.tables.second_opinion import with_second_opinions
@@ -389,6 +390,14 @@ def _tell(written: str, json: bool) -> None:
     """Say where the folder is, unless standard output is JSON."""
     if not json:
         print(written)
+
+
+def _solving(message: str) -> None:
+    """Tell of a solid that is being solved, and start what will draw its stress."""
+    from reports.figures.figures import start_renderer
+
+    _progress(message)
+    start_renderer()
 
 
 def _progress(message: str) -> None:

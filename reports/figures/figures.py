@@ -5,11 +5,12 @@ where no display or no software renderer is to be had; then the pictures are lef
 Scales, labels and the colour bar are drawn around the renderings.
 """
 
-import json
+import pickle
 import subprocess
-import tempfile
+import time
 from collections.abc import Mapping
-from pathlib import Path
+from contextlib import suppress
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from fea.outcomes.result import LinkResult, SolidResult
 from geometry.base import child
+from geometry.base.child_server import ChildEndedError, ServerPool
 from geometry.base.system_libraries import OSMESA, loads
 from reports.figures.canvas import SIZE, Canvas, faint
 from reports.figures.labels import heights, stacked, write_stacked
@@ -27,8 +29,12 @@ from reports.words.wording import fixed, number, plain
 
 Real = NDArray[np.float64]
 
+_Key = tuple[str, str]
+"""Name of a scene, and which view of it."""
+
 TIME_LIMIT = 180.0
 """Seconds for the renderings of one check."""
+_POOL = ServerPool()
 _COLOURS = ("#ffffcc", "#ffeda0", "#fed976", "#feb24c", "#fd8d3c", "#fc4e2a", "#e31a1c", "#bd0026", "#800026")
 """From no stress to the largest: YlOrRd of ColorBrewer (Brewer, Harrower & Penn State University, 2013)."""
 
@@ -79,11 +85,7 @@ def plots_of(
     """
     if not scenes:
         return {}, ()
-    renderings: dict[str, tuple[Real, Real]] = {}
-    try:
-        renderings, trouble = _rendered(scenes, time_limit)
-    except OSError as error:  # the disk of temporary files is full, or may not be written
-        trouble = f"rendering had no room for its files ({error.strerror or error})"
+    renderings, trouble = _rendered(scenes, time_limit)
     found = {
         name: _composed(scene, *renderings[name], points[name]) for name, scene in scenes.items() if name in renderings
     }
@@ -97,45 +99,26 @@ def _limits(scene: Scene) -> tuple[float, float]:
 
 def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str, tuple[Real, Real]], str]:
     """Render both views of every scene; returns the images that came out, and what went wrong with the others."""
+    requests, none = {}, np.zeros((0, 3))
+    for name, scene in scenes.items():
+        for kind, view, points, outline in (
+            ("strip", scene.strip, scene.deformed, scene.points),
+            ("close", scene.close, scene.points, none),
+        ):
+            asked = asdict(view) | {"limits": _limits(scene), "colours": colours()}
+            arrays = {"points": points, "outline": outline, "triangles": scene.triangles, "values": scene.values}
+            cells = {} if view.cut is None else {"cells": scene.cells}
+            requests[name, kind] = pickle.dumps((asked, arrays | cells))
     trouble = ""
-    with tempfile.TemporaryDirectory(prefix="alula-", ignore_cleanup_errors=True) as name:
-        folder = Path(name)
-        views = {}
-        for i, scene in enumerate(scenes.values()):
-            for kind, view, points, outline in (
-                ("strip", scene.strip, scene.deformed, scene.points),
-                ("close", scene.close, scene.points, np.zeros((0, 3))),
-            ):
-                np.savez(
-                    folder / f"{kind}{i}.npz",
-                    points=points,
-                    outline=outline,
-                    triangles=scene.triangles,
-                    values=scene.values,
-                    cells=scene.cells,
-                )
-                views[f"{kind}{i}"] = {
-                    "arrays": f"{kind}{i}.npz",
-                    "size": view.size,
-                    "focus": view.focus.tolist(),
-                    "toward": view.toward.tolist(),
-                    "up": view.up.tolist(),
-                    "half_height": view.half_height,
-                    "limits": _limits(scene),
-                    "colours": colours().tolist(),
-                    "cut": view.cut,
-                }
-        for choice in _renderers():
-            left = {key: view for key, view in views.items() if not (folder / f"{key}.npy").exists()}
-            trouble = _run_worker(folder, left, choice, time_limit)
-            if not trouble:
-                break
-        found = {}
-        for i, scene_name in enumerate(scenes):
-            pair = [folder / f"{kind}{i}.npy" for kind in ("strip", "close")]
-            if all(path.exists() for path in pair):
-                found[scene_name] = (np.load(pair[0]), np.load(pair[1]))
-    return found, trouble
+    images: dict[_Key, Real] = {}
+    for choice in _renderers():
+        left = {key: request for key, request in requests.items() if key not in images}
+        found, trouble = _ask(left, choice, time_limit)
+        images |= found
+        if not trouble:
+            break
+    whole = [name for name in scenes if {(name, "strip"), (name, "close")} <= images.keys()]
+    return {name: (images[name, "strip"], images[name, "close"]) for name in whole}, trouble
 
 
 def _renderers() -> tuple[dict[str, str], ...]:
@@ -147,24 +130,41 @@ def _renderers() -> tuple[dict[str, str], ...]:
     return ({"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}, own) if loads(OSMESA) else (own,)
 
 
-def _command(folder: Path) -> list[str]:
-    return child.module_command("reports.figures.figures_worker", str(folder))
+def _command() -> list[str]:
+    return child.module_command("reports.figures.figures_worker")
 
 
-def _run_worker(folder: Path, views: dict[str, Any], choice: dict[str, str], time_limit: float) -> str:
-    """Run a child on some of the views; returns what went wrong, or nothing."""
-    request = f"{next(iter(views))}.json"
+def _environment(choice: Mapping[str, str]) -> dict[str, str]:
+    return child.environment(PYVISTA_OFF_SCREEN="true", **choice)
+
+
+def start_renderer() -> None:
+    """Start the child that renders, once, so that it is ready when there is something to render."""
+    with suppress(OSError):  # told where pictures are asked for
+        _POOL.start(_command(), _environment(_renderers()[0]))
+
+
+def _ask(requests: Mapping[_Key, bytes], choice: Mapping[str, str], time_limit: float) -> tuple[dict[_Key, Real], str]:
+    """Have a child render views; returns the images that came out, and what went wrong with the others."""
+    found: dict[_Key, Real] = {}
+    end = time.monotonic() + time_limit
     try:
-        (folder / request).write_text(json.dumps(views), encoding="utf-8")
-        environment = child.environment(PYVISTA_OFF_SCREEN="true", **choice)
-        status, told = child.run([*_command(folder), request], environment=environment, time_limit=time_limit)
+        with _POOL.server(_command(), _environment(choice), "") as server:
+            for key, request in requests.items():
+                kind, told = pickle.loads(server.ask(request, max(end - time.monotonic(), 0.0)))
+                if kind == "failed":
+                    return found, f"rendering failed ({told})"
+                found[key] = told
     except subprocess.TimeoutExpired:
-        return f"rendering was stopped after {time_limit:g} s"
+        return found, f"rendering was stopped after {time_limit:g} s"
+    except ChildEndedError as ended:
+        if ended.status < 0:
+            advice = "check that the system libraries in the README are there"
+            return found, f"rendering crashed (signal {-ended.status}); {advice}"
+        return found, f"rendering failed ({ended.told})"
     except OSError as error:
-        return f"rendering could not be started ({error.strerror})"
-    if status < 0:
-        return f"rendering crashed (signal {-status}); check that the system libraries in the README are there"
-    return f"rendering failed ({told})" if status else ""
+        return found, f"rendering could not be started ({error.strerror})"
+    return found, ""
 
 
 def colours() -> NDArray[np.uint8]:

@@ -1,25 +1,22 @@
-"""The child process that renders views with pyvista: ``python -m reports.figures.figures_worker FOLDER REQUEST``.
+"""The child process that renders views with pyvista: ``python -m reports.figures.figures_worker``.
 
-Reads from the folder the request, a JSON object name -> view, and the arrays in the ``.npz`` file that each view
-names; writes the image of each as ``<view>.npy``.
+A request is pickled: a view and its arrays. So is its answer: ("done", image) or ("failed", sentence).
 """
 
-import json
-import sys
-from pathlib import Path
+import pickle
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base.child import end_with_parent
+from geometry.base.child_server import ChildService
 
 SMOOTH_BELOW = 40.0
 """Angle between faces [degrees] above which an edge is drawn sharp."""
 
 
-def render(plotter: Any, view: dict[str, Any], arrays: dict[str, NDArray[Any]], path: Path) -> None:
-    """Render one view in parallel projection and save it.
+def render(plotter: Any, view: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> NDArray[np.uint8]:
+    """Render one view in parallel projection.
 
     Parameters
     ----------
@@ -28,12 +25,20 @@ def render(plotter: Any, view: dict[str, Any], arrays: dict[str, NDArray[Any]], 
     view : dict
         ``size`` (width, height) in pixels, ``focus`` and ``toward`` (3,) where the camera looks and from which
         direction, ``up`` (3,), ``half_height`` [mm], ``limits`` of the colours [MPa], ``colours`` (k, 3) from 0 to 255,
-        ``cut`` a height z [mm] above which the body is cut away, or null.
+        ``cut`` a height z [mm] above which the body is cut away, or None.
     arrays : dict
         ``points`` (n, 3), ``triangles`` (k, 3), ``values`` (n,), ``outline`` (n, 3) of the undeformed body (empty for
         none), and ``cells`` (m, 4) tetrahedra to be cut.
-    path : Path
-        The image, as a NumPy file.
+
+    Returns
+    -------
+    array
+        Red, green and blue (height, width, 3) from 0 to 255.
+
+    Raises
+    ------
+    RuntimeError
+        For a blank picture.
     """
     import pyvista
 
@@ -78,35 +83,27 @@ def render(plotter: Any, view: dict[str, Any], arrays: dict[str, NDArray[Any]], 
     image = plotter.screenshot(None, return_img=True)
     if np.ptp(image) == 0:
         raise RuntimeError("the picture came out blank")
-    # By renaming, so that a crash leaves no half of an image.
-    draft = path.with_suffix(".part.npy")
-    np.save(draft, image)
-    draft.rename(path)
+    return np.asarray(image)
 
 
-def main(folder: Path, request: str) -> None:
-    """Render every view of a request.
-
-    Parameters
-    ----------
-    folder : Path
-        Contains the request and its arrays; receives the images.
-    request : str
-        Name of a JSON file.
-    """
-    end_with_parent(folder)
-    views = json.loads((folder / request).read_text(encoding="utf-8"))
-    if not views:
-        return
+def main() -> None:
+    """Answer requests until the parent ends."""
+    service = ChildService()
     import pyvista
 
     plotter = pyvista.Plotter(off_screen=True, lighting="light kit")
     plotter.set_background("white")
-    for name, view in views.items():
-        with np.load(folder / view["arrays"]) as stored:
-            render(plotter, view, dict(stored), folder / f"{name}.npy")
-    plotter.close()
+
+    def answer(request: bytes) -> None:
+        told: tuple[str, object]
+        try:
+            told = "done", render(plotter, *pickle.loads(request))
+        except Exception as error:
+            told = "failed", f"{type(error).__name__}: {error}"
+        service.reply(pickle.dumps(told))
+
+    service.run(answer)
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), sys.argv[2])
+    main()

@@ -11,7 +11,6 @@ import pytest
 from geometry.base.child import run as run_child
 from geometry.meshing.mesh import COARSE, mesh_body
 from geometry.parts.part import Bar, Body, Pin
-from reports.figures import figures
 
 resource = pytest.importorskip("resource")
 BODY = Body(
@@ -108,23 +107,6 @@ def test_meshing_needs_no_room_for_temporary_files(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
     monkeypatch.setenv("TMPDIR", str(tmp_path / "none"))  # the child's
     assert mesh_body(BODY, COARSE).volume > 0.0
-
-
-def test_no_room_for_renderings_costs_one_warning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*arguments: object, **options: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("numpy.savez", full)
-    cube = figures.np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
-    view = figures.View(right=cube[4], up=cube[2], toward=cube[1], focus=cube[0], half_width=1.0, half_height=1.0,
-                        size=(10, 10), cut=None)  # fmt: skip
-    faces = figures.np.array([[0, 1, 3]])
-    scene = figures.Scene(points=cube, displacement=cube, values=cube[:, 0], measure="stress",
-                          triangles=faces, cells=faces, hottest=0,
-                          top=1.0, doubt="", scale=1.0, far_side=False, strip=view, close=view)  # fmt: skip
-    pictures, [warning] = figures.plots_of({"AE": scene}, {"AE": {}})
-    assert pictures == {}
-    assert warning == "no stress plot of AE: rendering had no room for its files (No space left on device)"
 
 
 READ_ONLY = """

@@ -1,13 +1,11 @@
 """Without display, without EGL, without OSMesa: no stress plots, one warning, the same verdict."""
 
-import json
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from geometry.base import child
+from geometry.base.child_server import ServerPool
 from reports.figures import figures
 
 FAR = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
@@ -53,11 +51,18 @@ def test_without_display(monkeypatch: pytest.MonkeyPatch) -> None:
     assert pictures["AE"].startswith(b"\x89PNG")
 
 
-def test_a_worker_reads_its_request_and_no_more(tmp_path: Path) -> None:
-    """A request for nothing draws nothing and imports no graphics library."""
-    (tmp_path / "pyvista.py").write_text("raise SystemExit(9)")
-    (tmp_path / "none.json").write_text(json.dumps({}))
-    command = child.module_command("reports.figures.figures_worker", str(tmp_path), "none.json")
-    environment = child.environment() | {"PYTHONPATH": f"{Path(figures.__file__).parents[1]}:{tmp_path}"}
-    assert child.run(command, environment=environment, time_limit=60.0)[0] == 0
-    assert sys.executable in command
+def test_a_renderer_that_was_started_early_draws_without_temporary_files(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "none"))  # the child's
+    pool = ServerPool()
+    monkeypatch.setattr(figures, "_POOL", pool)
+    for _ in range(2):
+        figures.start_renderer()
+    [early] = pool._waiting
+    pictures, warnings = figures.plots_of({"AE": scene()}, {"AE": {}})
+    assert warnings == ()
+    assert pictures["AE"].startswith(b"\x89PNG")
+    assert [waiting.server for waiting in pool._waiting] == [early.server]
+    pool.close()

@@ -46,7 +46,7 @@ def test_a_beam_gets_none(result):
     ],
 )
 def test_a_renderer_that_fails_costs_one_warning(solid, monkeypatch, program, trouble):
-    monkeypatch.setattr(figures, "_command", lambda folder: [sys.executable, "-c", program])
+    monkeypatch.setattr(figures, "_command", lambda: [sys.executable, "-c", program])
     pictures, warnings = figures.stress_plots(solid, POINTS, time_limit=0.5 if "sleep" in program else 60.0)
     assert pictures == {}
     [warning] = warnings
@@ -56,11 +56,11 @@ def test_a_renderer_that_fails_costs_one_warning(solid, monkeypatch, program, tr
 def test_a_missing_library_is_tried_again_with_another_renderer(solid, monkeypatch):
     tried = []
 
-    def run(folder, views, choice, time_limit):
+    def ask(requests, choice, time_limit):
         tried.append(choice)
-        return "rendering crashed"
+        return {}, "rendering crashed"
 
-    monkeypatch.setattr(figures, "_run_worker", run)
+    monkeypatch.setattr(figures, "_ask", ask)
     monkeypatch.setattr(figures, "loads", lambda library: True)
     figures.stress_plots(solid, POINTS)
     software = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"}

@@ -8,9 +8,7 @@ from reports.page.folder import report_names, write_report
 
 @pytest.fixture
 def without_renderer(monkeypatch):
-    monkeypatch.setattr(
-        figures, "_run_worker", lambda folder, views, choice, time_limit: "rendering crashed (signal 11)"
-    )
+    monkeypatch.setattr(figures, "_ask", lambda requests, choice, time_limit: ({}, "rendering crashed (signal 11)"))
 
 
 def test_the_folder_is_complete(result, tmp_path):
