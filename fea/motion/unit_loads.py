@@ -24,13 +24,14 @@ from fea.solid.supports import rigid_motions
 from fea.solid.traction import (
     Transfer,
     body_density,
+    bore_middle,
     couple_traction,
     line_density,
     wrench_density,
 )
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Body, Pin
-from loads.records.applied import BodyForce, LineLoad, PartMass
+from loads.records.applied import BodyForce, LineLoad, PartMass, shifted
 from loads.records.bearing import NARROW, WIDE, PressureLaw
 
 Real = NDArray[np.float64]
@@ -257,7 +258,8 @@ class _Builder:
 
     def pin(self, pin: Pin, highest: int) -> PinUnits:
         """Pressure fields of a pin without their resultants, and the tractions of unit forces."""
-        bore, centre = surface_quadrature(self._space, f"bore:{pin.name}"), np.array([pin.x, pin.y, 0.0])
+        bore, axis = surface_quadrature(self._space, f"bore:{pin.name}"), np.array([pin.x, pin.y, 0.0])
+        centre = bore_middle(bore, axis)
         arm = bore.x - centre
         radius = float((bore.w * np.hypot(arm[..., 0], arm[..., 1])).sum() / bore.w.sum())
         if not 0.9 < 2.0 * radius / pin.diameter < 1.1:
@@ -274,7 +276,7 @@ class _Builder:
             pin=pin,
             cosine=self._add(*freed[: highest + 1], local=True),
             sine=self._add(*freed[highest + 1 :], local=True),
-            force=self._add(rigid[:, 0], rigid[:, 1]),
+            force=self._add(*(rigid @ shifted(unit, axis - centre) for unit in np.eye(6)[:2])),
             wrench=wrench,
         )
 

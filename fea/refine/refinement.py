@@ -109,13 +109,12 @@ class LinkTask:
     @property
     def section(self) -> float:
         """Smaller dimension of the section [mm]."""
-        return min(self.body.part.section.width, self.body.part.section.height)
+        return self.body.part.size
 
     @property
     def may_be_sharp(self) -> bool:
         """True where the shape has re-entrant edges: at eyes without fillets."""
-        part = self.body.part
-        return part.is_beam and part.fillet_radius == 0.0
+        return self.body.part.may_be_sharp
 
 
 @dataclass(frozen=True, kw_only=True)

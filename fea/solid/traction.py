@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from fea.common.link_loads import ALONG, PinLoad
 from fea.solid.quadrature import Quadrature, SurfaceQuadrature
 from geometry.base.errors import CannotRunError
-from loads.records.applied import BodyForce, LineLoad
+from loads.records.applied import BodyForce, LineLoad, shifted
 from loads.records.bearing import PressureLaw
 
 Transfer = Literal["eye-faces", "bore-shear"]
 Density = NDArray[np.float64]
 
+OFF_PLANE = 1e-3
+"""Share of a hole's length by which its middle may lie off the plane of forces before that counts."""
 LARGEST_CORRECTION = 0.1
 """A meshed surface may miss the wrench by this part of the load before its mesh is refused."""
 
@@ -74,7 +76,8 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
     in its hole, pressing in the direction β above the mid-plane and in β + π below it, in proportion
     to the height: p1 |z| law(θ − β). α, p0, β and p1 are solved on the meshed hole, whose facets would
     else turn and shorten the resultant. What then remains (a moment of unsymmetric facets) is removed
-    by a traction of the rigid-body fields.
+    by a traction of the rigid-body fields. In a hole whose middle lies off the link's plane of forces,
+    heights count from its middle, and the force's moment about that middle is added to the pin's.
 
     Parameters
     ----------
@@ -95,7 +98,8 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
     CannotRunError
         If the surface is not that hole, or meshed too coarsely.
     """
-    arm = bore.x - pin.centre
+    middle = bore_middle(bore, pin.centre)
+    arm = bore.x - middle
     radius = float((bore.w * np.hypot(arm[..., 0], arm[..., 1])).sum() / bore.w.sum())
     if not 0.9 < 2.0 * radius / pin.diameter < 1.1:
         raise CannotRunError(
@@ -112,18 +116,38 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
         return np.asarray(-pressure[..., None] * bore.normals)
 
     def force(density: Density) -> NDArray[np.float64]:
-        return bore.wrench(density, pin.centre)[:2]
+        return bore.wrench(density, middle)[:2]
 
     def moment(density: Density) -> NDArray[np.float64]:
-        whole = bore.wrench(density, pin.centre)
+        whole = bore.wrench(density, middle)
         return np.array([whole[4], -whole[3]])
 
-    target = np.array([pin.wrench[0], pin.wrench[1], 0.0, pin.wrench[3], pin.wrench[4], 0.0])
+    pushes = np.array([pin.wrench[0], pin.wrench[1], 0.0, pin.wrench[3], pin.wrench[4], 0.0])
+    target = shifted(pushes, pin.centre - middle)
     density = _directed(pushed, force, target[:2], pin.name)
     density = density + _directed(tilted, moment, np.array([target[4], -target[3]]), pin.name)
-    missing = target - bore.wrench(density, pin.centre)
+    missing = target - bore.wrench(density, middle)
     _limit(missing, target, pin.diameter, f"the hole at pin {pin.name}")
-    return density + wrench_density(bore, pin.centre, missing)
+    return density + wrench_density(bore, middle, missing)
+
+
+def bore_middle(bore: SurfaceQuadrature, centre: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the point of a hole's axis at the middle of its wall.
+
+    Parameters
+    ----------
+    bore : SurfaceQuadrature
+        The hole on the mesh.
+    centre : ndarray, shape (3,)
+        Of the pin, in the plane of the link's forces [mm].
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        The middle; ``centre`` itself where it differs by rounding or by uneven elements alone [mm].
+    """
+    height, reach = float(bore.centroid[2] - centre[2]), float(np.ptp(bore.x[..., 2]))
+    return np.asarray(centre + np.array([0.0, 0.0, height if abs(height) > OFF_PLANE * reach else 0.0]))
 
 
 def thrust_traction(face: SurfaceQuadrature, pin: PinLoad) -> Density:

@@ -14,6 +14,7 @@ from geometry.base.errors import AlulaError
 from geometry.base.kernel_child import KernelWords, ask_kernel
 from geometry.meshing.mesh_settings import COARSE, MeshSettings
 from geometry.meshing.reentrant import ReentrantEdge
+from geometry.meshing.sections import StationSection
 from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.body_rules import check_body
 from geometry.parts.part import Body
@@ -23,11 +24,13 @@ __all__ = [
     "MassProperties",
     "MeshSettings",
     "ReentrantEdge",
+    "StationSection",
     "export_step",
     "mass_properties",
     "mesh_bodies",
     "mesh_body",
     "reentrant_edges",
+    "sections_and_rings",
     "step_names",
 ]
 
@@ -156,6 +159,28 @@ def reentrant_edges(body: Body) -> list[ReentrantEdge]:
     check_body(body)
     edges: list[ReentrantEdge] = _run("reentrant", body)
     return edges
+
+
+def sections_and_rings(body: Body, stations: tuple[float, ...]) -> tuple[list[StationSection], list[float]]:
+    """Return sections of a body, and the flat rings about its holes; errors are those of ``mesh_body``.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    stations : tuple of float
+        The x at which it is cut [mm].
+
+    Returns
+    -------
+    sections : list of StationSection
+        Normal to the link's axis; those that have an area.
+    rings : list of float
+        Outer diameter of the flat ring about each pin's hole; 0 where there is none [mm].
+    """
+    check_body(body)
+    sections, rings = _run("sections", body, stations)
+    return sections, rings
 
 
 def export_step(bodies: Mapping[str, Body], folder: Path) -> list[Path]:

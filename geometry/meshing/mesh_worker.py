@@ -73,7 +73,20 @@ def _step(gmsh: Any, built: _Built, path: str) -> None:
     draft.rename(Path(path).name)
 
 
-TASKS: dict[str, Callable[..., object]] = {"mesh": _mesh, "mass": _mass, "step": _step, "reentrant": _reentrant}
+def _sections(gmsh: Any, built: _Built, stations: tuple[float, ...]) -> object:
+    from geometry.meshing.sections import cut_sections, ring_diameters
+
+    present(gmsh, built.solid.tag)
+    return cut_sections(gmsh, built.solid, stations), ring_diameters(gmsh, built.solid)
+
+
+TASKS: dict[str, Callable[..., object]] = {
+    "mesh": _mesh,
+    "mass": _mass,
+    "step": _step,
+    "reentrant": _reentrant,
+    "sections": _sections,
+}
 """What the worker does with gmsh, a body that has been built, and further arguments."""
 FILE_TASKS: dict[str, Callable[..., object]] = {"facts": facts_of_file}
 """What it does with gmsh, in a model of its own, with the path and the digest of a STEP file, and further arguments."""

@@ -129,7 +129,7 @@ def build(gmsh: Any, body: Body) -> Solid:
         Where the kernel fails otherwise.
     """
     part, kernel = body.part, Kernel(gmsh)
-    unit = min(part.section.width, part.section.height) / SECTION_UNITS
+    unit = part.size / SECTION_UNITS
     small = scaled(body, unit)
     try:
         solid = small.part.solid(kernel, small)
@@ -143,7 +143,7 @@ def build(gmsh: Any, body: Body) -> Solid:
             f"{eyes}; reduce it, increase eye_diameter or "
             f"eye_thickness, or move the pins further apart{arms}"
         ) from None
-    for pin in small.pins:
+    for pin in () if part.has_holes else small.pins:
         tools += kernel.upright(pin, pin.diameter, 2.0 * small.ring(pin).thickness)
     tools += _hole_rows(kernel, small)  # one cut, since a second one works on all faces that the first one made
     solid = _imprint(kernel, small, kernel.cut(solid, tools))
@@ -177,9 +177,10 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
         return solid
     borders: list[Entity] = []
     width, height = section.width, section.height
-    flat_eyes = [pin for pin in body.pins if flush(body, pin) and body.ring(pin).diameter > 0.0]
-    for side in (-0.5, 0.5):
-        borders += [_flat_eye(kernel, pin, _ring(body, pin), side * height) for pin in flat_eyes]
+    for pin in body.pins:
+        ring = body.ring(pin)
+        if ring.diameter > 0.0 and (body.part.has_holes or flush(body, pin)):
+            borders += [_flat_eye(kernel, pin, _ring(body, pin), z) for z in (ring.low, ring.high)]
     for end in body.ends:
         low, high = patch_span(body, end)
         for side in (-0.5, 0.5):

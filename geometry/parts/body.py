@@ -47,6 +47,8 @@ class PartKind(CaseModel):
     """What a link of this kind may have besides pin holes."""
     is_beam: ClassVar[bool] = True
     """Whether beam theory holds between its eyes."""
+    has_holes: ClassVar[bool] = False
+    """Whether its solid has its pin holes from the start."""
 
     @property
     @abstractmethod
@@ -155,6 +157,16 @@ class PartKind(CaseModel):
         """
         lengths = {name: s(value) for name, value in self.model_dump().items() if isinstance(value, int | float)}
         return self.model_copy(update=lengths)
+
+    @property
+    def size(self) -> float:
+        """What sets its first element edges and the unit in which it is built [mm]: a section's smaller size."""
+        return min(self.section.width, self.section.height)
+
+    @property
+    def may_be_sharp(self) -> bool:
+        """Whether it may have re-entrant edges."""
+        return self.is_beam and self.fillet_radius == 0.0
 
     def largest_element(self) -> float:
         """Return the largest element edge that its round surfaces bear [unit of its sizes]."""

@@ -4,7 +4,7 @@ gmsh itself is loaded in a child process alone (``geometry.meshing``), which han
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -60,6 +60,42 @@ class Kernel:
         solid = 3, self.occ.addCylinder(*start, *axis, radius)
         if axis[2] == 0.0 in axis[:2]:  # along x or y, where the kernel begins at +z
             self.occ.rotate([solid], *start, *axis, math.pi / 2.0)
+        return solid
+
+    def imported(self, file: str, scale: float, turn: Sequence[Vector], shift: Vector) -> Entity:
+        """Read the solid of a STEP file and move it.
+
+        Parameters
+        ----------
+        file : str
+            Path.
+        scale : float
+            By which its lengths in mm are multiplied.
+        turn : sequence of tuple of float
+            Rows of a rotation about the origin.
+        shift : tuple of float
+            By which it is moved then.
+
+        Returns
+        -------
+        Entity
+            The solid.
+
+        Raises
+        ------
+        CannotRunError
+            Where there are several, or none.
+        """
+        self.gmsh.option.setNumber("Geometry.OCCScaling", scale)
+        try:
+            found = self.occ.importShapes(file, highestDimOnly=True, format="step")
+        finally:
+            self.gmsh.option.setNumber("Geometry.OCCScaling", 1.0)
+        solid = self.only([entity for entity in found if entity[0] == 3])
+        axis, angle = axis_angle(np.array(turn))
+        if angle != 0.0:
+            self.occ.rotate([solid], 0, 0, 0, *axis, angle)
+        self.occ.translate([solid], *shift)
         return solid
 
     def box(self, corner: Vector, sides: Vector, turn: float = 0.0, about: tuple[float, float] = (0.0, 0.0)) -> Entity:
@@ -237,3 +273,34 @@ class Kernel:
         """
         low, high = self.model.getParametrizationBounds(1, tag)
         return np.asarray(self.model.getValue(1, tag, [low[0] + at * (high[0] - low[0])]))
+
+
+def axis_angle(turn: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """Return axis and angle of a rotation, by the quaternion that is nearest to it.
+
+    That is the eigenvector of the largest eigenvalue of a symmetric matrix of the rotation's entries.
+
+    Parameters
+    ----------
+    turn : ndarray
+        Rotation matrix (3, 3).
+
+    Returns
+    -------
+    axis : ndarray
+        Unit vector (3,); x for no rotation.
+    angle : float
+        From 0 to 2π [rad].
+
+    References
+    ----------
+    Bar-Itzhack, J. Guidance, Control, and Dynamics 23 (2000) 1085-1087.
+    """
+    matrix = np.zeros((4, 4))
+    matrix[:3, :3] = turn + turn.T - np.trace(turn) * np.eye(3)
+    matrix[3, :3] = matrix[:3, 3] = turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]
+    matrix[3, 3] = np.trace(turn)
+    quaternion = np.linalg.eigh(matrix)[1][:, -1]
+    size = float(np.linalg.norm(quaternion[:3]))
+    axis = quaternion[:3] / size if size > 0.0 else np.array([1.0, 0.0, 0.0])
+    return axis, 2.0 * math.atan2(size, float(quaternion[3]))

@@ -9,6 +9,7 @@ from geometry.parts.body import Body
 from geometry.parts.disc import Disc
 from geometry.parts.features import HoleRow, Pin, PlainEnd, Ring, Slot
 from geometry.parts.section import Section, rectangle, ring
+from geometry.parts.step import StepPart
 from geometry.parts.tube import Tube
 
 __all__ = [
@@ -22,10 +23,11 @@ __all__ = [
     "Ring",
     "Section",
     "Slot",
+    "StepPart",
     "Tube",
     "rectangle",
     "ring",
 ]
 
-Part = Annotated[Tube | Bar | Disc, Field(discriminator="shape")]
+Part = Annotated[Tube | Bar | Disc | StepPart, Field(discriminator="shape")]
 """Any kind of part; a new kind joins here."""

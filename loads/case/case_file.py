@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from geometry.base.errors import CaseError
 from geometry.base.version import CASE_SCHEMA_VERSION
 from loads.case.case import Case
+from loads.case.part_points import with_part_points
 from loads.case.revisable import Origin
 from loads.text.entries import alike, names_tables
 from loads.text.explain import printable, sentence
@@ -77,7 +78,9 @@ def _changed(tables: dict[str, Any], changes: Sequence[Change], name: str) -> Ca
             _override(data, Change(path, value, f"{table} sets"))
     for change in changes if derived else ():  # what is stated outright wins
         _override(data, change)
-    return validate(data).read_from(Origin(name=name, revise=partial(_revised, tables, tuple(changes), name)))
+    return validate(data, _folder(name)).read_from(
+        Origin(name=name, revise=partial(_revised, tables, tuple(changes), name))
+    )
 
 
 def _revised(tables: dict[str, Any], changes: Sequence[Change], name: str, values: Mapping[str, object]) -> Case:
@@ -160,13 +163,20 @@ def read_companion(case_path: str, name: str) -> str:
     raise CaseError(f"'{printable(name)}' is not a readable file beside the case file; put it there")
 
 
-def validate(data: dict[str, Any]) -> Case:
+def _folder(name: str) -> str:
+    """Return the folder in which the files of a case's parts are sought."""
+    return str(files("loads.cases")) if name in built_in_cases() else str(Path(name).parent)
+
+
+def validate(data: dict[str, Any], folder: str = "") -> Case:
     """Validate a case.
 
     Parameters
     ----------
     data : dict of str to object
         The case as nested tables, as ``tomllib`` reads them.
+    folder : str
+        Where the files of its parts are sought; the present one unless given.
 
     Returns
     -------
@@ -179,8 +189,10 @@ def validate(data: dict[str, Any]) -> Case:
         With one sentence for the first problem.
     """
     _check_version(data)
+    context = {"folder": folder}
+    tables = with_part_points(data, context)
     try:
-        return Case.model_validate(data)
+        return Case.model_validate(tables, context=context)
     except ValidationError as error:
         raise CaseError(sentence(error, Case)) from None
 

@@ -7,7 +7,7 @@ from geometry.base.model import check_file_names
 from geometry.parts.body_rules import check_body
 from geometry.parts.laminate import ANISOTROPIC, is_laminate
 from geometry.parts.material import Material
-from geometry.parts.part import Body
+from geometry.parts.part import Body, StepPart
 from loads.case.core import CoreCase, check_moving, check_point
 from loads.case.load_rules import check_loads, check_masses, check_place
 from loads.records.check_spec import (
@@ -74,7 +74,8 @@ def check_rules(case: CoreCase) -> None:
         _check_ways_to_hold(case, case.ways_to_hold)
     _check_size(case)
     for name, hand in case.hand_calculations.items():
-        require(f"hand_calculations.{name}.part", hand.part, case.parts, "is unknown")
+        drawn = [part for part, record in case.parts.items() if not isinstance(record, StepPart)]
+        require(f"hand_calculations.{name}.part", hand.part, drawn, "is no part of a shape of alula's own")
     if case.motion is not None:
         _check_motion(case, case.motion)
 

@@ -1,5 +1,6 @@
 """The core of a case: what a user states, as the case file (TOML) mirrors it; ``case_rules`` holds its rules."""
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, Literal
 
@@ -9,8 +10,11 @@ from geometry.base.errors import CaseError
 from geometry.base.model import Name, Text
 from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
+from geometry.parts.body import PartKind
 from geometry.parts.material import Material, library
-from geometry.parts.part import Body, Part, Pin, PlainEnd
+from geometry.parts.part import Body, Part, Pin, PlainEnd, StepPart
+from geometry.placement.match import Wanted
+from geometry.placement.placed_body import placed_body
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
 from loads.records.carried import Carried
@@ -194,7 +198,7 @@ class CoreCase(Revisable):
         ]
         return (*self.pinned_joints, *slotted)
 
-    def part_of(self, link: str) -> Part:
+    def part_of(self, link: str) -> PartKind:
         """Return the part of a link.
 
         Parameters
@@ -204,14 +208,23 @@ class CoreCase(Revisable):
 
         Returns
         -------
-        Part
-            Its part.
+        PartKind
+            Its part; an imported one as it lies in the link.
 
         Raises
         ------
         CaseError
             Where it has none.
         """
+        part = self._stated_part(link)
+        return self.body(link).part if isinstance(part, StepPart) else part
+
+    @cached_property
+    def _imported(self) -> dict[str, Body]:
+        """Bodies of imported parts, placed once: each placement reads their files."""
+        return {}
+
+    def _stated_part(self, link: str) -> Part:
         name = self.links[link].part
         if name is None:
             raise CaseError(f"links.{link}.part: this link has no part; name one")
@@ -261,7 +274,13 @@ class CoreCase(Revisable):
                 )
             else:
                 ends.append(PlainEnd(name=name, x=x, patch=record.end_patch))
-        return Body(part=self.part_of(link), pins=tuple(pins), ends=tuple(ends), holes=record.holes)
+        part = self._stated_part(link)
+        if isinstance(part, StepPart):
+            wanted = tuple(Wanted(name=pin.name, place=(pin.x, pin.y), diameter=pin.diameter) for pin in pins)
+            if link not in self._imported:
+                self._imported[link] = placed_body(part, wanted)
+            return replace(self._imported[link], ends=tuple(ends), holes=record.holes)
+        return Body(part=part, pins=tuple(pins), ends=tuple(ends), holes=record.holes)
 
     @property
     def motion_coordinate(self) -> str:

@@ -1,0 +1,154 @@
+"""The imported part: a solid from a STEP file, and how it lies in its link."""
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import AfterValidator, Field, ValidationInfo
+
+from geometry.base.errors import CannotRunError
+from geometry.base.model import CaseModel, Name, Text, refusal
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from geometry.parts.body import Body, PartKind
+from geometry.parts.kernel import Entity, Kernel
+from geometry.parts.section import Section, rectangle
+
+Vector = tuple[float, float, float]
+
+
+def _beside_the_case(text: str, info: ValidationInfo) -> str:
+    """Return the path of a file that stands beside the case file, or anywhere else if it is an absolute path."""
+    if not text.strip() or "\0" in text:
+        raise refusal("a part needs the name of its file; name the STEP file, relative to the case file")
+    folder = (info.context or {}).get("folder", "")
+    return str((Path(folder) / text).absolute())
+
+
+PartFile = Annotated[Text, Field(max_length=1000), AfterValidator(_beside_the_case)]
+
+
+class StepPart(CaseModel):
+    """A solid from a STEP file; its bores are matched to the points of the link that is made of it."""
+
+    shape: Literal["step"]
+    material: Name
+    file: PartFile
+    """Name of the STEP file, relative to the folder of the case file."""
+    bores: Annotated[dict[Name, Text], Field(max_length=100)] = {}
+    """Point of the link -> name of its bore, as ``alula inspect`` names them; needed where the points and diameters of
+    the link fit the part in several ways, and for ``points = "from-part"``."""
+    place_tolerance: Annotated[Length, POSITIVE] = 0.1
+    """How far the centre of a bore may lie from the point that the link states for it."""
+    diameter_tolerance: Annotated[Length, NOT_NEGATIVE] = 0.3
+    """How much the diameter of a bore may differ from that of its pin."""
+    flip: bool = False
+    """Whether the part lies the other way up, where its bores alone do not tell."""
+    plane: Length | None = None
+    """Height above the middle of the first point's bore, along z of the link, of the plane in which the forces act;
+    the mean of the bores' middles unless stated."""
+
+
+class ImportedPart(PartKind):
+    """A solid from a file, placed in the frame of a link: the kind of part that a body of a ``StepPart`` has.
+
+    A point p of the file lies at ``turn`` p + ``shift`` in the link's frame.
+    """
+
+    is_beam: ClassVar[bool] = False
+
+    shape: Literal["step"] = "step"
+    material: Name
+    file: str
+    """Path of the STEP file."""
+    digest: str
+    """SHA-256 of its content when it was placed."""
+    turn: tuple[Vector, Vector, Vector]
+    """Rows of the rotation."""
+    shift: Vector
+    """Where the origin of the file lies [mm]."""
+    thickness: float
+    """Twice the volume over the surface: the thickness of a plate, and of whatever is thin [mm]."""
+    low: Vector
+    high: Vector
+    """Bounds of the solid in the link's frame [mm]."""
+    unit: float = 1.0
+    """Size of the unit of all lengths here [mm]."""
+    stations: tuple[tuple[float, float, float, float, float, float], ...] = ()
+    """Sections across the line between its outermost pins: area [mm²], least and greatest second moment of area about
+    axes through its centroid [mm⁴], the second moment about the axis along z [mm⁴], sizes along y and z [mm]."""
+    fillet_radius: ClassVar[float] = 0.0
+    has_holes: ClassVar[bool] = True
+
+    @property
+    def may_be_sharp(self) -> bool:
+        """As ``PartKind.may_be_sharp``: nobody knows."""
+        return True
+
+    @property
+    def eye_diameter(self) -> float:
+        """Twice the thickness: what no bore has a ring of its own for [mm]."""
+        return 2.0 * self.thickness
+
+    @property
+    def eye_thickness(self) -> float:
+        """Size of the part along the pins [mm]."""
+        return self.high[2] - self.low[2]
+
+    @property
+    def size(self) -> float:
+        """As ``PartKind.size``: the thickness."""
+        return self.thickness
+
+    @property
+    def section(self) -> Section:
+        """A uniform section as flexible as the part between its outermost pins: the harmonic means of its sections."""
+        return self._uniform(harmonic=True)
+
+    def hand_section(self, body: Body) -> Section:
+        """As ``PartKind.hand_section``: the least area and second moments of all sections."""
+        return self._uniform(harmonic=False)
+
+    def _uniform(self, *, harmonic: bool) -> Section:
+        def one(number: int) -> float:
+            values = [station[number] for station in self.stations]
+            return len(values) / sum(1.0 / value for value in values) if harmonic else min(values)
+
+        if not self.stations:
+            across, along = self.high[1] - self.low[1], self.high[2] - self.low[2]
+            return rectangle(across, along)
+        area, least, greatest, in_plane = (one(number) for number in range(4))
+        sizes = [max(station[number] for station in self.stations) for number in (4, 5)]
+        return Section(
+            area=area,
+            i_y=least,
+            i_z=in_plane,
+            torsion=area**4 / (40.0 * (least + greatest)),
+            half_y=sizes[0] / 2.0,
+            half_z=sizes[1] / 2.0,
+            round=False,
+        )
+
+    def solid(self, kernel: Kernel, body: Body) -> Entity:
+        """As ``PartKind.solid``: the solid of the file, with its holes.
+
+        Raises
+        ------
+        CannotRunError
+            Where the file is another than when it was placed.
+        """
+        part = body.part
+        assert isinstance(part, ImportedPart)
+        if hashlib.sha256(Path(part.file).read_bytes()).hexdigest() != part.digest:
+            raise CannotRunError(f"the file '{Path(part.file).name}' changed while it was used; run once more")
+        return kernel.imported(part.file, 1.0 / part.unit, part.turn, part.shift)
+
+    def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
+        """As ``PartKind.fine_places``: none but holes and round surfaces, which the mesher finds."""
+        return []
+
+    def scaled(self, s: Callable[[float], float]) -> "ImportedPart":
+        """As ``PartKind.scaled``: lengths alone."""
+        lengths = {"thickness": s(self.thickness), "unit": self.unit * self.thickness / s(self.thickness)}
+        vectors = {name: tuple(map(s, getattr(self, name))) for name in ("shift", "low", "high")}
+        return self.model_copy(update=lengths | vectors | {"stations": ()})

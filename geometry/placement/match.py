@@ -1,0 +1,313 @@
+"""How an imported part lies in its link: its bores are matched to the link's points, by diameter and distance.
+
+The link's plane is normal to the common axis of its bores.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base.errors import CaseError
+from geometry.imported.facts import Bore
+from geometry.parts.step import StepPart
+
+PARALLEL = math.radians(0.1)
+"""Angle between the axes of two bores up to which they are parallel."""
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """A point of a link that must be a bore of its part.
+
+    Attributes
+    ----------
+    name : str
+        Of the point.
+    place : tuple of float
+        (x, y) in the link's frame [mm].
+    diameter : float
+        Of its pin [mm].
+    """
+
+    name: str
+    place: tuple[float, float]
+    diameter: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fit:
+    """Where a part lies in its link: a point p of the file at ``turn`` p + ``shift``.
+
+    Attributes
+    ----------
+    turn : ndarray
+        Rotation (3, 3).
+    shift : ndarray
+        Translation (3,) [mm].
+    bores : mapping of str to Bore
+        Point of the link -> its bore, in the file's frame.
+    """
+
+    turn: Real
+    shift: Real
+    bores: Mapping[str, Bore]
+
+    def middle(self, point: str) -> Real:
+        """Return the middle (3,) of a point's bore in the link's frame [mm].
+
+        Parameters
+        ----------
+        point : str
+            Name of the point.
+
+        Returns
+        -------
+        ndarray
+            The place.
+        """
+        return np.asarray(self.turn @ np.asarray(self.bores[point].centre) + self.shift)
+
+
+def place(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fit:
+    """Find how a part lies in its link.
+
+    Parameters
+    ----------
+    part : StepPart
+        The part, with its tolerances and what it states of its bores.
+    bores : sequence of Bore
+        All bores of its solid.
+    wanted : sequence of Wanted
+        The pinned points of the link.
+
+    Returns
+    -------
+    Fit
+        The only one that fits.
+
+    Raises
+    ------
+    CaseError
+        Where none fits, or several do.
+    """
+    candidates = [_candidates(part, bores, one) for one in wanted]
+    if len(wanted) < 2:
+        raise CaseError(
+            f"an imported part needs two pins or more to tell how it lies, but the link has {len(wanted)}; add a joint"
+        )
+    _check_named_parallel(part, wanted, candidates)
+    found: dict[tuple[str, ...], list[Fit]] = {}
+    for placement in _fits(part, candidates, wanted):
+        found.setdefault(tuple(placement.bores[one.name].name for one in wanted), []).append(placement)
+    if not found:
+        raise CaseError(_none_fits(part, bores, wanted))
+    if len(found) > 1:
+        ways = "; or ".join(
+            ", ".join(f"{one.name} = {bore}" for one, bore in zip(wanted, names, strict=True))
+            for names in list(found)[:4]
+        )
+        raise CaseError(
+            f"its points fit the bores in {len(found)} ways ({ways}{'; ...' if len(found) > 4 else ''}); state which "
+            "bore each point is, in the part's bores"
+        )
+    [either_way_up] = found.values()
+    return either_way_up[-1 if part.flip else 0]
+
+
+def points_of_part(part: StepPart, bores: Sequence[Bore]) -> dict[str, tuple[float, float]]:
+    """Return the points that a part's named bores give its link, the first at the origin, the second on the x axis.
+
+    Parameters
+    ----------
+    part : StepPart
+        A part that names its bores.
+    bores : sequence of Bore
+        All bores of its solid.
+
+    Returns
+    -------
+    dict of str to tuple of float
+        Point -> (x, y) [mm].
+
+    Raises
+    ------
+    CaseError
+        Where it names fewer than two bores, or one that is not there, or bores that are not parallel or are coaxial.
+    """
+    if len(part.bores) < 2:
+        raise CaseError('it must name two points or more where a link has points = "from-part"')
+    own = {point: _named(part, bores, point) for point in part.bores}
+    first, second = list(own.values())[:2]
+    _check_parallel(own)
+    z = _senses(first)[-1 if part.flip else 0]
+    across = _across(np.subtract(second.centre, first.centre), z)
+    if np.linalg.norm(across) <= part.place_tolerance:
+        names = list(own)[:2]
+        raise CaseError(
+            f"the bores of {names[0]} and {names[1]} are coaxial, so they tell no direction; swap the order"
+        )
+    x = across / np.linalg.norm(across)
+    axes = np.array([x, np.cross(z, x)])
+    flat = {point: axes @ np.subtract(bore.centre, first.centre) for point, bore in own.items()}
+    return {point: (round(float(at[0]), 9), round(float(at[1]), 9)) for point, at in flat.items()}
+
+
+def _candidates(part: StepPart, bores: Sequence[Bore], one: Wanted) -> list[Bore]:
+    """Return the bores that may be a point's: the one that is named, else all of its diameter."""
+    if one.name in part.bores:
+        bore = _named(part, bores, one.name)
+        if not _holds(part, bore, one):
+            raise CaseError(
+                f"the pin at {one.name} has a diameter of {one.diameter:g} mm, but {bore.name} has {bore.diameter:.6g} "
+                f"mm, and diameter_tolerance is {part.diameter_tolerance:g} mm; correct pin_diameter or name another "
+                "bore"
+            )
+        return [bore]
+    found = [bore for bore in bores if _holds(part, bore, one)]
+    if not found:
+        raise CaseError(
+            f"no bore is within {part.diameter_tolerance:g} mm (diameter_tolerance) of the diameter of the pin at "
+            f"{one.name}, {one.diameter:g} mm; {listed(bores)}"
+        )
+    return found
+
+
+def _holds(part: StepPart, bore: Bore, one: Wanted) -> bool:
+    return abs(bore.diameter - one.diameter) <= part.diameter_tolerance + 1e-9 * one.diameter
+
+
+def _named(part: StepPart, bores: Sequence[Bore], point: str) -> Bore:
+    name = part.bores[point]
+    for bore in bores:
+        if bore.name == name:
+            return bore
+    raise CaseError(f"bores.{point}: the part has no bore '{name}'; {listed(bores)}")
+
+
+def listed(bores: Sequence[Bore]) -> str:
+    """Say which bores a part has.
+
+    Parameters
+    ----------
+    bores : sequence of Bore
+        All of them.
+
+    Returns
+    -------
+    str
+        For a message.
+    """
+    if not bores:
+        return "the part has no bores"
+    shown = ", ".join(f"{bore.name} ({bore.diameter:.4g} mm)" for bore in bores[:12])
+    return f"its bores are {shown}{', ...' if len(bores) > 12 else ''}"
+
+
+def _check_named_parallel(part: StepPart, wanted: Sequence[Wanted], candidates: Sequence[Sequence[Bore]]) -> None:
+    named = {one.name: found[0] for one, found in zip(wanted, candidates, strict=True) if one.name in part.bores}
+    _check_parallel(named)
+
+
+def _check_parallel(named: Mapping[str, Bore]) -> None:
+    """Refuse bores whose axes are not parallel, with the angle."""
+    for (one, bore), (other, second) in itertools.combinations(named.items(), 2):
+        angle = _angle(bore, second)
+        if angle > PARALLEL:
+            raise CaseError(
+                f"the bores of {one} and {other} ({bore.name}, {second.name}) stand at {math.degrees(angle):.3g} "
+                "degrees to each other, but the pins of a link are parallel; name other bores"
+            )
+
+
+def _angle(one: Bore, other: Bore) -> float:
+    """Return the angle between two axes, at most a right angle [rad]."""
+    across = float(np.linalg.norm(np.cross(one.axis, other.axis)))
+    return math.atan2(across, abs(float(np.dot(one.axis, other.axis))))
+
+
+def _senses(bore: Bore) -> tuple[Real, Real]:
+    """Return both senses of an axis, first the one whose largest component is positive."""
+    axis = np.asarray(bore.axis, dtype=float)
+    axis = axis if axis[int(np.argmax(np.abs(axis) > np.abs(axis).max() - 1e-6))] > 0.0 else -axis
+    return axis, -axis
+
+
+def _across(vector: Real, z: Real) -> Real:
+    return np.asarray(vector - (vector @ z) * z)
+
+
+def _fits(part: StepPart, candidates: Sequence[Sequence[Bore]], wanted: Sequence[Wanted]) -> Iterator[Fit]:
+    """Yield every way in which a part lies so that all points are bores: first those the right way up."""
+    places = np.array([one.place for one in wanted])
+    far = np.linalg.norm(places[:, None] - places, axis=2)
+    first, second = np.unravel_index(int(np.argmax(far)), far.shape)
+    for one, other in itertools.product(candidates[first], candidates[second]):
+        if one is other or _angle(one, other) > PARALLEL:
+            continue
+        for z in _senses(one):
+            arm = _across(np.subtract(other.centre, one.centre), z)
+            if abs(np.linalg.norm(arm) - far[first, second]) > 2.0 * part.place_tolerance:
+                continue
+            turn = _turned(arm, places[second] - places[first], z)
+            flat = turn[:2]
+            shift = places[first] - flat @ np.asarray(one.centre)
+            chosen = [
+                min(found, key=lambda bore: float(np.linalg.norm(flat @ np.asarray(bore.centre) + shift - at)))
+                for found, at in zip(candidates, places, strict=True)
+            ]
+            if len({bore.name for bore in chosen}) == len(chosen) and all(_angle(one, b) <= PARALLEL for b in chosen):
+                placement = _fitted(part, chosen, wanted, turn)
+                if placement is not None:
+                    yield placement
+
+
+def _turned(arm: Real, along: Real, z: Real) -> Real:
+    """Return the rotation (3, 3) that takes a vector of the file to a direction of the link, and z to z."""
+    cosine, sine = along / np.linalg.norm(along)
+    unit = arm / np.linalg.norm(arm)
+    across = np.cross(z, unit)
+    return np.array([cosine * unit - sine * across, sine * unit + cosine * across, z])
+
+
+def _fitted(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted], turn: Real) -> Fit | None:
+    """Return the placement whose bores are nearest to the points by least squares; None where one is too far off.
+
+    The best rotation in the plane: Kabsch, Acta Cryst. A32 (1976) 922-923.
+    """
+    places = np.array([one.place for one in wanted])
+    centres = np.array([bore.centre for bore in bores]) @ turn.T
+    own, flat = places - places.mean(axis=0), centres[:, :2] - centres[:, :2].mean(axis=0)
+    turned = math.atan2(float((flat[:, 0] * own[:, 1] - flat[:, 1] * own[:, 0]).sum()), float((flat * own).sum()))
+    about = np.array(
+        [[math.cos(turned), -math.sin(turned), 0.0], [math.sin(turned), math.cos(turned), 0.0], [0.0, 0.0, 1.0]]
+    )
+    turn = about @ turn
+    centres = np.array([bore.centre for bore in bores]) @ turn.T
+    shift = np.append((places - centres[:, :2]).mean(axis=0), 0.0)
+    if np.linalg.norm(centres[:, :2] + shift[:2] - places, axis=1).max() > part.place_tolerance:
+        return None
+    heights = centres[:, 2]
+    shift[2] = -(heights.mean() if part.plane is None else heights[0] + part.plane)
+    named = {one.name: bore for one, bore in zip(wanted, bores, strict=True)}
+    return Fit(turn=turn, shift=shift, bores=named)
+
+
+def _none_fits(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> str:
+    """Say that no bores lie as the points do, with the distances of both."""
+    pairs = list(itertools.combinations(wanted, 2))[:3]
+    stated = ", ".join(f"{a.name} to {b.name} {math.dist(a.place, b.place):.5g} mm" for a, b in pairs)
+    apart = []
+    for one, other in itertools.combinations(bores, 2):
+        if _angle(one, other) <= PARALLEL:
+            across = _across(np.subtract(other.centre, one.centre), np.asarray(one.axis))
+            apart.append(f"{one.name} to {other.name} {np.linalg.norm(across):.5g} mm")
+    told = ", ".join(apart[:6]) + (", ..." if len(apart) > 6 else "") or "no two of them are parallel"
+    return (
+        f"no parallel bores lie as the link's points do within place_tolerance {part.place_tolerance:g} mm: the points "
+        f'have {stated}, the bores {told}; correct the points, or take them from the part (points = "from-part")'
+    )

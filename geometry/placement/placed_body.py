@@ -1,0 +1,129 @@
+"""From a part that a case imports to the body of a link: placed by its bores, with sections between its pins."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from geometry.base.errors import AlulaError, CaseError
+from geometry.imported.facts import Bore, PartFacts
+from geometry.imported.read import part_facts
+from geometry.meshing.mesh import sections_and_rings
+from geometry.parts.body import Body
+from geometry.parts.features import Pin, Ring
+from geometry.parts.step import ImportedPart, StepPart
+from geometry.placement.match import Fit, Wanted, place
+
+EXACT = 1e-6
+"""Share of its diameter by which the centre of a bore may lie off its point."""
+STATIONS = 16
+"""Sections between the outermost pins, for hand calculation and frames."""
+_bodies: dict[tuple[str, str, tuple[Wanted, ...]], Body] = {}
+
+
+def bores_of(part: StepPart) -> tuple[Bore, ...]:
+    """Return the bores of a part's file.
+
+    Parameters
+    ----------
+    part : StepPart
+        The part, as the case states it.
+
+    Returns
+    -------
+    tuple of Bore
+        In the file's frame.
+
+    Raises
+    ------
+    CaseError
+        Where the file is no single solid.
+    CannotRunError
+        Where the kernel fails.
+    """
+    return part_facts(Path(part.file)).bores
+
+
+def placed_body(part: StepPart, wanted: tuple[Wanted, ...]) -> Body:
+    """Place an imported part in its link.
+
+    Parameters
+    ----------
+    part : StepPart
+        The part, as the case states it.
+    wanted : tuple of Wanted
+        The pinned points of the link.
+
+    Returns
+    -------
+    Body
+        The link's body, its part an ``ImportedPart``. Equal requests are answered once.
+
+    Raises
+    ------
+    CaseError
+        Where the file is no single solid, or its bores do not fit the points.
+    CannotRunError
+        Where the kernel fails.
+    """
+    facts = part_facts(Path(part.file))
+    key = facts.digest, part.model_dump_json(), wanted
+    if key not in _bodies:
+        try:
+            _bodies[key] = _placed(part, facts, wanted)
+        except AlulaError as error:
+            raise type(error)(f"{Path(part.file).name}: {error}") from None
+    return _bodies[key]
+
+
+def _placed(part: StepPart, facts: PartFacts, wanted: tuple[Wanted, ...]) -> Body:
+    placement = place(part, facts.bores, wanted)
+    corners = np.array(np.meshgrid(*zip(facts.low, facts.high, strict=True))).reshape(3, -1).T
+    bounds = corners @ placement.turn.T + placement.shift
+    solid = ImportedPart(
+        material=part.material,
+        file=part.file,
+        digest=facts.digest,
+        turn=tuple(map(tuple, placement.turn.tolist())),
+        shift=tuple(placement.shift.tolist()),
+        thickness=2.0 * facts.volume / facts.surface,
+        low=tuple(bounds.min(axis=0).tolist()),
+        high=tuple(bounds.max(axis=0).tolist()),
+    )
+    body = Body(part=solid, pins=tuple(_pin(placement, one) for one in wanted), ends=(), holes=())
+    first, last = min(pin.x for pin in body.pins), max(pin.x for pin in body.pins)
+    stations = tuple(first + (last - first) * (i + 0.5) / STATIONS for i in range(STATIONS))
+    sections, rings = sections_and_rings(body, stations)
+    found = [(s.area, *s.principal, s.i_z, s.high[0] - s.low[0], s.high[1] - s.low[1]) for s in sections]
+    return Body(
+        part=solid.model_copy(update={"stations": tuple(found)}),
+        pins=tuple(_with_ring(pin, ring) for pin, ring in zip(body.pins, rings, strict=True)),
+        ends=(),
+        holes=(),
+    )
+
+
+def _with_ring(pin: Pin, diameter: float) -> Pin:
+    assert pin.ring is not None
+    return replace(pin, ring=replace(pin.ring, diameter=diameter))
+
+
+def _pin(placement: Fit, one: Wanted) -> Pin:
+    """Return the pin hole of a point, which stands at its bore."""
+    bore, (x, y, middle) = placement.bores[one.name], placement.middle(one.name).tolist()
+    if math.hypot(x - one.place[0], y - one.place[1]) > EXACT * bore.diameter:
+        raise CaseError(
+            f"the point {one.name} does not stand at {bore.name}; read the case by read_case, which moves it there"
+        )
+    ends = [end for span in bore.spans for end in span]
+    along = 1.0 if np.dot(placement.turn[2], bore.axis) > 0.0 else -1.0
+    heights = [middle + along * end for end in ends]
+    return Pin(
+        name=one.name,
+        x=one.place[0],
+        y=one.place[1],
+        diameter=bore.diameter,
+        clearance=bore.diameter - one.diameter,
+        ring=Ring(diameter=0.0, low=min(heights), high=max(heights)),
+    )

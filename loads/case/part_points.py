@@ -1,0 +1,117 @@
+"""The points that an imported part gives its link: the centres of its bores, before the case is validated.
+
+A link states its points and the part must agree within its tolerance, or it takes them from the part
+(``points = "from-part"``). Either way the case goes on with the places that the bores have.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
+
+from geometry.base.errors import AlulaError, CaseError
+from geometry.base.units import parse
+from geometry.linkage.linkage import Joint
+from geometry.parts.step import StepPart
+from geometry.placement.match import Wanted, place, points_of_part
+from geometry.placement.placed_body import bores_of
+from loads.text.explain import sentence
+
+FROM_PART = "from-part"
+DIGITS = 9
+"""Of a place in mm."""
+
+
+def with_part_points(tables: dict[str, Any], context: Mapping[str, object]) -> dict[str, Any]:
+    """Return the tables of a case with the points of links whose parts are imported.
+
+    Parameters
+    ----------
+    tables : dict of str to object
+        The case as nested tables, not validated; they stay as they are.
+    context : mapping of str to object
+        ``folder`` in which the files of parts are sought.
+
+    Returns
+    -------
+    dict of str to object
+        The same tables unless a part is imported. What is malformed is left for validation to find.
+
+    Raises
+    ------
+    CaseError
+        Where a file is no part, or its bores do not fit the link.
+    CannotRunError
+        Where the kernel fails.
+    """
+    links, parts = tables.get("links"), tables.get("parts")
+    if not isinstance(links, dict) or not isinstance(parts, dict):
+        return tables
+    changed = dict(links)
+    for name, link in links.items():
+        stated = parts.get(link.get("part")) if isinstance(link, dict) and isinstance(link.get("part"), str) else None
+        if isinstance(stated, dict) and stated.get("shape") == "step":
+            part = _part(link["part"], stated, context)
+            changed[name] = link | {"points": _points(name, link, part, tables.get("joints"))}
+        elif isinstance(link, dict) and link.get("points") == FROM_PART:
+            raise CaseError(f'links.{name}.points: "{FROM_PART}" needs a part of shape "step"; state the points')
+    return tables | {"links": changed}
+
+
+def _part(name: str, stated: dict[str, Any], context: Mapping[str, object]) -> StepPart:
+    try:
+        return StepPart.model_validate(stated, context=dict(context))
+    except ValidationError as error:
+        raise CaseError(f"parts.{name}.{sentence(error, StepPart)}") from None
+
+
+def _points(name: str, link: dict[str, Any], part: StepPart, joints: object) -> object:
+    """Return the points of a link, in the form of the case file; those that bores give stand where the bores are."""
+    points = link.get("points")
+    try:
+        if points == FROM_PART:
+            found = points_of_part(part, bores_of(part))
+            return {point: _stated(*at) for point, at in found.items()}
+        wanted = pinned(name, points, joints)
+        if wanted is None or not isinstance(points, dict):
+            return points
+        placement = place(part, bores_of(part), wanted)
+    except AlulaError as error:
+        raise type(error)(f"links.{name}, part {Path(part.file).name}: {error}") from None
+    return points | {one.name: _stated(*placement.middle(one.name)[:2].tolist()) for one in wanted}
+
+
+def _stated(x: float, y: float) -> list[str]:
+    return [f"{round(x, DIGITS)!r} mm", f"{round(y, DIGITS)!r} mm"]
+
+
+def pinned(name: str, points: object, joints: object) -> tuple[Wanted, ...] | None:
+    """Return the points of a link that are pins.
+
+    Parameters
+    ----------
+    name : str
+        Of the link.
+    points, joints : object
+        Tables of the case file, not validated.
+
+    Returns
+    -------
+    tuple of Wanted or None
+        None where something is malformed.
+    """
+    if not isinstance(points, dict) or not isinstance(joints, dict):
+        return None
+    found: dict[str, Wanted] = {}
+    for joint, stated in joints.items():
+        try:
+            record = Joint.model_validate(stated)
+            if name in record.links and record.type == "revolute" and record.pin_diameter is not None:
+                point = record.points[record.links.index(name)] if record.points else joint
+                x, y = (parse(size, "length") for size in points[point])
+                found.setdefault(point, Wanted(name=point, place=(x, y), diameter=record.pin_diameter))
+        except (ValidationError, PydanticCustomError, KeyError, TypeError, ValueError):
+            return None
+    return tuple(found[point] for point in points if point in found)

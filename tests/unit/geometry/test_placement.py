@@ -1,0 +1,113 @@
+"""How an imported part lies in its link: bores matched to points."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from geometry.base.errors import CaseError
+from geometry.imported.facts import Bore
+from geometry.parts.step import StepPart
+from geometry.placement.match import Wanted, place, points_of_part
+
+POINTS = {"A": (0.0, 0.0), "B": (60.0, 0.0), "C": (22.0, 34.0)}
+DIAMETERS = {"A": 5.0, "B": 4.0, "C": 6.0}
+
+
+def part(**entries):
+    return StepPart.model_validate({"shape": "step", "material": "pla-fdm-xy", "file": "x.step", **entries})
+
+
+def wanted(points=POINTS, diameters=DIAMETERS):
+    return tuple(Wanted(name=name, place=at, diameter=diameters[name]) for name, at in points.items())
+
+
+def bore(name, centre, diameter, axis=(0.0, 0.0, 1.0)):
+    return Bore(
+        name=name, axis=tuple(axis), centre=tuple(centre), diameter=diameter, length=3.0, through=True,
+        spans=((-1.5, 1.5),), slot=0.0, slot_axis=(0.0, 0.0, 0.0),
+    )  # fmt: skip
+
+
+def rotation(seed):
+    """A random rotation, by the QR factors of a random matrix."""
+    q, r = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    q = q * np.sign(np.diag(r))
+    return q if np.linalg.det(q) > 0.0 else -q
+
+
+def moved(turn, shift, points=POINTS, diameters=DIAMETERS, sense=1.0):
+    """The bores of a part that was drawn anywhere in space."""
+    return [
+        bore(f"bore {i}", turn @ [*at, 0.0] + shift, diameters[name], sense * turn[:, 2])
+        for i, (name, at) in enumerate(points.items(), start=1)
+    ]
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_three_bores_anywhere_in_space_lie_at_their_points(seed, sense):
+    turn, shift = rotation(seed), np.array([3.0, -40.0, 12.0])
+    found = place(part(), moved(turn, shift, sense=sense), wanted())
+    assert np.allclose(found.turn, turn.T, atol=1e-12)
+    assert np.linalg.det(found.turn) == pytest.approx(1.0)
+    for name, at in POINTS.items():
+        assert found.middle(name) == pytest.approx([*at, 0.0], abs=1e-9)
+
+
+def test_equal_bores_are_refused_with_both_ways_until_they_are_named():
+    points, diameters = {"A": (0.0, 0.0), "B": (60.0, 0.0)}, {"A": 5.0, "B": 5.0}
+    bores = moved(np.eye(3), np.zeros(3), points, diameters)
+    with pytest.raises(CaseError, match=r"2 ways \(A = bore 1, B = bore 2; or A = bore 2, B = bore 1\)"):
+        place(part(), bores, wanted(points, diameters))
+    found = place(part(bores={"A": "bore 2"}), bores, wanted(points, diameters))
+    assert (found.bores["A"].name, found.bores["B"].name) == ("bore 2", "bore 1")
+    assert found.middle("A") == pytest.approx([0.0, 0.0, 0.0])
+    over = place(part(bores={"A": "bore 2"}, flip=True), bores, wanted(points, diameters))
+    assert over.turn[2] == pytest.approx(-found.turn[2])
+
+
+def test_the_plane_of_forces_is_the_mean_of_the_middles_or_as_stated():
+    bores = [bore("bore 1", (0.0, 0.0, 1.0), 5.0), bore("bore 2", (60.0, 0.0, 7.0), 4.0)]
+    points = {"A": (0.0, 0.0), "B": (60.0, 0.0)}
+    found = place(part(), bores, wanted(points))
+    assert [found.middle(name)[2] for name in points] == pytest.approx([-3.0, 3.0])
+    found = place(part(plane="2 mm"), bores, wanted(points))
+    assert [found.middle(name)[2] for name in points] == pytest.approx([-2.0, 4.0])
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"A": 9.0}, r"no bore is within 0.3 mm .* of the pin at A, 9 mm; its bores are bore 1 \(5 mm\)"),
+        ({}, "no parallel bores lie as the link's points do .* A to B 61 mm.* bore 1 to bore 2 60 mm"),
+    ],
+)
+def test_what_fits_no_bore_is_refused(change, said):
+    points = POINTS if change else POINTS | {"B": (61.0, 0.0)}
+    with pytest.raises(CaseError, match=said):
+        place(part(), moved(np.eye(3), np.zeros(3)), wanted(points, DIAMETERS | change))
+
+
+def test_named_bores_that_are_not_parallel_are_refused_with_the_angle():
+    bores = [bore("bore 1", (0, 0, 0), 5.0), bore("bore 2", (60.0, 0, 0), 4.0, (0.0, 0.6, 0.8))]
+    with pytest.raises(CaseError, match=r"bores of A and B \(bore 1, bore 2\) stand at 36.9 degrees"):
+        place(part(bores={"A": "bore 1", "B": "bore 2"}), bores, wanted({"A": (0, 0), "B": (60, 0)}))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_points_from_the_part_place_it_again(seed):
+    bores = moved(rotation(seed), np.array([1.0, 2.0, 3.0]))
+    own = part(bores={"C": "bore 3", "A": "bore 1", "B": "bore 2"})
+    points = points_of_part(own, bores)
+    assert points["C"] == (0.0, 0.0)
+    assert points["A"] == pytest.approx((np.hypot(22.0, 34.0), 0.0))
+    for (one, at), (other, to) in itertools.combinations(points.items(), 2):
+        assert np.hypot(*np.subtract(at, to)) == pytest.approx(np.hypot(*np.subtract(POINTS[one], POINTS[other])))
+    place(own, bores, wanted(points))
+
+
+def test_a_place_off_by_less_than_the_tolerance_is_the_nearest():
+    off = {"A": (0.0, 0.0), "B": (60.06, 0.0), "C": (22.0, 34.0)}
+    found = place(part(), moved(np.eye(3), np.zeros(3)), wanted(off))
+    assert max(np.linalg.norm(found.middle(name)[:2] - at) for name, at in off.items()) < 0.05
