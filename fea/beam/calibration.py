@@ -176,8 +176,10 @@ def uncalibrated(body: Body, nu: float) -> str:
     str
         For people; "" where it is calibrated.
     """
-    if not body.part.is_beam:
+    if body.part.shape == "disc":
         return "a disc is as wide as it is long, where beam theory does not hold"
+    if not body.part.is_beam:
+        return f"no part of shape {body.part.shape} was measured"
     if any(pin.slot > 0.0 for pin in body.pins):
         return "it has a slot"
     if any(pin.ring is not None for pin in body.pins):

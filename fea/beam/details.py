@@ -98,10 +98,14 @@ def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
     said = [f"by hand {d.name} bears {d.stress.equivalent:.3g} MPa at x = {d.x:.3g} mm ({d.remark})" for d in found]
     if any(pin.slot > 0.0 for pin in body.pins):
         said.append("as a solid a pin pushes on half, and for the band on a quarter of its diameter, of a slot's flank")
-    if not body.part.is_beam:
+    if body.part.by_hand:
+        said.append(body.part.by_hand)
+    off = [pin for pin in body.pins if body.ring(pin).off_plane]
+    if off:
+        places = ", ".join(f"{pin.name} at z = {body.ring(pin).middle:.4g} mm" for pin in off)
         said.append(
-            "hand calculation takes the disc for a beam of its narrowest net section between its holes: an estimate, "
-            "since beam theory needs a length of several widths"
+            f"the middles of bores lie off the plane of forces ({places}): there the couple of the force about the "
+            "middle is a pressure linear along the bore"
         )
     return tuple(said)
 

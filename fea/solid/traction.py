@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 from fea.common.link_loads import ALONG, PinLoad
 from fea.solid.quadrature import Quadrature, SurfaceQuadrature
 from geometry.base.errors import CannotRunError
+from geometry.parts.features import OFF_PLANE
 from loads.records.applied import BodyForce, LineLoad, shifted
 from loads.records.bearing import PressureLaw
 
 Transfer = Literal["eye-faces", "bore-shear"]
 Density = NDArray[np.float64]
 
-OFF_PLANE = 1e-3
-"""Share of a hole's length by which its middle may lie off the plane of forces before that counts."""
 LARGEST_CORRECTION = 0.1
 """A meshed surface may miss the wrench by this part of the load before its mesh is refused."""
 

@@ -47,6 +47,8 @@ class PartKind(CaseModel):
     """What a link of this kind may have besides pin holes."""
     is_beam: ClassVar[bool] = True
     """Whether beam theory holds between its eyes."""
+    by_hand: ClassVar[str] = ""
+    """What the reader must know of its hand calculation; "" where beam theory holds."""
     has_holes: ClassVar[bool] = False
     """Whether its solid has its pin holes from the start."""
 

@@ -21,6 +21,10 @@ class Disc(PartKind):
     """A round plate, such as a crank disc, about the origin of its link's frame, with a hole for every pin."""
 
     is_beam: ClassVar[bool] = False
+    by_hand: ClassVar[str] = (
+        "hand calculation takes the disc for a beam of its narrowest net section between its holes: an estimate, "
+        "since beam theory needs a length of several widths"
+    )
 
     shape: Literal["disc"]
     material: Name

@@ -12,6 +12,9 @@ from pydantic_core import PydanticCustomError
 from geometry.base.model import CaseModel
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 
+OFF_PLANE = 1e-3
+"""Share of a hole's length by which its middle may lie off the plane of forces before that counts."""
+
 
 class HoleRow(CaseModel):
     """A row of equal cross holes along the link, such as those that hold feathers."""
@@ -75,6 +78,16 @@ class Ring:
     def thickness(self) -> float:
         """Length of the hole [mm]."""
         return self.high - self.low
+
+    @property
+    def middle(self) -> float:
+        """z of the middle of the hole [mm]."""
+        return (self.low + self.high) / 2.0
+
+    @property
+    def off_plane(self) -> bool:
+        """Whether the middle of the hole lies off the plane of the link's forces, z = 0."""
+        return abs(self.middle) > OFF_PLANE * self.thickness
 
     def scaled(self, s: Callable[[float], float]) -> "Ring":
         """Return the ring with its lengths in another unit.

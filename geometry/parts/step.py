@@ -78,6 +78,10 @@ class ImportedPart(PartKind):
     """Sections across the line between its outermost pins: area [mm²], least and greatest second moment of area about
     axes through its centroid [mm⁴], the second moment about the axis along z [mm⁴], sizes along y and z [mm]."""
     fillet_radius: ClassVar[float] = 0.0
+    by_hand: ClassVar[str] = (
+        "hand calculation takes the imported part for a straight beam of the least area and second moments among its "
+        "sections between its pins: an estimate that decides nothing"
+    )
     has_holes: ClassVar[bool] = True
 
     @property
