@@ -32,6 +32,7 @@ from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import NEAR_DEAD_POINT
+from geometry.parts.body import PartKind
 from loads.case.case import Case
 from loads.records.check_spec import BearingCheck, MotorCheck, PinCheck
 from loads.statics.statics import Reactions
@@ -265,6 +266,7 @@ def _bearing(case: Case, load_case: str, reactions: Reactions, uneven: Growths) 
 def _cantilever(case: Case, calculation: str) -> CantileverCheck:
     hand = case.hand_calculations[calculation]
     part = case.parts[hand.part]
+    assert isinstance(part, PartKind)  # ``check_rules`` refuses imported ones
     strength = case.all_materials[part.material].allowable
     return uniform_cantilever(hand.load, hand.length, part.section, strength)
 

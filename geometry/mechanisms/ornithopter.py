@@ -18,7 +18,7 @@ from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
 from geometry.mechanisms.wing_drive import WingDrive
-from geometry.parts.part import Bar, Body, Disc, Part, Pin, PlainEnd
+from geometry.parts.part import Bar, Body, Disc, Pin, PlainEnd
 
 MARGIN = 0.2
 """By which the slot goes on at either end of the pin's travel [mm]: the printer's tolerance."""
@@ -218,7 +218,7 @@ class OrnithopterRules(CaseModel):
             eye_diameter=hole + 2 * RING * sizes.thick_wall,
         )
         first, last = -sizes.slot_reach - MARGIN, -sizes.pivot_offset + MARGIN
-        found: dict[str, tuple[Part, tuple[Pin, ...], tuple[PlainEnd, ...]]] = {
+        found: dict[str, tuple[Bar | Disc, tuple[Pin, ...], tuple[PlainEnd, ...]]] = {
             "crank": (disc, (pin("O", 0.0, motors()[self.motor].shaft_diameter), pin("A", self.throw)), ()),
             "rod": (bar(sizes.thick_wall, sizes.link_thickness), (pin("A", 0.0), pin("C", sizes.link_length)), ()),
             "lever": (

@@ -21,7 +21,7 @@ Feature = Literal["slots", "arms", "rows of holes", "load points without a pin"]
 class PartKind(CaseModel):
     """A kind of part: the sizes that a case states, as fields, and what follows from them.
 
-    Its fields are ``shape`` (a literal), ``material`` and sizes. The four properties below are fields or properties of
+    Its fields are ``shape`` (a literal), ``material`` and sizes. The properties below are fields or properties of
     each kind's own.
     """
 
@@ -30,6 +30,10 @@ class PartKind(CaseModel):
         @property
         def shape(self) -> str:
             """Name of the kind in the case file."""
+
+        @property
+        def material(self) -> str:
+            """Name of its material."""
 
         @property
         def eye_diameter(self) -> float:

@@ -81,7 +81,7 @@ class Ring:
 
     @property
     def middle(self) -> float:
-        """z of the middle of the hole [mm]."""
+        """The z of the middle of the hole [mm]."""
         return (self.low + self.high) / 2.0
 
     @property

@@ -245,7 +245,7 @@ def _fits(part: StepPart, candidates: Sequence[Sequence[Bore]], wanted: Sequence
     """Yield every way in which a part lies so that all points are bores: first those the right way up."""
     places = np.array([one.place for one in wanted])
     far = np.linalg.norm(places[:, None] - places, axis=2)
-    first, second = np.unravel_index(int(np.argmax(far)), far.shape)
+    first, second = map(int, np.unravel_index(int(np.argmax(far)), far.shape))
     for one, other in itertools.product(candidates[first], candidates[second]):
         if one is other or _angle(one, other) > PARALLEL:
             continue
