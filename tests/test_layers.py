@@ -69,13 +69,13 @@ def violations(root: Path) -> list[str]:
 
 
 def test_the_house_is_as_planned():
-    """Every sub-package is there, says what it answers, and holds at most sixteen files."""
+    """Every sub-package is there, says what it answers, and holds at most twenty files."""
     for package, layers in LAYERS.items():
         folders = {path.parent.name for path in (ROOT / package).glob("*/*.py")} - {"cases", "templates"}
         assert folders == set(layers)
         for layer in layers:
             assert ast.get_docstring(ast.parse((ROOT / package / layer / "__init__.py").read_text(encoding="utf-8")))
-            assert len(list((ROOT / package / layer).glob("*.py"))) <= 16
+            assert len(list((ROOT / package / layer).glob("*.py"))) <= 20
 
 
 def test_imports_go_one_way_and_libraries_stay_at_home():

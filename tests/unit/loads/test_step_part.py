@@ -1,0 +1,106 @@
+"""A link that is made of a part from a STEP file."""
+
+import os
+
+import numpy as np
+import pytest
+from imported_case import imported_case
+
+from geometry.base.errors import AlulaError, CaseError
+from geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
+from loads.case.case_file import read_case
+
+FROM_PART = '"from-part"'
+NAMED = 'bores = { O4 = "bore 1", B = "bore 2" }'
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    return read_case(str(imported_case(tmp_path_factory.mktemp("imported"))))
+
+
+def test_stated_points_move_to_the_bores(case):
+    assert case.links["rocker"].points["B"][0] - case.links["rocker"].points["O4"][0] == pytest.approx(40.0, abs=1e-8)
+    body = case.body("rocker")
+    assert [(pin.name, pin.diameter) for pin in body.pins] == [("O4", 5.0), ("B", pytest.approx(6.0))]
+    assert [(pin.ring.low, pin.ring.high) for pin in body.pins] == [(pytest.approx(-2.5), pytest.approx(2.5))] * 2
+
+
+def test_points_from_the_part_are_those_of_its_bores(tmp_path):
+    case = read_case(str(imported_case(tmp_path, points=FROM_PART, entries=NAMED)))
+    assert case.links["rocker"].points["O4"] == (0.0, 0.0)
+    assert case.links["rocker"].points["B"] == pytest.approx((40.0, 0.0))
+
+
+def test_mass_is_that_of_the_file_in_the_frame_of_the_link(case):
+    """By closed form; the points stand 20.01 mm from the middle of the plate, and the boss lies off the plane."""
+    found = mass_properties(case.body("rocker"))
+    boss = np.pi * 5.0**2 * 4.0
+    plate = 60.0 * 20.0 * 5.0 - np.pi * 2.5**2 * 5.0 - np.pi * 3.0**2 * 5.0
+    assert found.volume == pytest.approx(plate + boss, rel=1e-6)
+    off = -np.pi / 4.0 * 5.0 * (6.0**2 - 5.0**2) * 20.0 / (plate + boss)
+    assert found.centroid[0] == pytest.approx(20.01 + off, abs=1e-4)
+    assert abs(found.centroid[2]) == pytest.approx(boss * 4.5 / (plate + boss), rel=1e-5)
+
+
+def test_it_meshes_with_its_bores_and_rings(case):
+    body = case.body("rocker")
+    mesh = mesh_body(body, COARSE)
+    assert set(mesh.surfaces) == {f"{kind}:{pin}" for kind in ("bore", "top", "bottom") for pin in ("O4", "B")}
+    for pin in body.pins:
+        assert mesh.areas[f"bore:{pin.name}"] == pytest.approx(np.pi * pin.diameter * 5.0, rel=1e-6)
+        ring = pin.ring.diameter
+        assert mesh.areas[f"top:{pin.name}"] == pytest.approx(np.pi / 4.0 * (ring**2 - pin.diameter**2), rel=1e-5)
+    assert mesh.mirror is None  # the boss stands on one side
+    edges = reentrant_edges(body)
+    assert len(edges) == 1  # round the foot of the boss
+    assert np.hypot(*(edges[0].points - [20.01, 0.0, 0.0])[:, :2].T) == pytest.approx(5.0, abs=1e-4)
+
+
+def test_sections_are_those_of_the_plate(case):
+    section = case.part_of("rocker").section
+    assert section.area == pytest.approx(100.0, rel=0.1)
+    assert section.width == pytest.approx(20.0, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"file": "shell.step"}, "holds only surfaces without volume"),
+        ({"file": "nothing.step"}, "there is no file"),
+        ({"file": "case.toml"}, "is no STEP file"),
+        ({"points": '{ O4 = ["0 mm", "0 mm"], B = ["41 mm", "0 mm"] }'}, "no parallel bores lie as the link's points"),
+        ({"points": FROM_PART}, "it must name two points or more"),
+        ({"entries": 'bores = { O4 = "bore 7" }'}, "has no bore 'bore 7'; its bores are bore 1 .5 mm., bore 2 .6 mm."),
+        ({"entries": 'bores = { O4 = "bore 2" }'}, "pin at O4 has a diameter of 5 mm, but bore 2 has 6 mm"),
+        ({"points": '{ O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"], P = ["50 mm", "0 mm"] }'}, "takes no load points"),
+    ],
+)
+def test_what_does_not_fit_is_one_sentence(tmp_path, change, said):
+    with pytest.raises(CaseError, match=said) as found:
+        read_case(str(imported_case(tmp_path, **change)))
+    assert "\n" not in str(found.value)
+    assert "own" in str(found.value) or "links.rocker" in str(found.value)
+
+
+def test_from_part_needs_an_imported_part(tmp_path):
+    path = imported_case(tmp_path)
+    text = (
+        path.read_text()
+        .replace('A = ["0 mm", "0 mm"], B = ["60 mm", "0 mm"] }', "X = 1 }")
+        .replace("{ X = 1 }", '"from-part"')
+    )
+    path.write_text(text)
+    with pytest.raises(CaseError, match=r'links.coupler.points: "from-part" needs a part of shape "step"'):
+        read_case(str(path))
+
+
+def test_a_file_that_changes_meanwhile_is_noticed(tmp_path):
+    case = read_case(str(imported_case(tmp_path)))
+    body = case.body("rocker")
+    with open(tmp_path / "plate.step", "a", encoding="ascii") as stream:
+        stream.write(" ")
+    os.utime(tmp_path / "plate.step")
+    moved = body.part.model_copy(update={"shift": (0.0, 0.0, 1.0)})  # no worker has built it
+    with pytest.raises(AlulaError, match=r"plate.step.* changed while it was used"):
+        mass_properties(type(body)(part=moved, pins=body.pins, ends=(), holes=()))
