@@ -213,8 +213,8 @@ def energy_errors(levels: Sequence[Level]) -> tuple[float, ...]:
 def _energy_error(levels: Sequence[Level], number: int, end: int) -> float:
     """Relative error of a case on mesh ``end``; the factor of the first mesh is that of the first two."""
     figures = [level.figures[number] for level in levels]
-    pair = figures[max(0, end - 2) : max(2, end)]
-    factor = energy_factor([f.estimate.total for f in pair], [f.energy for f in pair])
+    known = figures[: max(2, end)]
+    factor = energy_factor([f.estimate.total for f in known], [f.energy for f in known])
     estimate = figures[end - 1].estimate
     return relative_error((factor or 1.0) * estimate.total, estimate.energy_norm)
 

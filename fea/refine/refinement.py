@@ -16,7 +16,7 @@ import numpy as np
 
 from fea.common.link_loads import LinkLoads
 from fea.common.threads import bounded
-from fea.refine.convergence import ALONE, SERIES, GridConvergence
+from fea.refine.convergence import ALONE, SERIES, SEVERAL, GridConvergence
 from fea.refine.level import Level, level_of
 from fea.refine.link_series import CasePrecision, Eye, PeakQuantity, energy_errors, goals, precision
 from fea.refine.singular import NEARLY, element_exponents, loaded_edge
@@ -385,7 +385,7 @@ class _Link:
         ]
         wanted = goals(
             self.levels,
-            accuracy / 1.5,
+            accuracy / SEVERAL,
             brittle=self.task.brittle,
             edges=self.edges,
             section=self.task.section,

@@ -20,7 +20,7 @@ from fea.refine.convergence import FORMAL_ORDER, SERIES, GridConvergence
 from fea.solid.space import EDGES, DisplacementSpace
 
 SERIES_RATIO = 1.5
-"""Size of the last mesh over that of the next one at a peak; at least 1.3 (Celik et al. 2008)."""
+"""Least size of the last mesh over that of the next one at a peak; at least 1.3 (Celik et al. 2008)."""
 MOST_RATIO, MOST_RATIO_ELSEWHERE = 2.0, 1.5
 NEAR = 2.5
 """Radius, in element sizes, about a peak in which the mesh becomes finer for the series' sake."""
@@ -136,8 +136,11 @@ def next_sizes(
         here = float(sizes[np.argsort(distance)[:8]].mean())
         factor = np.where(distance <= max(NEAR * here, goal.radius), np.maximum(factor, goal.ratio), factor)
     corners = space.cells[:, :4]
-    finest = np.full(space.corners, np.inf)
-    np.minimum.at(finest, corners.ravel(), np.repeat(sizes / factor, 4))
+    # The mean over a node's elements: their least would make the whole mesh finer, by half in number.
+    mean = np.bincount(corners.ravel(), np.repeat(sizes, 4)) / np.bincount(corners.ravel())
+    finer = np.ones(space.corners)
+    np.maximum.at(finer, corners.ravel(), np.repeat(factor, 4))
+    finest = mean / finer
     if space.mirror is not None:  # what one half asks for, both get: the mesh is made of a half and its image
         finest = np.minimum(finest, finest[space.mirror[: space.corners]])
     return space.nodes[: space.corners], _rounded(_graded(space, finest))
@@ -162,7 +165,9 @@ def _graded(space: DisplacementSpace, sizes: NDArray[np.float64]) -> NDArray[np.
 
 
 def series_ratio(series: GridConvergence, accuracy: float) -> float:
-    """Return the ratio of the sizes at a peak, last mesh over next one, so that two further meshes narrow its band.
+    """Return the ratio of the sizes at a peak, last mesh over next one, so that the next mesh narrows its band.
+
+    The first steps are the largest, since no verdict but a far one stands before ``SERIES`` meshes.
 
     Parameters
     ----------
@@ -177,6 +182,6 @@ def series_ratio(series: GridConvergence, accuracy: float) -> float:
         From ``SERIES_RATIO`` to ``MOST_RATIO``.
     """
     if not len(series.values) >= SERIES or not math.isfinite(series.index):
-        return SERIES_RATIO
+        return MOST_RATIO
     order = min(max(series.order or 1.0, 1.0), FORMAL_ORDER)
-    return min(max(math.pow(series.index / accuracy, 0.5 / order), SERIES_RATIO), MOST_RATIO)
+    return min(max(math.pow(series.index / accuracy, 1.0 / order), SERIES_RATIO), MOST_RATIO)

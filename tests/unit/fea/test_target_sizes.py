@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 import solid_meshes
 
+from fea.refine.refinement import START
 from fea.refine.target_sizes import GROWTH, MOST_RATIO, SERIES_RATIO, LocalGoal, element_sizes, next_sizes, reduction
 from fea.solid.space import displacement_space
+from geometry.meshing.mesh import mesh_body
 from geometry.meshing.mirror import mirrored
+from geometry.parts.part import Bar, Body, Pin
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +58,17 @@ def test_the_next_mesh_is_finer_at_the_peak_and_nowhere_coarser(space):
     assert sizes[nearest] == pytest.approx(old.min() / SERIES_RATIO, rel=0.2)
     assert sizes.max() <= old.max() * (1.0 + 1e-3)
     assert sizes[points[:, 0] > 3.5].min() > 0.95 * old.min()
+
+
+def test_a_mesh_made_of_the_sizes_of_another_has_as_many_elements():
+    sizes = {"width": 8.0, "thickness": 4.0, "eye_diameter": 12.0, "eye_thickness": 4.0, "fillet_radius": 2.0}
+    part = Bar.model_validate({"shape": "bar", "material": "m"} | {name: f"{v} mm" for name, v in sizes.items()})
+    pins = tuple(Pin(name=name, x=x, y=0.0, diameter=3.0) for name, x in (("A", 0.0), ("B", 30.0)))
+    body = Body(part=part, pins=pins, ends=(), holes=())
+    first = mesh_body(body, START)
+    points, found = next_sizes(displacement_space(first), [], [])
+    again = mesh_body(body, dataclasses.replace(START, size_points=points, size_values=found))
+    assert 0.85 < len(again.cells) / len(first.cells) < 1.15
 
 
 def test_an_element_that_may_hold_the_peak_is_refined_wherever_it_is(space):
