@@ -22,7 +22,8 @@ estimate is 0.77 to 1.33 times the count.
 """
 SAFETY = 1.5
 """Factor by which the estimate may be wrong: only beyond it is a body refused."""
-_SAMPLES = 200
+_SAMPLES = 64
+"""Of each face; the estimate is within 4 % of that by 1000."""
 # Low-discrepancy points of the unit square (M. Roberts' R2 sequence: powers of the plastic number's inverse).
 _SQUARE = np.modf(np.arange(1, _SAMPLES + 1)[:, None] * np.array([0.7548776662466927, 0.5698402909980532]))[0]
 

@@ -103,24 +103,6 @@ def scaled_jacobians(points: _Array, cells: _Ints) -> _Array:
     return np.asarray(coefficients.min(axis=1) / np.where(greatest > 0.0, greatest, 1.0))
 
 
-def element_volumes(points: _Array, cells: _Ints) -> _Array:
-    """Return each element's volume, exactly for curved ones too.
-
-    Parameters
-    ----------
-    points : ndarray
-        Nodes (n, 3).
-    cells : ndarray
-        Elements (m, 4) or (m, 10), node numbers.
-
-    Returns
-    -------
-    ndarray
-        Volumes (m,), negative of elements turned inside out.
-    """
-    return np.asarray(jacobian_coefficients(points, cells).mean(axis=1) / 6.0)
-
-
 def triangle_areas(points: _Array, triangles: _Ints) -> _Array:
     """Return the area of each triangle, of a curved one to a relative 1e-6 while its curvature is mild.
 
@@ -181,11 +163,14 @@ def flatten(points: _Array, cells: _Ints, least: float) -> tuple[_Array, int]:
     """
     points = points.copy()
     times = np.zeros(len(cells), dtype=int)
-    while (bad := np.flatnonzero((scaled_jacobians(points, cells) < least) & (times < 8))).size:
+    scaled = scaled_jacobians(points, cells)
+    while (bad := np.flatnonzero((scaled < least) & (times < 8))).size:
         times[bad] += 1
         for share, chosen in ((0.25, bad[times[bad] < 8]), (1.0, bad[times[bad] == 8])):
             # A mid-node that several bad elements share moves once.
             nodes, first = np.unique(cells[chosen, 4:], return_index=True)
             middles = points[cells[chosen, :4]][:, TETRA_EDGES].mean(axis=2).reshape(-1, 3)[first]
             points[nodes] = (1.0 - share) * points[nodes] + share * middles
+        beside = np.flatnonzero(np.isin(cells[:, 4:], cells[bad, 4:]).any(axis=1))
+        scaled[beside] = scaled_jacobians(points, cells[beside])
     return points, int((times > 0).sum())

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError, CoarseMeshError
 from geometry.meshing.element_count import SAFETY, Sizes, estimated_elements
-from geometry.meshing.element_geometry import element_volumes, flatten, scaled_jacobians, triangle_areas
+from geometry.meshing.element_geometry import flatten, jacobian_coefficients, scaled_jacobians, triangle_areas
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesh_target import MeshTarget
 from geometry.meshing.mirror import mirrored
@@ -176,8 +176,9 @@ def _checked(
     notes: tuple[str, ...],
     allowed: float,
 ) -> TaggedMesh:
-    filled = element_volumes(points, cells)
-    if (least := scaled_jacobians(points, cells).min()) <= 0.0 or (filled <= 0.0).any():
+    coefficients = jacobian_coefficients(points, cells)
+    if coefficients.min() <= 0.0:
+        least = scaled_jacobians(points, cells).min()
         raise CoarseMeshError(f"the mesh holds an inverted element (scaled Jacobian {least:.3g})")
     surfaces: dict[str, NDArray[np.int64]] = {}
     areas: dict[str, float] = {}
@@ -195,7 +196,7 @@ def _checked(
         surfaces[name] = np.ascontiguousarray(triangles[:, :3])
         areas[name] = area * unit**2
     volume = target.volume
-    meshed = filled.sum()
+    meshed = coefficients.mean(axis=1).sum() / 6.0
     if abs(meshed - volume) > allowed * volume:
         raise CoarseMeshError(f"the mesh has {meshed * unit**3:.6g} mm³, but the geometry {volume * unit**3:.6g} mm³")
     return TaggedMesh(
