@@ -68,7 +68,9 @@ class ImportedPart(PartKind):
     shift: Vector
     """Where the origin of the file lies [mm]."""
     thickness: float
-    """Twice the volume over the surface: the thickness of a plate, and of whatever is thin [mm]."""
+    """What sets the first element edges [mm]: three times the volume over the surface, but at most the least size of the
+    solid along the axes of its file. Of a plate that is its thickness, of a square bar three quarters of its side, of a
+    thin wall one and a half times as much as its thickness."""
     low: Vector
     high: Vector
     """Bounds of the solid in the link's frame [mm]."""

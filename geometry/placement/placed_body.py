@@ -87,7 +87,7 @@ def _placed(part: StepPart, facts: PartFacts, wanted: tuple[Wanted, ...]) -> Bod
         digest=facts.digest,
         turn=tuple(map(tuple, placement.turn.tolist())),
         shift=tuple(placement.shift.tolist()),
-        thickness=2.0 * facts.volume / facts.surface,
+        thickness=min(3.0 * facts.volume / facts.surface, *(facts.high[i] - facts.low[i] for i in range(3))),
         low=tuple(bounds.min(axis=0).tolist()),
         high=tuple(bounds.max(axis=0).tolist()),
     )
