@@ -80,7 +80,7 @@ def link_loads(
             else ()
         ),
         ends=tuple(
-            EndLoad(name=end.name, point=np.array([end.x, 0.0, 0.0]), wrench=wrenches[end.name])
+            EndLoad(name=end.name, point=np.array([end.x, end.y, 0.0]), wrench=wrenches[end.name])
             for end in body.ends
             if end.name in wrenches
         ),

@@ -31,7 +31,8 @@ class Link(CaseModel):
     arms: Annotated[dict[Name, Name], Field(max_length=10)] = {}
     """Pins far off the axis: point -> the pin on the axis from which an arm of the bar's section reaches to it."""
     end_patch: Annotated[Length, POSITIVE] = 5.0
-    """Length over which a load at a plain end (a point without pin) enters the part."""
+    """Length over which a load at a plain end (a point without pin) enters the part. On an imported part it enters the
+    nearest face, or those that are equally near: a flat one within a circle of this diameter, a round one whole."""
 
     @property
     def pieces(self) -> tuple[tuple[Name, Name], ...]:

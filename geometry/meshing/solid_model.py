@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError, CaseError
+from geometry.meshing.patches import patch_borders
 from geometry.parts.body import Body, patch_span
 from geometry.parts.eyes import flush
 from geometry.parts.features import HoleRow, Pin, PlainEnd
@@ -96,7 +97,7 @@ def scaled(body: Body, unit: float) -> Body:
             )
             for p in body.pins
         ),
-        ends=tuple(PlainEnd(name=e.name, x=s(e.x), patch=s(e.patch)) for e in body.ends),
+        ends=tuple(PlainEnd(name=e.name, x=s(e.x), patch=s(e.patch), y=s(e.y)) for e in body.ends),
         holes=tuple(
             HoleRow.model_construct(
                 count=r.count, diameter=s(r.diameter), first=s(r.first), last=s(r.last), along=r.along
@@ -181,7 +182,10 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
         ring = body.ring(pin)
         if ring.diameter > 0.0 and (body.part.has_holes or flush(body, pin)):
             borders += [_flat_eye(kernel, pin, _ring(body, pin), z) for z in (ring.low, ring.high)]
-    for end in body.ends:
+    if body.part.has_holes:
+        occ.synchronize()
+        borders += [border for end in body.ends for border in patch_borders(kernel.gmsh, solid[1], end)]
+    for end in () if body.part.has_holes else body.ends:
         low, high = patch_span(body, end)
         for side in (-0.5, 0.5):
             flat = occ.addRectangle(low, -width / 2.0, side * height, high - low, width)

@@ -42,7 +42,7 @@ def check_body(body: Body) -> None:
         raise CaseError(f"all pins and load points lie at x = {first:g} mm, so the link has no length; move them apart")
     _check_pins(body)
     body.part.check(body)
-    for end in body.ends:
+    for end in () if body.part.has_holes else body.ends:
         _check_end(body, end)
     for number, row in enumerate(body.holes, start=1):
         _check_row(body, number, row)

@@ -181,11 +181,14 @@ class PlainEnd:
     name : str
         Name of the point.
     x : float
-        Its place on the link's axis [mm].
+        Its place along the link's axis [mm].
     patch : float
-        Length of the loaded patch along x [mm].
+        Length of the loaded patch along x; diameter of the patch on an imported part [mm].
+    y : float
+        Its place across the axis, off which only an imported part has load points [mm].
     """
 
     name: str
     x: float
     patch: float
+    y: float = 0.0

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, ValidationInfo
 from geometry.base.errors import CannotRunError
 from geometry.base.model import CaseModel, Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.parts.body import Body, PartKind
+from geometry.parts.body import Body, Feature, PartKind
 from geometry.parts.kernel import Entity, Kernel
 from geometry.parts.section import Section, rectangle
 
@@ -55,6 +55,7 @@ class ImportedPart(PartKind):
     A point p of the file lies at ``turn`` p + ``shift`` in the link's frame.
     """
 
+    takes: ClassVar[frozenset[Feature]] = frozenset(("load points without a pin",))
     is_beam: ClassVar[bool] = False
 
     shape: Literal["step"] = "step"
@@ -68,9 +69,9 @@ class ImportedPart(PartKind):
     shift: Vector
     """Where the origin of the file lies [mm]."""
     thickness: float
-    """What sets the first element edges [mm]: three times the volume over the surface, but at most the least size of the
-    solid along the axes of its file. Of a plate that is its thickness, of a square bar three quarters of its side, of a
-    thin wall one and a half times as much as its thickness."""
+    """What sets the first element edges [mm]: three times the volume over the surface, but at most the least size
+    of the solid along the axes of its file. Of a plate that is its thickness, of a square bar three quarters of its side,
+    of a thin wall one and a half times its thickness."""
     low: Vector
     high: Vector
     """Bounds of the solid in the link's frame [mm]."""

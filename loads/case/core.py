@@ -248,7 +248,7 @@ class CoreCase(Revisable):
         CaseError
             Where a pin has no diameter, a plain end does not lie on the axis, or a slot or arm does not fit its joints.
         """
-        record = self.links[link]
+        record, part = self.links[link], self._stated_part(link)
         pinned: dict[str, str] = {}
         for joint in self.linkage.joints_of(link):
             first = pinned.setdefault(self.linkage.point_of(joint, link), joint)
@@ -267,6 +267,8 @@ class CoreCase(Revisable):
                         'state it, for example "1.5 mm"'
                     )
                 pins.append(_pin(self, link, name, diameter))
+            elif isinstance(part, StepPart):
+                ends.append(PlainEnd(name=name, x=x, patch=record.end_patch, y=y))
             elif abs(y) > 1e-9 * self.linkage.longest:
                 raise CaseError(
                     f"links.{link}.points.{name}: a load point without pin must lie on the link's axis (y = 0), "
@@ -274,7 +276,6 @@ class CoreCase(Revisable):
                 )
             else:
                 ends.append(PlainEnd(name=name, x=x, patch=record.end_patch))
-        part = self._stated_part(link)
         if isinstance(part, StepPart):
             wanted = tuple(Wanted(name=pin.name, place=(pin.x, pin.y), diameter=pin.diameter) for pin in pins)
             if link not in self._imported:

@@ -73,7 +73,6 @@ def test_sections_are_those_of_the_plate(case):
         ({"points": FROM_PART}, "it must name two points or more"),
         ({"entries": 'bores = { O4 = "bore 7" }'}, "has no bore 'bore 7'; its bores are bore 1 .5 mm., bore 2 .6 mm."),
         ({"entries": 'bores = { O4 = "bore 2" }'}, "pin at O4 has a diameter of 5 mm, but bore 2 has 6 mm"),
-        ({"points": '{ O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"], P = ["50 mm", "0 mm"] }'}, "takes no load points"),
     ],
 )
 def test_what_does_not_fit_is_one_sentence(tmp_path, change, said):
@@ -104,3 +103,23 @@ def test_a_file_that_changes_meanwhile_is_noticed(tmp_path):
     moved = body.part.model_copy(update={"shift": (0.0, 0.0, 1.0)})  # no worker has built it
     with pytest.raises(AlulaError, match=r"plate.step.* changed while it was used"):
         mass_properties(type(body)(part=moved, pins=body.pins, ends=(), holes=()))
+
+
+@pytest.mark.parametrize(
+    ("place", "faces"),
+    [(("50 mm", "0 mm"), 1), (("10 mm", "-6.5 mm"), 2)],
+    ids=["on the end face", "between top and bottom"],
+)
+def test_a_load_point_has_a_patch_on_the_nearest_faces(tmp_path, place, faces):
+    """Circles of 5 mm: one on the face at x = 50, or one each on top and bottom, which are equally near."""
+    points = f'{{ O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"], P = ["{place[0]}", "{place[1]}"] }}'
+    case = read_case(str(imported_case(tmp_path, points=points)))
+    mesh = mesh_body(case.body("rocker"), COARSE)
+    assert mesh.areas["end:P"] == pytest.approx(faces * np.pi / 4.0 * 5.0**2, rel=1e-5)
+
+
+def test_a_load_point_beside_the_part_is_refused(tmp_path):
+    points = '{ O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"], P = ["70 mm", "0 mm"] }'
+    case = read_case(str(imported_case(tmp_path, points=points)))
+    with pytest.raises(CaseError, match="the load point P lies outside of the part"):
+        mesh_body(case.body("rocker"), COARSE)

@@ -1,0 +1,92 @@
+"""Loaded patches on parts of any shape: where a load that is no pin's enters an imported part.
+
+It enters the face that is nearest to its point: a flat one within a circle about the nearest place, a round one whole.
+Where faces are equally near, as top and bottom of a plate, all of them carry the load. Runs in a child process only
+(see ``geometry.meshing.mesh``).
+"""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base.errors import CaseError
+from geometry.parts.features import PlainEnd
+from geometry.parts.kernel import ON_SURFACE, Entity
+
+AS_NEAR = 1e-3
+"""Share by which the distances of two faces from a point may differ where both count."""
+
+
+def patch_borders(gmsh: Any, solid: int, end: PlainEnd) -> list[Entity]:
+    """Return the circles that bound a patch on flat faces, as disks.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with the solid in its present model.
+    solid : int
+        Tag of the solid.
+    end : PlainEnd
+        The load point.
+
+    Returns
+    -------
+    list of tuple
+        Faces to be imprinted on the solid.
+
+    Raises
+    ------
+    CaseError
+        Where the point lies off the part.
+    """
+    faces = [tag for _, tag in gmsh.model.getBoundary([(3, solid)], oriented=False)]
+    disks, radius, nearest = [], end.patch / 2.0, _nearest(gmsh, faces, end)
+    away = min(float(np.linalg.norm(at - (end.x, end.y, 0.0))) for at in nearest.values())
+    if away > radius and not gmsh.model.isInside(3, solid, [end.x, end.y, 0.0]):
+        raise CaseError(
+            f"the load point {end.name} lies outside of the part, {away / radius:.3g} times half of end_patch from its "
+            "surface; move it onto the part"
+        )
+    for face, at in nearest.items():
+        if gmsh.model.getType(2, face) == "Plane":
+            normal = gmsh.model.getNormal(face, gmsh.model.getParametrization(2, face, at))
+            disks.append((2, gmsh.model.occ.addDisk(*at, radius, radius, zAxis=list(normal))))
+    return disks
+
+
+def patch_faces(gmsh: Any, faces: Iterable[int], end: PlainEnd) -> list[int]:
+    """Return the faces that make up a patch, after its borders were imprinted.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with what is meshed in its present model.
+    faces : iterable of int
+        Tags of its faces.
+    end : PlainEnd
+        The load point.
+
+    Returns
+    -------
+    list of int
+        Tags.
+    """
+    found, reach = [], end.patch / 2.0 + 10.0 * ON_SURFACE
+    for face, at in _nearest(gmsh, faces, end).items():
+        box = np.reshape(gmsh.model.getBoundingBox(2, face), (2, 3))
+        if gmsh.model.getType(2, face) != "Plane" or np.abs(box - at).max() < reach:
+            found.append(face)
+    return found
+
+
+def _nearest(gmsh: Any, faces: Iterable[int], end: PlainEnd) -> dict[int, NDArray[np.float64]]:
+    """Return the faces nearest to a load point, each with its nearest place (3,)."""
+    occ = gmsh.model.occ
+    point = occ.addPoint(end.x, end.y, 0.0)
+    told = {face: occ.getDistance(0, point, 2, face) for face in faces}
+    occ.remove([(0, point)])
+    least = min(distance for distance, *_ in told.values())
+    near = least * (1.0 + AS_NEAR) + ON_SURFACE
+    return {face: np.asarray(places[3:6]) for face, (distance, *places) in told.items() if distance <= near}
