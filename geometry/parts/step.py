@@ -70,8 +70,8 @@ class ImportedPart(PartKind):
     """Where the origin of the file lies [mm]."""
     thickness: float
     """What sets the first element edges [mm]: three times the volume over the surface, but at most the least size
-    of the solid along the axes of its file. Of a plate that is its thickness, of a square bar three quarters of its side,
-    of a thin wall one and a half times its thickness."""
+    of the solid along the axes of its file. Of a plate that is its thickness, of a square bar 0.75 times its side, of a
+    thin wall 1.5 times its thickness."""
     low: Vector
     high: Vector
     """Bounds of the solid in the link's frame [mm]."""
