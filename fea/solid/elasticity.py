@@ -189,13 +189,25 @@ def assemble_stiffness(
             target = place[np.minimum(row, column).ravel(), np.maximum(row, column).ravel()].astype(np.intp)
             target = target.reshape(row.shape)
             for part in (slice(i, i + _CHUNK) for i in range(0, len(group), _CHUNK)):
-                values, where = kernel(space.nodes[space.cells[group[part]]]), target[part].ravel()
-                for i in range(3):
-                    for j in range(3):
-                        # The block of a pair whose nodes stand in descending order belongs below the diagonal.
-                        value = values[:, i, j] if i == j else np.where(mirror[part], values[:, j, i], values[:, i, j])
-                        np.add.at(blocks[:, i, j], where, value.ravel())
+                values = np.ascontiguousarray(kernel(space.nodes[space.cells[group[part]]]).transpose(0, 3, 1, 2))
+                # The block of a pair whose nodes stand in descending order belongs below the diagonal.
+                below = mirror[part]
+                values[below] = values[below].swapaxes(1, 2)
+                _add_at(blocks, target[part].ravel(), values)
     return SymmetricBlockMatrix(indptr=place.indptr, indices=place.indices, blocks=blocks)
+
+
+def _add_at(blocks: NDArray[np.float64], where: NDArray[np.intp], values: NDArray[np.float64]) -> None:
+    """Add values to the blocks whose numbers are given, which may repeat: the product with a matrix of ones, in place.
+
+    scipy's kernel for that product, which it names for no public use, takes half of the time of ``np.add.at``.
+    """
+    from scipy.sparse import _sparsetools
+
+    count = len(where)
+    columns = np.arange(count + 1, dtype=where.dtype)
+    out = blocks.reshape(-1)
+    _sparsetools.csc_matvecs(len(blocks), count, 9, columns, where, np.ones(count), values.ravel(), out)
 
 
 def _pattern(cells: NDArray[np.int64], count: int) -> Any:
