@@ -5,13 +5,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.outcomes.result import CheckResult
+from fea.outcomes.result import CheckResult, SolidResult
 from loads.records.aero import shares
 from loads.records.applied import LineLoad, PointLoad, in_axes
 from loads.states.actions import stated_loads
 from reports.figures.canvas import Canvas, extent
 from reports.figures.labels import along, place_labels
 from reports.figures.plot import Axes, ticks, widest
+from reports.figures.silhouette import silhouette
 from reports.figures.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, TORQUE, WIDTH
 from reports.words.wording import number, turning
 
@@ -155,6 +156,9 @@ class _Drawing:
         """Draw the links; returns points of them."""
         thickness, found = 0.011 * self.size, []
         for link, record in self.linkage.links.items():
+            if (seen := self._silhouette(link)) is not None:
+                found.append(seen)
+                continue
             for a, b in ((self.points[link, one], self.points[link, other]) for one, other in record.pieces):
                 if np.linalg.norm(b - a) <= 1e-9 * self.size:
                     continue
@@ -166,6 +170,21 @@ class _Drawing:
                 sides = (-1.0, 0.0, 1.0) if link != self.linkage.ground else (0.0,)
                 found += [along(a + side * thickness * normal, b + side * thickness * normal) for side in sides]
         return found
+
+    def _silhouette(self, link: str) -> Real | None:
+        """Draw a part that is no beam as it is seen along its pins, where a solid tells; returns points of it."""
+        found = self.result.load_cases[self.name].links.get(link)
+        if not isinstance(found, SolidResult) or self.result.case.part_of(link).is_beam:
+            return None
+        space, place = found.stress.space, self.pose.placement
+        places = place.origin(link) + place.direction(link) * (space.nodes[:, 0] + 1j * space.nodes[:, 1])
+        flat = self.axes.at(np.column_stack([places.real, places.imag]))
+        triangles, edges = silhouette(space.nodes, space.boundary[:, :3])
+        for triangle in triangles:
+            self.sheet.area(flat[triangle], LINK, LINK, 0.3)
+        for edge in edges:
+            self.sheet.line(flat[edge], INK, 0.6)
+        return np.column_stack([places.real, places.imag])[np.unique(edges)[::5]]
 
     def _joints(self) -> list[Real]:
         """Draw the joints; returns points of them."""

@@ -93,7 +93,7 @@ def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[
     from reports.figures.figures import plots_of
     from reports.figures.scene import scene_from
 
-    scenes, stations = {}, {}
+    scenes, points = {}, {}
     for name in links:
         link = result.links[name]
         scenes[name] = scene_from(
@@ -103,8 +103,8 @@ def stress_pictures(result: EnvelopeResult, links: Iterable[str]) -> tuple[dict[
             result.case.part_of(name).section,
             brittle=result.case.material_of(name).brittle,
         )
-        stations[name] = {point: x for point, (x, _) in result.case.links[name].points.items()}
-    return plots_of(scenes, stations)
+        points[name] = result.case.links[name].points
+    return plots_of(scenes, points)
 
 
 def abscissa(result: EnvelopeResult) -> tuple[Real, str]:

@@ -29,6 +29,7 @@ from reports.words.wording import fixed, number, plain
 
 Real = NDArray[np.float64]
 
+Place = tuple[float, float]
 _Key = tuple[str, str]
 """Name of a scene, and which view of it."""
 
@@ -40,7 +41,7 @@ _COLOURS = ("#ffffcc", "#ffeda0", "#fed976", "#feb24c", "#fd8d3c", "#fc4e2a", "#
 
 
 def stress_plots(
-    links: Mapping[str, LinkResult], points: Mapping[str, Mapping[str, float]], *, time_limit: float = TIME_LIMIT
+    links: Mapping[str, LinkResult], points: Mapping[str, Mapping[str, Place]], *, time_limit: float = TIME_LIMIT
 ) -> tuple[dict[str, bytes], tuple[str, ...]]:
     """Draw the stress of every link that was solved as a solid.
 
@@ -51,7 +52,7 @@ def stress_plots(
     links : mapping
         Results by name.
     points : mapping
-        Link -> name -> x of its pins and load points [mm], to be named in the picture.
+        Link -> name -> (x, y) of its pins and load points [mm], to be named in the picture.
     time_limit : float, optional
         Of rendering [s].
 
@@ -65,7 +66,7 @@ def stress_plots(
 
 
 def plots_of(
-    scenes: Mapping[str, Scene], points: Mapping[str, Mapping[str, float]], *, time_limit: float = TIME_LIMIT
+    scenes: Mapping[str, Scene], points: Mapping[str, Mapping[str, Place]], *, time_limit: float = TIME_LIMIT
 ) -> tuple[dict[str, bytes], tuple[str, ...]]:
     """Draw scenes.
 
@@ -181,15 +182,18 @@ def colours() -> NDArray[np.uint8]:
     return np.column_stack(mixed).round().astype(np.uint8)
 
 
+_ON_AXIS = 1e-6
+"""Share of half the picture's width within which a point lies on the link's axis; it is named above the picture."""
 _GAP = 36.0
 """Room between the views [points]."""
 
 
-def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float]) -> bytes:
+def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, Place]) -> bytes:
     """Put both renderings, the colour bar and the labels on one sheet."""
     wide = 72.0 * WIDTH - 2.0 * MARGIN
-    shares = scene.strip.share(np.array([[x, 0.0, 0.0] for x in points.values()]).reshape(-1, 3))[:, 0]
-    names = stacked(points, wide * shares)
+    on_axis = {name: at for name, at in points.items() if abs(at[1]) < _ON_AXIS * scene.strip.half_width}
+    shares = scene.strip.share(np.array([[x, 0.0, 0.0] for x, _ in on_axis.values()]).reshape(-1, 3))[:, 0]
+    names = stacked(on_axis, wide * shares)
     top = 12.0 + heights(names)
     middle = top + wide * scene.strip.half_height / scene.strip.half_width
     sheet = Canvas(72.0 * WIDTH, middle + _GAP + SIDE + MARGIN)
@@ -199,6 +203,11 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, float])
     sheet.picture(close, lower.box)
     lower.frame(sheet)
     write_stacked(sheet, names, MARGIN, top)
+    high = float(scene.points[:, 2].max())
+    for name, (x, y) in points.items():
+        if name not in on_axis:
+            at = upper.at(scene.strip.share(np.array([x, y, high])))
+            sheet.write(name, at, anchor="center middle", size=9.0, bold=True, halo=2.5)
     title = "around the largest stress" + ("" if scene.close.cut is None else ", cut open")
     sheet.write(title, ((lower.box[0] + lower.box[2]) / 2.0, lower.box[1] - 4.0), anchor="center bottom", size=8.5)
     for axes, view, spots in ((upper, scene.strip, scene.deformed), (lower, scene.close, scene.points)):

@@ -188,7 +188,11 @@ def scene_from(
     largest = float(np.linalg.norm(displacement, axis=1).max())
     scale = round_scale(_VISIBLE_SHIFT * length / largest) if largest > 0.0 else 1.0
     hottest = int(np.argmax(values))
-    reach = 0.65 * min(2.0 * max(section.half_y, section.half_z), float(np.ptp(space.nodes[:, 1:], axis=0).max()))
+    reach = 0.65 * min(
+        2.0 * max(section.half_y, section.half_z),
+        8.0 * min(section.half_y, section.half_z),
+        float(np.ptp(space.nodes[:, 1:], axis=0).max()),
+    )
     near = np.linalg.norm(space.nodes[space.cells[:, :4]].mean(axis=1) - space.nodes[hottest], axis=1) < 3.0 * reach
     cells = space.cells[near]
     return Scene(

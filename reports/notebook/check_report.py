@@ -143,8 +143,7 @@ class CheckReport:
         found = self._case(link, load_case).links[link]
         if not isinstance(found, SolidResult):
             raise CaseError(f'link {link} has no stress field, since {found.why}; check the case with fidelity="solid"')
-        stations = {name: x for name, (x, _) in self.result.case.links[link].points.items()}
-        plots, warnings = stress_plots({link: found}, {link: stations})
+        plots, warnings = stress_plots({link: found}, {link: self.result.case.links[link].points})
         if link not in plots:
             raise CannotRunError("; ".join(warnings))
         return Picture(plots[link])

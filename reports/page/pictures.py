@@ -92,10 +92,11 @@ def draw_pictures(
     from reports.figures.figures import stress_plots
 
     worst = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
-    stations = {link: {point: x for point, (x, _) in result.case.links[link].points.items()} for link in worst}
+    points = {link: result.case.links[link].points for link in worst}
+    stations = {link: {point: x for point, (x, _) in points[link].items()} for link in worst}
     progress("Drawing the linkage, the internal forces and the stress plots ...")
     with ThreadPoolExecutor(1) as beside:  # its work is that of a child process
-        rendered = beside.submit(stress_plots, worst, stations)
+        rendered = beside.submit(stress_plots, worst, points)
         pictures = {linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)}
         pictures |= {
             diagram_name(link): internal_force_diagram(found.beam, stations[link]) for link, found in worst.items()

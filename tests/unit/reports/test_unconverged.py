@@ -28,7 +28,7 @@ def test_a_singular_peak_sets_neither_legend_nor_colours(link):
     assert "no result, singular at a sharp edge" in told
     assert "MPa" not in told
     [picture] = figures.stress_plots(
-        {"GF": replace(link, discretisation=state("singular", screening=0.6 * peak))}, {"GF": {"G": 0.0}}
+        {"GF": replace(link, discretisation=state("singular", screening=0.6 * peak))}, {"GF": {"G": (0.0, 0.0)}}
     )[0].values()
     assert picture.startswith(b"\x89PNG")
 
