@@ -6,9 +6,9 @@ from numpy.typing import NDArray
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]
 
-_SEEN, _BENDS = 0.02, 0.85
-"""Least cosine of a face's normal to the view where it is seen, and cosine between two faces below which their edge is
-drawn: 32 degrees, more than two triangles of a round surface enclose."""
+_SEEN, _BENDS = 0.35, 0.8
+"""Least cosine of a face's normal to the view where it is seen, since triangles of coarse bores stand askew; and the
+cosine between two faces below which their edge is drawn: 37 degrees, more than triangles of a round surface enclose."""
 
 
 def silhouette(nodes: Real, triangles: Int) -> tuple[Int, Int]:

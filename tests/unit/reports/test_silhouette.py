@@ -11,7 +11,7 @@ from reports.figures.silhouette import silhouette
 
 def test_a_disc_shows_its_face_and_the_circles_that_bound_it():
     """The face of a disc of 20 mm with holes of 4 mm: its area, and the lengths of three circles."""
-    part = Disc.model_construct(shape="disc", material="x", diameter=20.0, thickness=3.0, eye_diameter=7.0)
+    part = Disc.model_construct(shape="disc", material="x", diameter=20.0, thickness=3.0, eye_diameter=5.0)
     pins = Pin(name="A", x=0.0, y=0.0, diameter=4.0), Pin(name="B", x=6.0, y=0.0, diameter=4.0)
     space = displacement_space(mesh_body(Body(part=part, pins=pins, ends=(), holes=()), COARSE))
     triangles, edges = silhouette(space.nodes, space.boundary[:, :3])
