@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 Vector = tuple[float, float, float]
 
 
@@ -14,7 +17,7 @@ class Bore:
     name : str
         "bore 1", "bore 2", ...: along the part's longest direction, then across it.
     axis : tuple of 3 float
-        Unit vector.
+        Unit vector, its largest component positive.
     centre : tuple of 3 float
         Middle of the hole along its axis; of a slot, between its two ends as well [mm].
     diameter : float
@@ -43,6 +46,22 @@ class Bore:
     slot: float
     slot_axis: Vector
     around: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PartSurface:
+    """Triangles of a solid's surface, for pictures.
+
+    Attributes
+    ----------
+    points : array
+        Corners (n, 3) [mm]; faces of the solid share none.
+    triangles : int array
+        (k, 3).
+    """
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)

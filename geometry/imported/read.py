@@ -2,10 +2,11 @@
 
 import hashlib
 from pathlib import Path
+from typing import Any
 
 from geometry.base.errors import CaseError
 from geometry.base.kernel_child import KernelWords, ask_kernel
-from geometry.imported.facts import PartFacts
+from geometry.imported.facts import PartFacts, PartSurface
 
 LARGEST_FILE = 200_000_000
 """Bytes."""
@@ -41,10 +42,41 @@ def part_facts(path: Path) -> PartFacts:
     """
     digest = file_digest(path)
     if digest not in _known:
-        _known[digest] = ask_kernel(
-            "facts", (str(path.absolute()), digest), words=_words(path), time_limit=TIME_LIMIT, memory=MEMORY_LIMIT
-        )
+        _known[digest] = _ask("facts", path, digest)
     return _known[digest]
+
+
+def part_surface(path: Path) -> PartSurface:
+    """Return triangles of the surface of the solid in a STEP file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    PartSurface
+        For pictures.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``part_facts``.
+    """
+    found: PartSurface = _ask("surface", path, file_digest(path))
+    return found
+
+
+def _ask(task: str, path: Path, digest: str) -> Any:
+    words = KernelWords(
+        who=f"the geometry kernel, reading '{path.name}',",
+        late=_SIMPLER,
+        large=_SIMPLER,
+        crashed="export the part anew",
+    )
+    subject = str(path.absolute()), digest
+    return ask_kernel(task, subject, words=words, time_limit=TIME_LIMIT, memory=MEMORY_LIMIT)
 
 
 def file_digest(path: Path) -> str:
@@ -86,12 +118,3 @@ def file_digest(path: Path) -> str:
             return hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError as error:
         raise CaseError(f"'{path}' cannot be read ({error.strerror}); check its permissions") from None
-
-
-def _words(path: Path) -> KernelWords:
-    return KernelWords(
-        who=f"the geometry kernel, reading '{path.name}',",
-        late=_SIMPLER,
-        large=_SIMPLER,
-        crashed="export the part anew",
-    )

@@ -6,10 +6,14 @@ Runs in the kernel's child process only. Lengths are in mm, whatever the unit of
 import os
 from typing import Any
 
+import numpy as np
+
 from geometry.base.errors import CaseError
 from geometry.imported.bores import find_bores
-from geometry.imported.facts import PartFacts, Vector
+from geometry.imported.facts import PartFacts, PartSurface, Vector
 
+_TRIANGLE = 2
+"""gmsh's number of this shape."""
 _SHOWN = 4
 """Solids whose sizes are named at most."""
 
@@ -93,6 +97,44 @@ def facts_of_file(gmsh: Any, path: str, digest: str) -> PartFacts:
         bores=find_bores(gmsh, tag),
         digest=digest,
     )
+
+
+def surface_of_file(gmsh: Any, path: str, digest: str) -> PartSurface:
+    """Return triangles of the surface of the solid in a STEP file, fine enough for a picture.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, its present model empty.
+    path : str
+        The file.
+    digest : str
+        Not needed here.
+
+    Returns
+    -------
+    PartSurface
+        In mm, in the frame of the file.
+
+    Raises
+    ------
+    CaseError
+        As ``import_solid``.
+    """
+    tag, model = import_solid(gmsh, path), gmsh.model
+    gmsh.option.setNumber("Mesh.StlAngularDeflection", 0.2)
+    model.mesh.importStl()  # the kernel's own triangles, which take a hundredth of the mesher's time
+    points, triangles, count = [], [], 0
+    for face in model.getAdjacencies(3, tag)[1]:
+        corners = np.asarray(model.mesh.getElementsByType(_TRIANGLE, face)[1], dtype=np.int64)
+        if not corners.size:
+            continue
+        nodes, places, _ = model.mesh.getNodes(2, face, includeBoundary=True)
+        nodes, first = np.unique(np.asarray(nodes, dtype=np.int64), return_index=True)
+        points.append(np.asarray(places).reshape(-1, 3)[first])
+        triangles.append(count + np.searchsorted(nodes, corners).reshape(-1, 3))
+        count += len(nodes)
+    return PartSurface(points=np.concatenate(points), triangles=np.concatenate(triangles))
 
 
 def _vector(values: Any) -> Vector:

@@ -34,7 +34,7 @@ class Line:
     point : array
         (3,) [mm].
     axis : array
-        (3,), of unit length; its first component that is not zero is positive.
+        (3,), of unit length; its largest component is positive.
     """
 
     point: Real
@@ -254,8 +254,8 @@ def _angle(line: Line, point: Real) -> float:
 
 def _upwards(axis: Real) -> Real:
     axis = axis / np.linalg.norm(axis)
-    leading = next(component for component in axis if abs(component) > NEAR)
-    return np.asarray(np.where(np.abs(axis) < 1e-12, 0.0, axis) * math.copysign(1.0, leading))
+    largest = axis[int(np.argmax(np.abs(axis) > np.abs(axis).max() - NEAR))]
+    return np.asarray(np.where(np.abs(axis) < 1e-12, 0.0, axis) * math.copysign(1.0, largest))
 
 
 def _joined(faces: list[Wall]) -> Iterable[Wall]:

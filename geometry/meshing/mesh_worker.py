@@ -22,7 +22,7 @@ from geometry.base.child_memory import MemoryGuard
 from geometry.base.child_server import ChildService
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.system_libraries import advice
-from geometry.imported.solid import facts_of_file
+from geometry.imported.solid import facts_of_file, surface_of_file
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesh_target import MeshTarget, mesh_target
 from geometry.meshing.solid_model import Solid, build, initialised, present, volume_centroid_inertia, write_step
@@ -88,7 +88,7 @@ TASKS: dict[str, Callable[..., object]] = {
     "sections": _sections,
 }
 """What the worker does with gmsh, a body that has been built, and further arguments."""
-FILE_TASKS: dict[str, Callable[..., object]] = {"facts": facts_of_file}
+FILE_TASKS: dict[str, Callable[..., object]] = {"facts": facts_of_file, "surface": surface_of_file}
 """What it does with gmsh, in a model of its own, with the path and the digest of a STEP file, and further arguments."""
 
 

@@ -322,6 +322,36 @@ app.add_typer(materials)
 
 
 @app.command()
+def inspect(
+    file: Annotated[Path, typer.Argument(help="A STEP file that holds one solid.", show_default=False)],
+    material: Annotated[
+        str | None, typer.Option("--material", help="Material of the library, for the mass.", show_default=False)
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", help="Folder; result.json, parts.toml and part.png go to its subfolder inspect."
+        ),
+    ] = None,
+    json: JsonOption = False,
+) -> None:
+    """List what a STEP file holds: solid, mass, bores, and the entries of a case file for it."""
+    from reports.commands.inspect_part import as_json, inspect_file, print_inspection, write_inspection
+    from reports.figures.figures import start_renderer
+    from reports.page.output import refuse_unusable, write_folder
+
+    refuse_unusable(output, "inspect")
+    if output is not None:
+        start_renderer()
+    found = inspect_file(file, material)
+    _show(found, as_json if json else None, print_inspection)
+    if output is not None:
+        _progress("Drawing the part ...")
+        write_folder(output, "inspect", lambda folder: write_inspection(found, folder, _progress))
+        _tell(f"\nEntries, record and picture: {output / 'inspect'}", json)
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of the case file."""
     import json

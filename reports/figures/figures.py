@@ -8,10 +8,10 @@ Scales, labels and the colour bar are drawn around the renderings.
 import pickle
 import subprocess
 import time
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from contextlib import suppress
-from dataclasses import asdict
-from typing import Any
+from dataclasses import asdict, replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,15 +23,14 @@ from geometry.base.system_libraries import OSMESA, loads
 from reports.figures.canvas import SIZE, Canvas, faint
 from reports.figures.labels import heights, stacked, write_stacked
 from reports.figures.plot import Axes
-from reports.figures.scene import MARGIN, SIDE, Scene, View, round_scale, scene_of
+from reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
 from reports.figures.style import INK, WIDTH
 from reports.words.wording import fixed, number, plain
 
 Real = NDArray[np.float64]
 
 Place = tuple[float, float]
-_Key = tuple[str, str]
-"""Name of a scene, and which view of it."""
+_Key = TypeVar("_Key", bound=Hashable)
 
 TIME_LIMIT = 180.0
 """Seconds for the renderings of one check."""
@@ -86,9 +85,13 @@ def plots_of(
     """
     if not scenes:
         return {}, ()
-    renderings, trouble = _rendered(scenes, time_limit)
+    images, trouble = rendered(
+        {(name, kind): one for name, scene in scenes.items() for kind, one in _renderings(scene).items()},
+        time_limit=time_limit,
+    )
+    whole = [name for name in scenes if {(name, "strip"), (name, "close")} <= images.keys()]
     found = {
-        name: _composed(scene, *renderings[name], points[name]) for name, scene in scenes.items() if name in renderings
+        name: _composed(scenes[name], images[name, "strip"], images[name, "close"], points[name]) for name in whole
     }
     missing = [name for name in scenes if name not in found]
     return found, (f"no stress plot of {', '.join(missing)}: {trouble}",) if missing else ()
@@ -98,18 +101,41 @@ def _limits(scene: Scene) -> tuple[float, float]:
     return 0.0, scene.top if scene.top > 0.0 else 1.0
 
 
-def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str, tuple[Real, Real]], str]:
-    """Render both views of every scene; returns the images that came out, and what went wrong with the others."""
-    requests, none = {}, np.zeros((0, 3))
-    for name, scene in scenes.items():
-        for kind, view, points, outline in (
-            ("strip", scene.strip, scene.deformed, scene.points),
-            ("close", scene.close, scene.points, none),
-        ):
-            asked = asdict(view) | {"limits": _limits(scene), "colours": colours()}
-            arrays = {"points": points, "outline": outline, "triangles": scene.triangles, "values": scene.values}
-            cells = {} if view.cut is None else {"cells": scene.cells}
-            requests[name, kind] = pickle.dumps((asked, arrays | cells))
+def _renderings(scene: Scene) -> dict[str, Rendering]:
+    """Return both views of a scene."""
+    close = Rendering(
+        view=scene.close,
+        points=scene.points,
+        triangles=scene.triangles,
+        values=scene.values,
+        limits=_limits(scene),
+        colours=colours(),
+        cells=scene.cells,
+    )
+    return {"strip": replace(close, view=scene.strip, points=scene.deformed, outline=scene.points), "close": close}
+
+
+def rendered(renderings: Mapping[_Key, Rendering], *, time_limit: float = TIME_LIMIT) -> tuple[dict[_Key, Real], str]:
+    """Render bodies in a child process.
+
+    Parameters
+    ----------
+    renderings : mapping
+        By name, whatever it is.
+    time_limit : float, optional
+        Of all of them [s].
+
+    Returns
+    -------
+    tuple
+        Name -> image of those that came out, and what went wrong with the others.
+    """
+    requests = {}
+    for key, one in renderings.items():
+        asked = asdict(one.view) | {"limits": one.limits, "colours": one.colours}
+        arrays = {"points": one.points, "outline": one.outline, "triangles": one.triangles, "values": one.values}
+        cells = {} if one.view.cut is None else {"cells": one.cells}
+        requests[key] = pickle.dumps((asked, arrays | cells))
     trouble = ""
     images: dict[_Key, Real] = {}
     for choice in _renderers():
@@ -118,8 +144,7 @@ def _rendered(scenes: Mapping[str, Scene], time_limit: float) -> tuple[dict[str,
         images |= found
         if not trouble:
             break
-    whole = [name for name in scenes if {(name, "strip"), (name, "close")} <= images.keys()]
-    return {name: (images[name, "strip"], images[name, "close"]) for name in whole}, trouble
+    return images, trouble
 
 
 def _renderers() -> tuple[dict[str, str], ...]:
@@ -215,8 +240,8 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, Place])
         share = 0.45 if axes is upper and scene.far_side else 1.0
         for colour, width in (("#ffffff", 3.0), (INK, 1.2)):
             sheet.ring(at, 5.5, colour if share == 1.0 else faint(colour, share), width)
-    _scale_bar(sheet, upper, scene.strip, (0.012, 0.0), 5.8)
-    _scale_bar(sheet, lower, scene.close, (0.04, 0.04), 0.0)
+    scale_bar(sheet, upper, scene.strip, (0.012, 0.0), 5.8)
+    scale_bar(sheet, lower, scene.close, (0.04, 0.04), 0.0)
     left, high = MARGIN + SIDE + 39.6, lower.box[1]
     _colour_bar(sheet, scene, (left, high + 20.0, 72.0 * WIDTH - 33.0, high + 32.3))
     largest = float(np.linalg.norm(scene.displacement, axis=1).max())
@@ -272,8 +297,20 @@ def _place(value: float) -> str:
     return fixed(float(value), 1)
 
 
-def _scale_bar(sheet: Canvas, axes: Axes, view: View, at: tuple[float, float], below: float) -> None:
-    """Draw a round length, so many points below a place of a view."""
+def scale_bar(sheet: Canvas, axes: Axes, view: View, at: tuple[float, float], below: float) -> None:
+    """Draw a round length.
+
+    Parameters
+    ----------
+    sheet : Canvas
+    axes : Axes
+        Where the view is on the sheet.
+    view : View
+    at : tuple of 2 float
+        Where the length begins, as shares of the view's width and height.
+    below : float
+        By how much it is moved down [points].
+    """
     length = round_scale(0.45 * view.half_width)
     ends = axes.at([at, (at[0] + length / (2.0 * view.half_width), at[1])]) + np.array([0.0, below])
     sheet.line(ends, INK, 2.0)

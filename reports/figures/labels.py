@@ -68,7 +68,8 @@ def place_labels(
         centre, at = centres[best], anchors[best // len(steps)]
         taken = np.vstack([taken, boxes[best]])
         if reaches[best % len(steps)] > _LEADER:
-            near = centre + (at - centre) * min(1.0, half[1] / float(np.abs(at - centre).max()))
+            arm = at - centre
+            near = centre + arm * np.min(half / np.maximum(np.abs(arm), half))  # where it leaves the text's box
             sheet.line([at, near], faint(colour, 0.6), 0.5)
         sheet.write(content, centre, colour=colour, size=size, halo=2.0)
 

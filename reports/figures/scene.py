@@ -1,7 +1,7 @@
 """Geometry of a link's stress plot: its surface, deformation and two views."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,6 +86,39 @@ class View:
         return np.stack(
             [0.5 + arm @ self.right / (2.0 * self.half_width), 0.5 + arm @ self.up / (2.0 * self.half_height)], axis=-1
         )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rendering:
+    """A coloured body and how it is looked at.
+
+    Attributes
+    ----------
+    view : View
+    points : array
+        (n, 3) [mm].
+    triangles : int array
+        (k, 3) of the surface.
+    values : array
+        (n,), which the colours show.
+    limits : tuple of 2 float
+        Values of the first and the last colour.
+    colours : int array
+        (m, 3), red, green and blue from 0 to 255.
+    outline : array
+        (n, 3) [mm], points of the same body at rest, whose outline is drawn; none by default.
+    cells : int array
+        (m, 4) tetrahedra, for a view that cuts the body open; none by default.
+    """
+
+    view: View
+    points: Real
+    triangles: Int
+    values: Real
+    limits: tuple[float, float]
+    colours: NDArray[np.uint8]
+    outline: Real = field(default_factory=lambda: np.zeros((0, 3)))
+    cells: Int = field(default_factory=lambda: np.zeros((0, 4), dtype=np.int64))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -227,8 +260,19 @@ def round_scale(value: float) -> float:
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-9)))
 
 
-def _axes_of(toward: Real) -> tuple[Real, Real]:
-    """Right and up (3,) of a view, the link's axis pointing right if it can."""
+def axes_of(toward: Real) -> tuple[Real, Real]:
+    """Return right and up of a view, the link's axis pointing right if it can.
+
+    Parameters
+    ----------
+    toward : array
+        Direction (3,) towards the viewer.
+
+    Returns
+    -------
+    tuple of array
+        (3,) each.
+    """
     axis = np.array([1.0, 0.0, 0.0]) if abs(toward[0]) < 0.95 else np.array([0.0, 1.0, 0.0])
     right = axis - (axis @ toward) * toward
     right /= np.linalg.norm(right)
@@ -236,7 +280,7 @@ def _axes_of(toward: Real) -> tuple[Real, Real]:
 
 
 def _strip_view(points: Real) -> View:
-    right, up = _axes_of(_TOWARD)
+    right, up = axes_of(_TOWARD)
     u, v = points @ right, points @ up
     middle = (u.min() + u.max()) / 2.0 * right + (v.min() + v.max()) / 2.0 * up
     # A link as tall as long, such as a disc, stands in the middle of a picture half as tall as wide.
@@ -251,7 +295,7 @@ def _close_view(points: Real, triangles: Int, hottest: int, reach: float) -> Vie
     toward = _free_direction(points, triangles, hottest, reach)
     cut = None if toward is not None else float(points[hottest, 2])
     toward = _TOWARD if toward is None else toward
-    right, up = _axes_of(toward)
+    right, up = axes_of(toward)
     return View(right=right, up=up, toward=toward, focus=points[hottest], half_width=reach, half_height=reach,
                 size=(_CLOSE_SIZE, _CLOSE_SIZE), cut=cut)  # fmt: skip
 
@@ -274,7 +318,7 @@ def _free_direction(points: Real, triangles: Int, node: int, reach: float) -> Re
     order = np.argsort(-(facing + 0.4 * (directions @ _TOWARD)))
     start = points[node] + 1e-4 * reach * normal
     for i in order:
-        if facing[i] > 0.25 and not _hits(start, directions[i], a, ab, ac):
+        if facing[i] > 0.25 and not hits(start, directions[i], a, ab, ac):
             return np.asarray(directions[i])
     return None
 
@@ -288,11 +332,27 @@ def _seen(points: Real, triangles: Int, node: int, toward: Real) -> bool:
     facing = np.cross(b[around] - a[around], c[around] - a[around]) @ toward > 0.0
     others = ~around
     start = points[node] + 1e-6 * float(np.ptp(points[:, 0])) * toward
-    return bool(facing.any()) and not _hits(start, toward, a[others], (b - a)[others], (c - a)[others])
+    return bool(facing.any()) and not hits(start, toward, a[others], (b - a)[others], (c - a)[others])
 
 
-def _hits(start: Real, direction: Real, a: Real, ab: Real, ac: Real) -> bool:
-    """Return True if a ray meets a triangle (Möller & Trumbore, J. Graphics Tools 2 (1997) 21-28)."""
+def hits(start: Real, direction: Real, a: Real, ab: Real, ac: Real) -> bool:
+    """Return True if a ray meets a triangle.
+
+    Parameters
+    ----------
+    start, direction : array
+        Of the ray (3,).
+    a, ab, ac : array
+        Corners (k, 3) of the triangles, and two sides of each from there.
+
+    Returns
+    -------
+    bool
+
+    References
+    ----------
+    Möller & Trumbore, J. Graphics Tools 2 (1997) 21-28.
+    """
     p = np.cross(direction, ac)
     determinant = np.einsum("ij,ij->i", ab, p)
     crossing = np.abs(determinant) > 1e-14

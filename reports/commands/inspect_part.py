@@ -1,0 +1,333 @@
+"""Output of ``alula inspect``: what is found in a STEP file, and the entries of a case file for it."""
+
+import json as jsonlib
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geometry.base.errors import AlulaError, CaseError
+from geometry.base.version import result_stamp
+from geometry.imported.arrangement import LinkFrame, angle_between, coaxial, link_frame, parallel_groups
+from geometry.imported.facts import Bore, PartFacts, Vector
+from geometry.imported.read import part_facts, part_surface
+from geometry.parts.material import Material, library
+from loads.text.explain import printable
+from reports.tables.data import entries
+from reports.words.terminal import KEPT, say, say_table
+from reports.words.wording import fixed, joined, number, plain
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+ENTRIES, PICTURE, RECORD = "parts.toml", "part.png", "result.json"
+"""Files that go to the output folder."""
+ASSUMED_MATERIAL = "pla-fdm-xy"
+"""Material in the entries where none is named."""
+GRAMS = 1e6
+"""In a tonne."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Inspection:
+    """What is found in a STEP file, with a material.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    facts : PartFacts
+        What is found in it.
+    material : str or None
+        Name of the material; None where none is named.
+    """
+
+    path: Path
+    facts: PartFacts
+    material: str | None
+
+    @property
+    def card(self) -> Material | None:
+        """The material's card."""
+        return None if self.material is None else library()[self.material]
+
+    @property
+    def mass(self) -> float | None:
+        """Mass [tonne]; None without a material."""
+        return None if self.card is None else self.facts.volume * self.card.density
+
+    @cached_property
+    def frame(self) -> LinkFrame | None:
+        """The frame of the link that the part may be."""
+        return link_frame(self.facts.bores)
+
+    @property
+    def name(self) -> str:
+        """Name of part and link in the entries: that of the file, as far as it is one."""
+        kept = "".join(c if c.isalnum() or c in "-_+ " else "-" for c in self.path.stem).strip("-_+ ")
+        while len(kept.encode()) > 60:
+            kept = kept[:-1].rstrip("-_+ ")
+        return kept or "part"
+
+
+def inspect_file(path: Path, material: str | None) -> Inspection:
+    """Look into a STEP file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    material : str, optional
+        Name of a material of the library.
+
+    Returns
+    -------
+    Inspection
+        What is found.
+
+    Raises
+    ------
+    CaseError
+        For an unknown material, and where the file is no STEP file of one solid.
+    CannotRunError
+        Where the geometry kernel fails.
+    """
+    if material is not None and material not in library():
+        raise CaseError(f"--material: there is no material '{material}'; the library has {', '.join(library())}")
+    return Inspection(path=path, facts=part_facts(path), material=material)
+
+
+def record(found: Inspection) -> dict[str, Any]:
+    """Return what was found as plain data.
+
+    Parameters
+    ----------
+    found : Inspection
+
+    Returns
+    -------
+    dict
+        In mm and g, in the file's frame.
+    """
+    facts, frame, mass = found.facts, found.frame, found.mass
+    return {
+        **result_stamp(),
+        "units": {"length": "mm", "area": "mm^2", "volume": "mm^3", "mass": "g", "inertia": "mm^5"},
+        "file": printable(str(found.path)),
+        **entries(facts, "digest volume surface centroid inertia low high"),
+        "material": found.material,
+        "mass": None if mass is None else mass * GRAMS,
+        "bores": [
+            {
+                **entries(bore, "name axis centre diameter length through spans slot slot_axis"),
+                "coaxial_with_outside": bore.around,
+                "coaxial_with": [other.name for other in _coaxial_with(bore, facts)],
+            }
+            for bore in facts.bores
+        ],
+        "parallel": [[bore.name for bore in group] for group in parallel_groups(facts.bores)],
+        "link_points": {} if frame is None else {name: list(at) for name, at in frame.points.items()},
+        "link_bores": {} if frame is None else {name: bore.name for name, bore in frame.bores.items()},
+        "entries": case_entries(found),
+    }
+
+
+def as_json(found: Inspection) -> str:
+    """Return what was found as JSON.
+
+    Parameters
+    ----------
+    found : Inspection
+
+    Returns
+    -------
+    str
+    """
+    return jsonlib.dumps(record(found), indent=2, ensure_ascii=False)
+
+
+def case_entries(found: Inspection) -> str:
+    """Return the entries of a case file for a part, as TOML.
+
+    Parameters
+    ----------
+    found : Inspection
+
+    Returns
+    -------
+    str
+        Empty where the part has no two bores whose axes are parallel.
+    """
+    if found.frame is None:
+        return ""
+    name, points = _quoted(found.name), found.frame.points
+    lines = [
+        (f"[parts.{name}]", ""),
+        ('shape = "step"', ""),
+        (f"file = {_quoted(found.path.name, bare=False)}", "beside the case file"),
+        (
+            f'material = "{found.material or ASSUMED_MATERIAL}"',
+            "" if found.material else "assumed: state the part's own",
+        ),
+        *((f'bores.{point} = "{bore.name}"', "") for point, bore in found.frame.bores.items()),
+        ("", ""),
+        (f"[links.{name}]", ""),
+        (f"part = {_quoted(found.name, bare=False)}", ""),
+        *(
+            (
+                f'points.{point} = ["{_exact(x)} mm", "{_exact(y)} mm"]',
+                f"pin of {_short(found.frame.bores[point].diameter)} mm",
+            )
+            for point, (x, y) in points.items()
+        ),
+    ]
+    wide = max(len(line) for line, told in lines if told)
+    return "".join(f"{line:<{wide}}  # {told}\n" if told else f"{line}\n" for line, told in lines)
+
+
+def print_inspection(found: Inspection, console: "Console") -> None:
+    """Print what was found.
+
+    Parameters
+    ----------
+    found : Inspection
+    console : rich.console.Console
+        On a narrow one, lines break at spaces.
+    """
+    facts = found.facts
+    sizes = [high - low for low, high in zip(facts.low, facts.high, strict=True)]
+    say(console, f"{printable(found.path.name)}: one solid", style="bold")
+    box = " × ".join(number(size) for size in sizes)
+    say(console, f"Size {box} mm along x, y, z of the file, from {_point(facts.low)} to {_point(facts.high)}.")
+    say(console, f"Volume {number(facts.volume, 7)} mm³, surface {number(facts.surface, 6)} mm².")
+    say(console, f"Centroid {_point(facts.centroid)}.")
+    if found.card is not None and found.mass is not None:
+        density = found.card.density / 1e-12  # kg/m³
+        say(console, f"Mass {number(found.mass * GRAMS)} g of {found.card.title} ({plain(density)} kg/m³).")
+    if not facts.bores:
+        say(console, "\nNo bore was found: no cylinder of a full turn around empty space, and no slot.")
+    else:
+        _bores(found, console)
+    for line in _remarks(found):
+        say(console, line)
+    text = case_entries(found)
+    if text:
+        say(console, "\nEntries of the case file")
+        print(f"\n{text}", end="", flush=True)
+
+
+def write_inspection(found: Inspection, folder: Path, progress: Callable[[str], None] = lambda message: None) -> None:
+    """Write the record, the entries and the picture.
+
+    Parameters
+    ----------
+    found : Inspection
+    folder : Path
+        An existing folder.
+    progress : callable, optional
+        Receives a warning where the picture cannot be drawn.
+    """
+    from reports.figures.part_picture import part_picture
+
+    try:
+        picture, trouble = part_picture(found.facts, part_surface(found.path))
+    except AlulaError as error:
+        picture, trouble = None, str(error)
+    if picture is None:
+        progress(f"Warning: no picture: {trouble}")
+    else:
+        (folder / PICTURE).write_bytes(picture)
+    if text := case_entries(found):
+        (folder / ENTRIES).write_text(text, encoding="utf-8")
+    (folder / RECORD).write_text(as_json(found) + "\n", encoding="utf-8")
+
+
+def _bores(found: Inspection, console: "Console") -> None:
+    """Print the table of the bores."""
+    points = {} if found.frame is None else {bore.name: point for point, bore in found.frame.bores.items()}
+    rows = [
+        [
+            bore.name.replace(" ", KEPT),
+            points.get(bore.name, ""),
+            _short(bore.diameter),
+            _short(bore.length),
+            *(_place(value) for value in bore.centre),
+            *(fixed(value, 4) for value in bore.axis),
+            _kind(bore, found.facts),
+        ]
+        for bore in found.facts.bores
+    ]
+    heads = ["bore", "point", "diameter\n[mm]", "length\n[mm]", "centre\nx [mm]", "\ny [mm]", "\nz [mm]",
+             "axis\nx", "\ny", "\nz", "kind"]  # fmt: skip
+    columns = [(head, 2 <= k <= 9) for k, head in enumerate(heads)]
+    say_table(console, columns, rows)
+
+
+def _kind(bore: Bore, facts: PartFacts) -> str:
+    """Say what kind of hole a bore is."""
+    words = ["through" if bore.through else "blind"]
+    if bore.slot:
+        words = [f"slot, {_short(bore.slot)} mm between the centres of its ends", *words]
+    if len(bore.spans) > 1:
+        words.append(f"{len(bore.spans)} walls (fork)" if len(bore.spans) == 2 else f"{len(bore.spans)} walls")
+    if bore.around:
+        words.append("coaxial with the outside")
+    if others := _coaxial_with(bore, facts):
+        words.append(f"coaxial with {joined([other.name for other in others])}")
+    return ", ".join(words)
+
+
+def _coaxial_with(bore: Bore, facts: PartFacts) -> list[Bore]:
+    return [other for other in facts.bores if other is not bore and not other.slot and coaxial(bore, other)]
+
+
+def _remarks(found: Inspection) -> list[str]:
+    """Return sentences on how the bores lie to each other, and what does not become a point of the link."""
+    bores, frame = found.facts.bores, found.frame
+    groups = parallel_groups(bores)
+    told = [f"Parallel: {joined([bore.name for bore in group])}." for group in groups if len(group) > 1]
+    for one in groups[1:]:
+        angle = math.degrees(angle_between(groups[0][0], one[0]))
+        told.append(f"{one[0].name} stands at {fixed(angle, 2)}° to {groups[0][0].name}.")
+    if bores and frame is None:
+        told.append("There are not two round bores with parallel axes, so that the part is no link yet.")
+    if frame is not None:
+        middles = {point: float(frame.place(_array(bore.centre))[2]) for point, bore in frame.bores.items()}
+        if max(middles.values()) - min(middles.values()) > 1e-3 * min(bore.diameter for bore in frame.bores.values()):
+            heights = joined([f"{point} {_place(height)}" for point, height in middles.items()])
+            told.append(f"Middles of the bores along z of the link [mm]: {heights}; they are not in one plane.")
+        left = [bore.name for bore in bores if bore.name not in {b.name for b in frame.bores.values()}]
+        if left:
+            told.append(f"No point of the link: {joined(left)}.")
+    return told
+
+
+def _array(values: Vector) -> Any:
+    import numpy as np
+
+    return np.array(values)
+
+
+def _point(values: Vector) -> str:
+    return f"({', '.join(_place(value) for value in values)})"
+
+
+def _place(value: float) -> str:
+    return fixed(value, 3)
+
+
+def _short(value: float) -> str:
+    return plain(round(value, 4))
+
+
+def _exact(value: float) -> str:
+    return f"{value:.6f}".rstrip("0").rstrip(".")
+
+
+def _quoted(text: str, *, bare: bool = True) -> str:
+    """Return a text as a key of TOML, bare where it may be, or as a string."""
+    if bare and text.isascii() and all(c.isalnum() or c in "-_" for c in text):
+        return text
+    return jsonlib.dumps(text.encode(errors="replace").decode(), ensure_ascii=False).replace("\x7f", "\\u007f")
