@@ -11,21 +11,24 @@ from typing import Any
 
 import numpy as np
 
-from geometry.imported.facts import Bore, Vector
-from geometry.imported.walls import NEAR, Line, Real, Span, Wall, walls_of
+from geometry.imported.columns import Columns
+from geometry.imported.facts import Bore, PartSurface, Vector
+from geometry.imported.walls import NEAR, Line, Real, Span, Wall, upwards, walls_of
 
 _HALF_TURN = 0.02
 """How much a slot's round end may differ from half a turn [rad]."""
-_BEYOND = 0.02, 1.35
-"""Share of the radius beyond a hole's end at which it is first looked for material, and the ratio of further places."""
+_BEYOND = 0.02
+"""Share of the radius beyond a wall or its end at which material is looked for; chords of the wall are 0.005 off."""
+_AXIS = 0.05
+"""Share of the radius at which lines stand for the axis, on which corners of triangles would be."""
 
 
-def find_bores(gmsh: Any, solid: int) -> tuple[Bore, ...]:
+def find_bores(gmsh: Any, solid: int, surface: PartSurface) -> tuple[Bore, ...]:
     """Return the bores of a solid.
 
-    A bore is a cylindrical wall around empty space that is not narrower at both ends, as a groove is. Walls of one
-    cylinder with nothing but space between them are one bore, as in a fork. Two halves of equal cylinders, open towards
-    each other, are a slot.
+    A bore is a cylindrical wall around empty space that is open, and not narrower at both ends as a groove is. Walls of
+    one cylinder with nothing but space between them are one bore, as in a fork. Two halves of equal cylinders, open
+    towards each other, are a slot.
 
     Parameters
     ----------
@@ -33,67 +36,41 @@ def find_bores(gmsh: Any, solid: int) -> tuple[Bore, ...]:
         gmsh, with the solid in its present model.
     solid : int
         Its tag.
+    surface : PartSurface
+        Triangles of its surface.
 
     Returns
     -------
     tuple of Bore
         In the order of their names.
     """
-    space = _Space(gmsh, solid)
-    walls = walls_of(gmsh, solid)
+    walls = walls_of(gmsh, solid, surface)
     hollow = [wall for wall in walls if wall.hollow]
     outside = [wall for wall in walls if not wall.hollow and wall.round]
-    found = [*_round_bores(space, hollow), *_slots(space, hollow)]
-    return _named([replace(bore, around=_is_around(bore, outside)) for bore in found], space.box)
+    found = [*_round_bores(surface, hollow), *_slots(surface, hollow)]
+    box = np.asarray(gmsh.model.getBoundingBox(3, solid)).reshape(2, 3)
+    return _named([replace(bore, around=_is_around(bore, outside)) for bore in found], box)
 
 
-class _Space:
-    """Where the material of a solid is."""
-
-    def __init__(self, gmsh: Any, solid: int) -> None:
-        self._model, self._solid = gmsh.model, solid
-        self.box = np.asarray(self._model.getBoundingBox(3, solid)).reshape(2, 3)
-        self.size = float(np.linalg.norm(self.box[1] - self.box[0]))
-
-    def material(self, point: Real) -> bool:
-        """Return True if the material is at a point (3,)."""
-        if (point < self.box[0]).any() or (point > self.box[1]).any():
-            return False
-        return bool(self._model.isInside(3, self._solid, list(point)))
-
-    def ring(self, line: Line, place: float, radius: float) -> Iterator[bool]:
-        """Yield at eight points around a line whether material is there."""
-        first, second = line.across()
-        for angle in math.tau * np.arange(8) / 8.0 + 0.1:
-            yield self.material(line.at(place) + radius * (math.cos(angle) * first + math.sin(angle) * second))
-
-    def free(self, line: Line, radius: float, span: Span) -> bool:
-        """Return True if there is no material within nine tenths of a radius of a line, between two places."""
-        places = [span[0] + share * (span[1] - span[0]) for share in (0.02, 0.25, 0.5, 0.75, 0.98)]
-        return not any(self.material(line.at(x)) or any(self.ring(line, x, 0.9 * radius)) for x in places)
-
-
-def _round_bores(space: _Space, hollow: list[Wall]) -> Iterator[Bore]:
+def _round_bores(surface: PartSurface, hollow: list[Wall]) -> Iterator[Bore]:
     """Yield bores with round walls."""
     walls = sorted((wall for wall in hollow if wall.round), key=lambda wall: wall.span)
     while walls:
         together = [walls.pop(0)]
+        line, radius = together[0].line, together[0].radius
+        columns = Columns(surface, line, 1.2 * radius)
         for wall in tuple(walls):
-            last = together[-1]
-            if (
-                wall.line is last.line
-                and wall.radius == last.radius
-                and space.free(last.line, last.radius, (last.span[1], wall.span[0]))
-            ):
+            between = together[-1].span[1], wall.span[0]
+            if wall.line is line and wall.radius == radius and _free(columns, radius, between):
                 together.append(wall)
                 walls.remove(wall)
-        line, radius, spans = together[0].line, together[0].radius, [wall.span for wall in together]
-        ends = spans[0][0] - _BEYOND[0] * radius, spans[-1][1] + _BEYOND[0] * radius
-        if not all(all(space.ring(line, end, (1.0 - _BEYOND[0]) * radius)) for end in ends):  # else it is a groove
-            yield _bore(space, line, radius, spans)
+        spans = [wall.span for wall in together]
+        ends = _is_open(columns, radius, spans[0][0], -1.0), _is_open(columns, radius, spans[-1][1], 1.0)
+        if any(ends) and not _is_groove(columns, radius, spans):
+            yield _bore(line, radius, spans, through=all(ends))
 
 
-def _bore(space: _Space, line: Line, radius: float, spans: list[Span]) -> Bore:
+def _bore(line: Line, radius: float, spans: list[Span], *, through: bool) -> Bore:
     low, high = spans[0][0], spans[-1][1]
     middle = (low + high) / 2.0
     return Bore(
@@ -102,30 +79,41 @@ def _bore(space: _Space, line: Line, radius: float, spans: list[Span]) -> Bore:
         centre=_vector(line.at(middle)),
         diameter=2.0 * radius,
         length=high - low,
-        through=_open(space, line, radius, low, -1.0) and _open(space, line, radius, high, 1.0),
+        through=through,
         spans=tuple((start - middle, end - middle) for start, end in spans),
         slot=0.0,
         slot_axis=(0.0, 0.0, 0.0),
     )
 
 
-def _open(space: _Space, line: Line, radius: float, end: float, way: float) -> bool:
+def _free(columns: Columns, radius: float, span: Span) -> bool:
+    """Return True if there is no material within nine tenths of a radius, between two places."""
+    places = np.linspace(*span, 41)[1:-1]
+    lines = [*columns.ring(_AXIS * radius), *columns.ring(0.9 * radius)]
+    return not any(columns.material(at, places).any() for at in lines)
+
+
+def _is_open(columns: Columns, radius: float, end: float, way: float) -> bool:
     """Return True if a hole does not end in the material.
 
     Looking out along its axis, one sees no material, or the hole has widened on at least half of its rim before.
     """
-    beyond = _BEYOND[0] * radius
-    while beyond < 2.0 * space.size:
-        place = end + way * beyond
-        if space.material(line.at(place)):
-            return False
-        if beyond < 2.0 * radius and sum(space.ring(line, place, 1.02 * radius + 0.02 * beyond)) <= 4:
-            return True
-        beyond *= _BEYOND[1]
-    return True
+    start = end + way * _BEYOND * radius
+    depth = min(columns.first_material(at, start, way) for at in columns.ring(_AXIS * radius))
+    if math.isinf(depth):
+        return True
+    places = start + way * np.linspace(0.0, min(depth, 2.0 * radius), 41)[:-1]
+    rim = np.sum([columns.material(at, places) for at in columns.ring((1.0 + 2.0 * _BEYOND) * radius)], axis=0)
+    return depth > 0.0 and bool((rim <= 4).any())
 
 
-def _slots(space: _Space, hollow: list[Wall]) -> Iterator[Bore]:
+def _is_groove(columns: Columns, radius: float, spans: list[Span]) -> bool:
+    """Return True if a hole is narrower beyond both of its ends."""
+    ends = np.array([spans[0][0] - _BEYOND * radius, spans[-1][1] + _BEYOND * radius])
+    return bool(np.all([columns.material(at, ends) for at in columns.ring((1.0 - _BEYOND) * radius)]))
+
+
+def _slots(surface: PartSurface, hollow: list[Wall]) -> Iterator[Bore]:
     """Yield the slots between half-cylinders."""
     halves = [wall for wall in hollow if len(wall.arcs) == 1 and abs(wall.turn - math.pi) < _HALF_TURN]
     for one, other in combinations(halves, 2):
@@ -136,31 +124,36 @@ def _slots(space: _Space, hollow: list[Wall]) -> Iterator[Bore]:
             continue
         arm = other.line.point - line.point - shift * line.axis
         distance = float(np.linalg.norm(arm))
-        if distance < NEAR * radius:
-            continue
-        along = arm / distance
-        first, second = line.across()
-        first_other, second_other = other.line.across()
-        a, b = (wall.arcs[0][0] + wall.arcs[0][1] / 2.0 for wall in (one, other))
-        outwards = math.cos(a) * first + math.sin(a) * second, math.cos(b) * first_other + math.sin(b) * second_other
-        if outwards[0] @ along > -0.999 or outwards[1] @ along < 0.999:
+        if (
+            distance < NEAR * radius
+            or _outwards(one) @ arm > -0.999 * distance
+            or _outwards(other) @ arm < 0.999 * distance
+        ):
             continue
         between = Line(point=line.point + arm / 2.0, axis=line.axis)
-        if _has_sides(space, between, np.cross(line.axis, along), along, distance, radius, span):
-            bore = _bore(space, between, radius, [span])
-            yield replace(bore, slot=distance, slot_axis=_vector(along))
+        columns = Columns(surface, between, distance / 2.0 + 1.2 * radius)
+        if _has_sides(columns, np.cross(line.axis, arm / distance), arm, radius, span):
+            ends = _is_open(columns, radius, span[0], -1.0), _is_open(columns, radius, span[1], 1.0)
+            along = upwards(arm)
+            yield replace(_bore(between, radius, [span], through=all(ends)), slot=distance, slot_axis=_vector(along))
 
 
-def _has_sides(
-    space: _Space, between: Line, across: Real, along: Real, distance: float, radius: float, span: Span
-) -> bool:
+def _outwards(half: Wall) -> Real:
+    """Return the direction (3,) from the axis of a half-cylinder to the middle of its wall."""
+    first, second = half.line.across
+    middle = half.arcs[0][0] + half.arcs[0][1] / 2.0
+    return np.asarray(math.cos(middle) * first + math.sin(middle) * second)
+
+
+def _has_sides(columns: Columns, across: Real, arm: Real, radius: float, span: Span) -> bool:
     """Return True if a slot is empty between its flanks and has material behind them."""
-    middle = between.at((span[0] + span[1]) / 2.0)
-    for share in (-0.4, 0.0, 0.4):
-        place = middle + share * distance * along
-        if any(space.material(place + side * 0.98 * radius * across) for side in (-1.0, 0.0, 1.0)):
-            return False
-        if not all(space.material(place + side * 1.02 * radius * across) for side in (-1.0, 1.0)):
+    middle = np.array([sum(span) / 2.0])
+    for share in (-0.4, 0.003, 0.4):
+        free, filled = (
+            [columns.material(columns.offset(share * arm + side * radius * across), middle)[0] for side in sides]
+            for sides in ((-1.0 + _BEYOND, _AXIS, 1.0 - _BEYOND), (-1.0 - _BEYOND, 1.0 + _BEYOND))
+        )
+        if any(free) or not all(filled):
             return False
     return True
 

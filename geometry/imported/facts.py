@@ -50,18 +50,21 @@ class Bore:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PartSurface:
-    """Triangles of a solid's surface, for pictures.
+    """Triangles of a solid's surface.
 
     Attributes
     ----------
     points : array
         Corners (n, 3) [mm]; faces of the solid share none.
     triangles : int array
-        (k, 3).
+        (k, 3), counter-clockwise as seen from outside.
+    faces : int array
+        Tag (k,) of the face that each is of.
     """
 
     points: NDArray[np.float64]
     triangles: NDArray[np.int64]
+    faces: NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,10 +6,13 @@ Runs in the kernel's child process only.
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from geometry.imported.facts import PartSurface
 
 Real = NDArray[np.float64]
 Span = tuple[float, float]
@@ -70,8 +73,9 @@ class Line:
         """
         return np.asarray(self.point + place * self.axis)
 
+    @cached_property
     def across(self) -> tuple[Real, Real]:
-        """Return two unit vectors (3,), normal to the axis and to each other."""
+        """Two unit vectors (3,), normal to the axis and to each other."""
         first = np.cross(self.axis, np.eye(3)[int(np.argmin(np.abs(self.axis)))])
         first /= np.linalg.norm(first)
         return first, np.cross(self.axis, first)
@@ -121,7 +125,7 @@ class Wall:
     span : tuple of 2 float
         From where to where along the line [mm].
     arcs : tuple of tuple of 2 float
-        Where around the line, from ``line.across()[0]``: starts in order, from 0 to 2π, and angles [rad].
+        Where around the line, from ``line.across[0]``: starts in order, from 0 to 2π, and angles [rad].
     """
 
     line: Line
@@ -141,7 +145,7 @@ class Wall:
         return self.turn > FULL_TURN
 
 
-def walls_of(gmsh: Any, solid: int) -> list[Wall]:
+def walls_of(gmsh: Any, solid: int, surface: PartSurface) -> list[Wall]:
     """Return the cylindrical walls of a solid.
 
     Faces of one cylinder are one wall, as the two halves into which programs cut a hole, unless there is a gap between
@@ -153,12 +157,14 @@ def walls_of(gmsh: Any, solid: int) -> list[Wall]:
         gmsh, with the solid in its present model.
     solid : int
         Its tag.
+    surface : PartSurface
+        Triangles of its surface.
 
     Returns
     -------
     list of Wall
     """
-    faces = [_face(gmsh, solid, tag) for tag in gmsh.model.getAdjacencies(3, solid)[1]]
+    faces = [_face(gmsh.model, surface, tag) for tag in gmsh.model.getAdjacencies(3, solid)[1]]
     cylinders: list[list[Wall]] = []
     for face in filter(None, faces):
         for cylinder in cylinders:
@@ -177,22 +183,21 @@ def _one_cylinder(one: Wall, other: Wall) -> bool:
     )
 
 
-def _face(gmsh: Any, solid: int, tag: int) -> Wall | None:
-    """Return a cylindrical face as a wall; None for a face of another shape."""
-    model = gmsh.model
+def _face(model: Any, surface: PartSurface, tag: int) -> Wall | None:
+    """Return a cylindrical face as a wall; None for a face of another shape, or so small that it has no triangle."""
+    if not (surface.faces == tag).any():
+        return None
     cylinder = _cylinder(model, tag)
     if cylinder is None:
         return None
     line, radius = cylinder
     points = np.concatenate([_points(model, tag, counts) for counts in ((_ALONG, 1), (1, _ALONG))])
-    angles = np.unwrap([_angle(line, point) for point in points]).reshape(2, -1)
+    angles = np.unwrap(_angles(line, points).reshape(2, -1))
     turns = angles[:, -1] - angles[:, 0]
     longest = int(np.argmax(np.abs(turns)))
     arc = float(angles[longest].min() % math.tau), min(float(abs(turns[longest])), math.tau)
     places = line.along(np.concatenate([points, _points(model, tag, (2, 2))]))
-    on_face = _point_on(model, tag)
-    inwards = line.at(float(line.along(on_face))) - on_face
-    hollow = not model.isInside(3, solid, list(on_face + NEAR * inwards))
+    hollow = _outwards(surface, tag, line) < 0.0
     return Wall(line=line, radius=radius, hollow=hollow, span=(float(places.min()), float(places.max())), arcs=(arc,))
 
 
@@ -204,7 +209,7 @@ def _cylinder(model: Any, tag: int) -> tuple[Line, float] | None:
     kind = model.getType(2, tag)
     if kind == "Cylinder":
         values = np.asarray(model.getEntityProperties(2, tag)[1])
-        return Line(point=values[:3], axis=_upwards(values[3:6])), float(values[6])
+        return Line(point=values[:3], axis=upwards(values[3:6])), float(values[6])
     if kind in _OTHER_SHAPES:
         return None
     points, normals = _points(model, tag, (_GRID, _GRID)), _points(model, tag, (_GRID, _GRID), normals=True)
@@ -212,8 +217,8 @@ def _cylinder(model: Any, tag: int) -> tuple[Line, float] | None:
     if not sizes[2] < NEAR * sizes[0] < sizes[1]:  # curved twice, or flat
         return None
     middle = points.mean(axis=0)
-    line = Line(point=middle, axis=_upwards(directions[2]))
-    first, second = line.across()
+    line = Line(point=middle, axis=upwards(directions[2]))
+    first, second = line.across
     flat = np.column_stack([(points - middle) @ first, (points - middle) @ second])
     # Of the circle x² + y² = 2 a x + 2 b y + c, by least squares (I. Kåsa, IEEE Trans. Instrum. Meas. 25 (1976) 8-14).
     (a, b, c), *_ = np.linalg.lstsq(
@@ -234,25 +239,34 @@ def _points(model: Any, tag: int, counts: tuple[int, int], *, normals: bool = Fa
     return np.asarray(found, dtype=np.float64).reshape(-1, 3)
 
 
-def _point_on(model: Any, tag: int) -> Real:
-    """Return a point (3,) within a face, whose borders may be anywhere within its bounds."""
-    low, high = np.asarray(model.getParametrizationBounds(2, tag))
-    middle = (low + high) / 2.0
-    for count in (1, 2, 4, 8, 16, 32):
-        for shares in np.ndindex(count, count):
-            place = low + (np.array(shares) + 0.5) / count * (high - low)
-            if model.isInside(2, tag, list(place), parametric=True):
-                return np.asarray(model.getValue(2, tag, list(place)))
-    return np.asarray(model.getValue(2, tag, list(middle)))
+def _outwards(surface: PartSurface, tag: int, line: Line) -> float:
+    """Return the sum of the areas of a face's triangles, each times how much its material's outside is off the line."""
+    a, b, c = np.moveaxis(surface.points[surface.triangles[surface.faces == tag]], 1, 0)
+    arms = (a + b + c) / 3.0 - line.point
+    arms -= (arms @ line.axis)[:, None] * line.axis
+    return float((np.cross(b - a, c - a) * arms).sum())
 
 
-def _angle(line: Line, point: Real) -> float:
-    first, second = line.across()
-    arm = point - line.point
-    return math.atan2(float(arm @ second), float(arm @ first)) % math.tau
+def _angles(line: Line, points: Real) -> Real:
+    """Return where points (..., 3) stand around a line [rad]."""
+    first, second = line.across
+    arms = points - line.point
+    return np.asarray(np.arctan2(arms @ second, arms @ first) % math.tau)
 
 
-def _upwards(axis: Real) -> Real:
+def upwards(axis: Real) -> Real:
+    """Return the unit vector along an axis whose largest component is positive.
+
+    Parameters
+    ----------
+    axis : array
+        (3,).
+
+    Returns
+    -------
+    array
+        (3,).
+    """
     axis = axis / np.linalg.norm(axis)
     largest = axis[int(np.argmax(np.abs(axis) > np.abs(axis).max() - NEAR))]
     return np.asarray(np.where(np.abs(axis) < 1e-12, 0.0, axis) * math.copysign(1.0, largest))
@@ -262,7 +276,7 @@ def _joined(faces: list[Wall]) -> Iterable[Wall]:
     """Yield the walls that faces of one cylinder make: those without a gap between them along the axis."""
     first = faces[0]
     shifts = [float(first.line.along(face.line.point)) for face in faces]
-    turns = [_angle(first.line, first.line.point + face.line.across()[0]) for face in faces]
+    turns = [float(_angles(first.line, first.line.point + face.line.across[0])) for face in faces]
     pieces = sorted(
         (
             ((face.span[0] + shift, face.span[1] + shift), [((start + turn) % math.tau, a) for start, a in face.arcs])

@@ -100,7 +100,7 @@ def _composed(
     frame: LinkFrame,
     corners: Real,
     views: Mapping[str, View],
-    images: Mapping[str, NDArray[np.uint8]],
+    images: Mapping[str, Real],
 ) -> bytes:
     """Put both views on one sheet."""
     wide = 72.0 * WIDTH - 2.0 * _MARGIN
@@ -140,7 +140,9 @@ def _composed(
 def _nearest_end(frame: LinkFrame, bore: Bore, toward: Real) -> Real:
     """Return the middle (3,) of the end of a bore that faces the viewer."""
     axis = frame.axes @ np.array(bore.axis)
-    return frame.place(np.array(bore.centre)) + math.copysign(0.5 * bore.length, float(axis @ toward)) * axis
+    return np.asarray(
+        frame.place(np.array(bore.centre)) + math.copysign(0.5 * bore.length, float(axis @ toward)) * axis
+    )
 
 
 def _seen(at: Real, corners: Real, view: View) -> bool:
@@ -149,7 +151,7 @@ def _seen(at: Real, corners: Real, view: View) -> bool:
     return not hits(at + 1e-6 * view.half_width * view.toward, view.toward, a, b - a, c - a)
 
 
-def _drawn(image: NDArray[np.uint8], box: tuple[float, float, float, float]) -> Real:
+def _drawn(image: Real, box: tuple[float, float, float, float]) -> Real:
     """Return points (n, 2) on the sheet where an image is not white."""
     rows, columns = np.nonzero((image[::4, ::4, :3] < 250).any(axis=2))
     tall, wide = image.shape[:2]

@@ -17,6 +17,7 @@ import geometry.base.child_server
 import geometry.meshing.mesh
 from geometry.base.child_memory import allowed
 from geometry.base.errors import CannotRunError, CaseError
+from geometry.imported.read import part_facts
 from geometry.meshing.element_geometry import TETRA_EDGES, scaled_jacobians
 from geometry.meshing.mesh import (
     COARSE,
@@ -319,19 +320,31 @@ def test_step_files_hold_millimetres(tmp_path: Path) -> None:
     paths = export_step({"AE": tube_body()}, folder)
     assert sorted(folder.iterdir()) == paths == [folder / "AE.step"]
     assert "SI_UNIT(.MILLI.,.METRE.)" in paths[0].read_text()
-    assert _step_volume(paths[0]) == pytest.approx(mass_properties(tube_body()).volume, rel=1e-5)
+    found, built = part_facts(paths[0]), mass_properties(tube_body())
+    assert found.volume == pytest.approx(built.volume, rel=1e-5)
+    assert np.allclose(found.centroid, built.centroid, atol=1e-4)
+    assert np.allclose(found.inertia, built.inertia, rtol=1e-4, atol=1e-4 * np.max(built.inertia))
 
 
-def _step_volume(path: Path) -> float:
-    import subprocess
+def test_bores_are_found_in_what_is_exported(tmp_path: Path) -> None:
+    """The pin's, the feathers' holes through both walls, and the tube's inside, open at its plain end alone."""
+    [path] = export_step({"AE": tube_body()}, tmp_path)
+    pin, one, other, inside = sorted(part_facts(path).bores, key=lambda bore: bore.centre[0])
+    assert pin.centre == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
+    assert (pin.diameter, pin.length, pin.through) == (pytest.approx(1.5), pytest.approx(7.0), True)
+    for bore, x in ((one, 7.0), (other, 9.0)):
+        assert bore.centre == pytest.approx((x, 0.0, 0.0), abs=1e-6)
+        assert bore.axis == pytest.approx((0.0, 1.0, 0.0), abs=1e-9)
+        assert np.allclose(bore.spans, [(-2.5, -np.sqrt(1.25**2 - 0.25)), (np.sqrt(1.25**2 - 0.25), 2.5)], atol=1e-5)
+    assert (inside.diameter, inside.through, inside.around) == (pytest.approx(2.5), False, True)
 
-    script = (
-        "import gmsh, sys; gmsh.initialize(); gmsh.option.setNumber('General.Terminal', 0);"
-        "gmsh.option.setString('Geometry.OCCTargetUnit', 'MM');"
-        "s = gmsh.model.occ.importShapes(sys.argv[1]); print(gmsh.model.occ.getMass(*s[0]))"
+
+def test_a_closed_cavity_is_no_bore(tmp_path: Path) -> None:
+    body = dataclasses.replace(
+        tube_body(), pins=(*tube_body().pins, Pin(name="B", x=15.0, y=0.0, diameter=1.5)), ends=(), holes=()
     )
-    done = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, check=True, text=True)
-    return float(done.stdout.split()[-1])
+    [path] = export_step({"AE": body}, tmp_path)
+    assert [bore.diameter for bore in part_facts(path).bores] == pytest.approx([1.5, 1.5])
 
 
 def _instead(script: str) -> Callable[[], list[str]]:

@@ -161,5 +161,5 @@ def test_what_is_walled_in_is_cut_open():
 
 def test_a_view_is_right_handed():
     for toward in (scenes._TOWARD, np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0])):
-        right, up = scenes._axes_of(toward)
+        right, up = scenes.axes_of(toward)
         assert np.cross(right, up) == pytest.approx(toward)
