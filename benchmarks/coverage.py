@@ -16,8 +16,9 @@ from benchmarks.coverage_table import HEADER, judged, rows
 from benchmarks.coverage_truth import truths
 from fea.refine import refinement
 from fea.refine.link_series import CasePrecision
+from fea.refine.link_task import LinkTask
 from fea.refine.refinement import START as FIRST
-from fea.refine.refinement import Effort, LinkTask, refine_links
+from fea.refine.refinement import Effort, refine_links
 from geometry.base.errors import AlulaError
 
 RESULTS = Path(__file__).with_name("results")

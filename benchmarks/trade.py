@@ -33,7 +33,9 @@ from fea.check.link_by_hand import cut_link  # noqa: E402
 from fea.check.solid_result import link_task  # noqa: E402
 from fea.frame.large_displacement import examine  # noqa: E402
 from fea.refine.discretisation import judged  # noqa: E402
-from fea.refine.refinement import START, Effort, LinkTask, RefinedSolid, refine_links  # noqa: E402
+from fea.refine.link_series import STRESS  # noqa: E402
+from fea.refine.link_task import LinkTask  # noqa: E402
+from fea.refine.refinement import START, Effort, RefinedSolid, refine_links  # noqa: E402
 from geometry.base.errors import CannotRunError  # noqa: E402
 from loads.case.case_file import read_case  # noqa: E402
 
@@ -71,7 +73,7 @@ def one(name: str, link: str, accuracy: float, threads: int) -> dict[str, Any]:
     start, before = time.perf_counter(), spent()
     solid = refine_links({link: task}, START, effort, threads=threads)[link]
     told = {"wall_s": time.perf_counter() - start, "cpu_s": spent() - before}
-    cases = [judged(solid, number, brittle=task.brittle) for number in range(len(solid.precision))]
+    cases = [judged(solid, number, STRESS[task.brittle]) for number in range(len(solid.precision))]
     worst = max(range(len(cases)), key=lambda number: cases[number].stress.value)
     reached = max(case.stress.index if case.known else math.inf for case in cases)
     found = {

@@ -5,7 +5,7 @@ import numpy as np
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import BeamCheck, check_beam
 from fea.common.link_loads import LinkLoads, PinLoad
-from fea.refine.refinement import LinkTask
+from fea.refine.link_task import LinkTask
 from geometry.parts.part import Body, HoleRow, Pin, Tube
 
 TUBE = Tube(

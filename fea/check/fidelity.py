@@ -14,7 +14,8 @@ from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, Source, SourceKind
-from fea.refine.refinement import Effort, LinkTask, Progress, RefinedSolid, refine_links
+from fea.refine.link_task import LinkTask
+from fea.refine.refinement import Effort, Progress, RefinedSolid, refine_links
 from geometry.base.errors import CannotRunError
 from geometry.meshing.mesh import MeshSettings
 from geometry.parts.body import extent, reference_line
@@ -292,6 +293,8 @@ def decided_by_hand(task: LinkTask, hands: Sequence[HandBands]) -> tuple[Decisio
     tuple of (Decision or None, str)
         The decision, and why there is none; "" where there is one.
     """
+    if task.layers is not None:
+        return None, "hand calculation tells nothing of the stress on layers, so finite elements decided"
     for hand in hands:
         if hand.outside:
             return None, f"hand calculation is not calibrated for this link: {hand.outside}"

@@ -9,7 +9,7 @@ from fea.check.link_by_hand import LinkByHand
 from fea.check.load_growth import Growths
 from fea.check.solid_result import solid_result
 from fea.common.band import Band
-from fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
+from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.common.ties import first_largest
 from fea.outcomes.result import HandResult, LinkResult
 from geometry.parts.material import Material
@@ -50,8 +50,13 @@ def link_result(
         result = _hand_result(link, material, hand, bands, decided.decision)
     load = load_scatter(case, load_case).times(uneven.stress.get(link, Scatter()))
     bent = load_scatter(case, load_case).times(uneven.displacement.get(link, Scatter()))
+    layers = result.layers
+    if layers is not None:
+        factor = layer_scatter(material).times(load.inverse).on(layers.safety_factor)
+        layers = replace(layers, safety_factor=factor)
     return replace(
         result,
+        layers=layers,
         von_mises_max=load.on(result.von_mises_max),
         principal_max=load.on(result.principal_max),
         safety_factor=strength_scatter(material).times(load.inverse).on(result.safety_factor),

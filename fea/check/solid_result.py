@@ -1,7 +1,8 @@
 """A link's result from its solid model: the peaks of every variant, their bands and what these hold."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,13 +11,16 @@ from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, pin_sources
 from fea.outcomes.compare import compare_sections
-from fea.outcomes.limits import displacement_limits, stress_limits
+from fea.outcomes.layer_stress import LayerStress
+from fea.outcomes.limits import displacement_limits, layer_limits, layers_of, stress_limits
 from fea.outcomes.result import SolidResult, VariantPeak
 from fea.refine.convergence import GridConvergence
-from fea.refine.discretisation import discretisation_source, judged
-from fea.refine.link_series import CasePrecision, PeakQuantity
-from fea.refine.refinement import LinkTask, RefinedSolid
+from fea.refine.discretisation import Discretisation, discretisation_source, judged
+from fea.refine.link_series import STRESS, CasePrecision, Measure, PeakQuantity
+from fea.refine.link_task import LinkTask
+from fea.refine.refinement import RefinedSolid
 from fea.refine.singular import LOADED
+from fea.solid.layers import Layers, best_directions, on_plane
 from fea.solid.solution import SolidCase
 from fea.solid.stress import stress_field
 from loads.case.case import Case
@@ -49,6 +53,8 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
         brittle=material.brittle,
         stress_limits=stress_limits(case, link),
         displacement_limits=displacement_limits(case, link),
+        layers=layers_of(case, link),
+        layer_limits=layer_limits(case, link),
     )
 
 
@@ -80,18 +86,19 @@ def solid_result(
     own = [number for number in solved if solid.cases[number].transfer in (None, stated)]
 
     def decisive(number: int) -> GridConvergence:
-        found = refined.precision[number]
-        return found.principal if material.brittle else found.von_mises
+        return refined.precision[number].series(STRESS[material.brittle])
 
     governing = max(own, key=lambda number: decisive(number).value)
     variant = solid.cases[governing]
     stress = stress_field(solid.space, variant.displacement, E=solid.E, nu=solid.nu)
     sources = pin_sources(driven=variant.transfer is not None)
-    # A peak without limit under one variant leaves none for the link.
-    worst = max(
-        solved, key=lambda number: (not judged(refined, number, brittle=material.brittle).known, number == governing)
-    )
-    precision = judged(refined, worst, brittle=material.brittle)
+
+    def precision_of(measure: Measure, largest: int) -> Discretisation:
+        # A peak without limit under one variant leaves none for the link.
+        found = {number: judged(refined, number, measure) for number in solved}
+        return found[max(solved, key=lambda number: (not found[number].known, number == largest))]
+
+    precision = precision_of(STRESS[material.brittle], governing)
 
     def band(quantity: PeakQuantity) -> Band:
         every = [refined.precision[number] for number in solved]
@@ -111,7 +118,8 @@ def solid_result(
             ),
         )
 
-    deciding = band("principal" if material.brittle else "von_mises")
+    deciding = band(STRESS[material.brittle])
+    layers = layers_of(case, link)
     return SolidResult(
         link=link,
         von_mises_max=band("von_mises"),
@@ -131,6 +139,37 @@ def solid_result(
         why=why,
         brittle=material.brittle,
         discretisation=precision,
+        layers=None
+        if layers is None
+        else _layer_stress(refined, own, layers, band("layers"), lambda number: precision_of("layers", number)),
+    )
+
+
+def _layer_stress(
+    refined: RefinedSolid,
+    own: Sequence[int],
+    layers: Layers,
+    stress: Band,
+    precision_of: Callable[[int], Discretisation],
+) -> LayerStress:
+    """Return what a load case does to layers; ``own`` are the cases that its value comes from."""
+    solid = refined.solution
+    fields = {n: stress_field(solid.space, solid.cases[n].displacement, E=solid.E, nu=solid.nu).nodal for n in own}
+    largest = max(own, key=lambda number: refined.precision[number].series("layers").value)
+    node = int(np.argmax(layers.stress(fields[largest])))
+    tension, shear = on_plane(fields[largest][node], layers.normal)
+    factor = stress.inverse(layers.across)
+    known = layers.between is not None and not stress.unknowable
+    if layers.between is None and not stress.unknowable:
+        factor = replace(factor, low=0.0)  # shear may take all of it
+    return LayerStress(
+        layers=layers,
+        safety_factor=factor,
+        location=solid.space.nodes[node].copy(),
+        tension=float(tension),
+        shear=float(shear),
+        discretisation=precision_of(largest),
+        scan=best_directions(fields.values(), layers) if known else None,
     )
 
 

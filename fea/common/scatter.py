@@ -109,6 +109,35 @@ def strength_scatter(material: Material) -> Scatter:
     return _range(SourceKind.STRENGTH, material.allowable, material.strength_range)
 
 
+def layer_scatter(material: Material) -> Scatter:
+    """Return what the strength of layers may be, over what it is.
+
+    A safety factor against tension and shear together lies between those that the least and the largest of both factors
+    give.
+
+    Parameters
+    ----------
+    material : Material
+
+    Returns
+    -------
+    Scatter
+    """
+    ranges = [
+        _range(SourceKind.STRENGTH, value, stated, f" {what} the layers")
+        for value, stated, what in (
+            (material.strength_across_layers, material.strength_across_layers_range, "across"),
+            (material.shear_strength_between_layers, material.shear_strength_between_layers_range, "in shear along"),
+        )
+        if value is not None
+    ]
+    return Scatter(
+        low=min((one.low for one in ranges), default=1.0),
+        high=max((one.high for one in ranges), default=1.0),
+        sources=distinct(*(one.sources for one in ranges)),
+    )
+
+
 def compliance_scatter(material: Material) -> Scatter:
     """Return what 1/E may be, over what it is.
 
@@ -123,9 +152,9 @@ def compliance_scatter(material: Material) -> Scatter:
     return _range(SourceKind.MODULUS, material.youngs_modulus, material.youngs_modulus_range).inverse
 
 
-def _range(kind: SourceKind, value: float, stated: tuple[float, float] | None) -> Scatter:
+def _range(kind: SourceKind, value: float, stated: tuple[float, float] | None, what: str = "") -> Scatter:
     if stated is None:
         return Scatter()
     low, high = min(stated[0], value), max(stated[1], value)
-    source = Source(kind=kind, detail=f"{low:.4g} to {high:.4g} MPa")
+    source = Source(kind=kind, detail=f"{low:.4g} to {high:.4g} MPa{what}")
     return Scatter(low=low / value, high=high / value, sources=(source,))

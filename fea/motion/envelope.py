@@ -102,6 +102,7 @@ class _Envelope:
             motion = self._motion(link, displacement_space(mesh))
             worst = motion.worst_poses
             task = link_task(case, link, [history.chosen(worst[history.name]) for history in self.loaded[link]])
+            task = replace(task, layers=None, layer_limits=())  # an envelope leaves layers open
             require_compressible(task.nu)
         left = replace(effort, time_limit=max(0.0, effort.time_limit - (time.perf_counter() - begun)))
         refined = refine_links({link: task}, start, left, first={link: mesh}, progress=self._tell)[link]

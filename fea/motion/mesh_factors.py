@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from fea.common.source import Source
 from fea.motion.envelope_result import VariantCurve
 from fea.refine.discretisation import Discretisation, discretisation_source, judged
-from fea.refine.link_series import PeakQuantity
+from fea.refine.link_series import STRESS
 from fea.refine.refinement import RefinedSolid
 from fea.solid.traction import Transfer
 from geometry.parts.material import Material
@@ -52,7 +52,7 @@ class MeshFactors:
         if refined is None:
             return found
         numbers = [n for n, case in enumerate(refined.solution.cases) if case.load == load_case]
-        judgements = [judged(refined, number, brittle=material.brittle) for number in numbers]
+        judgements = [judged(refined, number, STRESS[material.brittle]) for number in numbers]
         found.discretisation = min(judgements, key=lambda d: (d.known, -d.stress.index))
         source = discretisation_source(found.discretisation.stress, sharp_edges=refined.sharp_edges)
         found.sources, found.without = (replace(source, detail=f"{source.detail}, at the worst pose"),), ""
@@ -61,7 +61,7 @@ class MeshFactors:
             found._refined[case.span, case.transfer] = series.value
             found._size = min(found._size, series.sizes[0])
             if judgement.known and series.value > 0.0:
-                measure: PeakQuantity = "principal" if material.brittle else "von_mises"
+                measure = STRESS[material.brittle]
                 ends = precise.low(measure) / series.value, precise.high(measure) / series.value
                 found.factors[case.span, case.transfer] = ends
         return found

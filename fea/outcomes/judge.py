@@ -11,6 +11,7 @@ from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.large_displacement import LARGE, LargeDisplacement, displaced
 from fea.frame.stability import SNAP, growth
+from fea.outcomes.layers import layer_outcomes
 from fea.outcomes.limits import least_safety_factor
 from fea.outcomes.linkage import linkage_outcomes
 from fea.outcomes.pins import PinStress, pin_outcome
@@ -72,6 +73,7 @@ def outcomes(
         elif not isinstance(check, MotorCheck | BearingCheck):
             found += [_link(case, name, check, load_case, links[link]) for link in check.links or case.checked_links]
     beams = {link: result.beam for link, result in links.items()}
+    found += layer_outcomes(case, load_case, links)
     return (*found, *linkage_outcomes(case, load_case, moved, beams))
 
 

@@ -1,6 +1,7 @@
 """The limits that a case states on its links, for what decides whether hand calculation or a mesh is good enough."""
 
-from fea.common.scatter import Scatter, compliance_scatter, load_scatter, strength_scatter
+from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
+from fea.solid.layers import Layers
 from geometry.base.errors import CaseError
 from geometry.parts.material import Material
 from loads.case.case import Case
@@ -83,6 +84,72 @@ def displacement_limits(case: Case, link: str) -> tuple[Ends, ...]:
         for check in case.all_checks.values()
         if isinstance(check, DisplacementCheck) and check.at is None and link in (check.links or case.checked_links)
     )
+
+
+def layer_limit(case: Case, link: str) -> float | None:
+    """Return the least safety factor that the layers of a printed link must have: the greatest of its checks'.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    float or None
+        None where the part states no direction of building, or no check asks for the link's safety factor.
+
+    Raises
+    ------
+    CaseError
+        Where a check has no limit.
+    """
+    material = case.material_of(link)
+    asked = [
+        least_safety_factor(name, check.minimum, material, link)
+        for name, check in case.all_checks.items()
+        if isinstance(check, SafetyFactorCheck) and link in (check.links or case.checked_links)
+    ]
+    return max(asked) if asked and case.part_of(link).build_direction is not None else None
+
+
+def layers_of(case: Case, link: str) -> Layers | None:
+    """Return direction and strengths of the layers of a link, where they are checked and their strength is known.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    Layers or None
+    """
+    material, normal = case.material_of(link), case.part_of(link).build_direction
+    if normal is None or material.strength_across_layers is None or layer_limit(case, link) is None:
+        return None
+    between = material.shear_strength_between_layers
+    return Layers(normal=normal, across=material.strength_across_layers, between=between)
+
+
+def layer_limits(case: Case, link: str) -> tuple[Ends, ...]:
+    """Return the limit [MPa] on the stress on a link's layers, as ``stress_limits``.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    tuple of (float, float)
+        Empty where no layers are checked.
+    """
+    layers, least = layers_of(case, link), layer_limit(case, link)
+    if layers is None or least is None:
+        return ()
+    scatter = layer_scatter(case.material_of(link)).times(_widest_load(case).inverse)
+    return (_spread(layers.across / least, scatter),)
 
 
 def _widest_load(case: Case) -> Scatter:

@@ -13,6 +13,7 @@ from fea.common.band import Band
 from fea.common.verdict import LINKAGE, CheckOutcome, Verdict
 from fea.frame.joint_forces import JointForces, WayToHold
 from fea.frame.large_displacement import LargeDisplacement
+from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.opinion import SecondOpinion
 from fea.outcomes.pins import PinStress
 from fea.refine.discretisation import Discretisation
@@ -101,6 +102,8 @@ class LinkResult:
         Model that decided the link under all load cases; "" where a model was forced that may not decide.
     why : str
         Why that model, for people.
+    layers : LayerStress or None
+        Of a printed link whose layers are checked, by its solid.
     """
 
     fidelity: ClassVar[str]
@@ -116,6 +119,7 @@ class LinkResult:
     notes: tuple[str, ...]
     decided_by: str
     why: str
+    layers: LayerStress | None = None
 
     @property
     def decisive(self) -> Band:

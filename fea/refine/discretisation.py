@@ -5,7 +5,7 @@ from typing import Literal
 
 from fea.common.source import Source, SourceKind
 from fea.refine.convergence import SERIES, GridConvergence
-from fea.refine.link_series import NOT_RESOLVED
+from fea.refine.link_series import NOT_RESOLVED, Measure
 from fea.refine.refinement import MeshRecord, RefinedSolid
 from fea.refine.singular import LOADED, SharpPeak
 
@@ -129,7 +129,7 @@ def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> S
     return Source(kind=SourceKind.DISCRETISATION, detail=text)
 
 
-def judged(refined: RefinedSolid, number: int, *, brittle: bool) -> Discretisation:
+def judged(refined: RefinedSolid, number: int, measure: Measure) -> Discretisation:
     """Say how precise a case of a solution is.
 
     Parameters
@@ -138,16 +138,16 @@ def judged(refined: RefinedSolid, number: int, *, brittle: bool) -> Discretisati
         The link on its meshes.
     number : int
         Of the case among ``refined.precision``.
-    brittle : bool
-        True where the principal stress decides, False where von Mises does.
+    measure : Measure
+        The stress that decides.
 
     Returns
     -------
     Discretisation
-        How precise the deciding stress is.
+        How precise it is.
     """
     case = refined.precision[number]
-    stress = case.principal if brittle else case.von_mises
+    stress = case.series(measure)
     status: MeshStatus
     if case.unreliable == "coarse":
         status = "unresolved"

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.refine.error_estimate import ErrorEstimate, estimate_error
+from fea.solid.layers import Layers
 from fea.solid.solution import SolidCase, SolidSolution
 from fea.solid.space import UpperHalf, upper_half
 from fea.solid.stress import COMPONENTS, extreme_principal, stress_field
@@ -32,6 +33,8 @@ class CaseFigures:
         The largest [mm].
     span : Span
         Of the pins' pressure [degrees].
+    layers : ndarray or None
+        Nodal stress (n,) that is set against the strength across the layers [MPa]; None where none are checked.
     """
 
     von_mises: NDArray[np.float64]
@@ -40,6 +43,7 @@ class CaseFigures:
     energy: float
     displacement: float
     span: Span
+    layers: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -114,7 +118,7 @@ class Level:
         return int(np.argmax(np.where(distance <= max(radius, float(distance.min())), nodal, -np.inf)))
 
 
-def level_of(solution: SolidSolution, volume: float) -> Level:
+def level_of(solution: SolidSolution, volume: float, layers: Layers | None = None) -> Level:
     """Condense a solution on one mesh of a body.
 
     Parameters
@@ -123,6 +127,8 @@ def level_of(solution: SolidSolution, volume: float) -> Level:
         On one mesh.
     volume : float
         Of the body itself [mm³].
+    layers : Layers, optional
+        Of a printed part.
 
     Returns
     -------
@@ -130,7 +136,7 @@ def level_of(solution: SolidSolution, volume: float) -> Level:
         What is kept of the mesh.
     """
     space, half = solution.space, upper_half(solution.space)
-    found = [_figures(solution, case, half if case.symmetric else None) for case in solution.cases]
+    found = [_figures(solution, case, half if case.symmetric else None, layers) for case in solution.cases]
     volumes = found[0][1]
     return Level(
         nodes=space.nodes,
@@ -143,7 +149,7 @@ def level_of(solution: SolidSolution, volume: float) -> Level:
 
 
 def _figures(
-    solution: SolidSolution, case: SolidCase, half: UpperHalf | None
+    solution: SolidSolution, case: SolidCase, half: UpperHalf | None, layers: Layers | None
 ) -> tuple[CaseFigures, NDArray[np.float64]]:
     """Figures of a case and the volumes of the elements, from the upper half alone where one is given.
 
@@ -158,7 +164,10 @@ def _figures(
         field.nodal[half.on_plane, COMPONENTS.index("yz") :] = 0.0
     stress, estimate = field.von_mises, estimate_error(field, moved, E=solution.E, nu=solution.nu)
     tension, volumes = extreme_principal(field.nodal)[0], field.weights.sum(axis=1)
+    across = None if layers is None else layers.stress(field.nodal)
     if half is not None:
+        if layers is not None and across is not None:
+            across = half.both_nodes(across, layers.mirrored.stress(field.nodal))
         stress, tension, volumes = half.both_nodes(stress), half.both_nodes(tension), np.tile(volumes, 2)
         estimate = ErrorEstimate(
             energy=np.tile(estimate.energy, 2),
@@ -172,5 +181,6 @@ def _figures(
         energy=case.strain_energy,
         displacement=case.displacement_max,
         span=case.span,
+        layers=across,
     )
     return figures, volumes

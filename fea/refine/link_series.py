@@ -25,7 +25,11 @@ AROUND = 1.5
 """Radius about a peak, in sizes of the first mesh, in which a series measures its sizes and the next mesh is finer."""
 
 
-PeakQuantity = Literal["von_mises", "principal", "displacement"]
+Measure = Literal["von_mises", "principal", "layers"]
+"""A nodal stress, named as in ``CaseFigures``."""
+STRESS: dict[bool, Measure] = {True: "principal", False: "von_mises"}
+"""The stress that decides all links of a material, by whether it is brittle."""
+PeakQuantity = Measure | Literal["displacement"]
 Unreliable = Literal["", "coarse", "edge"]
 
 
@@ -86,6 +90,8 @@ class CasePrecision:
     unreliable : Doubt
         Why there is no band: "coarse" where the mesh resolves nothing; "edge" where a sharp edge bears much and the
         meshes do not tell yet whether its stress has a limit, which leaves displacements alone.
+    layers : GridConvergence or None
+        Series of the largest stress on the layers; None where none are checked.
     in_contact : dict of Quantity to float
         Quantity -> largest stress in the eyes [MPa], with what contact adds to the narrow pressure's; 0 under the wide
         one.
@@ -98,6 +104,7 @@ class CasePrecision:
     sharp: SharpPeak | None
     unreliable: Unreliable
     in_contact: Mapping[PeakQuantity, float]
+    layers: GridConvergence | None = None
 
     def series(self, quantity: PeakQuantity) -> GridConvergence:
         """Return the series of a quantity.
@@ -223,7 +230,7 @@ def goals(
     levels: Sequence[Level],
     allowed: float,
     *,
-    brittle: bool,
+    measure: Measure,
     edges: Sequence[ReentrantEdge],
     section: float,
     ratios: Sequence[float],
@@ -236,8 +243,8 @@ def goals(
         The meshes so far, coarse to fine.
     allowed : float
         Estimate over peak that is aimed at.
-    brittle : bool
-        True where the principal stress decides, False where von Mises does.
+    measure : Measure
+        A stress that decides.
     edges : sequence of ReentrantEdge
         Re-entrant edges of the link.
     section : float
@@ -252,7 +259,7 @@ def goals(
     """
     found, level = [], levels[-1]
     for figures, ratio in zip(level.figures, ratios, strict=True):
-        stress = figures.principal if brittle else figures.von_mises
+        stress = getattr(figures, measure)
         edge = loaded_edge(edges, level.nodes, figures.von_mises, section)
         nodes = {int(np.argmax(stress))} | ({edge[1]} if edge else set())
         found += [
@@ -296,6 +303,7 @@ def _case(
             section=section,
         )
     principal = [level.figures[number].principal for level in levels]
+    layers = [stress for level in levels if (stress := level.figures[number].layers) is not None]
     return CasePrecision(
         von_mises=series(stresses, int(np.argmax(stresses[-1]))),
         principal=series(principal, int(np.argmax(principal[-1]))),
@@ -304,6 +312,7 @@ def _case(
         sharp=sharp,
         unreliable=_unreliable(levels, number, edge_series),
         in_contact=_in_contact(last, number, eyes),
+        layers=series(layers, int(np.argmax(layers[-1]))) if layers else None,
     )
 
 
@@ -320,11 +329,13 @@ def _in_contact(level: Level, number: int, eyes: Sequence[Eye]) -> dict[PeakQuan
     if figures.span != NARROW.span or not eyes:
         return {}
     inside = np.any([eye.holds(level.nodes) for eye in eyes], axis=0)
+    measures: tuple[tuple[Measure, NDArray[np.float64] | None], ...] = (
+        ("von_mises", figures.von_mises),
+        ("principal", figures.principal),
+        ("layers", figures.layers),
+    )
     share = 1.0 - CONTACT_SHORTFALL
-    return {
-        "von_mises": float(figures.von_mises[inside].max()) / share,
-        "principal": float(figures.principal[inside].max()) / share,
-    }
+    return {measure: float(stress[inside].max()) / share for measure, stress in measures if stress is not None}
 
 
 def _series(

@@ -10,15 +10,21 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
-from fea.common.link_loads import LinkLoads
 from fea.common.threads import bounded
 from fea.refine.convergence import ALONE, SERIES, SEVERAL, GridConvergence
 from fea.refine.level import Level, level_of
-from fea.refine.link_series import CasePrecision, Eye, PeakQuantity, energy_errors, goals, precision
+from fea.refine.link_series import (
+    CasePrecision,
+    Eye,
+    PeakQuantity,
+    energy_errors,
+    goals,
+    precision,
+)
+from fea.refine.link_task import LinkTask
 from fea.refine.singular import NEARLY, element_exponents, loaded_edge
 from fea.refine.target_sizes import SERIES_RATIO, element_sizes, next_sizes, reduction, series_ratio
 from fea.solid.solution import SolidSolution, solve_solid
@@ -26,7 +32,6 @@ from geometry.base import child
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, ReentrantEdge, mesh_body, reentrant_edges
 from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.part import Body
 
 FAR = 2.0
 """Factor that a link with one mesh keeps from every limit, beyond its band."""
@@ -67,54 +72,6 @@ class Effort:
             raise CaseError(f"accuracy: {100.0 * self.accuracy:g} % is outside 0.1 % to 100 %; choose one between")
         if self.max_meshes < 1 or self.max_unknowns < 1 or self.time_limit < 0.0:
             raise CaseError("the limits of unknowns, meshes and time must be above zero; raise them")
-
-
-@dataclass(frozen=True, kw_only=True)
-class LinkTask:
-    """A link to be solved.
-
-    Attributes
-    ----------
-    body : Body
-        Geometry of the link.
-    loads : tuple of LinkLoads
-        One per load case.
-    E : float
-        Young's modulus [MPa].
-    nu : float
-        Poisson's ratio.
-    density : float
-        Of the material [tonne/mm³].
-    line : tuple of 2 str
-        Surfaces that displacements refer to (``solve_solid``).
-    brittle : bool
-        True where the principal stress decides, False where von Mises does.
-    stress_limits : tuple of tuple of 2 float
-        On the deciding stress [MPa]: from the least to the largest that stated scatter makes of each, within which
-        nothing is decided.
-    displacement_limits : tuple of tuple of 2 float
-        The same on the displacement [mm].
-    """
-
-    body: Body
-    loads: tuple[LinkLoads, ...]
-    E: float
-    nu: float
-    density: float
-    line: tuple[str, str]
-    brittle: bool
-    stress_limits: tuple[tuple[float, float], ...]
-    displacement_limits: tuple[tuple[float, float], ...]
-
-    @property
-    def section(self) -> float:
-        """Smaller dimension of the section [mm]."""
-        return self.body.part.size
-
-    @property
-    def may_be_sharp(self) -> bool:
-        """True where the shape has re-entrant edges: at eyes without fillets."""
-        return self.body.part.may_be_sharp
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -266,7 +223,7 @@ class _Link:
         if solution is None:
             return
         self.solution = solution
-        self.levels.append(level_of(solution, mesh.volume))
+        self.levels.append(level_of(solution, mesh.volume, self.task.layers))
         self._judge()
         seconds = [*(mesh.seconds for mesh in self.meshes), time.perf_counter() - begun]
         self.meshes = [
@@ -314,7 +271,7 @@ class _Link:
 
     @property
     def _growing(self) -> bool:
-        return any(self._deciding(p).kind == "growing" for p in self.precision)
+        return any(s.kind == "growing" for p in self.precision for s in self._deciding(p))
 
     def _judge(self) -> None:
         eyes = []
@@ -334,24 +291,31 @@ class _Link:
             return False
         # Nothing finer makes a singular peak finite.
         real = [p for p in self.precision if p.sharp is None]
-        series = [s for p in real for s in (self._deciding(p), p.edge) if s is not None]
+        series = [s for p in real for s in (*self._deciding(p), p.edge) if s is not None]
         if any(s.kind == "growing" or s.suspect or len(s.values) < SERIES for s in series):
             return False
-        narrow = all(max(self._deciding(p).index, p.displacement.index) <= self.effort.accuracy for p in real)
-        return narrow or (not self.effort.stated and self._decided())
+        return all(map(self._narrow, real)) or (not self.effort.stated and self._decided())
 
-    @property
-    def _measure(self) -> Literal["von_mises", "principal"]:
-        """The stress that decides."""
-        return "principal" if self.task.brittle else "von_mises"
+    def _narrow(self, case: CasePrecision) -> bool:
+        """Whether bands are as narrow as asked for; that of layers may be wide where it is clear of its limit.
 
-    def _deciding(self, case: CasePrecision) -> GridConvergence:
-        return case.series(self._measure)
+        Layers along a pull bear next to nothing, whose error no mesh makes small beside it.
+        """
+        first, *layers = self._deciding(case)
+        wide = [s for s in (first, case.displacement, *layers) if s.index > self.effort.accuracy]
+        low, high = (case.low("layers"), case.high("layers")) if layers else (0.0, 0.0)
+        is_open = any(low <= limit <= high for ends in self.task.layer_limits for limit in ends)
+        return not wide or (not is_open and wide == layers)
+
+    def _deciding(self, case: CasePrecision) -> list[GridConvergence]:
+        """Series of the stresses that decide."""
+        return [case.series(measure) for measure in self.task.measures]
 
     def _limits(self) -> Iterable[tuple[float, float, float]]:
         """Ends of every band, and a limit that it must clear."""
         stated: tuple[tuple[PeakQuantity, tuple[tuple[float, float], ...]], ...] = (
-            (self._measure, self.task.stress_limits),
+            (self.task.measures[0], self.task.stress_limits),
+            ("layers", self.task.layer_limits),
             ("displacement", self.task.displacement_limits),
         )
         for case in self.precision:
@@ -366,7 +330,9 @@ class _Link:
 
     def _far(self) -> bool:
         """Whether one mesh decides: well resolved, away from sharp edges, every limit far outside the band."""
-        if any(self._deciding(p).index > ALONE * ROUGH or p.edge is not None for p in self.precision):
+        if any(s.index > ALONE * ROUGH for p in self.precision for s in self._deciding(p)):
+            return False
+        if any(p.edge is not None for p in self.precision):
             return False
         level, section = self.levels[-1], self.task.section
         if any(loaded_edge(self.edges, level.nodes, f.von_mises, section, NEARLY) for f in level.figures):
@@ -383,14 +349,18 @@ class _Link:
             reduction(figures.estimate.energy, figures.estimate.energy_norm, allowed, exponent)
             for figures in level.figures
         ]
-        wanted = goals(
-            self.levels,
-            accuracy / SEVERAL,
-            brittle=self.task.brittle,
-            edges=self.edges,
-            section=self.task.section,
-            ratios=[series_ratio(self._deciding(case), accuracy) for case in self.precision],
-        )
+        wanted = [
+            goal
+            for measure in self.task.measures
+            for goal in goals(
+                self.levels,
+                accuracy / SEVERAL,
+                measure=measure,
+                edges=self.edges,
+                section=self.task.section,
+                ratios=[series_ratio(case.series(measure), accuracy) for case in self.precision],
+            )
+        ]
         points, sizes = next_sizes(self.solution.space, factors, wanted)
         self.settings = replace(self.settings, size_points=points, size_values=sizes)
         if not self.settings.curved:  # straight sides miss the round of a surface, which sizes alone would leave

@@ -162,13 +162,15 @@ class UpperHalf:
         field[self.nodes] = symmetric + antisymmetric
         return field
 
-    def both_nodes(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return what has the same value at a node and at its image.
+    def both_nodes(self, values: NDArray[np.float64], images: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Return the values at all nodes from those at the nodes of the half and at their images.
 
         Parameters
         ----------
         values : ndarray, shape (h,)
             At the nodes of the half.
+        images : ndarray, shape (h,), optional
+            At their images; by default the same.
 
         Returns
         -------
@@ -176,7 +178,8 @@ class UpperHalf:
             At the nodes of the whole.
         """
         found = np.empty(2 * len(values) - np.count_nonzero(self.on_plane))
-        found[self.nodes] = found[self.images] = values
+        found[self.images] = values if images is None else images
+        found[self.nodes] = values
         return found
 
 

@@ -85,6 +85,14 @@ def _text(text: str) -> str:
     return text
 
 
+def _direction(value: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not any(value):
+        raise PydanticCustomError("no_direction", "a direction has three numbers, not all zero; write [0, 0, 1]")
+    return value
+
+
+Direction = Annotated[tuple[float, float, float], AfterValidator(_direction)]
+"""A vector of any length, without unit."""
 Name = Annotated[str, AfterValidator(_name)]
 Text = Annotated[str, AfterValidator(_text)]
 

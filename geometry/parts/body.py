@@ -10,15 +10,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
-from geometry.base.model import CaseModel
 from geometry.parts.features import HoleRow, Pin, PlainEnd, Ring
 from geometry.parts.kernel import Entity, Kernel
+from geometry.parts.printable import Printable
 from geometry.parts.section import Section
 
 Feature = Literal["slots", "arms", "rows of holes", "load points without a pin"]
 
 
-class PartKind(CaseModel):
+class PartKind(Printable):
     """A kind of part: the sizes that a case states, as fields, and what follows from them.
 
     Its fields are ``shape`` (a literal), ``material`` and sizes. The properties below are fields or properties of

@@ -8,10 +8,11 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import AfterValidator, Field, ValidationInfo
 
 from geometry.base.errors import CannotRunError
-from geometry.base.model import CaseModel, Name, Text, refusal
+from geometry.base.model import Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.parts.body import Body, Feature, PartKind
 from geometry.parts.kernel import Entity, Kernel
+from geometry.parts.printable import Printable
 from geometry.parts.section import Section, rectangle
 
 Vector = tuple[float, float, float]
@@ -28,7 +29,7 @@ def _beside_the_case(text: str, info: ValidationInfo) -> str:
 PartFile = Annotated[Text, Field(max_length=1000), AfterValidator(_beside_the_case)]
 
 
-class StepPart(CaseModel):
+class StepPart(Printable):
     """A solid from a STEP file; its bores are matched to the points of the link that is made of it."""
 
     shape: Literal["step"]

@@ -83,6 +83,7 @@ def _placed(part: StepPart, facts: PartFacts, wanted: tuple[Wanted, ...]) -> Bod
     bounds = corners @ placement.turn.T + placement.shift
     solid = ImportedPart(
         material=part.material,
+        build_direction=part.build_direction,
         file=part.file,
         digest=facts.digest,
         turn=tuple(map(tuple, placement.turn.tolist())),

@@ -45,7 +45,7 @@ def ornithopter_entries(rules: OrnithopterRules) -> dict[str, object]:
             f"pose.near.{link}": f"{angle!r} deg",
         }
     for part, body in bodies.items():
-        for name, length in body.part.model_dump(exclude={"shape", "material"}).items():
+        for name, length in body.part.model_dump(exclude={"shape", "material", "build_direction"}).items():
             found[f"parts.{part}.{name}"] = _mm(length)
     return found
 

@@ -128,7 +128,14 @@ def _scatter(result: CheckResult) -> str:
     text = "The safety factor must cover voids, print layers, notches and scatter of dimensions"
     if missing:
         text += f", and scatter of {joined(missing)}, for which the case states no range"
-    return f"{text}. Stated ranges are part of the bands."
+    parts = {link: case.part_of(link) for link in case.checked_links if case.part_of(link).build_direction is None}
+    unknown = [
+        link for link, part in parts.items() if case.all_materials[part.material].strength_across_layers is not None
+    ]
+    layers = (
+        f" The layers of {joined(unknown)} were not checked, since no build_direction is stated." if unknown else ""
+    )
+    return f"{text}. Stated ranges are part of the bands.{layers}"
 
 
 def _bands(result: CheckResult) -> str:

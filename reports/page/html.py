@@ -14,9 +14,10 @@ from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.parts.material import Material
 from loads.case.case_file import built_in_cases
 from reports.page.coverage import not_covered
-from reports.page.pictures import diagram_name, governing_load_cases, linkage_name, stress_name
+from reports.page.pictures import diagram_name, governing_load_cases, layers_name, linkage_name, stress_name
 from reports.tables.claims import as_records, count
 from reports.tables.frames import AXES, shown_components
+from reports.tables.layers import BuildDirections, build_directions_of
 from reports.tables.loads import air_record, anchor_record, weight_sentence
 from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
@@ -50,6 +51,8 @@ _PROPERTIES = (
     ("poissons_ratio", "Poisson's ratio ν", "", 1.0),
     ("yield_strength", "yield strength", "MPa", 1.0),
     ("ultimate_strength", "ultimate strength", "MPa", 1.0),
+    ("strength_across_layers", "strength across layers", "MPa", 1.0),
+    ("shear_strength_between_layers", "shear strength between layers", "MPa", 1.0),
 )
 
 
@@ -95,7 +98,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         "solved": solver_sentence,
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
-    first = next(iter(result.load_cases.values()))
+    first, layers = next(iter(result.load_cases.values())), build_directions_of(result)
     return environment.get_template("report.html.jinja").render(
         result=result,
         case=result.case,
@@ -120,7 +123,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         shown_components=shown_components,
         weight_sentence=weight_sentence,
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
-        links=[_link(result, link, figures) for link in first.links],
+        links=[_link(result, link, figures, layers) for link in first.links],
         agreement=agreement,
         materials=_materials(result),
         claims=_claims(result),
@@ -169,7 +172,7 @@ def _reasons(result: CheckResult) -> list[str]:
     """Return the reason of each check; "" where its row of value, limit and verdict says the same."""
     return [
         ""
-        if check.quantity is not Quantity.DRIVE_POWER
+        if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS)
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
         else check.reason
         for check in checks_of(result)
@@ -188,7 +191,9 @@ def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
     return found
 
 
-def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[str, Any]:
+def _link(
+    result: CheckResult, name: str, figures: Mapping[str, bytes], layers: Mapping[str, BuildDirections]
+) -> dict[str, Any]:
     """Return the entries of one link under its governing load case."""
     worst: LoadCaseResult = worst_load_case(result, name)
     found: LinkResult = worst.links[name]
@@ -200,6 +205,8 @@ def _link(result: CheckResult, name: str, figures: Mapping[str, bytes]) -> dict[
         "material": result.case.material_of(name),
         "part": result.case.part_of(name),
         "plot": figures.get(stress_name(name)),
+        "layers": layers.get(name),
+        "build_map": figures.get(layers_name(name)),
         "diagram": figures.get(diagram_name(name)),
         "solid": found if isinstance(found, SolidResult) else None,
         "apart": apart(found.comparisons) if isinstance(found, SolidResult) else [],

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 from fea.outcomes.result import CheckResult
+from reports.tables.layers import build_directions_of
 from reports.tables.record import worst_load_case
 
 
@@ -52,6 +53,21 @@ def stress_name(link: str) -> str:
     return f"stress-{link}"
 
 
+def layers_name(link: str) -> str:
+    """Return the name of the map of a printed link's directions of building.
+
+    Parameters
+    ----------
+    link : str
+        Name of the link.
+
+    Returns
+    -------
+    str
+    """
+    return f"layers-{link}"
+
+
 def governing_load_cases(result: CheckResult) -> tuple[str, ...]:
     """Return the first load case and those with the least safety factor of some link.
 
@@ -74,7 +90,7 @@ def draw_pictures(
     """Draw every picture of a report.
 
     The linkage under every governing load case; internal forces and, for a solid, stress of every link under its
-    governing load case.
+    governing load case; of a printed link the safety factor of its layers over the direction of building.
 
     Parameters
     ----------
@@ -87,6 +103,7 @@ def draw_pictures(
     tuple
         Name -> PNG, and warnings.
     """
+    from reports.figures.build_map import build_map
     from reports.figures.diagrams import internal_force_diagram
     from reports.figures.drawings import linkage_drawing
     from reports.figures.figures import stress_plots
@@ -100,6 +117,11 @@ def draw_pictures(
         pictures = {linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)}
         pictures |= {
             diagram_name(link): internal_force_diagram(found.beam, stations[link]) for link, found in worst.items()
+        }
+        pictures |= {
+            layers_name(link): build_map(layers)
+            for link, layers in build_directions_of(result).items()
+            if layers.scan is not None
         }
         plots, warnings = rendered.result()
     return pictures | {stress_name(link): plot for link, plot in plots.items()}, warnings

@@ -9,6 +9,7 @@ from fea.common.verdict import CheckOutcome, Quantity, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from loads.records.aero import AirForces
 from reports.tables.frames import frame_lines
+from reports.tables.layers import build_directions_of
 from reports.tables.second_opinion import say_opinions
 from reports.words.terminal import KEPT, say, say_table
 from reports.words.wording import agreement, apart, band, fixed, headline, joined, number, percent, plain, turning
@@ -49,6 +50,8 @@ def print_result(result: CheckResult, console: "Console") -> None:
                 say(console, f"Motor: {check.reason}.")
         for line in _hand(case):
             say(console, line)
+    for layers in build_directions_of(result).values():
+        say(console, f"Layers of {layers.sentence}.")
     for name, hand in result.hand.items():
         say(
             console,

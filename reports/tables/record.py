@@ -15,6 +15,7 @@ from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions
 from reports.tables.data import check_records, data, entries, finite
 from reports.tables.frames import frame_record, reaction_records
+from reports.tables.layers import layer_record
 from reports.tables.loads import air_record, anchor_record
 from reports.tables.mechanism import design_record
 from reports.tables.meshes import discretisation_record, solver_record
@@ -162,6 +163,7 @@ def _link(result: LinkResult) -> dict[str, Any]:
     return entries(result, f"fidelity {bands} location notes") | {
         "decided_by": result.decided_by or None,
         "why": result.why or None,
+        "layers": layer_record(result.layers),
         "beam": {
             "equivalent_max": result.beam.worst.equivalent,
             "x": result.beam.worst_x,

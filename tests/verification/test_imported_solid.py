@@ -7,6 +7,8 @@ from imported_case import imported_case
 
 from fea.check.run import check_case
 from fea.common.link_loads import PinLoad
+from fea.outcomes.limits import layers_of
+from fea.solid.layers import Layers
 from fea.solid.quadrature import surface_quadrature
 from fea.solid.space import displacement_space
 from fea.solid.traction import bore_middle, pin_traction
@@ -65,3 +67,12 @@ def test_a_bore_off_the_plane_of_forces_takes_the_moment_too(tmp_path):
         # The pressure is linear along the bore: no traction but what uneven facets need runs along its wall.
         along = density - (density * bore.normals).sum(axis=-1, keepdims=True) * bore.normals
         assert np.abs(along).max() < 0.05 * np.abs(density).max()
+
+
+def test_layers_of_an_imported_part_lie_in_its_links_frame(tmp_path):
+    points = '{ O4 = ["0 mm", "0 mm"], B = ["30 mm", "0 mm"] }'
+    entries = f"{NAMED}\nbuild_direction = [0, 1, 0]"
+    path = imported_case(tmp_path, file="bell_crank.step", points=points, entries=entries)
+    case = read_case(str(path), ['parts.own.material="pla-fdm-xy"'])
+    assert layers_of(case, "rocker") == Layers(normal=(0.0, 1.0, 0.0), across=12.0, between=6.0)
+    assert case.body("rocker").part.scaled(lambda length: length / 3.0).build_direction == (0.0, 1.0, 0.0)

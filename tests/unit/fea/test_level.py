@@ -9,6 +9,8 @@ import solid_meshes
 from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
 from fea.refine import level
 from fea.refine.level import level_of
+from fea.refine.link_series import Eye, precision
+from fea.solid.layers import Layers
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from geometry.meshing.mirror import mirrored
@@ -69,3 +71,19 @@ def test_peaks_of_other_loads_are_sought_in_both_halves(solutions, monkeypatch):
     )
     monkeypatch.setattr(level, "upper_half", lambda space: None)
     assert np.array_equal(level_of(solution, 300.0).figures[0].von_mises, figures.von_mises)
+
+
+def test_layers_of_a_symmetric_case_are_judged_in_both_halves(solutions):
+    """Oblique layers are not symmetric: their image has another stress."""
+    solution, layers = solutions[0], Layers(normal=(1.0, 0.3, 1.0), across=12.0, between=6.0)
+    found = level_of(solution, 300.0, layers)
+    for figures, case in zip(found.figures, solution.cases, strict=True):
+        nodal = stress_field(solution.space, case.displacement, E=solution.E, nu=solution.nu).nodal
+        assert np.abs(figures.layers - layers.stress(nodal)).max() < 1e-9 * figures.von_mises.max()
+        upper = solution.space.nodes[:, 2] > 0.0
+        assert figures.layers[upper].max() != pytest.approx(figures.layers[~upper].max(), rel=1e-3)
+    assert level_of(solution, 300.0).figures[0].layers is None
+    everywhere = [Eye(x=0.0, y=0.0, radius=100.0)]
+    for one, figures in zip(precision([found], (), section=3.0, eyes=everywhere), found.figures, strict=True):
+        contact = 0.94 if figures.span == 90 else 1.0  # it adds up to 6 % to the narrow pressure's
+        assert one.high("layers") == pytest.approx(one.layers.high / contact)

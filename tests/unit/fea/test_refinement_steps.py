@@ -12,8 +12,11 @@ import solid_meshes
 from fea.common.link_loads import LinkLoads, PinLoad
 from fea.refine import refinement
 from fea.refine.convergence import grid_convergence
-from fea.refine.refinement import START, Effort, LinkTask, _Link, refine_links
+from fea.refine.link_series import CasePrecision
+from fea.refine.link_task import LinkTask
+from fea.refine.refinement import START, Effort, _Link, refine_links
 from fea.refine.target_sizes import MOST_RATIO, SERIES_RATIO, series_ratio
+from fea.solid.layers import Layers
 from geometry.base.errors import CannotRunError
 from geometry.meshing.mesh import ReentrantEdge
 from geometry.meshing.mirror import mirrored
@@ -122,3 +125,17 @@ def test_a_link_that_fails_ends_the_others_with_its_name(coarse, monkeypatch, th
     with pytest.raises(CannotRunError, match=r"^two: its loads do not balance$"):
         refine_links({"one": pulled(1.0), "two": pulled(2.0)}, START, EFFORT, threads=threads)
     assert refine_links({}, START, EFFORT, threads=2) == {}
+
+
+@pytest.mark.parametrize(("limit", "narrow"), [(5.0, True), (0.02, False)])
+def test_layers_that_bear_next_to_nothing_need_no_finer_mesh_unless_their_limit_is_near(limit, narrow):
+    peak = grid_convergence([1.0, 0.6, 0.4], [10.0, 10.01, 10.012], estimate=0.01)
+    nothing = grid_convergence([1.0, 0.6, 0.4], [0.001, 0.0012, 0.0011], estimate=0.01)
+    assert peak.index < EFFORT.accuracy < 1.0 < nothing.index
+    layers = Layers(normal=(0.0, 1.0, 0.0), across=10.0, between=5.0)
+    task = dataclasses.replace(pulled(1.0), layers=layers, layer_limits=((limit, limit),))
+    case = CasePrecision(von_mises=peak, principal=peak, displacement=peak, edge=None, sharp=None, unreliable="",
+                         in_contact={}, layers=nothing)  # fmt: skip
+    link = _Link("bar", task, START, EFFORT)
+    assert link._narrow(case) is narrow
+    assert not link._narrow(dataclasses.replace(case, von_mises=nothing))

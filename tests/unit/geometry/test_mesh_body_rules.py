@@ -33,7 +33,7 @@ BAR = Bar(
 
 def huge(unit: float) -> Tube:
     """The tube, its sizes multiplied."""
-    sizes = {name: size * unit for name, size in TUBE.model_dump().items() if name not in ("shape", "material")}
+    sizes = {name: size * unit for name, size in TUBE.model_dump().items() if isinstance(size, float)}
     return TUBE.model_copy(update=sizes)
 
 

@@ -1,0 +1,51 @@
+"""What a load case does to the layers of a printed link."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.band import Band
+from fea.refine.discretisation import Discretisation
+from fea.solid.layers import Layers
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LayerStress:
+    """What a load case does to the layers of a link.
+
+    Attributes
+    ----------
+    layers : Layers
+        Their direction and strengths.
+    safety_factor : Band
+        Against parting of the layers; its lower end is 0 where their shear strength is not known.
+    location : ndarray, shape (3,)
+        Place of the largest stress on the layers in the link's frame [mm].
+    tension : float
+        Stress normal to the layers there, negative in compression [MPa].
+    shear : float
+        Along them [MPa].
+    discretisation : Discretisation
+        The error that the meshes leave.
+    scan : ndarray or None
+        Safety factor (POLAR, AZIMUTH) for the directions of building of ``fea.solid.layers.build_directions``, by the
+        same solution; None without a shear strength or without a safety factor.
+    """
+
+    layers: Layers
+    safety_factor: Band
+    location: NDArray[np.float64]
+    tension: float
+    shear: float
+    discretisation: Discretisation
+    scan: NDArray[np.float64] | None
+
+    @property
+    def place(self) -> str:
+        """Where the peak is and what acts there, for people."""
+        x, y, z = (f"{value:.1f}".replace("-0.0", "0.0") for value in self.location)
+        return (
+            f"largest at x = {x}, y = {y}, z = {z} mm: {self.tension:.3g} MPa across the layers, {self.shear:.3g} MPa "
+            "of shear along them"
+        )

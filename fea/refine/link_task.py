@@ -1,0 +1,67 @@
+"""What is to be solved of a link, and the limits that its numbers must clear."""
+
+from dataclasses import dataclass
+
+from fea.common.link_loads import LinkLoads
+from fea.refine.link_series import STRESS, Measure
+from fea.solid.layers import Layers
+from geometry.parts.part import Body
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkTask:
+    """A link to be solved.
+
+    Attributes
+    ----------
+    body : Body
+        Geometry of the link.
+    loads : tuple of LinkLoads
+        One per load case.
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    density : float
+        Of the material [tonne/mm³].
+    line : tuple of 2 str
+        Surfaces that displacements refer to (``solve_solid``).
+    brittle : bool
+        True where the principal stress decides, False where von Mises does.
+    stress_limits : tuple of tuple of 2 float
+        On the deciding stress [MPa]: from the least to the largest that stated scatter makes of each, within which
+        nothing is decided.
+    displacement_limits : tuple of tuple of 2 float
+        The same on the displacement [mm].
+    layers : Layers or None
+        Of a printed part whose layers are checked.
+    layer_limits : tuple of tuple of 2 float
+        As ``stress_limits``, on the stress on the layers.
+    """
+
+    body: Body
+    loads: tuple[LinkLoads, ...]
+    E: float
+    nu: float
+    density: float
+    line: tuple[str, str]
+    brittle: bool
+    stress_limits: tuple[tuple[float, float], ...]
+    displacement_limits: tuple[tuple[float, float], ...]
+    layers: Layers | None = None
+    layer_limits: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def measures(self) -> tuple[Measure, ...]:
+        """The stresses that decide, the one that decides all links first."""
+        return (STRESS[self.brittle],) if self.layers is None else (STRESS[self.brittle], "layers")
+
+    @property
+    def section(self) -> float:
+        """Smaller dimension of the section [mm]."""
+        return self.body.part.size
+
+    @property
+    def may_be_sharp(self) -> bool:
+        """True where the shape has re-entrant edges: at eyes without fillets."""
+        return self.body.part.may_be_sharp

@@ -1,0 +1,147 @@
+"""Stress on the layers of a printed part: tension normal to them, shear along them, and both against their strengths.
+
+Layers part where (⟨σn⟩/Rn)² + (τ/Rt)² = 1, with the positive part ⟨σn⟩ of the normal stress, the resultant shear stress
+τ on the plane of the layers, and their strengths Rn and Rt.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layers:
+    """Direction and strengths of the layers of a part.
+
+    The criterion is that of Brewer and Lagace for the initiation of delamination, without its term of compression:
+    compression normal to the layers neither helps nor harms. (Friction would help; crushing is no parting of layers.)
+
+    Attributes
+    ----------
+    normal : tuple of 3 float
+        The direction in which the part was built, in its link's frame; of any length.
+    across : float
+        Strength against tension normal to the layers, Rn [MPa].
+    between : float or None
+        Strength against shear along them, Rt [MPa]; None where it is not known, and shear is left out.
+
+    References
+    ----------
+    J. C. Brewer and P. A. Lagace, Quadratic stress criterion for initiation of delamination, J. Compos. Mater. 22
+    (1988) 1141-1155. With the positive part of the normal stress alone: P. P. Camanho and C. G. Davila, Mixed-mode
+    decohesion finite elements for the simulation of delamination in composite materials, NASA/TM-2002-211737.
+    """
+
+    normal: tuple[float, float, float]
+    across: float
+    between: float | None
+
+    def stress(self, sigma: Real) -> Real:
+        """Return the stress that is set against the strength across the layers.
+
+        Parameters
+        ----------
+        sigma : ndarray, shape (..., 6)
+            Components in the order of ``fea.solid.stress.COMPONENTS`` [MPa].
+
+        Returns
+        -------
+        ndarray, shape (...)
+            √(⟨σn⟩² + (Rn/Rt)² τ²) [MPa]: strength over it is the safety factor.
+        """
+        tension, shear = on_plane(sigma, self.normal)
+        share = 0.0 if self.between is None else self.across / self.between
+        return np.asarray(np.hypot(np.maximum(tension, 0.0), share * shear))
+
+    @property
+    def mirrored(self) -> "Layers":
+        """The same layers as the image at z = 0 has them."""
+        x, y, z = self.normal
+        return replace(self, normal=(x, y, -z))
+
+
+def on_plane(sigma: Real, normal: ArrayLike) -> tuple[Real, Real]:
+    """Return normal and shear stress on planes: t = σ n, σn = n·t, τ = |t − σn n|.
+
+    Parameters
+    ----------
+    sigma : ndarray, shape (..., 6)
+        Components [MPa].
+    normal : array, shape (3,) or (d, 3)
+        Normals of the planes, of any length.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        Normal stress, positive in tension, and resultant shear stress (...) or (..., d) [MPa].
+    """
+    n = np.asarray(normal, dtype=np.float64)
+    n = n / np.linalg.norm(n, axis=-1, keepdims=True)
+    x, y, z = np.moveaxis(n, -1, 0)
+    xx, yy, zz, xy, yz, xz = np.moveaxis(sigma if n.ndim == 1 else sigma[..., None, :], -1, 0)
+    traction = xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z
+    along = traction[0] * x + traction[1] * y + traction[2] * z
+    rest = [t - along * c for t, c in zip(traction, (x, y, z), strict=True)]
+    return np.asarray(along), np.sqrt(rest[0] ** 2 + rest[1] ** 2 + rest[2] ** 2)
+
+
+POLAR, AZIMUTH = 19, 72
+"""Steps of 5° from the axis of the pins to the linkage's plane, and about it."""
+_NODES = 500
+
+
+def build_directions() -> Real:
+    """Return directions over half the sphere, (POLAR, AZIMUTH, 3); each and its opposite have the same layers.
+
+    The angle to the pins' axis z grows along the first axis, from 0 to 90°, the one about it along the second, from x.
+    """
+    polar = np.linspace(0.0, np.pi / 2.0, POLAR)[:, None]
+    about = np.arange(AZIMUTH) * 2.0 * np.pi / AZIMUTH
+    x, y = np.sin(polar) * np.cos(about), np.sin(polar) * np.sin(about)
+    found = np.stack(np.broadcast_arrays(x, y, np.cos(polar)), axis=-1)
+    return np.where(np.abs(found) < 1e-12, 0.0, found)
+
+
+def best_directions(fields: Iterable[Real], layers: Layers) -> Real:
+    """Return the least safety factor of a part for every direction in which it may be built.
+
+    A node's stress on layers of any direction is at most its stress tensor's Frobenius norm times the larger of 1 and
+    Rn/Rt. So only nodes that by this bound may matter for some direction are looked at.
+
+    Parameters
+    ----------
+    fields : iterable of ndarray, shape (n, 6)
+        Nodal stress under each load [MPa].
+    layers : Layers
+        With both strengths; its own direction plays no part.
+
+    Returns
+    -------
+    ndarray, shape (POLAR, AZIMUTH)
+        For ``build_directions``; infinite without stress.
+    """
+    assert layers.between is not None
+    share = layers.across / layers.between
+    x, y, z = build_directions().reshape(-1, 3).T
+    zero = np.zeros_like(x)
+    rows = np.array([[x, zero, zero, y, zero, z], [zero, y, zero, x, z, zero], [zero, zero, z, zero, y, x]])
+    normal = x * rows[0] + y * rows[1] + z * rows[2]
+    worst = zero.copy()
+    for sigma in fields:
+        bound = max(1.0, share) * np.sqrt((sigma**2 * (1.0, 1.0, 1.0, 2.0, 2.0, 2.0)).sum(axis=1))
+        order = np.argsort(-bound)
+        for start in range(0, len(order), _NODES):
+            part = order[start : start + _NODES]
+            left = np.flatnonzero(worst < bound[part[0]])
+            if not left.size:
+                break
+            along = sigma[part] @ normal[:, left]
+            square = sum((sigma[part] @ row[:, left]) ** 2 for row in rows)
+            found = np.maximum(along, 0.0) ** 2 + share**2 * np.maximum(square - along**2, 0.0)
+            worst[left] = np.maximum(worst[left], np.sqrt(found.max(axis=0)))
+    with np.errstate(divide="ignore"):
+        return np.asarray(layers.across / worst).reshape(POLAR, AZIMUTH)
