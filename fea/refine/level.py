@@ -35,6 +35,8 @@ class CaseFigures:
         Of the pins' pressure [degrees].
     layers : ndarray or None
         Nodal stress (n,) that is set against the strength across the layers [MPa]; None where none are checked.
+    layer_sensitivity : float
+        Largest ratio of what that stress misses to the estimate.
     """
 
     von_mises: NDArray[np.float64]
@@ -44,6 +46,22 @@ class CaseFigures:
     displacement: float
     span: Span
     layers: NDArray[np.float64] | None = None
+    layer_sensitivity: float = 1.0
+
+    def sensitivity(self, measure: str) -> float:
+        """Return how much more than the estimate a stress may miss.
+
+        Parameters
+        ----------
+        measure : str
+            Name of its field.
+
+        Returns
+        -------
+        float
+            A factor; 1 but on layers.
+        """
+        return self.layer_sensitivity if measure == "layers" else 1.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -182,5 +200,6 @@ def _figures(
         displacement=case.displacement_max,
         span=case.span,
         layers=across,
+        layer_sensitivity=1.0 if layers is None else layers.sensitivity,
     )
     return figures, volumes

@@ -267,7 +267,7 @@ def goals(
                 location=level.nodes[node],
                 value=float(stress[node]),
                 stress=stress[level.cells].max(axis=1),
-                estimate=figures.estimate.stress,
+                estimate=figures.sensitivity(measure) * figures.estimate.stress,
                 allowed=allowed,
                 ratio=ratio,
                 radius=AROUND * levels[0].size(level.nodes[node]),
@@ -286,9 +286,10 @@ def _case(
     found = loaded_edge(edges, last.nodes, stresses[-1], section)
     edge_series = sharp = None
 
-    def series(nodal: Sequence[NDArray[np.float64]], node: int) -> GridConvergence:
+    def series(nodal: Sequence[NDArray[np.float64]], node: int, measure: Measure = "von_mises") -> GridConvergence:
         on_edge = bool(edges) and edge_distance(edges, last.nodes[[node]]).min() <= ON_EDGE * section
-        return _series(levels, number, nodal, node, sharp=on_edge)
+        sensitivity = last.figures[number].sensitivity(measure)
+        return _series(levels, number, nodal, node, sharp=on_edge, sensitivity=sensitivity)
 
     if found is not None:
         edge, node = found
@@ -312,7 +313,7 @@ def _case(
         sharp=sharp,
         unreliable=_unreliable(levels, number, edge_series),
         in_contact=_in_contact(last, number, eyes),
-        layers=series(layers, int(np.argmax(layers[-1]))) if layers else None,
+        layers=series(layers, int(np.argmax(layers[-1])), "layers") if layers else None,
     )
 
 
@@ -339,16 +340,25 @@ def _in_contact(level: Level, number: int, eyes: Sequence[Eye]) -> dict[PeakQuan
 
 
 def _series(
-    levels: Sequence[Level], number: int, nodal: Sequence[NDArray[np.float64]], node: int, *, sharp: bool
+    levels: Sequence[Level],
+    number: int,
+    nodal: Sequence[NDArray[np.float64]],
+    node: int,
+    *,
+    sharp: bool,
+    sensitivity: float,
 ) -> GridConvergence:
-    """Series of a nodal stress about a node of the finest mesh; ``sharp`` where that lies on a re-entrant edge."""
+    """Series of a nodal stress about a node of the finest mesh; ``sharp`` where that lies on a re-entrant edge.
+
+    It may miss ``sensitivity`` times what the estimate says.
+    """
     last = levels[-1]
     place = last.nodes[node]
     radius = levels[0].size(place)
     chosen = _falling([level.size(place, AROUND * radius) for level in levels])
     values = [float(nodal[i][levels[i].around(nodal[i], place, radius)]) for i, _ in chosen]
     error = float(last.figures[number].estimate.stress[(last.cells == node).any(axis=1)].max())
-    missing = error + CHORD * last.chord * abs(values[-1])
+    missing = sensitivity * error + CHORD * last.chord * abs(values[-1])
     return grid_convergence([size for _, size in chosen], values, estimate=missing, sharp=sharp)
 
 

@@ -4,6 +4,7 @@ Layers part where (⟨σn⟩/Rn)² + (τ/Rt)² = 1, with the positive part ⟨σ
 τ on the plane of the layers, and their strengths Rn and Rt.
 """
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -56,6 +57,16 @@ class Layers:
         tension, shear = on_plane(sigma, self.normal)
         share = 0.0 if self.between is None else self.across / self.between
         return np.asarray(np.hypot(np.maximum(tension, 0.0), share * shear))
+
+    @property
+    def sensitivity(self) -> float:
+        """Largest ratio of what this stress misses to the von Mises stress of the error.
+
+        A deviator of von Mises stress v has at most 2/3 v across a plane and v/√3 along it. As with the principal
+        stress, the error's mean stress is taken to be no larger than the rest of v.
+        """
+        share = 0.0 if self.between is None else self.across / self.between
+        return max(1.0, share / math.sqrt(3.0))
 
     @property
     def mirrored(self) -> "Layers":

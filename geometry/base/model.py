@@ -1,5 +1,6 @@
 """What all records of the case file have in common."""
 
+import math
 import unicodedata
 from collections.abc import Iterable
 from itertools import pairwise
@@ -88,11 +89,14 @@ def _text(text: str) -> str:
 def _direction(value: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(value):
         raise PydanticCustomError("no_direction", "a direction has three numbers, not all zero; write [0, 0, 1]")
-    return value
+    largest = max(map(abs, value))
+    x, y, z = (component / largest for component in value)
+    length = math.hypot(x, y, z)
+    return x / length, y / length, z / length
 
 
 Direction = Annotated[tuple[float, float, float], AfterValidator(_direction)]
-"""A vector of any length, without unit."""
+"""A vector of any length, without unit; kept with unit length."""
 Name = Annotated[str, AfterValidator(_name)]
 Text = Annotated[str, AfterValidator(_text)]
 

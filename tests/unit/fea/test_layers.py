@@ -16,6 +16,8 @@ from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.layers import layer_outcomes
 from fea.outcomes.limits import layer_limit, layer_limits, layers_of
 from fea.solid.layers import Layers, best_directions, build_directions, on_plane
+from fea.solid.stress import von_mises
+from geometry.base.errors import CaseError
 from geometry.parts.material import library
 from loads.case.case_file import read_case
 
@@ -61,6 +63,16 @@ def test_compression_neither_helps_nor_harms():
 def test_without_a_shear_strength_tension_alone_counts():
     layers = Layers(normal=(1.0, 1.0, 0.0), across=12.0, between=None)
     assert layers.stress(PULL) == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize("between", [None, 20.0, 6.0, 1.0])
+def test_no_deviator_of_the_error_is_felt_more_than_the_sensitivity_says(between):
+    layers = Layers(normal=(0.0, 0.0, 1.0), across=12.0, between=between)
+    sigma = RNG.normal(size=(200_000, 6))
+    sigma[:, :3] -= sigma[:, :3].mean(axis=1, keepdims=True)
+    felt = layers.stress(sigma / von_mises(sigma)[:, None]).max()
+    assert felt <= layers.sensitivity
+    assert felt > 0.98 * layers.sensitivity or layers.sensitivity == 1.0
 
 
 def test_directions_cover_half_the_sphere():
@@ -148,6 +160,14 @@ def test_what_is_not_known_is_undecided():
     assert outcome_of(printed(), Band.unknown()).verdict is Verdict.UNDECIDED
     idle = outcome_of(printed(), band(7.0, 8.0), decided=False, loaded=False)
     assert (idle.verdict, idle.value.low) == (Verdict.PASS, np.inf)
+
+
+@pytest.mark.parametrize("size", [5e-324, 1.0, 1e308])
+def test_a_direction_of_any_size_has_unit_length(size):
+    case = read_case(OWL, [f"parts.tube.build_direction=[0,{-size},{size}]"])
+    assert case.part_of("AE").build_direction == pytest.approx((0.0, -np.sqrt(0.5), np.sqrt(0.5)))
+    with pytest.raises(CaseError, match=r"build_direction.*not all zero; write \[0, 0, 1\]"):
+        read_case(OWL, ["parts.tube.build_direction=[0,0,0]"])
 
 
 def test_which_links_are_checked():

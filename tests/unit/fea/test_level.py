@@ -83,6 +83,12 @@ def test_layers_of_a_symmetric_case_are_judged_in_both_halves(solutions):
         upper = solution.space.nodes[:, 2] > 0.0
         assert figures.layers[upper].max() != pytest.approx(figures.layers[~upper].max(), rel=1e-3)
     assert level_of(solution, 300.0).figures[0].layers is None
+    weak = level_of(solution, 300.0, Layers(normal=(0.0, 0.0, 1.0), across=12.0, between=1.0))
+    [first, *_] = precision([weak], (), section=3.0, eyes=())
+    node = int(np.argmax(weak.figures[0].layers))
+    beside = weak.figures[0].estimate.stress[(weak.cells == node).any(axis=1)].max()
+    chord = 2.0 * weak.chord * first.layers.value
+    assert first.layers.estimate == pytest.approx(12.0 / np.sqrt(3.0) * beside + chord)
     everywhere = [Eye(x=0.0, y=0.0, radius=100.0)]
     for one, figures in zip(precision([found], (), section=3.0, eyes=everywhere), found.figures, strict=True):
         contact = 0.94 if figures.span == 90 else 1.0  # it adds up to 6 % to the narrow pressure's
