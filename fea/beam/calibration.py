@@ -184,6 +184,8 @@ def uncalibrated(body: Body, nu: float) -> str:
         return "it has a slot"
     if any(pin.ring is not None for pin in body.pins):
         return "it has an eye of sizes of its own"
+    if body.part.unmeasured:
+        return body.part.unmeasured
     if body.part.shape not in calibrations():
         return f"no part of shape {body.part.shape} was measured"
     return calibration_of(body.part).outside(body, nu)

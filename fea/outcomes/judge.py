@@ -160,7 +160,10 @@ def _point(case: Case, name: str, check: DisplacementCheck, load_case: str, move
     if displacement is not None and moved.state in ("small", "deformed", "off"):
         size = float(np.linalg.norm(displacement))
         near = factor is not None and factor < SNAP
-        if moved.followed or not (near or size > LARGE * moved.span):
+        blind = [other for other in case.checked_links if not case.part_of(other).has_centre_line(case.body(other))]
+        if blind:
+            why = f"the frame takes link {blind[0]} for a beam along its axis, which does not tell how far it gives"
+        elif moved.followed or not (near or size > LARGE * moved.span):
             value, why = _point_band(case, load_case, moved, link, point, size), ""
         else:
             far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"

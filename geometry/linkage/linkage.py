@@ -12,7 +12,7 @@ from pydantic import Field
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
-from geometry.parts.part import HoleRow, Slot
+from geometry.parts.part import EyeSizes, HoleRow, Slot
 
 
 class Link(CaseModel):
@@ -30,6 +30,8 @@ class Link(CaseModel):
     """Slots of the part, by the point of the joint (pin in slot) whose pin slides in it."""
     arms: Annotated[dict[Name, Name], Field(max_length=10)] = {}
     """Pins far off the axis: point -> the pin on the axis from which an arm of the bar's section reaches to it."""
+    eyes: Annotated[dict[Name, EyeSizes], Field(max_length=100)] = {}
+    """Eyes whose sizes are not those that the part states for all, by the point of the pin."""
     end_patch: Annotated[Length, POSITIVE] = 5.0
     """Length over which a load at a plain end (a point without pin) enters the part. On an imported part it enters the
     nearest face, or those that are equally near: a flat one within a circle of this diameter, a round one whole."""

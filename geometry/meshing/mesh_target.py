@@ -166,7 +166,7 @@ def _surfaces(gmsh: Any, body: Body, tags: Iterable[int], kinds: tuple[str, ...]
                     side in kinds
                     and flat
                     and np.abs(points[:, 2] - height).max() < ON_SURFACE
-                    and off < ring.diameter / 2.0
+                    and off < body.part.flat_diameter(body, pin) / 2.0
                 ):
                     faces[f"{side}:{pin.name}"].append(tag)
         for pin in body.pins:

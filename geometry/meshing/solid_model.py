@@ -22,8 +22,6 @@ from geometry.parts.kernel import Entity, FilletError, Kernel
 
 SECTION_UNITS = 10.0
 """Smaller size of a section, in the unit in which it is built."""
-CLEAR_EYE = 1.1
-"""Eye over width of a bar from which on the eye's rim stands clear of the bar's sides."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,7 +179,7 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
     for pin in body.pins:
         ring = body.ring(pin)
         if ring.diameter > 0.0 and (body.part.has_holes or flush(body, pin)):
-            borders += [_flat_eye(kernel, pin, _ring(body, pin), z) for z in (ring.low, ring.high)]
+            borders += [_flat_eye(kernel, pin, body.part.flat_diameter(body, pin), z) for z in (ring.low, ring.high)]
     if body.part.has_holes:
         occ.synchronize()
         borders += [border for end in body.ends for border in patch_borders(kernel.gmsh, solid[1], end)]
@@ -199,18 +197,6 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
     # What lay over a hole belongs to no solid.
     occ.remove([p for p in pieces if p[0] == 2 and not kernel.model.getAdjacencies(*p)[0].size], recursive=True)
     return kernel.only([p for p in pieces if p[0] == 3])
-
-
-def _ring(body: Body, pin: Pin) -> float:
-    """Return the diameter of the flat face about a hole on which a torque or a thrust enters.
-
-    That of the eye; where the bar's sides pass close to the eye's rim, three quarters of the wall: circle and sides
-    would leave cusps between them that no mesh fills.
-    """
-    eye, width = body.ring(pin).diameter, body.part.section.width
-    if body.part.is_beam and eye < CLEAR_EYE * width:
-        return pin.diameter + 0.75 * (min(eye, width) - pin.diameter)
-    return eye
 
 
 def _flat_eye(kernel: Kernel, pin: Pin, diameter: float, z: float) -> Entity:

@@ -15,7 +15,12 @@ from geometry.parts.kernel import Entity, Kernel
 from geometry.parts.printable import Printable
 from geometry.parts.section import Section
 
-Feature = Literal["slots", "arms", "rows of holes", "load points without a pin"]
+Feature = Literal["slots", "arms", "rows of holes", "load points without a pin", "eyes of their own"]
+ON_AXIS = 1e-9
+"""Share of a size by which a place may lie off the link's axis."""
+FLAT_WALL = 0.75
+"""Share of an eye's wall that the flat ring takes up on which a torque or thrust enters, where the rim of the eye lies
+in or close to the outline: circle and outline would leave cusps between them that no mesh fills."""
 
 
 class PartKind(Printable):
@@ -55,6 +60,11 @@ class PartKind(Printable):
     """What the reader must know of its hand calculation; "" where beam theory holds."""
     has_holes: ClassVar[bool] = False
     """Whether its solid has its pin holes from the start."""
+
+    @property
+    def unmeasured(self) -> str:
+        """In what it differs from the parts for which hand calculation was calibrated; "" where in nothing."""
+        return ""
 
     @property
     @abstractmethod
@@ -147,6 +157,38 @@ class PartKind(Printable):
             The section between the eyes unless the kind knows better.
         """
         return self.section
+
+    def has_centre_line(self, body: "Body") -> bool:
+        """Return whether a beam along the x axis, with what is known of eyes, bounds how far a body gives.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+
+        Returns
+        -------
+        bool
+            Of a part that is no beam, whether all of its pins lie on that axis.
+        """
+        return self.is_beam or all(abs(pin.y) <= ON_AXIS * self.section.width for pin in body.pins)
+
+    def flat_diameter(self, body: "Body", pin: Pin) -> float:
+        """Return the outer diameter of the flat face about a hole on which a torque or a thrust enters.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+        pin : Pin
+            One of its pins.
+
+        Returns
+        -------
+        float
+            That of the ring about the hole unless the kind knows better [unit of the body]; 0 where it has none.
+        """
+        return body.ring(pin).diameter
 
     def scaled(self, s: Callable[[float], float]) -> Self:
         """Return the part with its lengths in another unit.

@@ -6,8 +6,8 @@ Here stand the rules for all kinds of parts; each kind adds its own in ``check``
 import itertools
 
 from geometry.base.errors import CaseError
-from geometry.parts.body import Body, apart, extent, patch_span
-from geometry.parts.eyes import ON_AXIS, eye_reach
+from geometry.parts.body import ON_AXIS, Body, apart, extent, patch_span
+from geometry.parts.eyes import eye_reach
 from geometry.parts.features import HoleRow, PlainEnd
 
 SLENDEREST = 1e6
@@ -39,7 +39,10 @@ def check_body(body: Body) -> None:
     _check_range(body)
     first, last = extent(body)
     if not last > first:
-        raise CaseError(f"all pins and load points lie at x = {first:g} mm, so the link has no length; move them apart")
+        raise CaseError(
+            f"all pins and load points lie at x = {first:g} mm, so the link has no length along its x axis; move them "
+            "apart, or turn the link's frame"
+        )
     _check_pins(body)
     body.part.check(body)
     for end in () if body.part.has_holes else body.ends:

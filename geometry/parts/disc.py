@@ -10,7 +10,8 @@ from pydantic_core import PydanticCustomError
 from geometry.base.errors import CaseError
 from geometry.base.model import Name
 from geometry.base.units import POSITIVE, Length
-from geometry.parts.body import Body, PartKind, apart, extent
+from geometry.parts.body import Body, Feature, PartKind, apart, extent
+from geometry.parts.eyes import check_flat_eyes
 from geometry.parts.kernel import Entity, Kernel
 from geometry.parts.section import Section, rectangle
 
@@ -20,6 +21,7 @@ _CHORDS = 200
 class Disc(PartKind):
     """A round plate, such as a crank disc, about the origin of its link's frame, with a hole for every pin."""
 
+    takes: ClassVar[frozenset[Feature]] = frozenset(("eyes of their own",))
     is_beam: ClassVar[bool] = False
     by_hand: ClassVar[str] = (
         "hand calculation takes the disc for a beam of its narrowest net section between its holes: an estimate, "
@@ -74,6 +76,7 @@ class Disc(PartKind):
 
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: the rings about the holes fit."""
+        check_flat_eyes(body)
         for pin in body.pins:
             eye = body.ring(pin).diameter
             least = 2.0 * math.hypot(pin.x, pin.y) + eye

@@ -5,7 +5,7 @@ import math
 from dataclasses import replace
 
 from geometry.base.errors import CaseError
-from geometry.parts.body import Body, extent
+from geometry.parts.body import ON_AXIS, Body, extent
 from geometry.parts.features import Pin
 
 EYE_WIDTH = 1.6
@@ -13,8 +13,6 @@ EYE_WIDTH = 1.6
 RIM = 2.05
 """Fillet radii that an eye must rise in all above what it is filleted to: 2 by geometry, and the kernel fails on a
 fillet that just touches the eye's rim."""
-ON_AXIS = 1e-9
-"""Share of a size by which a place may lie off the link's axis."""
 PLAIN_EYE = 1.01
 """Eye over width of a bar up to which the eye is built as wide as the bar: the kernel cannot round so low a step, and
 a narrower eye bears no less stress."""
@@ -129,6 +127,29 @@ def _shoulder(body: Body, pin: Pin, side: float) -> float:
     if across - part.fillet_radius >= radius:
         return 0.0
     return max(radius, math.sqrt(max((radius + part.fillet_radius) ** 2 - across**2, 0.0))) + pin.slot / 2.0
+
+
+def check_flat_eyes(body: Body) -> None:
+    """Refuse eyes that are not as thick as the flat part in which they lie.
+
+    Parameters
+    ----------
+    body : Body
+        A body whose part is a disc or plate.
+
+    Raises
+    ------
+    CaseError
+        With the pin.
+    """
+    shape, thick = body.part.shape, body.part.eye_thickness
+    for pin in body.pins:
+        own = body.ring(pin).thickness
+        if abs(own - thick) > ROUNDING * thick:
+            raise CaseError(
+                f"the eye at {pin.name} is {own:.4g} mm thick, but an eye of a {shape} is as thick as the {shape}, "
+                f"{thick:.4g} mm; leave its thickness out"
+            )
 
 
 def check_eyes(body: Body) -> None:

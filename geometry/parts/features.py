@@ -58,6 +58,15 @@ class Slot(CaseModel):
         return self
 
 
+class EyeSizes(CaseModel):
+    """Sizes of one eye of a link, where they are not those that its part states for all."""
+
+    diameter: Annotated[Length, POSITIVE] | None = None
+    """Outer diameter; the part's eye_diameter where it is left out."""
+    thickness: Annotated[Length, POSITIVE] | None = None
+    """Height along the pin; the part's eye_thickness where it is left out."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Ring:
     """The flat ring about a hole, on which a torque or a thrust enters.

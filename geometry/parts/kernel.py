@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
+from geometry.base.hull import Hull
 from geometry.parts.features import Pin
 
 Entity = tuple[int, int]
@@ -120,6 +121,39 @@ class Kernel:
         solid = 3, self.occ.addBox(*corner, *sides)
         self.occ.rotate([solid], *about, 0, 0, 0, 1, turn)
         return solid
+
+    def slab(self, outline: Hull, height: float) -> Entity:
+        """Extrude an outline along z.
+
+        Parameters
+        ----------
+        outline : Hull
+            Arcs and the straight lines between them.
+        height : float
+            Half of it lies on either side of the mid-plane.
+
+        Returns
+        -------
+        Entity
+            The solid.
+        """
+        low = -height / 2.0
+        if len(outline.arcs) == 1:
+            (circle,) = outline.arcs
+            return self.cylinder((circle.x, circle.y, low), (0, 0, height), circle.radius)
+        middles, border, ends = [], [], []
+        for arc in outline.arcs:
+            angles = arc.start, (arc.start + arc.end) / 2.0, arc.end
+            first, middle, last = (self.occ.addPoint(*arc.point(angle), low) for angle in angles)
+            border.append(self.occ.addCircleArc(first, middle, last, center=False))
+            middles.append((0, middle))
+            ends.append((first, last))
+        starts = [first for first, _ in ends[1:] + ends[:1]]
+        lines = [self.occ.addLine(last, first) for (_, last), first in zip(ends, starts, strict=True)]
+        self.occ.remove(middles)
+        loop = self.occ.addCurveLoop([curve for pair in zip(border, lines, strict=True) for curve in pair])
+        solids = self.occ.extrude([(2, self.occ.addPlaneSurface([loop]))], 0, 0, height)
+        return self.only([entity for entity in solids if entity[0] == 3])
 
     def upright(self, pin: Pin, diameter: float, height: float) -> list[Entity]:
         """Make a cylinder along a pin; about a slot, the pieces of one drawn out along x.

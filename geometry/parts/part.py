@@ -7,7 +7,8 @@ from pydantic import Field
 from geometry.parts.bar import Bar
 from geometry.parts.body import Body
 from geometry.parts.disc import Disc
-from geometry.parts.features import HoleRow, Pin, PlainEnd, Ring, Slot
+from geometry.parts.features import EyeSizes, HoleRow, Pin, PlainEnd, Ring, Slot
+from geometry.parts.plate import Plate
 from geometry.parts.section import Section, rectangle, ring
 from geometry.parts.step import StepPart
 from geometry.parts.tube import Tube
@@ -16,10 +17,12 @@ __all__ = [
     "Bar",
     "Body",
     "Disc",
+    "EyeSizes",
     "HoleRow",
     "Part",
     "Pin",
     "PlainEnd",
+    "Plate",
     "Ring",
     "Section",
     "Slot",
@@ -29,5 +32,5 @@ __all__ = [
     "ring",
 ]
 
-Part = Annotated[Tube | Bar | Disc | StepPart, Field(discriminator="shape")]
+Part = Annotated[Tube | Bar | Disc | Plate | StepPart, Field(discriminator="shape")]
 """Any kind of part; a new kind joins here."""

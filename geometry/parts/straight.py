@@ -6,15 +6,22 @@ Fillets round the edges between pieces and eyes, and between an arm and the piec
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import model_validator
+from pydantic_core import PydanticCustomError
 
+from geometry.base.errors import CaseError
 from geometry.parts.arms import check_arms
-from geometry.parts.body import Body, PartKind, extent
+from geometry.parts.body import FLAT_WALL, Body, PartKind, extent
 from geometry.parts.eyes import check_eyes, flush, plain_eye
 from geometry.parts.features import Pin
 from geometry.parts.kernel import ON_SURFACE, Entity, Kernel
+
+CLEAR_EYE = 1.1
+"""Eye over width of a bar from which on the eye's rim stands clear of the bar's sides."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,30 +43,59 @@ class Piece:
     length: float
 
 
-def pieces_of(body: Body) -> list[Piece]:
-    """Return the straight pieces of a body: the one along the axis, then its arms.
-
-    Parameters
-    ----------
-    body : Body
-        A body whose part is a tube or bar.
-
-    Returns
-    -------
-    list of Piece
-        The pieces.
-    """
-    first, last = extent(body)
-    pieces = [Piece(start=(first, 0.0), angle=0.0, length=last - first)]
-    for pin in body.pins:
-        if pin.foot is not None:
-            x, y = pin.x - pin.foot[0], pin.y - pin.foot[1]
-            pieces.append(Piece(start=pin.foot, angle=math.atan2(y, x), length=math.hypot(x, y)))
-    return pieces
-
-
 class Straight(PartKind):
     """A part of straight pieces with eyes: a kind of it states its sizes and builds one piece."""
+
+    @abstractmethod
+    def check_sizes(self) -> None:
+        """Refuse sizes that do not go together.
+
+        Raises
+        ------
+        PydanticCustomError
+            With the rule and a remedy.
+        """
+
+    @model_validator(mode="after")
+    def _sizes(self) -> Self:
+        self.check_sizes()
+        return self
+
+    def reach(self, body: Body) -> tuple[float, float]:
+        """Return where the piece along the axis begins and ends.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+
+        Returns
+        -------
+        first, last : float
+            Stations [unit of the body]; those of the outermost pins and load points unless the kind knows better.
+        """
+        return extent(body)
+
+    def pieces(self, body: Body) -> list[Piece]:
+        """Return the straight pieces: the one along the axis, then its arms.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+
+        Returns
+        -------
+        list of Piece
+            The pieces.
+        """
+        first, last = self.reach(body)
+        pieces = [Piece(start=(first, 0.0), angle=0.0, length=last - first)]
+        for pin in body.pins:
+            if pin.foot is not None:
+                x, y = pin.x - pin.foot[0], pin.y - pin.foot[1]
+                pieces.append(Piece(start=pin.foot, angle=math.atan2(y, x), length=math.hypot(x, y)))
+        return pieces
 
     @abstractmethod
     def prism(self, kernel: Kernel, body: Body, piece: Piece) -> list[Entity]:
@@ -80,18 +116,32 @@ class Straight(PartKind):
             Solids that touch.
         """
 
+    def flat_diameter(self, body: Body, pin: Pin) -> float:
+        """As ``PartKind.flat_diameter``: within the wall where a flat bar's sides pass close to the eye's rim."""
+        eye, width = body.ring(pin).diameter, self.section.width
+        if 0.0 < eye < CLEAR_EYE * width:
+            return pin.diameter + FLAT_WALL * (min(eye, width) - pin.diameter)
+        return eye
+
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: eyes and arms fit."""
+        for pin in body.pins:
+            if pin.ring is not None and pin.ring.diameter > 0.0:
+                sizes = {"eye_diameter": pin.ring.diameter, "eye_thickness": pin.ring.thickness}
+                try:
+                    self.model_copy(update=sizes).check_sizes()
+                except PydanticCustomError as error:
+                    raise CaseError(f"the eye at {pin.name} has sizes of its own: {error.message()}") from None
         check_arms(body)
         check_eyes(body)
 
     def solid(self, kernel: Kernel, body: Body) -> Entity:
         """As ``PartKind.solid``: pieces and eyes, and the fillets between them."""
-        part, pieces = body.part, pieces_of(body)
+        part, pieces = body.part, self.pieces(body)
         solids = [entity for piece in pieces for entity in self.prism(kernel, body, piece)]
         raised = [pin for pin in body.pins if not plain_eye(body, pin)]
         for pin in body.pins:
-            if pin in raised or pin.foot is not None or {*pin.span} & {*extent(body)}:  # else within the bar
+            if pin in raised or pin.foot is not None or {*pin.span} & {*self.reach(body)}:  # else within the bar
                 diameter = body.ring(pin).diameter if pin in raised else part.section.width
                 solids += kernel.upright(pin, diameter, body.ring(pin).thickness)
         # Eye and bar of one thickness must share one flat face while the corners between them are filleted.

@@ -4,7 +4,7 @@ import itertools
 import math
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from geometry.base.model import Name
@@ -25,7 +25,7 @@ class Tube(Straight):
     The bore ends where it meets an eye: eyes are solid but for their pin hole.
     """
 
-    takes: ClassVar[frozenset[Feature]] = frozenset(("rows of holes", "load points without a pin"))
+    takes: ClassVar[frozenset[Feature]] = frozenset(("rows of holes", "load points without a pin", "eyes of their own"))
 
     shape: Literal["tube"]
     material: Name
@@ -40,8 +40,8 @@ class Tube(Straight):
     )
     """Height of the eye's cylinder along the pin; outer_diameter + 2.5 fillet_radius unless stated."""
 
-    @model_validator(mode="after")
-    def _sizes(self) -> "Tube":
+    def check_sizes(self) -> None:
+        """As ``Straight.check_sizes``: there is a wall, and the eyes stand out by enough for their fillets."""
         if self.inner_diameter >= self.outer_diameter:
             raise PydanticCustomError(
                 "no_wall",
@@ -62,7 +62,6 @@ class Tube(Straight):
                 "the fillet runs all round the tube; increase it, reduce fillet_radius, or leave eye_thickness out",
                 {"eye": f"{self.eye_thickness:g}", "rim": f"{RIM:g}", "least": f"{least:g}"},
             )
-        return self
 
     @property
     def section(self) -> Section:

@@ -56,9 +56,12 @@ def check_rules(case: CoreCase) -> None:
         if link.part is not None:
             require(f"links.{name}.part", link.part, case.parts, "is unknown")
             _check_slots(case, name)
+            _check_eyes(case, name)
             _check_body(f"links.{name}", case.body(name))
-        elif link.slots or link.arms:
-            raise CaseError(f"links.{name}.part: it is missing, but slots and arms are shapes of a part; name one")
+        elif link.slots or link.arms or link.eyes:
+            raise CaseError(
+                f"links.{name}.part: it is missing, but slots, arms and eyes are shapes of a part; name one"
+            )
     for i, mass in enumerate(case.carried):
         check_place(case, f"carried.{i}", mass)
     for name, load_case in case.load_cases.items():
@@ -251,6 +254,19 @@ def _check_motor(case: CoreCase, name: str) -> None:
             f"checks.{name}: no load case states the speed at which the motor runs; "
             'add one, for example speed = "150 rpm"'
         )
+
+
+def _check_eyes(case: CoreCase, link: str) -> None:
+    """Check that a link states eyes at its pins, and that its part takes them."""
+    linkage, record = case.linkage, case.links[link]
+    part = case.parts[record.part or ""]
+    pinned = list(dict.fromkeys(linkage.point_of(name, link) for name in linkage.joints_of(link)))
+    for point in record.eyes:
+        require(f"links.{link}.eyes", point, pinned, "is no point with a joint")
+        if isinstance(part, StepPart) or "eyes of their own" not in part.takes:
+            raise CaseError(
+                f"links.{link}.eyes.{point}: a part of shape {part.shape} takes no eyes of their own; leave them out"
+            )
 
 
 def _check_slots(case: CoreCase, link: str) -> None:

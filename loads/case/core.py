@@ -12,7 +12,7 @@ from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.parts.body import PartKind
 from geometry.parts.material import Material, library
-from geometry.parts.part import Body, Part, Pin, PlainEnd, StepPart
+from geometry.parts.part import Body, Part, Pin, PlainEnd, Ring, StepPart
 from geometry.placement.match import Wanted
 from geometry.placement.placed_body import placed_body
 from loads.case.revisable import Revisable
@@ -340,13 +340,23 @@ class CoreCase(Revisable):
 def _pin(case: CoreCase, link: str, name: str, diameter: float) -> Pin:
     """Return the hole or slot at a point of a link for a pin of that diameter."""
     record = case.links[link]
-    (x, y), slot = record.points[name], record.slots.get(name)
+    (x, y), slot, ring = record.points[name], record.slots.get(name), _ring(case, link, name)
     if slot is not None:
         middle, length = (slot.first + slot.last) / 2.0, slot.last - slot.first
         width = diameter + slot.clearance
-        return Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.clearance)
+        return Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.clearance, ring=ring)
     foot = record.arms.get(name)
-    return Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot])
+    return Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot], ring=ring)
+
+
+def _ring(case: CoreCase, link: str, name: str) -> Ring | None:
+    """Return the ring about the pin hole at a point of a link, where the link states an eye there."""
+    record = case.links[link]
+    eye, part = record.eyes.get(name), case.parts[record.part or ""]
+    if eye is None or isinstance(part, StepPart):
+        return None
+    half = (eye.thickness or part.eye_thickness) / 2.0
+    return Ring(diameter=eye.diameter or part.eye_diameter, low=-half, high=half)
 
 
 def check_moving(case: CoreCase, entry: str, link: str) -> None:

@@ -45,8 +45,8 @@ def ornithopter_entries(rules: OrnithopterRules) -> dict[str, object]:
             f"pose.near.{link}": f"{angle!r} deg",
         }
     for part, body in bodies.items():
-        for name, length in body.part.model_dump(exclude={"shape", "material", "build_direction"}).items():
-            found[f"parts.{part}.{name}"] = _mm(length)
+        sizes_of_part = body.part.model_dump(exclude_unset=True, exclude={"shape", "material"})
+        found |= {f"parts.{part}.{name}": _mm(length) for name, length in sizes_of_part.items()}
     return found
 
 

@@ -1,0 +1,176 @@
+"""The flat plate about pins anywhere."""
+
+import math
+from collections.abc import Callable
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Field
+
+from geometry.base.errors import CaseError
+from geometry.base.hull import Hull, hull
+from geometry.base.model import CaseModel, Name
+from geometry.base.units import POSITIVE, Length
+from geometry.parts.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
+from geometry.parts.eyes import check_flat_eyes
+from geometry.parts.features import Pin
+from geometry.parts.kernel import Entity, Kernel
+from geometry.parts.section import Section, rectangle
+
+LEAST_WALL = 0.05
+"""Least wall beside a lightening hole over its diameter. Assumed: a thinner one is hardly made."""
+_CHORDS = 200
+
+
+class RoundHole(CaseModel):
+    """A round hole through a plate that no pin stands in."""
+
+    x: Length
+    """Of its centre, in the link's frame."""
+    y: Length
+    diameter: Annotated[Length, POSITIVE]
+
+    def distance(self, x: float, y: float) -> float:
+        """Return the distance of a place from the hole's centre.
+
+        Parameters
+        ----------
+        x, y : float
+            The place [mm].
+
+        Returns
+        -------
+        float
+            Distance [mm].
+        """
+        return math.hypot(x - self.x, y - self.y)
+
+
+class Plate(PartKind):
+    """A flat plate about two or more pins anywhere: the outline is the convex hull of the circles of its eyes.
+
+    In a frame of beams it is a strip as wide as eye_diameter, which is no wider than the plate anywhere between two
+    eyes of that size: a cautious stiffness. Hand calculation does not decide on it.
+    """
+
+    takes: ClassVar[frozenset[Feature]] = frozenset(("eyes of their own",))
+    is_beam: ClassVar[bool] = False
+    by_hand: ClassVar[str] = (
+        "hand calculation takes the plate for a beam of its narrowest net section across the x axis: an estimate, "
+        "since beam theory needs a length of several widths"
+    )
+
+    shape: Literal["plate"]
+    material: Name
+    thickness: Annotated[Length, POSITIVE]
+    eye_diameter: Annotated[Length, POSITIVE]
+    """Diameter of the eyes about whose circles the outline runs; a link may state others for its points (eyes)."""
+    holes: Annotated[tuple[RoundHole, ...], Field(max_length=100)] = ()
+    """Holes that make the plate lighter, in the frame of the link."""
+
+    @property
+    def eye_thickness(self) -> float:
+        """Length of the holes: the plate's thickness [mm]."""
+        return self.thickness
+
+    @property
+    def fillet_radius(self) -> float:
+        """0: the outline has no corners [mm]."""
+        return 0.0
+
+    @property
+    def section(self) -> Section:
+        """Section of a strip as wide as an eye."""
+        return rectangle(self.eye_diameter, self.thickness)
+
+    def outline(self, body: Body) -> Hull:
+        """Return the outline.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+
+        Returns
+        -------
+        Hull
+            Of the eyes' circles.
+        """
+        return hull([(pin.x, pin.y, body.ring(pin).diameter / 2.0) for pin in body.pins])
+
+    def hand_section(self, body: Body) -> Section:
+        """As ``PartKind.hand_section``: the narrowest net section across the x axis, from the first to the last pin.
+
+        That is the chord of the outline less what all holes cut out of it: an estimate, as of a disc.
+        """
+        outline, (first, last) = self.outline(body), extent(body)
+        holes = [(pin.x, pin.diameter) for pin in body.pins] + [(hole.x, hole.diameter) for hole in self.holes]
+
+        def net(x: float) -> float:
+            low, high = outline.chord(x)
+            return high - low - sum(2.0 * math.sqrt(max((d / 2.0) ** 2 - (x - at) ** 2, 0.0)) for at, d in holes)
+
+        return rectangle(min(net(first + (last - first) * i / _CHORDS) for i in range(_CHORDS + 1)), self.thickness)
+
+    def has_centre_line(self, body: Body) -> bool:
+        """As ``PartKind.has_centre_line``: no, since it is wider than the strip for which a frame takes it."""
+        return False
+
+    def flat_diameter(self, body: Body, pin: Pin) -> float:
+        """As ``PartKind.flat_diameter``: within the eye's wall, along whose rim the outline runs, and clear of others.
+
+        Between two holes each ring takes up that share of half the wall.
+        """
+        others = [other for other in body.pins if other is not pin]
+        walls = [2.0 * apart(pin, other) - pin.diameter - other.diameter for other in others]
+        return pin.diameter + FLAT_WALL * min([body.ring(pin).diameter - pin.diameter, *(wall / 2.0 for wall in walls)])
+
+    def scaled(self, s: Callable[[float], float]) -> Self:
+        """As ``PartKind.scaled``: holes as well."""
+        holes = tuple(RoundHole.model_construct(x=s(h.x), y=s(h.y), diameter=s(h.diameter)) for h in self.holes)
+        return super().scaled(s).model_copy(update={"holes": holes})
+
+    def check(self, body: Body) -> None:
+        """As ``PartKind.check``: eyes are as thick as the plate, and walls are left beside the holes."""
+        check_flat_eyes(body)
+        for number, hole in enumerate(self.holes, start=1):
+            what, wall = self._wall(body, number, hole)
+            if wall < LEAST_WALL * hole.diameter:
+                raise CaseError(
+                    f"holes[{number}] of the plate leaves a wall of {max(wall, 0.0):.4g} mm to {what}, but must leave "
+                    f"{LEAST_WALL * hole.diameter:.4g} mm ({LEAST_WALL:g} of its diameter): reduce its diameter "
+                    f"{hole.diameter:.4g} mm or move it"
+                )
+
+    def _wall(self, body: Body, number: int, hole: RoundHole) -> tuple[str, float]:
+        """Return what is closest to a lightening hole, and the wall between them [mm]."""
+        radius = hole.diameter / 2.0
+        found = [("the edge of the plate", self.outline(body).depth(hole.x, hole.y) - radius)]
+        for pin in body.pins:
+            flat = self.flat_diameter(body, pin) / 2.0
+            found.append((f"the eye at {pin.name}", hole.distance(pin.x, pin.y) - flat - radius))
+        for second, other in enumerate(self.holes, start=1):
+            if second != number:
+                clear = hole.distance(other.x, other.y) - other.diameter / 2.0 - radius
+                found.append((f"holes[{second}]", clear))
+        return min(found, key=lambda entry: entry[1])
+
+    def solid(self, kernel: Kernel, body: Body) -> Entity:
+        """As ``PartKind.solid``: the outline, extruded."""
+        return kernel.slab(self.outline(body), self.thickness)
+
+    def cavities(self, kernel: Kernel, body: Body) -> list[Entity]:
+        """As ``PartKind.cavities``: the lightening holes."""
+        high = self.thickness
+        return [kernel.cylinder((h.x, h.y, -high), (0, 0, 2.0 * high), h.diameter / 2.0) for h in self.holes]
+
+    def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
+        """As ``PartKind.fine_places``: narrow rings and walls take elements as small as they are wide."""
+        places = []
+        for pin in body.pins:
+            flat = self.flat_diameter(body, pin)
+            places.append((min((flat - pin.diameter) / 2.0, size), f"Fabs({pin.distance_formula}-{flat / 2.0:.12g})"))
+        for number, hole in enumerate(self.holes, start=1):
+            rim = Pin(name="", x=hole.x, y=hole.y, diameter=hole.diameter)
+            edge = min(self._wall(body, number, hole)[1], hole.diameter / 3.0, size)
+            places.append((edge, f"Fabs({rim.distance_formula}-{hole.diameter / 2.0:.12g})"))
+        return places

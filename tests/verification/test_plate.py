@@ -1,0 +1,131 @@
+"""Plates and strips against closed forms: what the geometry kernel builds, and what its meshes carry."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.base.errors import CaseError
+from geometry.meshing.mesh import mass_properties, mesh_body
+from geometry.meshing.mesh_settings import COARSE
+from geometry.parts.body import Body
+from geometry.parts.body_rules import check_body
+from geometry.parts.part import Bar, Pin, Plate, Ring
+
+T = 3.0
+
+
+def pin(name, x, y, hole, eye=None):
+    ring = None if eye is None else Ring(diameter=eye, low=-T / 2, high=T / 2)
+    return Pin(name=name, x=x, y=y, diameter=hole, ring=ring)
+
+
+def plate(*pins, holes=(), eye=10.0):
+    sizes = {"shape": "plate", "material": "resin", "thickness": f"{T} mm", "eye_diameter": f"{eye} mm"}
+    sizes["holes"] = [{"x": f"{x} mm", "y": f"{y} mm", "diameter": f"{d} mm"} for x, y, d in holes]
+    return Body(part=Plate.model_validate(sizes), pins=pins, ends=(), holes=())
+
+
+TERNARY = (pin("A", 0.0, 0.0, 5.0, 14.0), pin("B", 60.0, 0.0, 4.0, 12.0), pin("C", 22.0, 34.0, 6.0, 16.0))
+BETWEEN = (pin("A", 0.0, 0.0, 4.0), pin("M", 25.0, 1e-7, 4.0), pin("B", 50.0, 0.0, 4.0))
+INSIDE = (pin("A", 0.0, 0.0, 4.0, 40.0), pin("B", 8.0, -6.0, 3.0, 6.0))
+UPRIGHT = (pin("A", 3.0, 0.0, 4.0), pin("B", 3.0, 30.0, 4.0), pin("C", 25.0, 15.0, 4.0))
+
+
+def properties(circles, holes):
+    """Area, centroid and polar second moment about the origin, of a fine polygon on the tangents of the circles."""
+    angle = np.linspace(0.0, 2.0 * math.pi, 400_001)[:-1]
+    x, y, r = np.array(circles).T[:, :, None]
+    # On the tangent with normal θ the hull is touched where the support is largest.
+    far = np.argmax(x * np.cos(angle) + y * np.sin(angle) + r, axis=0)
+    px, py = x[far, 0] + r[far, 0] * np.cos(angle), y[far, 0] + r[far, 0] * np.sin(angle)
+    qx, qy = np.roll(px, -1), np.roll(py, -1)
+    cross = px * qy - qx * py
+    area, first = cross.sum() / 2.0, np.array([((px + qx) * cross).sum(), ((py + qy) * cross).sum()]) / 6.0
+    polar = ((px**2 + px * qx + qx**2 + py**2 + py * qy + qy**2) * cross).sum() / 12.0
+    for hx, hy, d in holes:
+        own = math.pi * d**2 / 4.0
+        area, first = area - own, first - own * np.array([hx, hy])
+        polar -= own * (d**2 / 8.0 + hx**2 + hy**2)
+    return area, first / area, polar
+
+
+@pytest.mark.parametrize(
+    ("pins", "holes"), [(TERNARY, ()), (TERNARY, ((25.0, 12.0, 14.0),)), (BETWEEN, ()), (INSIDE, ()), (UPRIGHT, ())]
+)
+def test_mass_properties_are_those_of_the_hull_less_the_holes(pins, holes):
+    body = plate(*pins, holes=holes)
+    check_body(body)
+    found = mass_properties(body)
+    circles = [(p.x, p.y, body.ring(p).diameter / 2.0) for p in pins]
+    area, centroid, polar = properties(circles, [*((p.x, p.y, p.diameter) for p in pins), *holes])
+    assert found.volume == pytest.approx(area * T, rel=1e-7)
+    assert found.centroid == pytest.approx([*centroid, 0.0], abs=1e-5)
+    assert found.inertia[2, 2] == pytest.approx(T * (polar - area * (centroid**2).sum()), rel=1e-6)
+
+
+@pytest.mark.parametrize("pins", [TERNARY, BETWEEN, INSIDE])
+def test_the_mesh_has_its_rings_and_bores(pins):
+    body = plate(*pins)
+    mesh = mesh_body(body, COARSE)
+    assert set(mesh.surfaces) == {f"{kind}:{p.name}" for p in pins for kind in ("bore", "top", "bottom")}
+    for p in pins:
+        walls = [math.hypot(p.x - o.x, p.y - o.y) - (p.diameter + o.diameter) / 2.0 for o in pins if o is not p]
+        flat = p.diameter + 0.75 * min(body.ring(p).diameter - p.diameter, *walls)
+        assert mesh.areas[f"bore:{p.name}"] == pytest.approx(math.pi * p.diameter * T, rel=1e-6)
+        assert mesh.areas[f"top:{p.name}"] == pytest.approx(math.pi / 4.0 * (flat**2 - p.diameter**2), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("pins", "holes", "message"),
+    [
+        (TERNARY, ((22.0, 14.0, 30.0),), r"holes\[1\] of the plate leaves a wall of .* mm to the (edge|eye)"),
+        (TERNARY, ((22.0, 20.0, 14.0),), r"holes\[1\] of the plate leaves a wall of .* mm to the eye at C"),
+        (TERNARY, ((70.0, 30.0, 4.0),), r"holes\[1\].* a wall of 0 mm to the edge of the plate.*move it"),
+        (TERNARY, ((20.0, 10.0, 8.0), (28.0, 10.0, 7.9)), r"holes\[1\].* 0.05 mm to holes\[2\], but must leave 0.4 mm"),
+        (
+            (pin("A", 0.0, 0.0, 4.0), replace(pin("B", 30.0, 0.0, 4.0), ring=Ring(diameter=9.0, low=-2.0, high=2.0))),
+            (),
+            "eye at B is 4 mm thick, but an eye of a plate is as thick as the plate, 3 mm",
+        ),
+        ((pin("A", 5.0, 0.0, 4.0), pin("B", 5.0, 30.0, 4.0)), (), "no length along its x axis.*turn the link's frame"),
+    ],
+)
+def test_plates_that_cannot_be_built_are_refused(pins, holes, message):
+    with pytest.raises(CaseError, match=message):
+        check_body(plate(*pins, holes=holes))
+
+
+def strip(overhang=6.0, **changes):
+    sizes = {"shape": "bar", "material": "resin", "width": "10 mm", "thickness": f"{T} mm", "fillet_radius": "0 mm"}
+    sizes |= {"ends": "square", "overhang": f"{overhang} mm"}
+    return Bar.model_validate(sizes | changes)
+
+
+@pytest.mark.parametrize("overhang", [3.0, 6.0])
+def test_a_strip_with_square_ends_is_a_box_less_its_holes(overhang):
+    body = Body(part=strip(overhang), pins=(pin("A", 0.0, 0.0, 4.0), pin("B", 40.0, 0.0, 5.0)), ends=(), holes=())
+    check_body(body)
+    assert mass_properties(body).volume == pytest.approx(
+        T * ((40.0 + 2.0 * overhang) * 10.0 - math.pi / 4.0 * (16.0 + 25.0)), rel=1e-7
+    )
+    mesh = mesh_body(body, COARSE)
+    eye = min(10.0, 2.0 * overhang)
+    flat = 4.0 + 0.75 * (eye - 4.0)
+    assert mesh.areas["top:A"] == pytest.approx(math.pi / 4.0 * (flat**2 - 16.0), rel=1e-6)
+    assert np.ptp(mesh.points[:, 0]) == pytest.approx(40.0 + 2.0 * overhang)
+
+
+def test_an_eye_of_its_own_on_a_bar_adds_its_own_volume():
+    sizes = {"shape": "bar", "material": "resin", "width": "8 mm", "thickness": "3 mm", "fillet_radius": "0 mm"}
+    part = Bar.model_validate(sizes | {"eye_diameter": "8 mm"})
+    own = Pin(name="B", x=40.0, y=0.0, diameter=5.0, ring=Ring(diameter=14.0, low=-3.0, high=3.0))
+    body = Body(part=part, pins=(pin("A", 0.0, 0.0, 4.0), own), ends=(), holes=())
+    check_body(body)
+    # A strip with one round end, up to the other eye's circle; x is where the strip's sides meet it.
+    x, angle = math.sqrt(49.0 - 16.0), math.asin(4.0 / 7.0)
+    segment = 49.0 * angle - 4.0 * x  # of the circle, beyond that chord, within the strip
+    area = 8.0 * (40.0 - x) - segment + math.pi * 16.0 / 2.0 - math.pi * 4.0
+    volume = 3.0 * area + 6.0 * math.pi * (49.0 - 6.25)
+    assert mass_properties(body).volume == pytest.approx(volume, rel=1e-7)
