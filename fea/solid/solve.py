@@ -49,7 +49,7 @@ AGGREGATED_FROM = 20_000
 Bars of cubes, quadratic unknowns, set-up in seconds of processor time (by a factor), iterations (by a factor): 160,000:
 0.1 (0.45), 23 (19); 555,000: 0.9 (2.8), 23 (19). A cycle takes less time than a solution with the factor."""
 AGGREGATED_MEMORY = 1500.0
-"""Bytes of smoothed aggregation for every unknown of the linear elements; measured 1000."""
+"""Bytes of smoothed aggregation for every unknown of the linear elements; measured some 800."""
 _NAMES = {"pardiso": "MKL PARDISO", "superlu": "SuperLU", "two-level": "conjugate gradients over linear elements"}
 
 
