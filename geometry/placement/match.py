@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CaseError
+from geometry.imported.arrangement import PARALLEL, angle_between
 from geometry.imported.facts import Bore
 from geometry.parts.step import StepPart
 
-PARALLEL = math.radians(0.1)
-"""Angle between the axes of two bores up to which they are parallel."""
 Real = NDArray[np.float64]
 
 
@@ -216,18 +215,12 @@ def _check_named_parallel(part: StepPart, wanted: Sequence[Wanted], candidates: 
 def _check_parallel(named: Mapping[str, Bore]) -> None:
     """Refuse bores whose axes are not parallel, with the angle."""
     for (one, bore), (other, second) in itertools.combinations(named.items(), 2):
-        angle = _angle(bore, second)
+        angle = angle_between(bore, second)
         if angle > PARALLEL:
             raise CaseError(
                 f"the bores of {one} and {other} ({bore.name}, {second.name}) stand at {math.degrees(angle):.3g} "
                 "degrees to each other, but the pins of a link are parallel; name other bores"
             )
-
-
-def _angle(one: Bore, other: Bore) -> float:
-    """Return the angle between two axes, at most a right angle [rad]."""
-    across = float(np.linalg.norm(np.cross(one.axis, other.axis)))
-    return math.atan2(across, abs(float(np.dot(one.axis, other.axis))))
 
 
 def _senses(bore: Bore) -> tuple[Real, Real]:
@@ -247,7 +240,7 @@ def _fits(part: StepPart, candidates: Sequence[Sequence[Bore]], wanted: Sequence
     far = np.linalg.norm(places[:, None] - places, axis=2)
     first, second = map(int, np.unravel_index(int(np.argmax(far)), far.shape))
     for one, other in itertools.product(candidates[first], candidates[second]):
-        if one is other or _angle(one, other) > PARALLEL:
+        if one is other or angle_between(one, other) > PARALLEL:
             continue
         for z in _senses(one):
             arm = _across(np.subtract(other.centre, one.centre), z)
@@ -260,7 +253,9 @@ def _fits(part: StepPart, candidates: Sequence[Sequence[Bore]], wanted: Sequence
                 min(found, key=lambda bore: float(np.linalg.norm(flat @ np.asarray(bore.centre) + shift - at)))
                 for found, at in zip(candidates, places, strict=True)
             ]
-            if len({bore.name for bore in chosen}) == len(chosen) and all(_angle(one, b) <= PARALLEL for b in chosen):
+            if len({bore.name for bore in chosen}) == len(chosen) and all(
+                angle_between(one, b) <= PARALLEL for b in chosen
+            ):
                 placement = _fitted(part, chosen, wanted, turn)
                 if placement is not None:
                     yield placement
@@ -303,7 +298,7 @@ def _none_fits(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted]) 
     stated = ", ".join(f"{a.name} to {b.name} {math.dist(a.place, b.place):.5g} mm" for a, b in pairs)
     apart = []
     for one, other in itertools.combinations(bores, 2):
-        if _angle(one, other) <= PARALLEL:
+        if angle_between(one, other) <= PARALLEL:
             across = _across(np.subtract(other.centre, one.centre), np.asarray(one.axis))
             apart.append(f"{one.name} to {other.name} {np.linalg.norm(across):.5g} mm")
     told = ", ".join(apart[:6]) + (", ..." if len(apart) > 6 else "") or "no two of them are parallel"

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
+from geometry.base import kernel_child
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.imported import read
 from geometry.imported.facts import Bore
@@ -237,4 +239,12 @@ def test_a_kernel_that_takes_too_long_is_stopped(monkeypatch):
     monkeypatch.setattr(read, "_known", {})
     monkeypatch.setattr(read, "TIME_LIMIT", 1e-4)
     with pytest.raises(CannotRunError, match=r"reading 'slotted.step', was stopped after its time limit of 0.0001 s"):
+        part_facts(FILES / "slotted.step")
+
+
+def test_a_kernel_that_crashes_on_a_file_is_contained(monkeypatch):
+    script = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+    monkeypatch.setattr(read, "_known", {})
+    monkeypatch.setattr(kernel_child, "_command", lambda: [sys.executable, "-c", script])
+    with pytest.raises(CannotRunError, match=r"reading 'slotted.step', crashed \(SIGSEGV\); export the part anew"):
         part_facts(FILES / "slotted.step")

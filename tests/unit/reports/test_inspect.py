@@ -14,12 +14,21 @@ from typer.testing import CliRunner
 
 from geometry.base.errors import CaseError
 from geometry.imported.read import part_facts, part_surface
+from geometry.parts.step import StepPart
+from geometry.placement.match import Wanted, place, points_of_part
+from geometry.placement.placed_body import bores_of
 from reports.commands.cli import app
 from reports.commands.inspect_part import case_entries, inspect_file, record
 from reports.figures import figures, style
 from reports.figures.part_picture import part_picture
 
 FILES = Path(__file__).parents[2] / "data" / "step"
+
+
+def parse_length(text: str) -> float:
+    value, unit = text.split()
+    assert unit == "mm"
+    return float(value)
 
 
 def inspect(*arguments: object):
@@ -72,6 +81,25 @@ def test_the_entries_name_part_points_and_bores(tmp_path):
                 "points": {"A": ["0 mm", "0 mm"], "B": ["50 mm", "0 mm"], "C": ["18 mm", "-24 mm"]},
             }
         },
+    }
+
+
+@pytest.mark.parametrize("name", ["plate", "bell_crank", "fork", "slotted", "cross_tube", "splines", "inch"])
+def test_a_link_with_these_entries_has_its_part_where_they_say(name):
+    """A case finds how the part lies from points and diameters by least squares; here it is the frame of the list."""
+    found = inspect_file(FILES / f"{name}.step", None)
+    tables = tomllib.loads(case_entries(found))
+    stated = tables["parts"][found.name]
+    part = StepPart.model_validate(stated, context={"folder": str(FILES)})
+    wanted = tuple(
+        Wanted(name=point, place=tuple(map(parse_length, at)), diameter=found.frame.bores[point].diameter)
+        for point, at in tables["links"][found.name]["points"].items()
+    )
+    fit = place(part, bores_of(part), wanted)
+    assert {point: bore.name for point, bore in fit.bores.items()} == stated["bores"]
+    assert np.allclose(fit.turn, found.frame.axes, atol=1e-6)
+    assert points_of_part(part, bores_of(part)) == {
+        point: pytest.approx(at) for point, at in found.frame.points.items()
     }
 
 
