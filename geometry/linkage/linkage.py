@@ -33,8 +33,9 @@ class Link(CaseModel):
     eyes: Annotated[dict[Name, EyeSizes], Field(max_length=100)] = {}
     """Eyes whose sizes are not those that the part states for all, by the point of the pin."""
     end_patch: Annotated[Length, POSITIVE] = 5.0
-    """Length over which a load at a plain end (a point without pin) enters the part. On an imported part it enters the
-    nearest face, or those that are equally near: a flat one within a circle of this diameter, a round one whole."""
+    """Length over which a load at a plain end (a point without pin) enters the part. On a plate it enters both
+    faces within a circle of this diameter; on an imported part the nearest face, or those that are equally near: a flat
+    one within such a circle, a round one whole."""
 
     @property
     def pieces(self) -> tuple[tuple[Name, Name], ...]:

@@ -173,12 +173,12 @@ def _surfaces(gmsh: Any, body: Body, tags: Iterable[int], kinds: tuple[str, ...]
             distance = pin.distance(points[:, 0], points[:, 1])
             if (pin.slot > 0.0 or not flat) and np.abs(distance - pin.diameter / 2.0).max() < ON_SURFACE:
                 faces[f"bore:{pin.name}"].append(tag)
-        for end in () if body.part.has_holes else body.ends:
+        for end in () if body.part.patches_anywhere else body.ends:
             low, high = patch_span(body, end)
             if low < centre[0] < high and _on_outside(body, points):
                 faces[f"end:{end.name}"].append(tag)
-    for end in body.ends if body.part.has_holes else ():
-        faces[f"end:{end.name}"] = patch_faces(gmsh, tags, end)
+    for end in body.ends if body.part.patches_anywhere else ():
+        faces[f"end:{end.name}"] = patch_faces(gmsh, tags, end, body.part.patch_height)
     for name, tags in faces.items():
         if not tags:
             raise CannotRunError(f"the part came out without surface '{name}'; change its dimensions a little")

@@ -1,8 +1,8 @@
-"""Loaded patches on parts of any shape: where a load that is no pin's enters an imported part.
+"""Loaded patches on parts of any shape: where a load that is no pin's enters an imported part or a plate.
 
-It enters the face that is nearest to its point: a flat one within a circle about the nearest place, a round one whole.
-Where faces are equally near, as top and bottom of a plate, all of them carry the load. Runs in a child process only
-(see ``geometry.meshing.mesh``).
+It enters the face that is nearest to its point, of a plate its top and bottom: a flat one within a circle about the
+nearest place, a round one whole. Where faces are equally near, as top and bottom of a flat part, all of them carry the
+load. Runs in a child process only (see ``geometry.meshing.mesh``).
 """
 
 from collections.abc import Iterable
@@ -19,7 +19,7 @@ AS_NEAR = 1e-3
 """Share by which the distances of two faces from a point may differ where both count."""
 
 
-def patch_borders(gmsh: Any, solid: int, end: PlainEnd) -> list[Entity]:
+def patch_borders(gmsh: Any, solid: int, end: PlainEnd, height: float | None = None) -> list[Entity]:
     """Return the circles that bound a patch on flat faces, as disks.
 
     Parameters
@@ -30,6 +30,8 @@ def patch_borders(gmsh: Any, solid: int, end: PlainEnd) -> list[Entity]:
         Tag of the solid.
     end : PlainEnd
         The load point.
+    height : float or None, optional
+        Where stated, flat faces at this z and at its opposite alone count.
 
     Returns
     -------
@@ -42,7 +44,7 @@ def patch_borders(gmsh: Any, solid: int, end: PlainEnd) -> list[Entity]:
         Where the point lies off the part.
     """
     faces = [tag for _, tag in gmsh.model.getBoundary([(3, solid)], oriented=False)]
-    disks, radius, nearest = [], end.patch / 2.0, _nearest(gmsh, faces, end)
+    disks, radius, nearest = [], end.patch / 2.0, _nearest(gmsh, _level(gmsh, faces, height), end)
     away = min(float(np.linalg.norm(at - (end.x, end.y, 0.0))) for at in nearest.values())
     if away > radius and not gmsh.model.isInside(3, solid, [end.x, end.y, 0.0]):
         raise CaseError(
@@ -56,7 +58,7 @@ def patch_borders(gmsh: Any, solid: int, end: PlainEnd) -> list[Entity]:
     return disks
 
 
-def patch_faces(gmsh: Any, faces: Iterable[int], end: PlainEnd) -> list[int]:
+def patch_faces(gmsh: Any, faces: Iterable[int], end: PlainEnd, height: float | None = None) -> list[int]:
     """Return the faces that make up a patch, after its borders were imprinted.
 
     Parameters
@@ -67,6 +69,8 @@ def patch_faces(gmsh: Any, faces: Iterable[int], end: PlainEnd) -> list[int]:
         Tags of its faces.
     end : PlainEnd
         The load point.
+    height : float or None, optional
+        Where stated, flat faces at this z and at its opposite alone count.
 
     Returns
     -------
@@ -74,11 +78,24 @@ def patch_faces(gmsh: Any, faces: Iterable[int], end: PlainEnd) -> list[int]:
         Tags.
     """
     found, reach = [], end.patch / 2.0 + 10.0 * ON_SURFACE
-    for face, at in _nearest(gmsh, faces, end).items():
+    for face, at in _nearest(gmsh, _level(gmsh, faces, height), end).items():
         box = np.reshape(gmsh.model.getBoundingBox(2, face), (2, 3))
         if gmsh.model.getType(2, face) != "Plane" or np.abs(box - at).max() < reach:
             found.append(face)
     return found
+
+
+def _level(gmsh: Any, faces: Iterable[int], height: float | None) -> list[int]:
+    """Return the faces of a body that are flat at a height or its opposite; all where none is stated."""
+
+    def lies(face: int, level: float) -> bool:
+        low, high = gmsh.model.getBoundingBox(2, face)[2::3]
+        reach = 10.0 * ON_SURFACE
+        return gmsh.model.getType(2, face) == "Plane" and max(abs(low - level), abs(high - level)) < reach
+
+    if height is None:
+        return list(faces)
+    return [face for face in faces if lies(face, height) or lies(face, -height)]
 
 
 def _nearest(gmsh: Any, faces: Iterable[int], end: PlainEnd) -> dict[int, NDArray[np.float64]]:

@@ -180,10 +180,12 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
         ring = body.ring(pin)
         if ring.diameter > 0.0 and (body.part.has_holes or flush(body, pin)):
             borders += [_flat_eye(kernel, pin, body.part.flat_diameter(body, pin), z) for z in (ring.low, ring.high)]
-    if body.part.has_holes:
+    if body.part.patches_anywhere:
         occ.synchronize()
-        borders += [border for end in body.ends for border in patch_borders(kernel.gmsh, solid[1], end)]
-    for end in () if body.part.has_holes else body.ends:
+        borders += [
+            border for end in body.ends for border in patch_borders(kernel.gmsh, solid[1], end, body.part.patch_height)
+        ]
+    for end in () if body.part.patches_anywhere else body.ends:
         low, high = patch_span(body, end)
         for side in (-0.5, 0.5):
             flat = occ.addRectangle(low, -width / 2.0, side * height, high - low, width)

@@ -60,6 +60,14 @@ class PartKind(Printable):
     """What the reader must know of its hand calculation; "" where beam theory holds."""
     has_holes: ClassVar[bool] = False
     """Whether its solid has its pin holes from the start."""
+    patches_anywhere: ClassVar[bool] = False
+    """Whether a load point without a pin may lie anywhere on it, where a circle about the point is loaded; else it lies
+    on the axis, and a stretch of the part is."""
+
+    @property
+    def patch_height(self) -> float | None:
+        """Z of the flat faces, of which there is one on either side, that alone carry such a circle; None for any."""
+        return None
 
     @property
     def unmeasured(self) -> str:

@@ -45,7 +45,7 @@ def check_body(body: Body) -> None:
         )
     _check_pins(body)
     body.part.check(body)
-    for end in () if body.part.has_holes else body.ends:
+    for end in () if body.part.patches_anywhere else body.ends:
         _check_end(body, end)
     for number, row in enumerate(body.holes, start=1):
         _check_row(body, number, row)

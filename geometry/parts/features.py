@@ -192,9 +192,9 @@ class PlainEnd:
     x : float
         Its place along the link's axis [mm].
     patch : float
-        Length of the loaded patch along x; diameter of the patch on an imported part [mm].
+        Length of the loaded patch along x; diameter of the patch on an imported part or a plate [mm].
     y : float
-        Its place across the axis, off which only an imported part has load points [mm].
+        Its place across the axis, off which only imported parts and plates have load points [mm].
     """
 
     name: str

@@ -12,7 +12,7 @@ from geometry.base.model import CaseModel, Name
 from geometry.base.units import POSITIVE, Length
 from geometry.parts.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
 from geometry.parts.eyes import check_flat_eyes
-from geometry.parts.features import Pin
+from geometry.parts.features import Pin, PlainEnd
 from geometry.parts.kernel import Entity, Kernel
 from geometry.parts.section import Section, rectangle
 
@@ -48,12 +48,16 @@ class RoundHole(CaseModel):
 class Plate(PartKind):
     """A flat plate about two or more pins anywhere: the outline is the convex hull of the circles of its eyes.
 
+    A load point without a pin has such a circle of eye_diameter as well; the load enters within end_patch about it, on
+    both faces.
+
     In a frame of beams it is a strip as wide as eye_diameter, which is no wider than the plate anywhere between two
     eyes of that size: a cautious stiffness. Hand calculation does not decide on it.
     """
 
-    takes: ClassVar[frozenset[Feature]] = frozenset(("eyes of their own",))
+    takes: ClassVar[frozenset[Feature]] = frozenset(("load points without a pin", "eyes of their own"))
     is_beam: ClassVar[bool] = False
+    patches_anywhere: ClassVar[bool] = True
     by_hand: ClassVar[str] = (
         "hand calculation takes the plate for a beam of its narrowest net section across the x axis: an estimate, "
         "since beam theory needs a length of several widths"
@@ -95,7 +99,13 @@ class Plate(PartKind):
         Hull
             Of the eyes' circles.
         """
-        return hull([(pin.x, pin.y, body.ring(pin).diameter / 2.0) for pin in body.pins])
+        circles = [(pin.x, pin.y, body.ring(pin).diameter / 2.0) for pin in body.pins]
+        return hull(circles + [(end.x, end.y, self.eye_diameter / 2.0) for end in body.ends])
+
+    @property
+    def patch_height(self) -> float:
+        """As ``PartKind.patch_height``: its top and bottom."""
+        return self.thickness / 2.0
 
     def hand_section(self, body: Body) -> Section:
         """As ``PartKind.hand_section``: the narrowest net section across the x axis, from the first to the last pin.
@@ -132,6 +142,8 @@ class Plate(PartKind):
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: eyes are as thick as the plate, and walls are left beside the holes."""
         check_flat_eyes(body)
+        for number, end in enumerate(body.ends):
+            self._check_patch(body, number, end)
         for number, hole in enumerate(self.holes, start=1):
             what, wall = self._wall(body, number, hole)
             if wall < LEAST_WALL * hole.diameter:
@@ -141,6 +153,21 @@ class Plate(PartKind):
                     f"{hole.diameter:.4g} mm or move it"
                 )
 
+    def _check_patch(self, body: Body, number: int, end: PlainEnd) -> None:
+        """Refuse a loaded patch that leaves its circle, or runs into the ring about a hole or another patch."""
+        room = [(FLAT_WALL * self.eye_diameter, f"{FLAT_WALL:g} eye_diameter")]
+        for pin in body.pins:
+            gap = math.dist((pin.x, pin.y), (end.x, end.y)) - self.flat_diameter(body, pin) / 2.0
+            room.append((2.0 * gap, f"the eye at {pin.name}"))
+        later = body.ends[number + 1 :]
+        room += [(math.dist((o.x, o.y), (end.x, end.y)), f"the patch of {o.name}") for o in later]
+        most, what = min(room)
+        if end.patch >= most:
+            raise CaseError(
+                f"the loaded patch of {end.name} is {end.patch:.4g} mm wide, but {what} leaves it less than "
+                f"{max(most, 0.0):.4g} mm: reduce end_patch, or move {end.name}"
+            )
+
     def _wall(self, body: Body, number: int, hole: RoundHole) -> tuple[str, float]:
         """Return what is closest to a lightening hole, and the wall between them [mm]."""
         radius = hole.diameter / 2.0
@@ -148,6 +175,8 @@ class Plate(PartKind):
         for pin in body.pins:
             flat = self.flat_diameter(body, pin) / 2.0
             found.append((f"the eye at {pin.name}", hole.distance(pin.x, pin.y) - flat - radius))
+        patches = ((f"the patch of {e.name}", hole.distance(e.x, e.y) - e.patch / 2.0 - radius) for e in body.ends)
+        found.extend(patches)
         for second, other in enumerate(self.holes, start=1):
             if second != number:
                 clear = hole.distance(other.x, other.y) - other.diameter / 2.0 - radius
@@ -169,6 +198,9 @@ class Plate(PartKind):
         for pin in body.pins:
             flat = self.flat_diameter(body, pin)
             places.append((min((flat - pin.diameter) / 2.0, size), f"Fabs({pin.distance_formula}-{flat / 2.0:.12g})"))
+        for end in body.ends:
+            circle = Pin(name="", x=end.x, y=end.y, diameter=end.patch)
+            places.append((min(end.patch / 4.0, size), f"Fabs({circle.distance_formula}-{end.patch / 2.0:.12g})"))
         for number, hole in enumerate(self.holes, start=1):
             rim = Pin(name="", x=hole.x, y=hole.y, diameter=hole.diameter)
             edge = min(self._wall(body, number, hole)[1], hole.diameter / 3.0, size)

@@ -87,6 +87,7 @@ class ImportedPart(PartKind):
         "sections between its pins: an estimate that decides nothing"
     )
     has_holes: ClassVar[bool] = True
+    patches_anywhere: ClassVar[bool] = True
 
     @property
     def may_be_sharp(self) -> bool:

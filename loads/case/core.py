@@ -267,7 +267,7 @@ class CoreCase(Revisable):
                         'state it, for example "1.5 mm"'
                     )
                 pins.append(_pin(self, link, name, diameter))
-            elif isinstance(part, StepPart):
+            elif isinstance(part, StepPart) or part.patches_anywhere:
                 ends.append(PlainEnd(name=name, x=x, patch=record.end_patch, y=y))
             elif abs(y) > 1e-9 * self.linkage.longest:
                 raise CaseError(

@@ -6,12 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
+from fea.solid.load_vectors import LoadVectors
+from fea.solid.space import displacement_space
 from geometry.base.errors import CaseError
 from geometry.meshing.mesh import mass_properties, mesh_body
 from geometry.meshing.mesh_settings import COARSE
 from geometry.parts.body import Body
 from geometry.parts.body_rules import check_body
-from geometry.parts.part import Bar, Pin, Plate, Ring
+from geometry.parts.part import Bar, Pin, PlainEnd, Plate, Ring
+from loads.records.bearing import WIDE
 
 T = 3.0
 
@@ -129,3 +133,28 @@ def test_an_eye_of_its_own_on_a_bar_adds_its_own_volume():
     area = 8.0 * (40.0 - x) - segment + math.pi * 16.0 / 2.0 - math.pi * 4.0
     volume = 3.0 * area + 6.0 * math.pi * (49.0 - 6.25)
     assert mass_properties(body).volume == pytest.approx(volume, rel=1e-7)
+
+
+def test_a_load_enters_a_plate_within_a_circle_on_both_faces():
+    """A plate thicker than its eyes are wide: its sides are closer to the point than its faces are."""
+    ends = (PlainEnd(name="W", x=20.0, y=-15.0, patch=2.0),)
+    body = replace(plate(pin("A", 0.0, 0.0, 1.0), pin("B", 40.0, 0.0, 1.0), eye=2.9), ends=ends)
+    check_body(body)
+    mesh = mesh_body(body, COARSE)
+    assert mesh.areas["end:W"] == pytest.approx(2.0 * math.pi * 1.0**2, rel=1e-6)
+    area, *_ = properties([(0.0, 0.0, 1.45), (40.0, 0.0, 1.45), (20.0, -15.0, 1.45)], [(0, 0, 1.0), (40, 0, 1.0)])
+    assert mass_properties(body).volume == pytest.approx(area * T, rel=1e-7)
+    load = LinkLoads(
+        name="hung",
+        pins=tuple(
+            PinLoad(name=n, centre=np.array([x, 0.0, 0.0]), diameter=1.0, wrench=np.array([0.0, f, 0.0, 0.0, 0.0, 0.0]))
+            for n, x, f in (("A", 0.0, 3.0), ("B", 40.0, 3.0))
+        ),
+        ends=(EndLoad(name="W", point=np.array([20.0, -15.0, 0.0]), wrench=np.array([0.0, -6.0, 0.0, 0.0, 0.0, 0.0])),),
+    )
+    space = displacement_space(mesh)
+    (variant,) = LoadVectors(space, 0.0).variants(load, (WIDE,), ())
+    force = variant.load.reshape(-1, 3)
+    loaded = np.unique(space.faces("end:W"))
+    assert force[loaded].sum(axis=0) == pytest.approx([0.0, -6.0, 0.0], abs=1e-9)
+    assert np.cross(space.nodes, force).sum(axis=0) == pytest.approx(np.zeros(3), abs=1e-9)

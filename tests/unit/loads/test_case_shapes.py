@@ -95,7 +95,9 @@ def test_an_eye_of_its_own_keeps_what_it_does_not_state() -> None:
         ('{ diameter = "16 mm" }', '{ thickness = "4 mm" }', "links.coupler: the eye at C is 4 mm thick.*plate, 3 mm"),
         ('{ diameter = "16 mm" }', '{ diameter = "6 mm" }', "links.coupler: the pin hole at C has a diameter of 6 mm"),
         ('points.G = ["40 mm", "0 mm"]\n', 'points.G = ["40 mm", "0 mm"]\neyes.C = {}\n', "rod.part: it is missing"),
-        ('points.C = ["22 mm"', 'points.W = ["9 mm", "0 mm"]\npoints.C = ["22 mm"', "W: .* shape plate takes no"),
+        ('points.C = ["22', 'points.W = ["6 mm", "0 mm"]\npoints.C = ["22', "W is 5 mm wide, but the eye at A"),
+        ('points.C = ["22', 'points.W = ["9 mm", "3 mm"]\nend_patch = "9 mm"\npoints.C = ["22', "W is 9 mm wide"),
+        ('points.C = ["22', 'points.W = ["25 mm", "4 mm"]\npoints.C = ["22', r"a wall of 0 mm to the patch of W"),
         ('fillet_radius = "1 mm"', 'fillet_radius = "0 mm"\nends = "square"', "parts.bar.*overhang is missing"),
         ('fillet_radius = "1 mm"', 'fillet_radius = "1 mm"\noverhang = "9 mm"', 'parts.bar.*belongs to ends'),
         (
