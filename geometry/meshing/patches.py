@@ -89,9 +89,9 @@ def _level(gmsh: Any, faces: Iterable[int], height: float | None) -> list[int]:
     """Return the faces of a body that are flat at a height or its opposite; all where none is stated."""
 
     def lies(face: int, level: float) -> bool:
-        low, high = gmsh.model.getBoundingBox(2, face)[2::3]
-        reach = 10.0 * ON_SURFACE
-        return gmsh.model.getType(2, face) == "Plane" and max(abs(low - level), abs(high - level)) < reach
+        low, high = map(float, gmsh.model.getBoundingBox(2, face)[2::3])
+        off = max(abs(low - level), abs(high - level))
+        return bool(gmsh.model.getType(2, face) == "Plane") and off < 10.0 * ON_SURFACE
 
     if height is None:
         return list(faces)
