@@ -22,9 +22,11 @@ from fea.common.verdict import CheckOutcome, overall
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
+from fea.motion.layer_envelope import layer_envelopes
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import linkage_outcomes
+from fea.outcomes.limits import layers_of
 from fea.outcomes.linkage import unless_it_gives_way
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
@@ -102,7 +104,7 @@ class _Envelope:
             motion = self._motion(link, displacement_space(mesh))
             worst = motion.worst_poses
             task = link_task(case, link, [history.chosen(worst[history.name]) for history in self.loaded[link]])
-            task = replace(task, layers=None, layer_limits=())  # an envelope leaves layers open
+            task = replace(task, layers=None, layer_limits=())  # these have the estimate of one mesh
             require_compressible(task.nu)
         left = replace(effort, time_limit=max(0.0, effort.time_limit - (time.perf_counter() - begun)))
         refined = refine_links({link: task}, start, left, first={link: mesh}, progress=self._tell)[link]
@@ -112,7 +114,11 @@ class _Envelope:
                 self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
                 motion = self._motion(link, space)
             scatter = {load_case: load_scatter(case, load_case) for load_case in case.load_cases}
-            return motion.envelope(repetitions=repetitions, refined=refined, scatter=scatter)
+            found = motion.envelope(repetitions=repetitions, refined=refined, scatter=scatter)
+            layers = layers_of(case, link)
+            if layers is None or not found.worst.known:
+                return found
+            return replace(found, layers=layer_envelopes(motion, layers, scatter))
 
     def _tell(self, message: str) -> None:
         """Report progress; ends the work on a link once another has failed or the run was interrupted."""

@@ -1,7 +1,7 @@
 """From a motion to verdicts: links and their fatigue, pins, bearing and buckling, each at its worst pose."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +17,14 @@ from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.buckling import column_outcome, worst_column
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
+from fea.outcomes.layers import no_strength, without_shear
 from fea.outcomes.limits import layer_limit
 from fea.outcomes.pins import pin_outcome, stress_of
 from geometry.parts.material import Material
-from loads.case.case import Case
 from loads.records.check_spec import BearingCheck, PinCheck, SafetyFactorCheck
 from loads.states.case_motion import CaseMotion
 
 BEYOND_CARD = "the material's card ends below the repetitions that are wanted"
-LAYERS_LEFT_OPEN = "an envelope tells nothing of the stress on layers; run alula check in the worst pose"
 LEFT_OUT = "poses near a dead point of the driven link were left out, where its torque grows without bound"
 FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck)
 """Checks of the case that are decided over the motion."""
@@ -63,32 +62,43 @@ def envelope_outcomes(
         elif isinstance(check, PinCheck | BearingCheck):
             found += _joints(moved, name, check, evaluated)
     for link, envelope in links.items():
-        found += open_layers(case, link, envelope.load_cases)
+        found += [_complete(outcome, evaluated) for outcome in layer_outcomes(moved, link, envelope)]
         for load_case, over in envelope.load_cases.items():
             if over.fatigue is not None:
                 found += fatigue_outcomes(case.material_of(link), link, load_case, over.fatigue)
     return found
 
 
-def open_layers(case: Case, link: str, load_cases: Iterable[str]) -> Iterator[CheckOutcome]:
-    """Yield an undecided outcome for the layers of a printed link, of which an envelope tells nothing.
+def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iterator[CheckOutcome]:
+    """Yield the outcome of the layers of a printed link under every load case.
 
     Parameters
     ----------
-    case : Case
+    moved : CaseMotion
     link : str
-    load_cases : iterable of str
+    envelope : LinkEnvelope
 
     Yields
     ------
     CheckOutcome
         None for a link whose layers are not checked.
     """
-    limit, subject = layer_limit(case, link), Subject.link(link)
+    case, limit, subject = moved.case, layer_limit(moved.case, link), Subject.link(link)
     if limit is None:
         return
-    for load_case in load_cases:
-        yield CheckOutcome.of(LAYERS, subject, load_case, Quantity.LAYERS, Band.unknown(), limit, LAYERS_LEFT_OPEN)
+    material = case.material_of(link)
+    for load_case, over in envelope.load_cases.items():
+        found = envelope.layers.get(load_case)
+        value = Band.unknown() if found is None else found.safety_factor
+        outcome = CheckOutcome.of(LAYERS, subject, load_case, Quantity.LAYERS, value, limit)
+        if found is not None:
+            x, y, z = (f"{at:.1f}" for at in found.location)
+            outcome = outcome.because(f"{outcome.reason}; at {_when(moved, found.pose)}, x = {x}, y = {y}, z = {z} mm")
+            yield outcome if material.shear_strength_between_layers else without_shear(outcome, material.title)
+        elif material.strength_across_layers is None:
+            yield outcome.because(no_strength(material.title))
+        else:
+            yield outcome.because(over.discretisation.sentence if over.discretisation else "its peak is not known")
 
 
 def fatigue_outcomes(material: Material, link: str, load_case: str, fatigue: LinkFatigue) -> Iterator[CheckOutcome]:

@@ -129,6 +129,25 @@ class LoadCaseEnvelope:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class LayerEnvelope:
+    """The layers of a printed link over the motion under one load case.
+
+    Attributes
+    ----------
+    safety_factor : Band
+        The least of the motion.
+    pose : int
+        Its number.
+    location : ndarray, shape (3,)
+        Where, in the link's frame [mm].
+    """
+
+    safety_factor: Band
+    pose: int
+    location: Real
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class LinkEnvelope:
     """A link over the motion under every load case that loads it.
 
@@ -157,6 +176,8 @@ class LinkEnvelope:
     no_fatigue : str
         Why there is no fatigue calculation; empty where there is one.
     notes : tuple of str
+    layers : mapping of str to LayerEnvelope
+        Load case -> its layers; empty where none are checked.
     """
 
     link: str
@@ -176,6 +197,7 @@ class LinkEnvelope:
     displacement: Real
     no_fatigue: str
     notes: tuple[str, ...]
+    layers: Mapping[str, LayerEnvelope]
 
     @property
     def worst(self) -> LoadCaseEnvelope:

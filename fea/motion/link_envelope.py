@@ -253,6 +253,7 @@ class LinkMotion:
             displacement=_relative(space, self.body.pins, raw),
             no_fatigue=lacking,
             notes=() if refined is None else refined.solution.notes,
+            layers={},
         )
 
     def _governing(self, variants: Sequence[VariantCurve]) -> VariantCurve:
@@ -301,7 +302,7 @@ class LinkMotion:
             return load_case
         governing, pose = load_case.governing, load_case.pose
         number = governing.first + int(np.count_nonzero(self.evaluated[:pose]))
-        error = self._local_error(number, int(governing.node[pose]))
+        error = self.local_error(number, int(governing.node[pose]))
         contact = 1.0 - CONTACT_SHORTFALL if governing.span == NARROW.span else 1.0
         peak = load_case.stress
         peak = Band(
@@ -315,8 +316,20 @@ class LinkMotion:
         factor = peak.inverse(self.material.allowable)
         return replace(load_case, stress=peak, safety_factor=factor, low=low, high=high)
 
-    def _local_error(self, number: int, node: int) -> float:
-        """Fourfold estimate [MPa] beside a node, on this mesh alone, under load ``number``."""
+    def local_error(self, number: int, node: int) -> float:
+        """Return the fourfold estimate beside a node, on this mesh alone.
+
+        Parameters
+        ----------
+        number : int
+            Of the load among the solutions' combinations.
+        node : int
+
+        Returns
+        -------
+        float
+            [MPa]
+        """
         field, young, poisson = self.solved.field(number), self.material.youngs_modulus, self.material.poissons_ratio
         estimate = estimate_error(
             stress_field(self.solved.space, field, E=young, nu=poisson), field, E=young, nu=poisson
@@ -366,7 +379,7 @@ class LinkMotion:
         stress = abs(float(history[pose]))
         if stress == 0.0:
             return 1.0, 1.0
-        error = self._local_error(variant.first + pose, node) / stress
+        error = self.local_error(variant.first + pose, node) / stress
         contact = 1.0 - CONTACT_SHORTFALL if variant.span == NARROW.span else 1.0
         return max(1.0 - error, 0.0), (1.0 + error) / contact
 

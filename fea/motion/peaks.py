@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.solid.layers import Layers
 from fea.solid.stress import principal, von_mises
 
 Real = NDArray[np.float64]
@@ -96,7 +97,7 @@ def deviator(stress: Real) -> Real:
     return np.stack([root / 2.0 * (xx - yy), (xx + yy) / 2.0 - zz, root * xy, root * yz, root * xz], axis=1)
 
 
-def largest_stress(modes: "ModeMeasures", combination: Real, *, brittle: bool) -> Peaks:
+def largest_stress(modes: "ModeMeasures", combination: Real, *, brittle: bool, layers: Layers | None = None) -> Peaks:
     """Return the largest stress of all nodes under each load.
 
     Parameters
@@ -106,12 +107,14 @@ def largest_stress(modes: "ModeMeasures", combination: Real, *, brittle: bool) -
         Of the modes under N loads.
     brittle : bool
         True for the largest principal stress, False for the von Mises stress.
+    layers : Layers, optional
+        For the stress on them in place of either; the modes' parts are theirs then.
 
     Returns
     -------
     Peaks
     """
-    runs, search = _Runs.of(combination), _Search(modes.stress, combination, brittle=brittle)
+    runs, search = _Runs.of(combination), _Search(modes.stress, combination, brittle=brittle, layers=layers)
     length = 2.0 / 3.0 if brittle else 1.0
     own = (np.abs(modes.mean) if brittle else 0.0) + length * modes.sizes
     ends, least = combination[:, runs.ends], None
@@ -136,8 +139,8 @@ def largest_stress(modes: "ModeMeasures", combination: Real, *, brittle: bool) -
 class _Search:
     """The largest stress found so far under each load."""
 
-    def __init__(self, stress: Real, combination: Real, *, brittle: bool) -> None:
-        self._stress, self._combination, self._brittle = stress, combination, brittle
+    def __init__(self, stress: Real, combination: Real, *, brittle: bool, layers: Layers | None) -> None:
+        self._stress, self._combination, self._brittle, self._layers = stress, combination, brittle, layers
         count = combination.shape[1]
         self.value, self.node = np.full(count, -np.inf), np.zeros(count, dtype=np.int64)
 
@@ -150,7 +153,7 @@ class _Search:
         """Evaluate the stress of nodes (k,) under some loads."""
         k, m = len(nodes), self._stress.shape[2]
         sigma = (self._stress[nodes].reshape(6 * k, m) @ self._combination[:, loads]).reshape(k, 6, -1).swapaxes(1, 2)
-        found = von_mises(sigma)
+        found = von_mises(sigma) if self._layers is None else self._layers.stress(sigma)
         if self._brittle:
             bound = sigma[..., :3].mean(axis=-1) + 2.0 / 3.0 * found
             near = bound + _ROUNDING * np.abs(bound) >= self.value[loads]
@@ -171,8 +174,8 @@ def _blocks(nodes: NDArray[np.int64], width: int) -> Iterator[NDArray[np.int64]]
 
 def _squares(parts: Real, combination: Real) -> Real:
     """Squared von Mises stresses (nodes, N) from the deviators (nodes, 5, m) of modes."""
-    nodes, five, m = parts.shape
-    products = (parts.reshape(nodes * five, m) @ combination).reshape(nodes, five, -1)
+    nodes, count, m = parts.shape
+    products = (parts.reshape(nodes * count, m) @ combination).reshape(nodes, count, -1)
     return np.asarray(np.einsum("kin,kin->kn", products, products))
 
 
@@ -214,19 +217,21 @@ class ModeMeasures:
     mean: Real
 
     @classmethod
-    def of(cls, stress: Real) -> "ModeMeasures":
+    def of(cls, stress: Real, layers: Layers | None = None) -> "ModeMeasures":
         """Return the numbers of modes.
 
         Parameters
         ----------
         stress : ndarray, shape (nodes, 6, m)
             Components [MPa].
+        layers : Layers, optional
+            For the stress on them in place of the von Mises stress.
 
         Returns
         -------
         ModeMeasures
         """
-        parts = deviator(stress)
+        parts = deviator(stress) if layers is None else layers.parts(stress)
         return cls(stress=stress, parts=parts, sizes=mode_sizes(parts), mean=stress[:, :3].mean(axis=1))
 
 

@@ -43,10 +43,7 @@ def layer_outcomes(case: Case, load_case: str, links: Mapping[str, LinkResult]) 
         elif result.beam.worst.equivalent == 0.0:
             yield outcome(Band.exact(np.inf)).because("nothing acts on this link")
         elif material.strength_across_layers is None:
-            yield outcome(Band.unknown()).because(
-                f"the card of '{material.title}' states no strength_across_layers; add it, measured on specimens built "
-                "upright, or remove build_direction from the part"
-            )
+            yield outcome(Band.unknown()).because(no_strength(material.title))
         else:
             yield outcome(Band.unknown()).because(
                 "hand calculation tells nothing of the stress on layers; run the solid model"
@@ -60,7 +57,41 @@ def _judged(outcome: CheckOutcome, found: LayerStress, title: str) -> CheckOutco
     stopped = f"; refinement ended because {meshes.stopped}" if meshes.stopped else ""
     open_yet = outcome.verdict is Verdict.UNDECIDED
     outcome = outcome.because(f"{outcome.reason}{stopped if open_yet else ''}; {found.place}")
-    if found.layers.between is None and outcome.verdict is not Verdict.FAIL:
+    return outcome if found.layers.between is not None else without_shear(outcome, title)
+
+
+def no_strength(title: str) -> str:
+    """Return why layers are not judged without their strength, and what to do.
+
+    Parameters
+    ----------
+    title : str
+        Of the material.
+
+    Returns
+    -------
+    str
+    """
+    return (
+        f"the card of '{title}' states no strength_across_layers; add it, measured on specimens built upright, or "
+        "remove build_direction from the part"
+    )
+
+
+def without_shear(outcome: CheckOutcome, title: str) -> CheckOutcome:
+    """Return an outcome by tension across the layers alone, which passes nothing.
+
+    Parameters
+    ----------
+    outcome : CheckOutcome
+    title : str
+        Of the material, which states no strength against shear.
+
+    Returns
+    -------
+    CheckOutcome
+    """
+    if outcome.verdict is not Verdict.FAIL:
         return outcome.left_open(
             f"shear along the layers may decide, but the card of '{title}' states no shear_strength_between_layers; "
             f"add it. By tension across the layers alone: {outcome.reason}"

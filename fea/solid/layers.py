@@ -68,6 +68,27 @@ class Layers:
         share = 0.0 if self.between is None else self.across / self.between
         return max(1.0, share / math.sqrt(3.0))
 
+    def parts(self, stress: Real) -> Real:
+        """Return three numbers, linear in the stress, whose length is at least that of ``stress``.
+
+        Parameters
+        ----------
+        stress : ndarray, shape (nodes, 6, m)
+            Components [MPa].
+
+        Returns
+        -------
+        ndarray, shape (nodes, 3, m)
+            Normal stress, and Rn/Rt times shear along two directions [MPa].
+        """
+        n = np.asarray(self.normal) / np.linalg.norm(self.normal)
+        along = np.linalg.svd(n[None])[2][1:]  # two directions that span the plane
+        x, y, z = n
+        xx, yy, zz, xy, yz, xz = np.moveaxis(stress, 1, 0)
+        traction = np.stack([xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z], axis=1)
+        share = 0.0 if self.between is None else self.across / self.between
+        return np.asarray(np.vstack([n, share * along]) @ traction)
+
     @property
     def mirrored(self) -> "Layers":
         """The same layers as the image at z = 0 has them."""

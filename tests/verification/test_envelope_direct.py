@@ -7,10 +7,12 @@ import pytest
 import solid_meshes
 from turning_load import BODY, POSES, RHO, L, history
 
+from fea.motion.layer_envelope import layer_envelopes
 from fea.motion.link_envelope import link_motion
 from fea.motion.peaks import largest_stress
 from fea.motion.unit_loads import TRANSFERS, unit_loads
 from fea.motion.unit_solutions import solve_units
+from fea.solid.layers import Layers
 from fea.solid.solution import solve_solid
 from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
@@ -132,3 +134,33 @@ def test_envelope_of_a_link_finds_the_pose_of_the_largest_direct_peak(mesh, spac
     assert worst.safety_factor.value == pytest.approx(MATERIAL.allowable / values.max(), rel=EXACT)
     assert found.field.peak.value == pytest.approx(values.max(), rel=EXACT)
     assert abs(found.displacement).max() < L
+
+
+@pytest.mark.parametrize("halves", [False, True])
+def test_layers_over_a_motion_have_their_direct_peaks(mesh, halves):
+    """Oblique layers: the lower half of a symmetric body is another part."""
+    if halves:
+        mesh = mirrored(solid_meshes.half_bar(around=12, radial=2, along=2, layers=1, tail=4.0))
+    space, layers = displacement_space(mesh), Layers(normal=(1.0, 0.5, 1.0), across=12.0, between=5.0)
+    loads = history(space)
+    motion = link_motion(
+        space, link="bar", body=BODY, material=MATERIAL.model_copy(update={"density": RHO}), histories=[loads],
+        evaluated=np.ones(POSES, dtype=bool), stated="bore-shear", returns=True, threads=1,
+    )  # fmt: skip
+    assert (len(motion.solved.nodes) < len(space.nodes)) is halves
+    [found] = layer_envelopes(motion, layers, {}).values()
+    direct = {}
+    for pose in range(POSES):
+        solution = solve_solid(
+            mesh, E=E, nu=NU, density=RHO, loads=[loads.chosen(pose)], line=("bore:A", "bore:B"),
+            transfers=["bore-shear"], threads=1,
+        )  # fmt: skip
+        for case in solution.cases:
+            stress = layers.stress(stress_field(space, case.displacement, E=E, nu=NU).nodal)
+            direct[pose, case.span] = stress.max(), space.nodes[int(np.argmax(stress))]
+    worst = max(direct, key=lambda key: direct[key][0])
+    assert found.safety_factor.value == pytest.approx(12.0 / direct[worst][0], rel=EXACT)
+    assert found.pose == worst[0]
+    assert found.location == pytest.approx(direct[worst][1])
+    assert found.safety_factor.low < found.safety_factor.value < found.safety_factor.high
+    assert layer_envelopes(motion, replace(layers, between=None), {})["turn"].safety_factor.low == 0.0

@@ -11,7 +11,9 @@ from scipy.spatial.transform import Rotation
 from fea.common.band import Band
 from fea.common.scatter import layer_scatter
 from fea.common.verdict import Verdict
-from fea.motion.envelope_outcomes import open_layers
+from fea.motion.envelope_outcomes import layer_outcomes as envelope_layers
+from fea.motion.envelope_result import LayerEnvelope
+from fea.motion.peaks import ModeMeasures, largest_stress
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.layers import layer_outcomes
 from fea.outcomes.limits import layer_limit, layer_limits, layers_of
@@ -181,11 +183,39 @@ def test_which_links_are_checked():
     assert layer_limit(stiff, "AE") is None
 
 
-def test_an_envelope_leaves_layers_open():
-    [found] = open_layers(printed(), "AE", ["weight"])
-    assert (found.name, found.verdict, found.limit) == ("layers", Verdict.UNDECIDED, 3.0)
-    assert "run alula check" in found.reason
-    assert list(open_layers(read_case(OWL), "AE", ["weight"])) == []
+def test_peaks_over_many_loads_are_those_of_all_nodes():
+    """Loads of a motion, of which most nodes are left out by their bounds."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 61)
+    combination = np.array([np.cos(turn), np.sin(turn), 0.3 * np.cos(2.0 * turn)])
+    stress = RNG.normal(size=(400, 6, 3)) * RNG.uniform(0.05, 1.0, size=(400, 1, 1))
+    layers = Layers(normal=(1.0, 2.0, -0.5), across=12.0, between=5.0)
+    found = largest_stress(ModeMeasures.of(stress, layers), combination, brittle=False, layers=layers)
+    every = layers.stress(np.moveaxis(stress @ combination, 1, -1))
+    assert found.value == pytest.approx(every.max(axis=0))
+    assert np.array_equal(found.node, every.argmax(axis=0))
+    tension, shear = on_plane(np.moveaxis(stress, 1, -1), layers.normal)
+    assert np.linalg.norm(layers.parts(stress), axis=1) == pytest.approx(np.hypot(tension, 12.0 / 5.0 * shear))
+
+
+def over_motion(case, factor):
+    motion = SimpleNamespace(coordinate="GF", angles=np.radians([0.0, 45.0]))
+    layers = {"weight": LayerEnvelope(safety_factor=factor, pose=1, location=np.zeros(3))} if factor else {}
+    envelope = SimpleNamespace(layers=layers, load_cases={"weight": SimpleNamespace(discretisation=state("singular"))})
+    [found] = envelope_layers(SimpleNamespace(case=case, motion=motion), "AE", envelope)
+    return found
+
+
+def test_layers_over_a_motion():
+    held = over_motion(printed(), band(4.0, 5.0))
+    assert (held.name, held.verdict, held.limit) == ("layers", Verdict.PASS, 3.0)
+    assert "at GF = 45 deg" in held.reason
+    unknown = over_motion(printed(), None)
+    assert (unknown.verdict, unknown.reason) == (Verdict.UNDECIDED, state("singular").sentence)
+    sheared = printed(shear_strength_between_layers=None)
+    assert over_motion(sheared, band(4.0, 5.0)).verdict is Verdict.UNDECIDED
+    assert over_motion(sheared, band(1.0, 2.0)).verdict is Verdict.FAIL
+    bare = over_motion(printed(strength_across_layers=None, shear_strength_between_layers=None), None)
+    assert "states no strength_across_layers; add it" in bare.reason
 
 
 def test_scatter_of_both_strengths_bounds_the_factor():
