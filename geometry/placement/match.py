@@ -6,7 +6,7 @@ The link's plane is normal to the common axis of its bores.
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,6 +116,50 @@ def place(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
         )
     [either_way_up] = found.values()
     return either_way_up[-1 if part.flip else 0]
+
+
+def with_loaded_bores(
+    part: StepPart, fit: Fit, bores: Sequence[Bore], points: Mapping[str, tuple[float, float]]
+) -> Fit:
+    """Add the bores in which points without a joint stand: a load there is that of a pin.
+
+    Parameters
+    ----------
+    part : StepPart
+        The part.
+    fit : Fit
+        How it lies by the pins of its joints.
+    bores : sequence of Bore
+        All bores of its solid.
+    points : mapping of str to tuple of float
+        The link's points without a joint, (x, y) in its frame [mm].
+
+    Returns
+    -------
+    Fit
+        The same, with the bore of every point that is named in the part's bores or stands in the middle of one.
+
+    Raises
+    ------
+    CaseError
+        Where a point stands elsewhere than the bore that is named for it.
+    """
+    found, upright = dict(fit.bores), next(iter(fit.bores.values()))
+    for name, at in points.items():
+        if name in part.bores:
+            near = [_named(part, bores, name)]
+        else:
+            near = [bore for bore in bores if _angle(bore, upright) <= PARALLEL]
+        away = {bore.name: math.dist((fit.turn @ bore.centre + fit.shift)[:2], at) for bore in near}
+        bore = min(near, key=lambda one: away[one.name])
+        if away[bore.name] <= part.place_tolerance:
+            found[name] = bore
+        elif name in part.bores:
+            raise CaseError(
+                f"the point {name} stands {away[bore.name]:.4g} mm from {bore.name}, more than place_tolerance "
+                f"{part.place_tolerance:g} mm; correct the point, or take {name} out of the part's bores"
+            )
+    return replace(fit, bores=found)
 
 
 def points_of_part(part: StepPart, bores: Sequence[Bore]) -> dict[str, tuple[float, float]]:

@@ -1,6 +1,7 @@
 """From a part that a case imports to the body of a link: placed by its bores, with sections between its pins."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,13 +14,13 @@ from geometry.meshing.mesh import sections_and_rings
 from geometry.parts.body import Body
 from geometry.parts.features import Pin, Ring
 from geometry.parts.step import ImportedPart, StepPart
-from geometry.placement.match import Fit, Wanted, place
+from geometry.placement.match import Fit, Wanted, place, with_loaded_bores
 
 EXACT = 1e-6
 """Share of its diameter by which the centre of a bore may lie off its point."""
 STATIONS = 16
 """Sections between the outermost pins, for hand calculation and frames."""
-_bodies: dict[tuple[str, str, tuple[Wanted, ...]], Body] = {}
+_bodies: dict[tuple[object, ...], Body] = {}
 
 
 def bores_of(part: StepPart) -> tuple[Bore, ...]:
@@ -45,7 +46,9 @@ def bores_of(part: StepPart) -> tuple[Bore, ...]:
     return part_facts(Path(part.file)).bores
 
 
-def placed_body(part: StepPart, wanted: tuple[Wanted, ...]) -> Body:
+def placed_body(
+    part: StepPart, wanted: tuple[Wanted, ...], others: tuple[tuple[str, tuple[float, float]], ...] = ()
+) -> Body:
     """Place an imported part in its link.
 
     Parameters
@@ -54,11 +57,14 @@ def placed_body(part: StepPart, wanted: tuple[Wanted, ...]) -> Body:
         The part, as the case states it.
     wanted : tuple of Wanted
         The pinned points of the link.
+    others : tuple of (str, (float, float))
+        Name and (x, y) of its points without a joint [mm].
 
     Returns
     -------
     Body
-        The link's body, its part an ``ImportedPart``. Equal requests are answered once.
+        The link's body, its part an ``ImportedPart``, with a pin for each point that stands in a bore, joints first and
+        last. Equal requests are answered once.
 
     Raises
     ------
@@ -68,17 +74,24 @@ def placed_body(part: StepPart, wanted: tuple[Wanted, ...]) -> Body:
         Where the kernel fails.
     """
     facts = part_facts(Path(part.file))
-    key = facts.digest, part.model_dump_json(), wanted
+    key = facts.digest, part.model_dump_json(), wanted, others
     if key not in _bodies:
         try:
-            _bodies[key] = _placed(part, facts, wanted)
+            _bodies[key] = _placed(part, facts, wanted, dict(others))
         except AlulaError as error:
             raise type(error)(f"{Path(part.file).name}: {error}") from None
     return _bodies[key]
 
 
-def _placed(part: StepPart, facts: PartFacts, wanted: tuple[Wanted, ...]) -> Body:
-    placement = place(part, facts.bores, wanted)
+def _placed(
+    part: StepPart, facts: PartFacts, wanted: tuple[Wanted, ...], others: Mapping[str, tuple[float, float]]
+) -> Body:
+    placement = with_loaded_bores(part, place(part, facts.bores, wanted), facts.bores, others)
+    loaded = [
+        Wanted(name=name, place=others[name], diameter=bore.diameter)
+        for name, bore in placement.bores.items()
+        if name in others
+    ]
     corners = np.array(np.meshgrid(*zip(facts.low, facts.high, strict=True))).reshape(3, -1).T
     bounds = corners @ placement.turn.T + placement.shift
     solid = ImportedPart(
@@ -92,7 +105,9 @@ def _placed(part: StepPart, facts: PartFacts, wanted: tuple[Wanted, ...]) -> Bod
         low=tuple(bounds.min(axis=0).tolist()),
         high=tuple(bounds.max(axis=0).tolist()),
     )
-    body = Body(part=solid, pins=tuple(_pin(placement, one) for one in wanted), ends=(), holes=())
+    body = Body(
+        part=solid, pins=tuple(_pin(placement, one) for one in (wanted[0], *loaded, *wanted[1:])), ends=(), holes=()
+    )
     first, last = min(pin.x for pin in body.pins), max(pin.x for pin in body.pins)
     stations = tuple(first + (last - first) * (i + 0.5) / STATIONS for i in range(STATIONS))
     sections, rings = sections_and_rings(body, stations)

@@ -279,8 +279,10 @@ class CoreCase(Revisable):
         if isinstance(part, StepPart):
             wanted = tuple(Wanted(name=pin.name, place=(pin.x, pin.y), diameter=pin.diameter) for pin in pins)
             if link not in self._imported:
-                self._imported[link] = placed_body(part, wanted)
-            return replace(self._imported[link], ends=tuple(ends), holes=record.holes)
+                self._imported[link] = placed_body(part, wanted, tuple((end.name, (end.x, end.y)) for end in ends))
+            bores = {pin.name for pin in self._imported[link].pins}
+            outside = tuple(end for end in ends if end.name not in bores)
+            return replace(self._imported[link], ends=outside, holes=record.holes)
         return Body(part=part, pins=tuple(pins), ends=tuple(ends), holes=record.holes)
 
     @property

@@ -5,6 +5,7 @@ A link states its points and the part must agree within its tolerance, or it tak
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from geometry.base.errors import AlulaError, CaseError
 from geometry.base.units import parse
 from geometry.linkage.linkage import Joint
 from geometry.parts.step import StepPart
-from geometry.placement.match import Wanted, place, points_of_part
+from geometry.placement.match import Wanted, place, points_of_part, with_loaded_bores
 from geometry.placement.placed_body import bores_of
 from loads.text.explain import sentence
 
@@ -77,10 +78,21 @@ def _points(name: str, link: dict[str, Any], part: StepPart, joints: object) -> 
         wanted = pinned(name, points, joints)
         if wanted is None or not isinstance(points, dict):
             return points
-        placement = place(part, bores_of(part), wanted)
+        others = {point: at for point, at in _places(points).items() if point not in {one.name for one in wanted}}
+        fit = with_loaded_bores(part, place(part, bores_of(part), wanted), bores_of(part), others)
     except AlulaError as error:
         raise type(error)(f"links.{name}, part {Path(part.file).name}: {error}") from None
-    return points | {one.name: _stated(*placement.middle(one.name)[:2].tolist()) for one in wanted}
+    return points | {point: _stated(*fit.middle(point)[:2].tolist()) for point in fit.bores}
+
+
+def _places(points: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    """Return the points that are well-formed [mm]."""
+    found = {}
+    for point, at in points.items():
+        with suppress(PydanticCustomError, TypeError, ValueError):
+            x, y = (parse(size, "length") for size in at)
+            found[point] = x, y
+    return found
 
 
 def _stated(x: float, y: float) -> list[str]:
@@ -105,13 +117,13 @@ def pinned(name: str, points: object, joints: object) -> tuple[Wanted, ...] | No
     if not isinstance(points, dict) or not isinstance(joints, dict):
         return None
     found: dict[str, Wanted] = {}
+    places = _places(points)
     for joint, stated in joints.items():
         try:
             record = Joint.model_validate(stated)
             if name in record.links and record.type == "revolute" and record.pin_diameter is not None:
                 point = record.points[record.links.index(name)] if record.points else joint
-                x, y = (parse(size, "length") for size in points[point])
-                found.setdefault(point, Wanted(name=point, place=(x, y), diameter=record.pin_diameter))
-        except (ValidationError, PydanticCustomError, KeyError, TypeError, ValueError):
+                found.setdefault(point, Wanted(name=point, place=places[point], diameter=record.pin_diameter))
+        except (ValidationError, KeyError):
             return None
     return tuple(found[point] for point in points if point in found)

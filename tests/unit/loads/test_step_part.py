@@ -123,3 +123,20 @@ def test_a_load_point_beside_the_part_is_refused(tmp_path):
     case = read_case(str(imported_case(tmp_path, points=points)))
     with pytest.raises(CaseError, match="the load point P lies outside of the part"):
         mesh_body(case.body("rocker"), COARSE)
+
+
+def test_a_load_point_in_a_bore_without_a_joint_is_a_pin_there(tmp_path):
+    """The third bore of the bell crank takes its load as one-sided pressure; it stands between the joints' pins."""
+    points = '{ O4 = ["0 mm", "0 mm"], B = ["30 mm", "0 mm"], P = ["0.03 mm", "-40 mm"] }'
+    path = imported_case(tmp_path, file="bell_crank.step", points=points)
+    path.write_text(
+        path.read_text().replace('"5 mm" }', '"x" }').replace('"6 mm" }', '"5 mm" }').replace('"x" }', '"6 mm" }')
+    )
+    case = read_case(str(path))
+    body = case.body("rocker")
+    assert [(pin.name, pin.diameter) for pin in body.pins] == [("O4", 6.0), ("P", 4.0), ("B", 5.0)]
+    assert body.ends == ()
+    assert case.links["rocker"].points["P"] == pytest.approx((0.0, -40.0), abs=0.02)
+    path.write_text(path.read_text() + 'bores = { P = "bore 2" }\n')
+    with pytest.raises(CaseError, match=r"the point P stands .* mm from bore 2"):
+        read_case(str(path))
