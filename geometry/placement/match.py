@@ -149,7 +149,7 @@ def with_loaded_bores(
         if name in part.bores:
             near = [_named(part, bores, name)]
         else:
-            near = [bore for bore in bores if _angle(bore, upright) <= PARALLEL]
+            near = [bore for bore in bores if angle_between(bore, upright) <= PARALLEL]
         away = {bore.name: math.dist((fit.turn @ bore.centre + fit.shift)[:2], at) for bore in near}
         bore = min(near, key=lambda one: away[one.name])
         if away[bore.name] <= part.place_tolerance:
