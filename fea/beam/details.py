@@ -11,6 +11,8 @@ quarter of the slot's width longer at either end. Each flank twists under half o
 its warping is left out. Where that counts, flanks of h << t bend instead of twisting, with at most 3 % more stress.
 
 An arm is a straight bar built in at the eye from which it starts, under the force of its pin alone.
+
+A pin through the walls of a tube leaves the net section of ``fea.beam.holed_tube``.
 Lengths in mm, forces in N, moments in N·mm, stresses in MPa. The stress of a detail is given as that of its section:
 axial N/A of the net section, bending what comes on top at the worst fibre of a flank.
 """
@@ -22,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.flanks import flanks_of
+from fea.beam.holed_tube import holed_tube_stress
 from fea.beam.piecewise import Piecewise
 from fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
 from fea.beam.theory import Floats
@@ -72,11 +75,13 @@ def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.
     Returns
     -------
     tuple of Detail
-        One per slot and arm.
+        One per slot, arm and pin through the walls of a tube.
     """
     pushed = {load.name: load for load in loads.pins}
     found = [_slot(body, pin, pushed[pin.name], forces, poisson) for pin in body.pins if pin.slot > 0.0]
     found += [_arm(body, pin, pin.foot, pushed[pin.name], poisson) for pin in body.pins if pin.foot is not None]
+    if body.part.section.round and body.part.is_beam:
+        found += [_through(body, pin, forces, poisson) for pin in body.pins if body.ring(pin).diameter == 0.0]
     return tuple(found)
 
 
@@ -198,6 +203,14 @@ def _slot(body: Body, pin: Pin, load: PinLoad, forces: Piecewise, poisson: float
     if slender < SLENDER:
         remark += f"; an estimate, since they are only {slender:.2g} times as long as high"
     return Detail(name=f"the slot at {pin.name}", x=worst_x, stress=stress, remark=remark)
+
+
+def _through(body: Body, pin: Pin, forces: Piecewise, poisson: float) -> Detail:
+    table = [_inside(forces, pin.x, side) for side in ("before", "after")]
+    found = [holed_tube_stress(body.part.section, pin.diameter, pin.y, row, poisson) for row in table]
+    remark = "net section of the tube's walls, without the stress concentration at the hole"
+    worst = max(found, key=lambda stress: stress.equivalent)
+    return Detail(name=f"the pin hole at {pin.name}", x=pin.x, stress=worst, remark=remark)
 
 
 def _inside(forces: Piecewise, x: float, side: str) -> NDArray[np.float64]:

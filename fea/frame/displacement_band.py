@@ -16,22 +16,24 @@ arms and slots were not among these. Lengths in mm, forces in N, moments in N·m
 
 import itertools
 import math
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.deflection import flexibility
-from fea.common.band import Band
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
 from geometry.parts.body import Body, PartKind, hand_section
-from geometry.parts.features import HoleRow, Pin
+from geometry.parts.features import Pin
 from loads.case.case import Case
 
 Real = NDArray[np.float64]
+Stretch = tuple[float, float, Real]
+"""Its ends [mm], and the factors on the flexibility between them."""
 
 RIGID = 1.0
 """Share of an eye's radius from its pin within which the stiffest link does not give."""
@@ -40,7 +42,9 @@ SINK = (1.3, 1.55)
 
 R is the mean radius of the ring from bore to rim and h its height."""
 TILT = 0.5
-"""The same along the pin, and where it tilts with 12/t² about the bore's middle, over that of a push across."""
+"""The same along the pin, and where it tilts with 12/t² about the bore's middle, over that of a push across.
+
+Where the pin bears on several walls, t/I with the second moment I of their length takes the place of 12/t²."""
 TURN = (1.6, 0.25)
 """How far a pin turns in its bore at the most: a times the shear of a free ring, b (R/h)³ M/(E t R²) as it bends."""
 HOLE = 2.0
@@ -95,20 +99,18 @@ def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank
     """
     part = body.part
     rigid: list[tuple[float, float]] = []
-    soft: list[tuple[float, float, Real]] = []
+    soft: list[Stretch] = []
     if arm is not None:
         assert arm.foot is not None
         reach = math.hypot(arm.x - arm.foot[0], arm.y - arm.foot[1])
         holes = [(0.0, body.foot(arm)), (reach, arm)]
     else:
         holes = [(pin.x, pin) for pin in body.pins if pin.foot is None and pin.slot == 0.0]
-        for row in body.holes:
-            net = _net(part, row)
-            soft += [(x - HOLE * row.diameter / 2.0, x + HOLE * row.diameter / 2.0, net) for x in row.positions]
+        soft += [_at_hole(part, row.diameter, row.along, x) for row in body.holes for x in row.positions]
     for x, pin in holes:
         reach = RIGID * body.ring(pin).diameter / 2.0
-        rigid.append((x - reach, x + reach))
-        soft.append((x - pin.diameter / 2.0, x + pin.diameter / 2.0, _at_bore(body, pin)))
+        rigid.append((x - reach, x + reach))  # nothing where the hole has no eye
+        soft.append(_at_bore(body, pin, x))
     edges = [x for low, high in (*rigid, *(stretch[:2] for stretch in soft)) for x in (low, high)]
     marks = sorted({start, end, *(x for x in edges if start < x < end)})
     everywhere = _narrowest(body)
@@ -150,11 +152,11 @@ def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
     found = {}
     for pin in body.pins:
         ring, inner = body.ring(pin), pin.diameter / 2.0
-        thick, outer = ring.thickness, ring.diameter / 2.0
+        thick, outer = ring.thickness, (ring.diameter or body.part.section.width) / 2.0
         mean = (outer + inner) / 2.0
         slender = (mean / (outer - inner)) ** 3
         sink = (SINK[0] + SINK[1] * slender) / (young * thick)
-        tilt = TILT * sink * 12.0 / thick**2
+        tilt = TILT * sink * thick / ring.second
         turn = TURN[0] * (1.0 / inner**2 - 1.0 / outer**2) / (4.0 * math.pi * shear * thick)
         turn += TURN[1] * slender / (young * thick * mean**2)
         found[pin.name] = np.array([sink, sink, TILT * sink, tilt, tilt, turn])
@@ -166,10 +168,8 @@ def bounds(
     unit: FrameSolution,
     beams: Mapping[int, Sequence[Zone]],
     bores: Sequence[tuple[int, Real]],
-    *,
-    without: Container[int] = (),
-) -> Band:
-    """Return the displacement along a unit load between its bounds.
+) -> tuple[float, float]:
+    """Return the least and largest displacement along a unit load.
 
     Parameters
     ----------
@@ -181,35 +181,26 @@ def bounds(
         Element and its zones; those that are left out are as the frame has them.
     bores : sequence of tuple of int and ndarray
         Node and give (6,) of every pin in a bore, for what acts on the node's link there.
-    without : container of int, optional
-        Elements that are left out of the sum.
 
     Returns
     -------
-    Band
-        The frame's displacement, the least and the largest [mm].
+    tuple of 2 float
+        Least and largest [mm].
     """
-    ends = np.zeros(3)
+    low = high = 0.0
     for i in range(len(loaded.model.elements)):
-        if i not in without:
-            terms = np.array(_terms(loaded, unit, i, beams.get(i)))
-            ends += [terms[0].sum(), terms.min(axis=0).sum(), terms.max(axis=0).sum()]
+        ends = np.sort(_terms(loaded, unit, i, beams.get(i)), axis=0)
+        low, high = low + float(ends[0].sum()), high + float(ends[2].sum())
     acting = [_on_nodes(solution) for solution in (loaded, unit)]
     for node, give in bores:
-        sunk = give * acting[0][node] * acting[1][node]
-        ends[1:] += np.minimum(sunk, 0.0).sum(), np.maximum(sunk, 0.0).sum()
-    return Band(value=float(ends[0]), low=float(ends[1]), high=float(ends[2]))
+        terms = give * acting[0][node] * acting[1][node]
+        low, high = low + float(np.minimum(terms, 0.0).sum()), high + float(np.maximum(terms, 0.0).sum())
+    return low, high
 
 
 def point_bounds(
-    case: Case,
-    frame: LinkageFrame,
-    solution: FrameSolution,
-    link: str,
-    point: str,
-    solids: Mapping[str, Sequence[Band]] | None = None,
-    carried: Mapping[str, Sequence[float]] | None = None,
-) -> Band:
+    case: Case, frame: LinkageFrame, solution: FrameSolution, link: str, point: str
+) -> tuple[float, float]:
     """Return the least and largest distance by which a point of a linkage moves in its linear frame.
 
     Where the frame is redundant, forces are those of the plain beams: exact to first order in what eyes and bores do.
@@ -226,46 +217,31 @@ def point_bounds(
         On which the point lies.
     point : str
         Its name.
-    solids : dict of str to sequence of Band, optional
-        Link whose solid tells what it adds, and its share of the displacement along x and y [mm], which takes the
-        place of its beams and bores.
-    carried : dict of str to sequence of float, optional
-        Of links whose solids bear other loads than the frame has: what plain beams would add under these [mm]. Of such
-        a solid what it adds beyond its beam counts, beside the frame's plain beam.
 
     Returns
     -------
-    Band
-        How far the point moves, by the beams and these solids [mm].
+    tuple of 2 float
+        Least and largest [mm].
     """
-    solids, carried, node = solids or {}, carried or {}, frame.points[link, point]
+    node = frame.points[link, point]
     bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)
-    beams, bores = _links(case, frame, solids)
-    without = {i for i, beam in frame.beams.items() if beam.link in solids and beam.link not in carried}
-    moved, least, largest = np.zeros(3), np.zeros(3), np.zeros(3)
-    planar = bool(solids) or not np.any(solution.displacements[:, 2:5])
+    beams, bores = _links(case, frame)
+    least, largest = np.zeros(3), np.zeros(3)
+    planar = not np.any(solution.displacements[:, 2:5])
     for axis in range(2 if planar else 3):
         load = NodeLoad(node=node, wrench=np.eye(6)[axis])
         unit = solve_frame(replace(frame.model, elements=bare, loads=(load,)))
-        shares = [bounds(solution, unit, beams, bores, without=without), *(bands[axis] for bands in solids.values())]
-        taken = sum(works[axis] for works in carried.values())
-        low, high = sum(share.low for share in shares) - taken, sum(share.high for share in shares) - taken
-        moved[axis] = sum(share.value for share in shares) - taken
+        low, high = bounds(solution, unit, beams, bores)
         least[axis] = max(low, -high, 0.0)
         largest[axis] = max(abs(low), abs(high))
-    value, low, high = (float(np.linalg.norm(ends)) for ends in (moved, least, largest))
-    return Band(value=value, low=low, high=high)
+    return float(np.linalg.norm(least)), float(np.linalg.norm(largest))
 
 
-def _links(
-    case: Case, frame: LinkageFrame, solids: Container[str]
-) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[int, Real]]]:
-    """Zones of every element that is part of a link without solid, and these links' bores with the nodes in them."""
-    bodies = {link: case.body(link) for link in case.checked_links if link not in solids}
+def _links(case: Case, frame: LinkageFrame) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[int, Real]]]:
+    """Zones of every element that is part of a link, and the bores of all links with the nodes that stand in them."""
+    bodies = {link: case.body(link) for link in case.checked_links}
     beams = {}
     for i, beam in frame.beams.items():
-        if beam.link not in bodies:
-            continue
         body = bodies[beam.link]
         arm = next((pin for pin in body.pins if beam.arm and pin.name == beam.arm), None)
         beams[i] = zones(body, beam.start, beam.end, arm=arm, flank=beam.flank)
@@ -312,30 +288,32 @@ def _factors(area: float, i_y: float, i_z: float) -> Real:
     return np.array([1.0 / area, 1.0 / area, 1.0 / area, worst, 1.0 / i_y, 1.0 / i_z])
 
 
-def _net(part: PartKind, row: HoleRow) -> Real:
-    """Factors at a cross hole: the plain section less the hole's strip through its middle, a tube's bore apart."""
+def _at_hole(part: PartKind, d: float, to: Literal["y", "z"], x: float) -> Stretch:
+    """Factors about a cross hole: the plain section less the hole's strip through its middle, a tube's bore apart."""
     across, depth = part.section.width, part.section.height
-    if row.along == "z":
+    if to == "z":
         across, depth = depth, across
-    d, section = row.diameter, part.section
+    section = part.section
     inner = section.radius_ratio * section.width
     area = 1.0 - d * (across - inner) / section.area
     along, aside = d * (across**3 - inner**3) / 12.0, d**3 * (across - inner) / 12.0
-    left = {"y": (aside, along), "z": (along, aside)}[row.along]
+    left = {"y": (aside, along), "z": (along, aside)}[to]
     shares = [
         max(area, 0.05),
         *(max(1.0 - lost / i, 0.05) for lost, i in zip(left, (section.i_y, section.i_z), strict=True)),
     ]
-    return _factors(*shares)
+    return x - HOLE * d / 2.0, x + HOLE * d / 2.0, _factors(*shares)
 
 
-def _at_bore(body: Body, pin: Pin) -> Real:
+def _at_bore(body: Body, pin: Pin, x: float) -> Stretch:
     """Factors at a pin's bore, where the eye's net section stands for the plain one; never below 1."""
+    if body.ring(pin).diameter == 0.0:
+        return _at_hole(body.part, pin.diameter, "z", x)
     wide, thick, diameter, section = body.ring(pin).diameter, body.ring(pin).thickness, pin.diameter, body.part.section
     area = (wide - diameter) * thick / section.area
     i_z = thick * (wide**3 - diameter**3) / 12.0 / section.i_z
     i_y = (wide - diameter) * thick**3 / 12.0 / section.i_y
-    return np.asarray(np.maximum(_factors(area, i_y, i_z), 1.0))
+    return x - diameter / 2.0, x + diameter / 2.0, np.asarray(np.maximum(_factors(area, i_y, i_z), 1.0))
 
 
 def _narrowest(body: Body) -> Real:

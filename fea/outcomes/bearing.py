@@ -9,7 +9,7 @@ for which the ultimate tensile strength of the card stands; that in bearing is r
 from fea.common.band import Band
 from fea.common.scatter import Scatter, load_scatter, strength_scatter
 from fea.common.verdict import CheckOutcome, Quantity, Subject
-from fea.outcomes.pins import eye_thickness
+from fea.outcomes.pins import eye_of
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.records.bearing import bearing_stress
@@ -54,7 +54,7 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
             material = case.material_of(link)
             strength = material.ultimate_strength or material.allowable
             stress = bearing_stress(
-                force=force, diameter=record.pin_diameter, thickness=eye_thickness(case, joint, link)
+                force=force, diameter=record.pin_diameter, thickness=eye_of(case, joint, link).thickness
             )
             own = strength_scatter(material) if strength == material.allowable else Scatter()
             factors[link] = own.on(load.on(Band.exact(stress, WITHOUT)).inverse(strength))

@@ -28,10 +28,10 @@ def clear_sections(body: Body) -> tuple[float, ...]:
     if not part.is_beam:
         return ()
     eyes = [pin for pin in body.pins if pin.foot is None]
-    blocked = [(pin.span[0] - body.ring(pin).diameter / 2, pin.span[1] + body.ring(pin).diameter / 2) for pin in eyes]
+    blocked = [(pin.span[0] - body.across(pin) / 2, pin.span[1] + body.across(pin) / 2) for pin in eyes]
     # An arm disturbs the section as far as its own width reaches along the axis.
     feet = [body.foot(pin) for pin in body.pins if pin.foot]
-    blocked += [(pin.x - body.ring(pin).diameter, pin.x + body.ring(pin).diameter) for pin in feet]
+    blocked += [(pin.x - body.across(pin), pin.x + body.across(pin)) for pin in feet]
     blocked += [(x - row.diameter / 2, x + row.diameter / 2) for row in body.holes for x in row.positions]
     blocked += [(end.x - end.patch, end.x + end.patch) for end in body.ends]
     margins = sorted((low - size, high + size) for low, high in blocked)

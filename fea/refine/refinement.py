@@ -274,10 +274,8 @@ class _Link:
         return any(s.kind == "growing" for p in self.precision for s in self._deciding(p))
 
     def _judge(self) -> None:
-        eyes = []
-        for pin in self.task.body.pins:
-            across = self.task.body.ring(pin).diameter or 2.0 * pin.diameter  # where no ring bounds the eye
-            eyes.append(Eye(x=pin.x, y=pin.y, radius=across / 2.0, slot=pin.slot))
+        body = self.task.body
+        eyes = [Eye(x=pin.x, y=pin.y, radius=body.across(pin) / 2.0, slot=pin.slot) for pin in body.pins]
         self.precision = precision(self.levels, self.edges, section=self.task.section, eyes=eyes)
 
     def _settled(self) -> bool:

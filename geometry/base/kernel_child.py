@@ -15,6 +15,8 @@ from geometry.base import child, child_memory
 from geometry.base.child_server import ChildEndedError, ServerPool
 from geometry.base.errors import CannotRunError, CaseError
 
+MEMORY_LIMIT = 2e9
+"""Bytes for a request that states nothing else."""
 _workers = ServerPool()
 
 
@@ -46,7 +48,7 @@ def ask_kernel(
     *arguments: Any,
     words: KernelWords,
     time_limit: float,
-    memory: float,
+    memory: float = MEMORY_LIMIT,
 ) -> Any:
     """Do a task of ``geometry.meshing.mesh_worker`` in a child process and return its result.
 
@@ -62,7 +64,7 @@ def ask_kernel(
         For the sentence of an error.
     time_limit : float
         Time after which the child is killed [s].
-    memory : float
+    memory : float, optional
         What it may take [bytes].
 
     Returns

@@ -143,7 +143,7 @@ def build(gmsh: Any, body: Body) -> Solid:
             f"eye_thickness, or move the pins further apart{arms}"
         ) from None
     for pin in () if part.has_holes else small.pins:
-        tools += kernel.upright(pin, pin.diameter, 2.0 * small.ring(pin).thickness)
+        tools += kernel.upright(pin, pin.diameter, 2.0 * small.ring(pin).height)
     tools += _hole_rows(kernel, small)  # one cut, since a second one works on all faces that the first one made
     solid = _imprint(kernel, small, kernel.cut(solid, tools))
     kernel.occ.synchronize()

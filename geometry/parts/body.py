@@ -198,6 +198,22 @@ class PartKind(Printable):
         """
         return body.ring(pin).diameter
 
+    def ring(self, pin: Pin) -> Ring:
+        """Return the flat ring about a hole that has none of its own.
+
+        Parameters
+        ----------
+        pin : Pin
+            A pin of the body.
+
+        Returns
+        -------
+        Ring
+            Of eye_diameter and eye_thickness unless the kind knows better.
+        """
+        half = self.eye_thickness / 2.0
+        return Ring(diameter=self.eye_diameter, low=-half, high=half)
+
     def scaled(self, s: Callable[[float], float]) -> Self:
         """Return the part with its lengths in another unit.
 
@@ -261,10 +277,24 @@ class Body:
         Returns
         -------
         Ring
-            The pin's own, or the one that the part's eye_diameter and eye_thickness make.
+            The pin's own, or the one that the part makes.
         """
-        half = self.part.eye_thickness / 2.0
-        return pin.ring or Ring(diameter=self.part.eye_diameter, low=-half, high=half)
+        return pin.ring or self.part.ring(pin)
+
+    def across(self, pin: Pin) -> float:
+        """Return how wide the place of a pin is: its ring's diameter, or twice that of a hole without ring.
+
+        Parameters
+        ----------
+        pin : Pin
+            One of the pins.
+
+        Returns
+        -------
+        float
+            Width [mm].
+        """
+        return self.ring(pin).diameter or 2.0 * pin.diameter
 
     def pin(self, name: str) -> Pin:
         """Return a pin by its name.
@@ -391,5 +421,5 @@ def reference_line(body: Body) -> tuple[float, float]:
     if (len(on_axis) > 1 and start != end) or len(body.pins) == 1:
         return start, end
     first, last = extent(body)
-    half = body.ring(on_axis[0]).diameter / 2.0
+    half = body.across(on_axis[0]) / 2.0
     return start, start + (half if last - start >= start - first else -half)

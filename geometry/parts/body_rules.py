@@ -141,7 +141,8 @@ def _room(body: Body, end: PlainEnd) -> tuple[float, str]:
     for pin in body.pins:
         if pin.foot is None:
             reach = eye_reach(body, pin)
-            walls.append((pin.x - reach, pin.x + reach, f"the eye at {pin.name} and its fillet"))
+            what = "the eye at {} and its fillet" if body.ring(pin).diameter > 0.0 else "the pin hole at {}"
+            walls.append((pin.x - reach, pin.x + reach, what.format(pin.name)))
     share = 1.0 if end.x in (first, last) else 2.0  # at an end of the link it lies inwards, else on either side
     return min((share * max(low - end.x, end.x - high), what) for low, high, what in walls if not low == high == end.x)
 
@@ -160,8 +161,9 @@ def _check_row(body: Body, number: int, row: HoleRow) -> None:
         for pin in body.pins:
             least = eye_reach(body, pin) + radius
             if abs(x - pin.x) <= least:
+                what = "eye or fillet" if body.ring(pin).diameter > 0.0 else "pin hole"
                 raise CaseError(
-                    f"{name} has a hole at x = {x:g} mm that runs into the eye or fillet at {pin.name}: keep it more "
+                    f"{name} has a hole at x = {x:g} mm that runs into the {what} at {pin.name}: keep it more "
                     f"than {least:.4g} mm from x = {pin.x:g} mm"
                 )
     length = abs(row.last - row.first)

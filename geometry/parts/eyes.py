@@ -95,11 +95,13 @@ def eye_reach(body: Body, pin: Pin) -> float:
     Returns
     -------
     float
-        The half length [mm]; 0 for an eye at the end of an arm.
+        The half length [mm], that of the hole where no eye is about it; 0 for an eye at the end of an arm.
     """
     if pin.foot is not None:
         return 0.0
     part, half = body.part, body.part.section.width / 2.0
+    if body.ring(pin).diameter == 0.0:
+        return pin.diameter / 2.0 + pin.slot / 2.0
     radius = body.ring(pin).diameter / 2.0 + (0.0 if plain_eye(body, pin) else part.fillet_radius)
     across = max(0.0, abs(pin.y) - half)
     corners = [

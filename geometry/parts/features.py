@@ -77,21 +77,40 @@ class Ring:
         Its outer diameter [mm]; 0 where no flat ring is about the hole.
     low, high : float
         z of the hole's two rims [mm].
+    gaps : tuple of tuple of float
+        z between which the hole has no wall, from low to high, such as in the bore of a tube [mm].
     """
 
     diameter: float
     low: float
     high: float
+    gaps: tuple[tuple[float, float], ...] = ()
 
     @property
-    def thickness(self) -> float:
-        """Length of the hole [mm]."""
+    def height(self) -> float:
+        """Distance of the rims [mm]."""
         return self.high - self.low
 
     @property
+    def walls(self) -> tuple[tuple[float, float], ...]:
+        """The z between which the hole has a wall, from low to high [mm]."""
+        edges = (self.low, *(z for gap in self.gaps for z in gap), self.high)
+        return tuple(zip(edges[::2], edges[1::2], strict=True))
+
+    @property
+    def thickness(self) -> float:
+        """Length of the hole's wall, on which a pin bears [mm]."""
+        return self.height - sum(high - low for low, high in self.gaps)
+
+    @property
+    def second(self) -> float:
+        """Second moment of the walls' length about their middle; of a single wall t³/12 [mm³]."""
+        return sum((high - self.middle) ** 3 - (low - self.middle) ** 3 for low, high in self.walls) / 3.0
+
+    @property
     def middle(self) -> float:
-        """The z of the middle of the hole [mm]."""
-        return (self.low + self.high) / 2.0
+        """The z of the middle of the hole's wall, where an even pressure along it acts [mm]."""
+        return sum((high - low) * (low + high) / 2.0 for low, high in self.walls) / self.thickness
 
     @property
     def off_plane(self) -> bool:
@@ -111,7 +130,8 @@ class Ring:
         Ring
             The ring.
         """
-        return Ring(diameter=s(self.diameter), low=s(self.low), high=s(self.high))
+        gaps = tuple((s(low), s(high)) for low, high in self.gaps)
+        return Ring(diameter=s(self.diameter), low=s(self.low), high=s(self.high), gaps=gaps)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,6 +4,8 @@ import itertools
 import math
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
@@ -11,18 +13,21 @@ from geometry.base.model import Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.parts.body import Body, Feature, extent, patch_span
 from geometry.parts.eyes import EYE_WIDTH, RIM, ROUNDING
+from geometry.parts.features import Pin, Ring
 from geometry.parts.kernel import ON_SURFACE, Entity, Kernel
 from geometry.parts.section import Section, ring
 from geometry.parts.straight import Piece, Straight
+from geometry.parts.tube_pins import check_pins_through
 
 ROD_SIZE = 0.8
 """Largest element edge in a rod, over its radius."""
 
 
 class Tube(Straight):
-    """A round tube (hollow, or solid with inner diameter 0) with a cylindrical eye at every pin.
+    """A round tube (hollow, or solid with inner diameter 0) with a cylindrical eye at every pin, or none.
 
-    The bore ends where it meets an eye: eyes are solid but for their pin hole.
+    Without eyes the pins go straight through both walls. The bore ends where it meets an eye: eyes are solid but for
+    their pin hole.
     """
 
     takes: ClassVar[frozenset[Feature]] = frozenset(("rows of holes", "load points without a pin", "eyes of their own"))
@@ -31,14 +36,32 @@ class Tube(Straight):
     material: Name
     outer_diameter: Annotated[Length, POSITIVE]
     inner_diameter: Annotated[Length, NOT_NEGATIVE]
-    fillet_radius: Annotated[Length, NOT_NEGATIVE]
-    """Fillet where the tube meets an eye; 0 leaves the edge sharp (and its stress singular)."""
-    eye_diameter: Annotated[Length, POSITIVE] = Field(default_factory=lambda part: EYE_WIDTH * part["outer_diameter"])
-    """1.6 times outer_diameter unless stated."""
-    eye_thickness: Annotated[Length, POSITIVE] = Field(
-        default_factory=lambda part: part["outer_diameter"] + 2.5 * part["fillet_radius"]
+    eyes: Literal["round", "none"] = "round"
+    """round: a solid cylindrical eye at every pin. none: pins go straight through both walls; the ends are square."""
+    fillet_radius: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Fillet where the tube meets an eye, a plug or a bush; 0 leaves the edge sharp (and its stress singular).
+    With eyes it must be stated; without eyes, plugs and bushes it has no effect."""
+    eye_diameter: Annotated[Length, POSITIVE] = Field(
+        default_factory=lambda part: EYE_WIDTH * part["outer_diameter"] if part["eyes"] == "round" else 0.0
     )
-    """Height of the eye's cylinder along the pin; outer_diameter + 2.5 fillet_radius unless stated."""
+    """1.6 times outer_diameter unless stated; not with eyes = "none"."""
+    eye_thickness: Annotated[Length, POSITIVE] = Field(
+        default_factory=lambda part: (
+            part["outer_diameter"] + (2.5 * part["fillet_radius"] if part["eyes"] == "round" else 0.0)
+        )
+    )
+    """Height of the eye's cylinder along the pin; outer_diameter + 2.5 fillet_radius unless stated; not with eyes =
+    "none"."""
+    overhang: Annotated[Length, POSITIVE] = Field(
+        default_factory=lambda part: part["outer_diameter"] if part["eyes"] == "none" else 0.0
+    )
+    """Only with eyes = "none": how far the tube goes on beyond an outermost pin; outer_diameter unless stated."""
+    plug_length: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Only with eyes = "none": length of a rod that is glued into the bore at every pin, which goes through its middle.
+    Tube and plugs are modelled as one solid of one material; the glue is not checked."""
+    bush_diameter: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Only with eyes = "none": outer diameter of a bush about every pin, from wall to wall across the bore, glued in.
+    Tube and bushes are modelled as one solid of one material; the glue is not checked."""
 
     def check_sizes(self) -> None:
         """As ``Straight.check_sizes``: there is a wall, and the eyes stand out by enough for their fillets."""
@@ -48,6 +71,16 @@ class Tube(Straight):
                 "inner_diameter {inner} mm must be less than outer_diameter {outer} mm; reduce it, or set 0 for a rod",
                 {"inner": f"{self.inner_diameter:g}", "outer": f"{self.outer_diameter:g}"},
             )
+        if self.eyes == "none":
+            self._without_eyes()
+            return
+        if "fillet_radius" not in self.model_fields_set:
+            raise PydanticCustomError(
+                "no_fillet",
+                'fillet_radius is missing: state the fillet between tube and eyes, "0 mm" for a sharp edge, or '
+                'eyes = "none"',
+            )
+        self._stray("round", "overhang", "plug_length", "bush_diameter")
         if self.eye_diameter <= self.outer_diameter:
             raise PydanticCustomError(
                 "narrow_eye",
@@ -63,58 +96,133 @@ class Tube(Straight):
                 {"eye": f"{self.eye_thickness:g}", "rim": f"{RIM:g}", "least": f"{least:g}"},
             )
 
+    def _without_eyes(self) -> None:
+        """Refuse sizes that make no tube with pins through its walls."""
+        self._stray("none", "eye_diameter", "eye_thickness")
+        fills = {"plug_length": self.plug_length, "bush_diameter": self.bush_diameter}
+        stated = [name for name, size in fills.items() if size > 0.0]
+        if len(stated) > 1:
+            raise PydanticCustomError(
+                "plug_and_bush",
+                "plug_length and bush_diameter exclude each other: a plug fills the bore; leave one out",
+            )
+        if stated and self.inner_diameter == 0.0:
+            raise PydanticCustomError(
+                "no_bore", "{name} needs a bore, but inner_diameter is 0; leave it out", {"name": stated[0]}
+            )
+        if self.bush_diameter >= self.inner_diameter > 0.0:
+            raise PydanticCustomError(
+                "wide_bush",
+                "bush_diameter {bush} mm must be less than inner_diameter {inner} mm; reduce it, or state plug_length",
+                {"bush": f"{self.bush_diameter:g}", "inner": f"{self.inner_diameter:g}"},
+            )
+
+    def _stray(self, eyes: str, *names: str) -> None:
+        """Refuse entries that have no meaning with these eyes."""
+        stray = [name for name in names if name in self.model_fields_set]
+        if stray:
+            raise PydanticCustomError(
+                "stray_size",
+                '{name} has no meaning with eyes = "{eyes}"; leave it out, or set eyes = "{other}"',
+                {"name": stray[0], "eyes": eyes, "other": "none" if eyes == "round" else "round"},
+            )
+
     @property
     def section(self) -> Section:
         """Cross-section of the tube between its eyes."""
         return ring(self.outer_diameter, self.inner_diameter)
 
+    @property
+    def unmeasured(self) -> str:
+        """As ``PartKind.unmeasured``: without eyes."""
+        return "" if self.eyes == "round" else "its pins go through its walls, without eyes"
+
+    def ring(self, pin: Pin) -> Ring:
+        """As ``PartKind.ring``: without eyes there is none, and the hole goes through both walls, a plug or a bush."""
+        if self.eyes == "round":
+            return super().ring(pin)
+        high, bore = (math.sqrt(max(d**2 / 4.0 - pin.y**2, 0.0)) for d in (self.outer_diameter, self.inner_diameter))
+        filled = bore == 0.0 or self.plug_length > 0.0 or self.bush_diameter > 0.0
+        return Ring(diameter=0.0, low=-high, high=high, gaps=() if filled else ((-bore, bore),))
+
+    def check(self, body: Body) -> None:
+        """As ``PartKind.check``: of a tube with eyes as ``Straight.check``, else the pins' holes fit its walls."""
+        if self.eyes == "round":
+            super().check(body)
+        else:
+            check_pins_through(body, self.reach(body), self.bush_diameter)
+
+    def reach(self, body: Body) -> tuple[float, float]:
+        """As ``Straight.reach``: without eyes the overhang beyond an outermost pin."""
+        first, last = extent(body)
+        pinned = {pin.x for pin in body.pins}
+        return first - self.overhang * (first in pinned), last + self.overhang * (last in pinned)
+
     def prism(self, kernel: Kernel, body: Body, piece: Piece) -> list[Entity]:
         """As ``Straight.prism``: along the axis, split at the borders of loaded patches."""
-        stations = sorted({*extent(body), *(x for end in body.ends for x in patch_span(body, end))})
+        stations = sorted({*self.reach(body), *(x for end in body.ends for x in patch_span(body, end))})
         radius = self.outer_diameter / 2.0
         return [kernel.cylinder((low, 0, 0), (high - low, 0, 0), radius) for low, high in itertools.pairwise(stations)]
 
+    def solid(self, kernel: Kernel, body: Body) -> Entity:
+        """As ``PartKind.solid``: with eyes as ``Straight.solid``, else the tube alone."""
+        if self.eyes == "round":
+            return super().solid(kernel, body)
+        return kernel.fuse([entity for piece in self.pieces(body) for entity in self.prism(kernel, body, piece)])
+
+    def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
+        """As ``PartKind.fine_places``: as ``Straight.fine_places``; without eyes there are none."""
+        return super().fine_places(body, size, share) if self.eyes == "round" else []
+
     def cavities(self, kernel: Kernel, body: Body) -> list[Entity]:
-        """As ``PartKind.cavities``: the bore."""
+        """As ``PartKind.cavities``: the bore, less plugs or bushes."""
         return [self._hollow(kernel, body, *span) for span in self._hollow_spans(body)]
 
     @property
     def _hollow_fillet(self) -> float:
-        """Fillet radius at the bottom of the bore: the part's, but at most half the bore's radius."""
-        return min(self.fillet_radius, self.inner_diameter / 4.0)
+        """Fillet radius at the bottom of the bore: the part's, but at most half of the room in it."""
+        return min(self.fillet_radius, (self.inner_diameter - self.bush_diameter) / 4.0)
 
     def _hollow_spans(self, body: Body) -> list[tuple[float, float]]:
-        """Return the x between which a tube is hollow: up to each eye's nearest generator, and open at a plain end.
+        """Return the x between which a tube is hollow: up to each plug or eye's nearest generator, open at a plain end.
 
         The bottom of the bore touches the eye's cylinder and is flat but for a fillet at its rim: a bore that ran on
         to the cylinder would leave a re-entrant edge.
         """
         bore = self.inner_diameter / 2.0
-        first, last = extent(body)
+        first, last = self.reach(body)
         spans: list[tuple[float, float]] = []
         start = first
         for pin in sorted(body.pins, key=lambda p: p.x):
             radius = body.ring(pin).diameter / 2.0
-            half = math.sqrt(max(radius**2 - max(abs(pin.y) - bore, 0.0) ** 2, 0.0))
-            spans.append((start, pin.x - half))
-            start = max(start, pin.x + half)
+            half = math.sqrt(max(radius**2 - max(abs(pin.y) - bore, 0.0) ** 2, 0.0)) or self.plug_length / 2.0
+            if half > 0.0:
+                spans.append((start, pin.x - half))
+                start = max(start, pin.x + half)
         spans.append((start, last))
         return [(low, high) for low, high in spans if high - low > 2.0 * self._hollow_fillet and bore > 0.0]
 
     def _hollow(self, kernel: Kernel, body: Body, low: float, high: float) -> Entity:
-        """Return what is cut out of a tube between two stations, rounded where it ends inside."""
-        first, last = extent(body)
+        """Return what is cut out of a tube between two stations, rounded where it ends inside or meets a bush."""
+        first, last = self.reach(body)
         solid = kernel.cylinder((low, 0, 0), (high - low, 0, 0), self.inner_diameter / 2.0)
-        kernel.occ.synchronize()
+        bushes = body.pins if self.bush_diameter > 0.0 else ()
+        solid = kernel.cut(
+            solid, [bush for pin in bushes for bush in kernel.upright(pin, self.bush_diameter, self.outer_diameter)]
+        )
+
+        def to_fillet(p: NDArray[np.float64]) -> bool:
+            """Return whether a point lies where the bore ends inside, or at a bush's side."""
+            inside = abs(p[0] - low) < ON_SURFACE < low - first or abs(p[0] - high) < ON_SURFACE < last - high
+            return bool(abs(math.hypot(p[1], p[2]) - self.inner_diameter / 2.0) < ON_SURFACE) and (
+                inside or any(abs(pin.distance(p[0], p[1]) - self.bush_diameter / 2.0) < ON_SURFACE for pin in bushes)
+            )
+
+        radius, found = self._hollow_fillet, kernel.curves(to_fillet)
         faces = kernel.model.getBoundary([solid], oriented=False)
-        rims = {
-            curve
-            for _, curve in kernel.model.getBoundary(faces, combined=False, oriented=False)
-            for x in (kernel.point_on_curve(curve, 0.3)[0],)
-            if kernel.model.getType(1, curve) == "Circle"
-            and (abs(x - low) < ON_SURFACE < low - first or abs(x - high) < ON_SURFACE < last - high)
-        }
-        return kernel.fillet(solid, sorted(rims), self._hollow_fillet) if rims and self.fillet_radius > 0.0 else solid
+        own = {tag for _, tag in kernel.model.getBoundary(faces, combined=False, oriented=False)}
+        curves = sorted(own.intersection(found))
+        return kernel.fillet(solid, curves, radius) if curves and radius > 0.0 else solid
 
     def largest_element(self) -> float:
         """Return the element edge whose chords on one side stay clear of the other side, or of the axis.

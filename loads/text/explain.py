@@ -100,6 +100,8 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
         problems = error.errors(include_url=False)
     except UnicodeEncodeError:  # pydantic itself cannot quote it
         return "case: a text in it holds half of a surrogate pair, which is no character; remove it"
+    # A default that needs another entry is no problem of its own: that entry's is told.
+    problems = [problem for problem in problems if problem["type"] != "default_factory_not_called"] or problems
     first = problems[0]
     if first["type"] == "missing":
         beside = (p for p in problems if p["type"] == "extra_forbidden" and p["loc"][:-1] == first["loc"][:-1])

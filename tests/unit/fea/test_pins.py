@@ -1,5 +1,7 @@
 """Pins in shear and bending: by hand, and against an integral over the section."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from edited_cases import edited
@@ -9,11 +11,22 @@ from fea.check.run import check_case
 from fea.common.verdict import Verdict
 from fea.outcomes.pins import eyes, pin_stress, stress_at
 from geometry.base.errors import CaseError
+from geometry.parts.features import Ring
 from geometry.parts.material import library
 from loads.case.case_file import read_case
 from loads.statics.joint_reaction import JointReaction
 
 WING = "owl-wing-static"
+
+
+def eye(height, *gaps):
+    """A hole without flat ring, from the gap between the links on."""
+    return Ring(diameter=0.0, low=-height / 2.0, high=height / 2.0, gaps=tuple(gaps))
+
+
+SOLID = eye(4.0)
+TUBE = eye(8.0, (-2.5, 2.5))
+"""Walls of 1.5 mm, 5 mm apart."""
 
 
 def reaction(*wrench):
@@ -22,7 +35,7 @@ def reaction(*wrench):
 
 def test_stresses_by_hand():
     """10 N on a 2 mm pin, eyes of 4 mm 1 mm apart: a = 5, c = 7.5, M = 10 (2 + 1 + 16/60 - 64/5400) = 32.548 N mm."""
-    found = pin_stress(10.0, 2.0, (4.0, 4.0), 1.0, poisson=0.3)
+    found = pin_stress(10.0, 2.0, (SOLID, SOLID), 1.0, poisson=0.3)
     assert found.moment.value == found.moment.high == pytest.approx(32.548, abs=5e-4)
     assert found.moment.low == pytest.approx(5.0)  # 10 N over half of the gap
     assert found.bending.value == pytest.approx(32.548 / 0.785398, abs=5e-3)
@@ -38,7 +51,7 @@ def test_two_eyes_of_four_millimetres_without_a_gap():
     assert np.abs(np.cumsum(alike) * x[1]).max() == pytest.approx(4.0 / 27.0 * t, rel=1e-4)
     taking = 1.0 - np.cumsum((1.0 + 6.0 * (1.0 - 2.0 * x / t)) / t) * x[1]  # the couple F t beside the even F/t
     largest = (t / 2.0 + np.cumsum(taking) * x[1]).max()
-    found = pin_stress(1.0, 1.5, (t, t))
+    found = pin_stress(1.0, 1.5, (SOLID, SOLID))
     assert found.moment.high == pytest.approx(largest, rel=1e-4)
     assert found.moment.low == 0.0
     assert found.moment.low < 4.0 / 27.0 * t < found.moment.high
@@ -50,8 +63,11 @@ def on_foundations(eyes, gap, stiffness, tilting):
     The first eye is pushed by 1 N in its middle; it turns freely with its link (``tilting``) or keeps its direction.
     """
     steps = 60
-    parts = [e for e in (eyes[0], gap, eyes[1]) if e > 0.0]
-    x = np.concatenate([[0.0], *(np.linspace(0.0, p, steps + 1)[1:] + sum(parts[:i]) for i, p in enumerate(parts))])
+    second = eyes[0].height + gap
+    walls = [(low - hole.low + start, high - hole.low + start)
+             for hole, start in zip(eyes, (0.0, second), strict=True) for low, high in hole.walls]  # fmt: skip
+    marks = sorted({place for wall in walls for place in wall})
+    x = np.concatenate([[0.0], *(np.linspace(a, b, steps + 1)[1:] for a, b in pairwise(marks))])
     n = len(x)
     k = np.zeros((2 * n + 2, 2 * n + 2))  # last two: displacement of the first eye's middle, and its turn
     elements, springs = [], []
@@ -63,14 +79,14 @@ def on_foundations(eyes, gap, stiffness, tilting):
         k[np.ix_(dofs, dofs)] += b
         elements.append((dofs, b))
         middle = (x[i] + x[i + 1]) / 2.0
-        if eyes[0] < middle < eyes[0] + gap:
+        if not any(low < middle < high for low, high in walls):
             continue
         for point, weight in zip((points + 1.0) / 2.0, weights / 2.0, strict=True):
             row = np.zeros(2 * n + 2)
             row[dofs] = [1 - 3 * point**2 + 2 * point**3, h * (point - 2 * point**2 + point**3),
                          3 * point**2 - 2 * point**3, h * (point**3 - point**2)]  # fmt: skip
-            if middle < eyes[0]:
-                row[-2:] = -1.0, -(x[i] + h * point - eyes[0] / 2.0)
+            if middle < eyes[0].height:
+                row[-2:] = -1.0, -(x[i] + h * point - eyes[0].height / 2.0)
             k += stiffness * weight * h * np.outer(row, row)
             springs.append((dofs, row, stiffness * weight * h))
     free = np.arange(2 * n + (2 if tilting else 1))
@@ -89,25 +105,38 @@ def on_foundations(eyes, gap, stiffness, tilting):
     return np.abs(moments).max(), np.abs(shears).max()
 
 
-@pytest.mark.parametrize(("eyes", "gap"), [((4.0, 4.0), 0.0), ((7.0, 3.0), 0.0), ((2.0, 5.0), 1.5), ((3.0, 3.0), 12.0)])
+@pytest.mark.parametrize(
+    ("eyes", "gap"),
+    [
+        ((SOLID, SOLID), 0.0),
+        ((eye(7.0), eye(3.0)), 0.0),
+        ((eye(2.0), eye(5.0)), 1.5),
+        ((eye(3.0), eye(3.0)), 12.0),
+        ((TUBE, SOLID), 0.5),
+        ((TUBE, TUBE), 0.0),
+    ],
+)
 def test_pins_on_elastic_foundations_lie_in_the_band(eyes, gap):
-    """Softest to stiffest pin, links that tilt and links that do not: a stiff pin in a tilting link reaches the end."""
-    reached = []
+    """Softest to stiffest pin, links that tilt and links that do not: a stiff pin in a tilting link reaches the end.
+
+    Beside a tube, a pin that is not quite stiff reaches up to 0.7 % more.
+    """
+    reached, beyond = [], 1.01 if eyes[0].gaps else 1.001
     for turned in (eyes, eyes[::-1]):
         for stiffness in (1e-5, 1e-2, 1.0, 100.0):
             for tilting in (True, False):
                 moment, shear = on_foundations(turned, gap, stiffness, tilting)
                 found = pin_stress(1.0, 1.0, eyes, gap)
-                assert found.moment.low * 0.999 <= moment <= found.moment.high * 1.001
+                assert found.moment.low * 0.999 <= moment <= found.moment.high * beyond
                 if stiffness == 1e-5:
-                    assert shear <= found.shear * np.pi / 4.0 * 2.6 / 3.6 * 1.001
+                    assert shear <= found.shear * np.pi / 4.0 * 2.6 / 3.6 * beyond
                 reached.append(moment)
-    assert max(reached) == pytest.approx(found.moment.high, rel=2e-3)
+    assert max(reached) == pytest.approx(found.moment.high, rel=8e-3 if eyes[0].gaps else 2e-3)
 
 
 def test_bending_stress_carries_its_moment():
     """Integrate σ = σ_max y/r over the circle: the moment comes back."""
-    found = pin_stress(7.0, 1.5, (6.0, 6.0))
+    found = pin_stress(7.0, 1.5, (eye(6.0), eye(6.0)))
     r = 0.75
     y = np.linspace(-r, r, 200_001)
     width = 2.0 * np.sqrt(np.maximum(r**2 - y**2, 0.0))
@@ -115,14 +144,14 @@ def test_bending_stress_carries_its_moment():
 
 
 def test_a_short_pin_shears_before_it_bends():
-    found = pin_stress(10.0, 2.0, (0.1, 0.1))
+    found = pin_stress(10.0, 2.0, (eye(0.1), eye(0.1)))
     assert found.bending.high < np.sqrt(3.0) * found.shear
     assert found.equivalent.high == pytest.approx(np.sqrt(3.0) * found.shear)
     assert found.equivalent.high == pytest.approx(found.equivalent.low * 25.0 / 24.0)  # V = -F (c - 1)²/(4 c), c = 6
 
 
 def test_the_eyes_of_a_joint_are_those_of_its_links():
-    assert eyes(read_case(WING), "B") == (7.0, 7.0)
+    assert [hole.thickness for hole in eyes(read_case(WING), "B")] == [7.0, 7.0]
     # The ground has no part: its eye is taken as thick as that of AE.
     assert stress_at(edited(WING, ['joints.A.pin_gap="0.4 mm"']), "A", reaction(1, 0, 0, 0, 0, 0)).lever == 7.4
     two = [
@@ -130,7 +159,7 @@ def test_the_eyes_of_a_joint_are_those_of_its_links():
         'eye_diameter="8 mm",eye_thickness="9 mm",fillet_radius="0.8 mm"}',
         'links.AE.part="thick"',
     ]
-    assert sorted(eyes(edited(WING, two), "B")) == [7.0, 9.0]
+    assert sorted(hole.thickness for hole in eyes(edited(WING, two), "B")) == [7.0, 9.0]
 
 
 def test_moments_out_of_the_plane_add():

@@ -1,0 +1,56 @@
+"""Pins straight through the walls of a tube without eyes: the rules that keep their holes and bushes within it."""
+
+import itertools
+
+from geometry.base.errors import CaseError
+from geometry.parts.body import Body, apart
+
+DEEPEST = 0.9
+"""Largest reach of a hole across the tube, from the tube's axis, over the outer radius."""
+
+
+def check_pins_through(body: Body, ends: tuple[float, float], bush: float) -> None:
+    """Refuse holes that reach a side or an end of the tube, and bushes that do not fit.
+
+    Parameters
+    ----------
+    body : Body
+        A body whose part is a tube without eyes.
+    ends : tuple of float
+        The x between which the tube lies [mm].
+    bush : float
+        Outer diameter of the bushes [mm]; 0 without.
+
+    Raises
+    ------
+    CaseError
+        With the pin, the rule and a remedy.
+    """
+    section = body.part.section
+    outer, bore = section.half_y, section.radius_ratio * section.half_y
+    for pin in body.pins:
+        off = abs(pin.y)
+        if pin.ring is not None:
+            raise CaseError(f'the eye stated at {pin.name} has no meaning on a tube with eyes = "none"; leave it out')
+        if off + pin.diameter / 2.0 > DEEPEST * outer:
+            raise CaseError(
+                f"the pin hole at {pin.name}, {pin.diameter:.4g} mm wide and {off:.4g} mm off the axis, leaves too "
+                f"little of the tube's side: keep it within {DEEPEST * outer:.4g} mm of the axis, by a smaller "
+                "pin_diameter, a larger outer_diameter, or a pin on the axis"
+            )
+        if bush > 0.0 and not (pin.diameter < bush and off + bush / 2.0 < bore):
+            raise CaseError(
+                f"the bush at {pin.name} must be wider than its pin of {pin.diameter:.4g} mm and fit into the bore: "
+                f"set bush_diameter between {pin.diameter:.4g} mm and {2.0 * (bore - off):.4g} mm (now {bush:.4g} mm)"
+            )
+        half = max(pin.diameter, bush) / 2.0
+        if pin.x - half <= ends[0] or pin.x + half >= ends[1]:
+            raise CaseError(
+                f"the hole or bush at {pin.name} reaches the end of the tube: set overhang above {half:.4g} mm"
+            )
+    for one, other in itertools.combinations(body.pins, 2):
+        if apart(one, other) <= bush:
+            raise CaseError(
+                f"the bushes at {one.name} and {other.name} overlap: set bush_diameter below {apart(one, other):.4g} "
+                "mm, or move the pins further apart"
+            )
