@@ -1,24 +1,31 @@
 """Measures how far solids of links lie from the plain beam, against the bounds of ``fea/frame/displacement_band.py``.
 
     python -m benchmarks.displacement_band [SEED [COUNT]]
+    python -m benchmarks.displacement_band solids [SEED [COUNT]]
 
 Random bars and tubes, clamped at one bore and pulled, bent in the plane and bent out of it at another, under every pin
 pressure and torque transfer: the bores' mean motion apart, and what the load's work makes of it. Links that were drawn
 like these, but none of these, set the constants. Prints each link and how many lie within their band.
+
+With ``solids``: bands of one coarse mesh by virtual work (``fea/solid/virtual_work.py``) against values of a fine one.
 """
 
 import random
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fea.common.band import Band
 from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
 from fea.frame.displacement_band import bore_gives, bounds, zones
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from fea.refine.level import level_of
+from fea.refine.link_series import precision
 from fea.solid.solution import SolidSolution, solve_solid
+from fea.solid.virtual_work import virtual_work
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from geometry.parts.body_rules import check_body
@@ -64,13 +71,13 @@ class Link:
         """Displacement of the plain beam, and its bounds [mm]."""
         loaded, pins = self.frame(direction, FORCE), self.body.pins
         gives = bore_gives(self.body, self.young, self.poisson)
-        low, high = bounds(
+        found = bounds(
             loaded,
             self.frame(direction, 1.0),
             {i: zones(self.body, pins[i].x, pins[i + 1].x) for i in range(len(pins) - 1)},
             [(i, gives[pin.name]) for i, pin in enumerate(pins)],
         )
-        return float(loaded.displacements[-1, direction]), low, high
+        return found.value, found.low, found.high
 
     def loads(self, direction: int) -> LinkLoads:
         """Force at the last bore, balanced at the first."""
@@ -107,6 +114,32 @@ class Link:
             direction = next(k for k, name in WAYS.items() if name == case.load)
             found[direction] += [float(apart[direction]), 2.0 * case.strain_energy / FORCE]
         return found
+
+    def by_virtual_work(self, size: float) -> dict[int, Band]:
+        """Direction in the plane -> displacement on one mesh of a size, in its band [mm]."""
+        ends, body = (self.body.pins[0], self.body.pins[-1]), self.body
+        cases = [replace(self.loads(direction), name=WAYS[direction]) for direction in (0, 1)]
+        mesh = mesh_body(body, MeshSettings().scaled(size))
+        solution = solve_solid(
+            mesh,
+            E=self.young,
+            nu=self.poisson,
+            density=1e-9,
+            loads=cases,
+            line=(f"bore:{ends[0].name}", f"bore:{ends[1].name}"),
+            threads=1,
+        )
+        found = precision([level_of(solution, mesh.volume)], (), section=body.part.size, eyes=())
+        bands = {}
+        for direction, loads in enumerate(cases):
+            index = max(
+                one.displacement.index
+                for one, case in zip(found, solution.cases, strict=True)
+                if case.load == loads.name
+            )
+            (work,) = virtual_work(solution, loads, [loads], transfer="eye-faces", error=index)
+            bands[direction] = replace(work, value=work.value / FORCE, low=work.low / FORCE, high=work.high / FORCE)
+        return bands
 
 
 def _motion(nodes: np.ndarray, moved: np.ndarray, pin: Pin) -> np.ndarray:
@@ -197,5 +230,30 @@ def main(seed: int = 5, count: int = 20) -> None:
     print(f"{inside} of {total} displacements lie in their bands")
 
 
+def solids(seed: int = 5, count: int = 12) -> None:
+    """Measure how many bands of one coarse mesh hold the mean motions of a fine one, and how wide they are."""
+    inside, widths = 0, []
+    for number, link in zip(range(count), links(seed), strict=False):
+        try:
+            coarse, fine = (link.by_virtual_work(size) for size in (3.0, 1.2))
+        except (CannotRunError, CaseError) as error:
+            print(f"link {number} is left out: {error}")
+            continue
+        for direction, band in coarse.items():
+            truth = fine[direction]
+            held = band.low <= truth.value <= band.high
+            inside, widths = inside + held, [*widths, (band.high - band.low) / truth.value]
+            print(
+                f"{link.body.part.shape} {number} {WAYS[direction]}: coarse {band.value / truth.value:.4f} of the fine "
+                f"mesh's, band {band.low / truth.value:.4f} to {band.high / truth.value:.4f}, the fine mesh's band "
+                f"{truth.low / truth.value:.4f} to {truth.high / truth.value:.4f}{'' if held else ', outside'}",
+                flush=True,
+            )
+    print(f"{inside} of {len(widths)} bands hold the fine mesh's value; median width {np.median(widths):.1%}")
+
+
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+    if sys.argv[1:2] == ["solids"]:
+        solids(*map(int, sys.argv[2:]))
+    else:
+        main(*map(int, sys.argv[1:]))

@@ -1,5 +1,6 @@
 """Deflection of a beam's axis by Timoshenko's theory, flanks of slots included."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ from fea.beam.piecewise import Piecewise, integral, values
 from geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
+_GAUSS = 6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -104,6 +106,34 @@ def deflection(
     functions = Piecewise(breaks=forces.breaks, coefficients=relative)
     _, _, value = functions.largest(lambda f: float(np.hypot(f[1], f[2])))
     return Deflection(functions=functions, largest=value)
+
+
+def virtual_work(real: Piecewise, virtual: Piecewise, section: Section, *, young: float, poisson: float) -> float:
+    """Return the work of virtual internal forces on the strains of a beam under real ones.
+
+    Parameters
+    ----------
+    real, virtual : Piecewise
+        N, V_y, V_z [N], T, M_y, M_z [N·mm] along one and the same beam; beyond the ends of either there are none.
+    section : Section
+        Of the beam.
+    young : float
+        Young's modulus [MPa].
+    poisson : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    float
+        Work [N·mm]; per unit of the virtual load, how far its point moves [mm].
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    work = np.zeros(6)
+    first, last = (end(real.breaks[k], virtual.breaks[k]) for end, k in ((max, 0), (min, -1)))
+    for start, end in itertools.pairwise(np.unique(np.clip([*real.breaks, *virtual.breaks], first, last))):
+        for x, w in zip((start + end) / 2.0 + (end - start) / 2.0 * nodes, (end - start) / 2.0 * weights, strict=True):
+            work += w * real.at(float(x)) * virtual.at(float(x))
+    return float(work @ flexibility(section, young, poisson))
 
 
 def flexibility(section: Section, young: float, poisson: float) -> Floats:

@@ -125,8 +125,9 @@ class _LoadCase:
             for link, hand in self.hands.items()
         }
         pins = _pins(case, reactions)
+        free = self.cut if self.statics.forces[load_case].frame is None else {}
         found = (
-            *outcomes(case, load_case, links, pins, moved, self.uneven.joints),
+            *outcomes(case, load_case, links, pins, moved, free, self.uneven.joints),
             *_bearing(case, load_case, reactions, self.uneven),
             *buckling_outcomes(case, load_case, {link: hand.check for link, hand in self.hands.items()}, moved),
             *motors,

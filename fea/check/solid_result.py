@@ -82,8 +82,7 @@ def solid_result(
     """
     material, solid = case.material_of(link), refined.solution
     solved = [number for number, found in enumerate(solid.cases) if found.load == load_case]
-    stated = case.drive.transfer if case.drive else None
-    own = [number for number in solved if solid.cases[number].transfer in (None, stated)]
+    own = [number for number in solved if solid.cases[number].transfer in (None, case.torque_transfer)]
 
     def decisive(number: int) -> GridConvergence:
         return refined.precision[number].series(STRESS[material.brittle])

@@ -16,7 +16,7 @@ arms and slots were not among these. Lengths in mm, forces in N, moments in N·m
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.deflection import flexibility
+from fea.common.band import Band
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
@@ -168,8 +169,10 @@ def bounds(
     unit: FrameSolution,
     beams: Mapping[int, Sequence[Zone]],
     bores: Sequence[tuple[int, Real]],
-) -> tuple[float, float]:
-    """Return the least and largest displacement along a unit load.
+    *,
+    without: Container[int] = (),
+) -> Band:
+    """Return the displacement along a unit load between its bounds.
 
     Parameters
     ----------
@@ -181,26 +184,35 @@ def bounds(
         Element and its zones; those that are left out are as the frame has them.
     bores : sequence of tuple of int and ndarray
         Node and give (6,) of every pin in a bore, for what acts on the node's link there.
+    without : container of int, optional
+        Elements that are left out of the sum.
 
     Returns
     -------
-    tuple of 2 float
-        Least and largest [mm].
+    Band
+        The frame's displacement, the least and the largest [mm].
     """
-    low = high = 0.0
+    ends = np.zeros(3)
     for i in range(len(loaded.model.elements)):
-        ends = np.sort(_terms(loaded, unit, i, beams.get(i)), axis=0)
-        low, high = low + float(ends[0].sum()), high + float(ends[2].sum())
+        if i not in without:
+            terms = np.array(_terms(loaded, unit, i, beams.get(i)))
+            ends += [terms[0].sum(), terms.min(axis=0).sum(), terms.max(axis=0).sum()]
     acting = [_on_nodes(solution) for solution in (loaded, unit)]
     for node, give in bores:
-        terms = give * acting[0][node] * acting[1][node]
-        low, high = low + float(np.minimum(terms, 0.0).sum()), high + float(np.maximum(terms, 0.0).sum())
-    return low, high
+        sunk = give * acting[0][node] * acting[1][node]
+        ends[1:] += np.minimum(sunk, 0.0).sum(), np.maximum(sunk, 0.0).sum()
+    return Band(value=float(ends[0]), low=float(ends[1]), high=float(ends[2]))
 
 
 def point_bounds(
-    case: Case, frame: LinkageFrame, solution: FrameSolution, link: str, point: str
-) -> tuple[float, float]:
+    case: Case,
+    frame: LinkageFrame,
+    solution: FrameSolution,
+    link: str,
+    point: str,
+    solids: Mapping[str, Sequence[Band]] | None = None,
+    carried: Mapping[str, Sequence[float]] | None = None,
+) -> Band:
     """Return the least and largest distance by which a point of a linkage moves in its linear frame.
 
     Where the frame is redundant, forces are those of the plain beams: exact to first order in what eyes and bores do.
@@ -217,31 +229,46 @@ def point_bounds(
         On which the point lies.
     point : str
         Its name.
+    solids : dict of str to sequence of Band, optional
+        Link whose solid tells what it adds, and its share of the displacement along x and y [mm], which takes the
+        place of its beams and bores.
+    carried : dict of str to sequence of float, optional
+        Of links whose solids bear other loads than the frame has: what plain beams would add under these [mm]. Of such
+        a solid what it adds beyond its beam counts, beside the frame's plain beam.
 
     Returns
     -------
-    tuple of 2 float
-        Least and largest [mm].
+    Band
+        How far the point moves, by the beams and these solids [mm].
     """
-    node = frame.points[link, point]
+    solids, carried, node = solids or {}, carried or {}, frame.points[link, point]
     bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)
-    beams, bores = _links(case, frame)
-    least, largest = np.zeros(3), np.zeros(3)
-    planar = not np.any(solution.displacements[:, 2:5])
+    beams, bores = _links(case, frame, solids)
+    without = {i for i, beam in frame.beams.items() if beam.link in solids and beam.link not in carried}
+    moved, least, largest = np.zeros(3), np.zeros(3), np.zeros(3)
+    planar = bool(solids) or not np.any(solution.displacements[:, 2:5])
     for axis in range(2 if planar else 3):
         load = NodeLoad(node=node, wrench=np.eye(6)[axis])
         unit = solve_frame(replace(frame.model, elements=bare, loads=(load,)))
-        low, high = bounds(solution, unit, beams, bores)
+        shares = [bounds(solution, unit, beams, bores, without=without), *(bands[axis] for bands in solids.values())]
+        taken = sum(works[axis] for works in carried.values())
+        low, high = sum(share.low for share in shares) - taken, sum(share.high for share in shares) - taken
+        moved[axis] = sum(share.value for share in shares) - taken
         least[axis] = max(low, -high, 0.0)
         largest[axis] = max(abs(low), abs(high))
-    return float(np.linalg.norm(least)), float(np.linalg.norm(largest))
+    value, low, high = (float(np.linalg.norm(ends)) for ends in (moved, least, largest))
+    return Band(value=value, low=low, high=high)
 
 
-def _links(case: Case, frame: LinkageFrame) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[int, Real]]]:
-    """Zones of every element that is part of a link, and the bores of all links with the nodes that stand in them."""
-    bodies = {link: case.body(link) for link in case.checked_links}
+def _links(
+    case: Case, frame: LinkageFrame, solids: Container[str]
+) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[int, Real]]]:
+    """Zones of every element that is part of a link without solid, and these links' bores with the nodes in them."""
+    bodies = {link: case.body(link) for link in case.checked_links if link not in solids}
     beams = {}
     for i, beam in frame.beams.items():
+        if beam.link not in bodies:
+            continue
         body = bodies[beam.link]
         arm = next((pin for pin in body.pins if beam.arm and pin.name == beam.arm), None)
         beams[i] = zones(body, beam.start, beam.end, arm=arm, flank=beam.flank)

@@ -136,7 +136,7 @@ class _Envelope:
             material=case.material_of(link),
             histories=self.loaded[link],
             evaluated=self.evaluated,
-            stated=case.drive.transfer if case.drive else None,
+            stated=case.torque_transfer,
             returns=self.moved.motion.returns,
         )
 

@@ -47,7 +47,7 @@ def link_motion(
     material: Material,
     histories: Sequence[LinkLoads],
     evaluated: NDArray[np.bool_],
-    stated: Transfer | None,
+    stated: Transfer,
     returns: bool,
     threads: int | None = None,
 ) -> "LinkMotion":
@@ -64,7 +64,7 @@ def link_motion(
         Its loads over the motion, one record per load case.
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
-    stated : Transfer or None
+    stated : Transfer
         How the drive torque enters, by the case; the other way stands in the band.
     returns : bool
         True where the last pose is the first again; else the motion goes there and back.
@@ -173,7 +173,7 @@ class LinkMotion:
     material : Material
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
-    stated : Transfer or None
+    stated : Transfer
         How the drive torque enters, by the case.
     returns : bool
         True where the last pose is the first again.
@@ -187,7 +187,7 @@ class LinkMotion:
     body: Body
     material: Material
     evaluated: NDArray[np.bool_]
-    stated: Transfer | None
+    stated: Transfer
     returns: bool
     solved: UnitSolutions
     curves: Mapping[str, Sequence[VariantCurve]]

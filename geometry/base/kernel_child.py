@@ -15,8 +15,6 @@ from geometry.base import child, child_memory
 from geometry.base.child_server import ChildEndedError, ServerPool
 from geometry.base.errors import CannotRunError, CaseError
 
-MEMORY_LIMIT = 2e9
-"""Bytes for a request that states nothing else."""
 _workers = ServerPool()
 
 
@@ -48,7 +46,7 @@ def ask_kernel(
     *arguments: Any,
     words: KernelWords,
     time_limit: float,
-    memory: float = MEMORY_LIMIT,
+    memory: float,
 ) -> Any:
     """Do a task of ``geometry.meshing.mesh_worker`` in a child process and return its result.
 
@@ -64,7 +62,7 @@ def ask_kernel(
         For the sentence of an error.
     time_limit : float
         Time after which the child is killed [s].
-    memory : float, optional
+    memory : float
         What it may take [bytes].
 
     Returns

@@ -77,6 +77,11 @@ class CoreCase(Revisable):
         """The drive as statics needs it."""
         return Drive(link=self.drive.link, joint=self.drive.joint) if self.drive else None
 
+    @property
+    def torque_transfer(self) -> Literal["eye-faces", "bore-shear"]:
+        """How a torque enters a part: as the drive's does; pins of a deformed shape, and sliders, need no drive."""
+        return "eye-faces" if self.drive is None else self.drive.transfer
+
     @cached_property
     def all_materials(self) -> dict[str, Material]:
         """The library's materials and the case's own, which win."""

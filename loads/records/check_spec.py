@@ -30,7 +30,8 @@ class DisplacementCheck(CaseModel):
     links: tuple[Name, ...] = ()
     """The links to check, each by itself; all that have a part when neither these nor a point are stated."""
     at: Name | None = None
-    """The point whose displacement with the whole linkage is checked, by the frame."""
+    """The point whose displacement with the whole linkage is checked: by the solid models of the links where these are
+    solved and equilibrium gives the joint forces, else by the frame."""
     link: Name | None = None
     """The moving link that has the point; may be left out where only one has, or where pins join those that have."""
 

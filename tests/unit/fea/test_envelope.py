@@ -398,7 +398,7 @@ def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
         return link_motion(
             space, link="rocker", body=case.body("rocker"), material=case.material_of("rocker"),
             histories=[replace(history, pins=tuple(pins))],
-            evaluated=np.ones(25, dtype=bool), stated=None, returns=True, threads=1,
+            evaluated=np.ones(25, dtype=bool), stated="eye-faces", returns=True, threads=1,
         ).envelope(fatigue=False)  # fmt: skip
 
     if refused:
