@@ -169,10 +169,10 @@ def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
 
 
 def _reasons(result: CheckResult) -> list[str]:
-    """Return the reason of each check; "" where its row of value, limit and verdict says the same."""
+    """Return the reason of each check; "" where its row says the same, so not where the reason names the model."""
     return [
         ""
-        if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS)
+        if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.DISPLACEMENT)
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
         else check.reason
         for check in checks_of(result)

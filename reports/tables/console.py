@@ -48,6 +48,8 @@ def print_result(result: CheckResult, console: "Console") -> None:
         for check in case.checks:
             if check.quantity is Quantity.DRIVE_POWER:
                 say(console, f"Motor: {check.reason}.")
+            elif check.quantity is Quantity.DISPLACEMENT:
+                say(console, f"Displacement of {check.subject}: {check.reason}.")
         for line in _hand(case):
             say(console, line)
     for layers in build_directions_of(result).values():

@@ -156,6 +156,13 @@ def test_a_flat_bar_stretches_as_its_solid_does():
     assert {SourceKind.DISCRETISATION, SourceKind.PIN_PRESSURE, SourceKind.SINKING} <= kinds[0] - kinds[1]
 
 
+def test_a_limit_inside_the_band_of_beams_is_left_to_solids():
+    text = FLAT.replace('"1 mm" }', '"0.04 mm" }') + MATERIAL.format(name="aluminium", young=68900, poisson=0.33)
+    by_beam, by_solid = (displacement(checked(text, fidelity)) for fidelity in ("beam", "solid"))
+    assert (by_beam.verdict, by_solid.verdict) == ("undecided", "pass")
+    assert by_beam.reason.endswith("; solid models of all links, --fidelity solid, have a narrower band")
+
+
 def bent_tube(force: str, fidelity: str) -> CheckOutcome:
     text = TUBE.replace("FORCE", force) + MATERIAL.format(name="plastic", young=2400, poisson=0.38)
     return displacement(checked(text, fidelity))
