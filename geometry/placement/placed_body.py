@@ -1,5 +1,6 @@
 """From a part that a case imports to the body of a link: placed by its bores, with sections between its pins."""
 
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -132,14 +133,18 @@ def _pin(placement: Fit, one: Wanted) -> Pin:
         raise CaseError(
             f"the point {one.name} does not stand at {bore.name}; read the case by read_case, which moves it there"
         )
-    ends = [end for span in bore.spans for end in span]
     along = 1.0 if np.dot(placement.turn[2], bore.axis) > 0.0 else -1.0
-    heights = [middle + along * end for end in ends]
+    walls = sorted(tuple(sorted(middle + along * end for end in span)) for span in bore.spans)
     return Pin(
         name=one.name,
         x=one.place[0],
         y=one.place[1],
         diameter=bore.diameter,
         clearance=bore.diameter - one.diameter,
-        ring=Ring(diameter=0.0, low=min(heights), high=max(heights)),
+        ring=Ring(
+            diameter=0.0,
+            low=walls[0][0],
+            high=walls[-1][1],
+            gaps=tuple((below[1], above[0]) for below, above in itertools.pairwise(walls)),
+        ),
     )

@@ -140,3 +140,16 @@ def test_a_load_point_in_a_bore_without_a_joint_is_a_pin_there(tmp_path):
     path.write_text(path.read_text() + 'bores = { P = "bore 2" }\n')
     with pytest.raises(CaseError, match=r"the point P stands .* mm from bore 2"):
         read_case(str(path))
+
+
+def test_the_gap_of_a_fork_is_no_wall(tmp_path):
+    """A bore of 5 mm in two cheeks of 4 mm with 8 mm between them, beside a bore of 6 mm through 16 mm."""
+    path = imported_case(tmp_path, file="fork.step", points='{ O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"] }')
+    body = read_case(str(path)).body("rocker")
+    fork, plain = body.ring(body.pins[0]), body.ring(body.pins[1])
+    assert (fork.thickness, fork.height) == (pytest.approx(8.0), pytest.approx(16.0))
+    assert fork.gaps == ((pytest.approx(-4.0), pytest.approx(4.0)),)
+    assert (plain.thickness, plain.gaps) == (pytest.approx(16.0), ())
+    mesh = mesh_body(body, COARSE)
+    assert mesh.areas["bore:O4"] == pytest.approx(np.pi * 5.0 * 8.0, rel=1e-6)
+    assert mesh.mirror is not None
