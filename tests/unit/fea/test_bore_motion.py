@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 import solid_meshes
 
+from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
 from fea.solid.bore_motion import flexibility, mean_motion, work
 from fea.solid.quadrature import surface_quadrature
-from fea.solid.solution import solve_free
+from fea.solid.solution import solve_free, solve_solid
 from fea.solid.space import displacement_space
 from fea.solid.supports import rigid_motions
 from fea.solid.traction import wrench_density
+from fea.solid.virtual_work import virtual_work
 from geometry.meshing.mirror import mirrored
 
 E, NU = 2900.0, 0.38
@@ -92,3 +94,26 @@ def test_the_ends_of_a_box_stretch_and_turn_as_a_prismatic_bar_does():
     inertia = wide**3 * high / 12.0
     assert float(pair[:, 0] @ F @ pair[:, 0]) == pytest.approx(length / (E * wide * high), rel=1e-9)
     assert float(pair[:, 5] @ F @ pair[:, 5]) == pytest.approx(length / (E * inertia), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("at_a", "at_b", "torque", "slotted"),
+    [
+        ([3.0, -1.0, 0.0, 0.0, 0.0, 0.0], [-3.0, 1.0, 0.0, 0.0, 0.0, 0.0], -20.0, False),
+        ([0.0, 2.0, 0.0, 0.0, 0.0, 0.0], [0.0, -2.0, 0.0, 0.0, 0.0, 0.0], 40.0, True),
+    ],
+)
+def test_pins_that_sink_do_the_work_of_their_own_pressure(at_a, at_b, torque, slotted):
+    """With the real loads as virtual ones, mean motions and all that pins sink make twice the strain energy."""
+    pins = tuple(
+        PinLoad(name=name, centre=PLACES[f"bore:{name}"], diameter=1.5, wrench=np.array(wrench), slotted=s)
+        for name, wrench, s in (("A", at_a, False), ("B", at_b, slotted))
+    )
+    loads = LinkLoads(name="own", pins=pins, couples=(DriveCouple(pin="A", torque=torque),))
+    assert np.abs(loads.resultant()).max() < 1e-12
+    mesh = mirrored(solid_meshes.half_bar(tail=4.0, layers=1))
+    solved = solve_solid(mesh, E=E, nu=NU, density=1e-9, loads=[loads], line=("bore:A", "bore:B"), threads=1)
+    (band,) = virtual_work(solved, loads, [loads], transfer="eye-faces", error=0.0)
+    energies = [case.strain_energy for case in solved.cases]
+    assert band.high == pytest.approx(2.0 * max(energies), rel=1e-8)
+    assert band.low <= band.value < 2.0 * min(energies)
