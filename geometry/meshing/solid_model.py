@@ -135,7 +135,11 @@ def build(gmsh: Any, body: Body) -> Solid:
         tools = small.part.cavities(kernel, small)
     except FilletError:
         arms = ", or turn an arm further from what is beside it" if any(pin.foot for pin in body.pins) else ""
-        rings = [body.ring(pin) for pin in body.pins]
+        rings = [ring for ring in map(body.ring, body.pins) if ring.diameter > 0.0]
+        if not rings:
+            raise CaseError(
+                f"fillet_radius {part.fillet_radius:g} mm does not fit inside the {part.shape}; reduce it"
+            ) from None
         eyes = " and ".join(dict.fromkeys(f"{ring.diameter:g} mm by {ring.thickness:g} mm" for ring in rings))
         raise CaseError(
             f"fillet_radius {part.fillet_radius:g} mm does not fit between the {part.shape} and its eyes of "

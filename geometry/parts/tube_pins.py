@@ -4,9 +4,14 @@ import itertools
 
 from geometry.base.errors import CaseError
 from geometry.parts.body import Body, apart
+from geometry.parts.eyes import ROUNDING
 
 DEEPEST = 0.9
 """Largest reach of a hole across the tube, from the tube's axis, over the outer radius."""
+NARROWEST, WIDEST = 1.1, 0.8
+"""Least diameter of a bush over that of its pin, and its largest reach from the tube's axis over the bore's radius.
+
+Coarse meshes of thinner bushes fail; fillets beside wider ones are so small that meshing takes minutes."""
 
 
 def check_pins_through(body: Body, ends: tuple[float, float], bush: float) -> None:
@@ -38,10 +43,12 @@ def check_pins_through(body: Body, ends: tuple[float, float], bush: float) -> No
                 f"little of the tube's side: keep it within {DEEPEST * outer:.4g} mm of the axis, by a smaller "
                 "pin_diameter, a larger outer_diameter, or a pin on the axis"
             )
-        if bush > 0.0 and not (pin.diameter < bush and off + bush / 2.0 < bore):
+        least, most = NARROWEST * pin.diameter, 2.0 * (WIDEST * bore - off)
+        if bush > 0.0 and not (1.0 - ROUNDING) * least <= bush <= (1.0 + ROUNDING) * most:
             raise CaseError(
-                f"the bush at {pin.name} must be wider than its pin of {pin.diameter:.4g} mm and fit into the bore: "
-                f"set bush_diameter between {pin.diameter:.4g} mm and {2.0 * (bore - off):.4g} mm (now {bush:.4g} mm)"
+                f"bush_diameter {bush:.4g} mm is out of range at {pin.name}: with its pin of {pin.diameter:.4g} mm, "
+                f"{off:.4g} mm off the axis, and the bore it must be {least:.4g} mm to {most:.4g} mm; change it, or "
+                "state plug_length instead"
             )
         half = max(pin.diameter, bush) / 2.0
         if pin.x - half <= ends[0] or pin.x + half >= ends[1]:

@@ -136,8 +136,8 @@ def test_sizes_that_make_no_tube(sizes, rule):
         (body(diameter=7.5), "leaves too little of the tube's side"),
         (body(y=2.5), "leaves too little of the tube's side"),
         (body(overhang="1.5 mm"), "set overhang above 1.5 mm"),
-        (body(bush_diameter="3 mm"), "between 3 mm and 5 mm"),
-        (body(bush_diameter="4 mm", y=0.6), "between 3 mm and 3.8 mm"),
+        (body(bush_diameter="3 mm"), "3.3 mm to 4 mm"),
+        (body(bush_diameter="3.5 mm", y=0.6), "3.3 mm to 2.8 mm"),
         (body(holes=(HoleRow(count=1, diameter="2 mm", first="2 mm", last="2 mm", along="y"),)), "runs into"),
     ],
 )
