@@ -82,6 +82,15 @@ class Plate(PartKind):
         return 0.0
 
     @property
+    def size(self) -> float:
+        """As ``PartKind.size``: its thickness, or half of an eye if that is more.
+
+        Away from the eyes stresses vary over their size: with the thickness alone the first mesh of a plate of
+        200 x 150 x 3 mm has 82,000 elements in place of 22,000.
+        """
+        return max(self.thickness, self.eye_diameter / 2.0)
+
+    @property
     def section(self) -> Section:
         """Section of a strip as wide as an eye."""
         return rectangle(self.eye_diameter, self.thickness)
