@@ -87,6 +87,13 @@ class Bar(Straight):
         """As ``PartKind.unmeasured``: square ends."""
         return "its ends are square" if self.ends == "square" else ""
 
+    @property
+    def eye_entry(self) -> str:
+        """As ``PartKind.eye_entry``: with square ends there is no eye_diameter, but the bar has an end and sides."""
+        if self.ends == "round" or self.overhang is None:
+            return "eye_diameter"
+        return "2 overhang" if 2.0 * self.overhang < self.width else "width"
+
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: pins of a strip with square ends lie on its axis."""
         for pin in body.pins:

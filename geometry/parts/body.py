@@ -75,6 +75,11 @@ class PartKind(Printable):
         return ""
 
     @property
+    def eye_entry(self) -> str:
+        """What in the case file bounds its eyes, for messages."""
+        return "eye_diameter"
+
+    @property
     @abstractmethod
     def section(self) -> Section:
         """Cross-section between the eyes; of a part that is no beam, one through its middle."""

@@ -95,11 +95,11 @@ def _check_range(body: Body) -> None:
 
 def _check_pins(body: Body) -> None:
     for pin in body.pins:
-        eye = body.ring(pin).diameter
+        eye, entry = body.ring(pin).diameter, body.part.eye_entry
         if eye > 0.0 and not 0.0 < pin.diameter < eye:
             raise CaseError(
                 f"the pin hole at {pin.name} has a diameter of {pin.diameter:.4g} mm, but must be positive and less "
-                f"than eye_diameter {eye:.4g} mm; reduce pin_diameter or increase eye_diameter"
+                f"than {entry} {eye:.4g} mm; reduce pin_diameter or increase {entry.removeprefix('2 ')}"
             )
         if pin.slot > 0.0 and abs(pin.y) > ON_AXIS * pin.diameter:
             raise CaseError(

@@ -121,6 +121,16 @@ def test_a_strip_with_square_ends_is_a_box_less_its_holes(overhang):
     assert np.ptp(mesh.points[:, 0]) == pytest.approx(40.0 + 2.0 * overhang)
 
 
+@pytest.mark.parametrize(
+    ("overhang", "message"), [(1.9, "less than 2 overhang 3.8 mm; .* increase overhang"), (9.0, "width")]
+)
+def test_a_hole_that_reaches_the_end_or_the_sides_is_refused(overhang, message):
+    hole = 4.0 if overhang < 4.0 else 10.0
+    body = Body(part=strip(overhang), pins=(pin("A", 0.0, 0.0, hole), pin("B", 40.0, 0.0, 3.0)), ends=(), holes=())
+    with pytest.raises(CaseError, match=message):
+        check_body(body)
+
+
 def test_an_eye_of_its_own_on_a_bar_adds_its_own_volume():
     sizes = {"shape": "bar", "material": "resin", "width": "8 mm", "thickness": "3 mm", "fillet_radius": "0 mm"}
     part = Bar.model_validate(sizes | {"eye_diameter": "8 mm"})
