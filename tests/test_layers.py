@@ -26,7 +26,7 @@ OWNERS = {
     "skfem": ("fea/*.py",),
     "pypardiso": ("fea/solid/*.py",),
     "pyvista": ("reports/figures/*.py",),
-    "meshio": ("reports/page/export.py",),
+    "meshio": ("reports/page/export.py", "geometry/meshing/file_mesh.py"),
 }
 
 

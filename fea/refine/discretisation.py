@@ -80,8 +80,9 @@ class Discretisation:
                 "with a fourfold margin) cannot change the verdict"
             )
         order = "" if series.order is None else f", observed order {series.order:.1f}"
+        meshes = "one mesh" if count == 1 else f"{count} meshes, the finest"
         found = (
-            f"{count} meshes, the finest of {self.meshes[-1].elements:,} elements: peak {self._values} MPa{order}, "
+            f"{meshes} of {self.meshes[-1].elements:,} elements: peak {self._values} MPa{order}, "
             f"error at most {_percent(series.index)} ({series.rule})"
         )
         if self.status == "converged":

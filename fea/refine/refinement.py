@@ -232,6 +232,8 @@ class _Link:
         ]
         if self._settled():
             self.done = True
+        elif self.task.body.part.is_fixed:
+            self._stop("the mesh is that of the part's file, which is not refined")
         elif len(self.levels) >= self.effort.max_meshes:
             self._stop(f"the largest number of meshes, {len(self.levels)}, is reached")
         elif time.perf_counter() - start > self.effort.time_limit:

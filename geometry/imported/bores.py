@@ -7,13 +7,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
 from geometry.imported.columns import Columns
 from geometry.imported.facts import Bore, PartSurface, Vector
-from geometry.imported.walls import NEAR, Line, Real, Span, Wall, upwards, walls_of
+from geometry.imported.walls import NEAR, Line, Real, Span, Wall, upwards
 
 _HALF_TURN = 0.02
 """How much a slot's round end may differ from half a turn [rad]."""
@@ -23,7 +22,7 @@ _AXIS = 0.05
 """Share of the radius at which lines stand for the axis, on which corners of triangles would be."""
 
 
-def find_bores(gmsh: Any, solid: int, surface: PartSurface) -> tuple[Bore, ...]:
+def find_bores(walls: list[Wall], surface: PartSurface, box: Real) -> tuple[Bore, ...]:
     """Return the bores of a solid.
 
     A bore is a cylindrical wall around empty space that is open, and not narrower at both ends as a groove is. Walls of
@@ -32,23 +31,21 @@ def find_bores(gmsh: Any, solid: int, surface: PartSurface) -> tuple[Bore, ...]:
 
     Parameters
     ----------
-    gmsh : module
-        gmsh, with the solid in its present model.
-    solid : int
-        Its tag.
+    walls : list of Wall
+        Its cylindrical walls; those of one cylinder have the same ``line``.
     surface : PartSurface
         Triangles of its surface.
+    box : array
+        Least and greatest coordinates (2, 3) [mm].
 
     Returns
     -------
     tuple of Bore
         In the order of their names.
     """
-    walls = walls_of(gmsh, solid, surface)
     hollow = [wall for wall in walls if wall.hollow]
     outside = [wall for wall in walls if not wall.hollow and wall.round]
     found = [*_round_bores(surface, hollow), *_slots(surface, hollow)]
-    box = np.asarray(gmsh.model.getBoundingBox(3, solid)).reshape(2, 3)
     return _named([replace(bore, around=_is_around(bore, outside)) for bore in found], box)
 
 

@@ -1,4 +1,4 @@
-"""Records of what is found in a STEP file, in mm in the file's own frame."""
+"""Records of what is found in the file of a part, in mm in the file's own frame."""
 
 from dataclasses import dataclass
 
@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Vector = tuple[float, float, float]
+MESH_FORMATS = {".msh": "gmsh", ".inp": "abaqus", ".vtu": "vtu"}
+"""Ends of the names of mesh files -> what meshio calls their format."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""What is found in a STEP file, asked of the geometry kernel in its child process."""
+"""What is found in a STEP file or a mesh, asked of the geometry kernel's child process."""
 
 import hashlib
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any
 
 from geometry.base.errors import CaseError
 from geometry.base.kernel_child import KernelWords, ask_kernel
-from geometry.imported.facts import PartFacts, PartSurface
+from geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface
 
 LARGEST_FILE = 200_000_000
 """Bytes."""
@@ -17,16 +17,18 @@ MEMORY_LIMIT = 3e9
 _FIRST, _LAST, _TAIL = b"ISO-10303-21;", b"END-ISO-10303-21;", 4096
 """What a STEP file begins and ends with (ISO 10303-21), and how far from its end that is looked for [bytes]."""
 _SIMPLER = "export the part alone, without threads, lettering and other fine details"
-_known: dict[str, PartFacts] = {}
+_known: dict[tuple[str, float | None], PartFacts] = {}
 
 
-def part_facts(path: Path) -> PartFacts:
-    """Return what is found in a STEP file of one solid; a file of the same content is read only once.
+def part_facts(path: Path, mesh_unit: float | None = None) -> PartFacts:
+    """Return what is found in a file of one solid; a file of the same content is read only once.
 
     Parameters
     ----------
     path : Path
         The file.
+    mesh_unit : float or None, optional
+        Unit of length of a mesh [mm]; None for a STEP file.
 
     Returns
     -------
@@ -36,23 +38,25 @@ def part_facts(path: Path) -> PartFacts:
     Raises
     ------
     CaseError
-        Where it is no STEP file of one solid.
+        Where it holds no single solid.
     CannotRunError
         Where the kernel fails, crashes or exceeds a limit.
     """
-    digest = file_digest(path)
-    if digest not in _known:
-        _known[digest] = _ask("facts", path, digest)
-    return _known[digest]
+    key = file_digest(path, mesh=mesh_unit is not None), mesh_unit
+    if key not in _known:
+        _known[key] = _ask("facts", path, *key)
+    return _known[key]
 
 
-def part_surface(path: Path) -> PartSurface:
-    """Return triangles of the surface of the solid in a STEP file.
+def part_surface(path: Path, mesh_unit: float | None = None) -> PartSurface:
+    """Return triangles of the surface of the solid in a file.
 
     Parameters
     ----------
     path : Path
         The file.
+    mesh_unit : float or None, optional
+        Unit of length of a mesh [mm]; None for a STEP file.
 
     Returns
     -------
@@ -64,28 +68,48 @@ def part_surface(path: Path) -> PartSurface:
     CaseError, CannotRunError
         As ``part_facts``.
     """
-    found: PartSurface = _ask("surface", path, file_digest(path))
+    found: PartSurface = _ask("surface", path, file_digest(path, mesh=mesh_unit is not None), mesh_unit)
     return found
 
 
-def _ask(task: str, path: Path, digest: str) -> Any:
+def mesh_unit_of(path: Path) -> float | None:
+    """Return the unit in which a file is read of which nothing but its name is known.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    float or None
+        1.0 mm for a mesh, None for any other file.
+    """
+    return 1.0 if path.suffix.lower() in MESH_FORMATS else None
+
+
+def _ask(task: str, path: Path, digest: str, mesh_unit: float | None) -> Any:
     words = KernelWords(
         who=f"the geometry kernel, reading '{path.name}',",
         late=_SIMPLER,
         large=_SIMPLER,
         crashed="export the part anew",
     )
-    subject = str(path.absolute()), digest
+    subject: tuple[object, ...] = str(path.absolute()), digest
+    if mesh_unit is not None:
+        task, subject = f"{task} of mesh", (*subject, mesh_unit)
     return ask_kernel(task, subject, words=words, time_limit=TIME_LIMIT, memory=MEMORY_LIMIT)
 
 
-def file_digest(path: Path) -> str:
-    """Return the SHA-256 of a STEP file's content; refuse what is no STEP file at first sight.
+def file_digest(path: Path, *, mesh: bool = False) -> str:
+    """Return the SHA-256 of a file's content; refuse what is no STEP file, or no mesh, at first sight.
 
     Parameters
     ----------
     path : Path
         The file.
+    mesh : bool, optional
+        True for a mesh.
 
     Returns
     -------
@@ -95,17 +119,23 @@ def file_digest(path: Path) -> str:
     Raises
     ------
     CaseError
-        Where there is no such file, or it is too large, no STEP file or cut off.
+        Where there is no such file, or it is too large, of another format or cut off.
     """
+    kind = "mesh file" if mesh else "STEP file"
     try:
         if path.is_dir():
-            raise CaseError(f"'{path}' is a folder; name the STEP file in it")
+            raise CaseError(f"'{path}' is a folder; name the {kind} in it")
         if not path.is_file():
-            raise CaseError(f"there is no file '{path}'; name an existing STEP file")
+            raise CaseError(f"there is no file '{path}'; name an existing {kind}")
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise CaseError(f"'{path}' has more than the {LARGEST_FILE / 1e6:.0f} MB that are read; {_SIMPLER}")
+        if mesh and path.suffix.lower() not in MESH_FORMATS:
+            ends = ", ".join(MESH_FORMATS)
+            raise CaseError(f"'{path}' is no mesh file by its name, which must end with {ends}; export the part as one")
         with path.open("rb") as stream:
+            if mesh:
+                return hashlib.file_digest(stream, "sha256").hexdigest()
             start = stream.read(_TAIL).removeprefix(b"\xef\xbb\xbf").lstrip()
             stream.seek(max(0, size - _TAIL))
             end = stream.read()

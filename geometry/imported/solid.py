@@ -11,6 +11,7 @@ import numpy as np
 from geometry.base.errors import CaseError
 from geometry.imported.bores import find_bores
 from geometry.imported.facts import PartFacts, PartSurface, Vector
+from geometry.imported.walls import walls_of
 
 _TRIANGLE = 2
 """gmsh's number of this shape."""
@@ -87,6 +88,7 @@ def facts_of_file(gmsh: Any, path: str, digest: str) -> PartFacts:
     """
     tag, occ = import_solid(gmsh, path), gmsh.model.occ
     box, inertia = gmsh.model.getBoundingBox(3, tag), occ.getMatrixOfInertia(3, tag)
+    surface = surface_of(gmsh, tag)  # after the bounds, which are exact only without triangles
     return PartFacts(
         volume=float(occ.getMass(3, tag)),
         surface=float(sum(occ.getMass(2, face) for face in gmsh.model.getAdjacencies(3, tag)[1])),
@@ -94,7 +96,7 @@ def facts_of_file(gmsh: Any, path: str, digest: str) -> PartFacts:
         inertia=(_vector(inertia[:3]), _vector(inertia[3:6]), _vector(inertia[6:])),
         low=_vector(box[:3]),
         high=_vector(box[3:]),
-        bores=find_bores(gmsh, tag, surface_of(gmsh, tag)),
+        bores=find_bores(walls_of(gmsh, tag, surface), surface, np.reshape(box, (2, 3))),
         digest=digest,
     )
 

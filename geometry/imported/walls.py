@@ -165,8 +165,24 @@ def walls_of(gmsh: Any, solid: int, surface: PartSurface) -> list[Wall]:
     list of Wall
     """
     faces = [_face(gmsh.model, surface, tag) for tag in gmsh.model.getAdjacencies(3, solid)[1]]
+    return joined_walls(filter(None, faces))
+
+
+def joined_walls(faces: Iterable[Wall]) -> list[Wall]:
+    """Return the walls that faces make together.
+
+    Parameters
+    ----------
+    faces : iterable of Wall
+        Each a wall of its own.
+
+    Returns
+    -------
+    list of Wall
+        Those of one cylinder have the same ``line``.
+    """
     cylinders: list[list[Wall]] = []
-    for face in filter(None, faces):
+    for face in faces:
         for cylinder in cylinders:
             if _one_cylinder(cylinder[0], face):
                 cylinder.append(face)
@@ -220,14 +236,31 @@ def _cylinder(model: Any, tag: int) -> tuple[Line, float] | None:
     line = Line(point=middle, axis=upwards(directions[2]))
     first, second = line.across
     flat = np.column_stack([(points - middle) @ first, (points - middle) @ second])
-    # Of the circle x² + y² = 2 a x + 2 b y + c, by least squares (I. Kåsa, IEEE Trans. Instrum. Meas. 25 (1976) 8-14).
-    (a, b, c), *_ = np.linalg.lstsq(
-        np.column_stack([2.0 * flat, np.ones(len(flat))]), (flat**2).sum(axis=1), rcond=None
-    )
-    radius = math.sqrt(max(c + a * a + b * b, 0.0))
+    a, b, radius = fitted_circle(flat)
     if np.abs(np.hypot(flat[:, 0] - a, flat[:, 1] - b) - radius).max() > NEAR * radius:
         return None
     return Line(point=middle + a * first + b * second, axis=line.axis), radius
+
+
+def fitted_circle(flat: Real) -> tuple[float, float, float]:
+    """Return centre and radius of the circle x² + y² = 2 a x + 2 b y + c through points, by least squares.
+
+    I. Kåsa, IEEE Trans. Instrum. Meas. 25 (1976) 8-14.
+
+    Parameters
+    ----------
+    flat : array
+        (n, 2) [mm].
+
+    Returns
+    -------
+    tuple of float
+        x, y, radius [mm].
+    """
+    (a, b, c), *_ = np.linalg.lstsq(
+        np.column_stack([2.0 * flat, np.ones(len(flat))]), (flat**2).sum(axis=1), rcond=None
+    )
+    return float(a), float(b), math.sqrt(max(c + a * a + b * b, 0.0))
 
 
 def _points(model: Any, tag: int, counts: tuple[int, int], *, normals: bool = False) -> Real:
@@ -287,14 +320,25 @@ def _joined(faces: list[Wall]) -> Iterable[Wall]:
     (low, high), arcs = pieces[0]
     for (start, end), more in [*pieces[1:], ((math.inf, math.inf), [])]:
         if start > high + NEAR * first.radius:
-            yield Wall(line=first.line, radius=first.radius, hollow=first.hollow, span=(low, high), arcs=_united(arcs))
+            yield Wall(line=first.line, radius=first.radius, hollow=first.hollow, span=(low, high), arcs=united(arcs))
             (low, high), arcs = (start, end), []
         high = max(high, end)
         arcs = [*arcs, *more]
 
 
-def _united(arcs: list[Span]) -> tuple[Span, ...]:
-    """Return arcs without overlaps, in the order of their starts."""
+def united(arcs: Iterable[Span]) -> tuple[Span, ...]:
+    """Return arcs without overlaps, in the order of their starts.
+
+    Parameters
+    ----------
+    arcs : iterable of tuple of 2 float
+        Starts, from 0 to 2π, and angles [rad].
+
+    Returns
+    -------
+    tuple of tuple of 2 float
+        Starts and angles [rad].
+    """
     found: list[Span] = []
     for start, angle in sorted(arcs):
         if found and start <= sum(found[-1]) + NEAR:

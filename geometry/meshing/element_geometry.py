@@ -18,8 +18,21 @@ _Array = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 
 
-def _gradients(edges: _Ints, at: _Array) -> _Array:
-    """Return gradients of the quadratic simplex functions at points (q, d) as (q, nodes, d)."""
+def shape_gradients(edges: _Ints, at: _Array) -> _Array:
+    """Return the gradients of the quadratic functions of a simplex.
+
+    Parameters
+    ----------
+    edges : ndarray
+        Corners of the edges that carry mid-nodes.
+    at : ndarray
+        Points (q, d) of the unit simplex.
+
+    Returns
+    -------
+    ndarray
+        (q, nodes, d).
+    """
     d = at.shape[1]
     bary = np.hstack([1.0 - at.sum(axis=1, keepdims=True), at])
     slope = np.vstack([-np.ones(d), np.eye(d)])
@@ -64,7 +77,7 @@ def jacobian_coefficients(points: _Array, cells: _Ints) -> _Array:
     if cells.shape[1] == 4:
         return np.asarray(np.linalg.det(x[:, 1:] - x[:, :1]))[:, None]
     lattice, to_bernstein = _cubic_lattice()
-    gradients = _gradients(TETRA_EDGES, lattice)
+    gradients = shape_gradients(TETRA_EDGES, lattice)
     determinants = np.empty((len(cells), len(lattice)))
     for q, gradient in enumerate(gradients):
         determinants[:, q] = _determinants(x.transpose(0, 2, 1) @ gradient)
@@ -121,17 +134,25 @@ def triangle_areas(points: _Array, triangles: _Ints) -> _Array:
     x = points[triangles]
     if triangles.shape[1] == 3:
         return np.asarray(np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1) / 2.0)
-    at, weights = _triangle_rule()
+    at, weights = triangle_rule()
     area = np.zeros(len(triangles))
-    for gradient, weight in zip(_gradients(TRIANGLE_EDGES, at), weights, strict=True):
+    for gradient, weight in zip(shape_gradients(TRIANGLE_EDGES, at), weights, strict=True):
         tangents = np.einsum("enx,nd->edx", x, gradient)
         area += weight * np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
     return area
 
 
 @cache
-def _triangle_rule() -> tuple[_Array, _Array]:
-    """Return the Gauss rule of the square, collapsed onto the triangle: exact to degree 8."""
+def triangle_rule() -> tuple[_Array, _Array]:
+    """Return the Gauss rule of the square, collapsed onto the triangle: exact to degree 8.
+
+    Returns
+    -------
+    at : ndarray
+        Points (25, 2) of the unit triangle.
+    weights : ndarray
+        (25,), of sum 1/2.
+    """
     at, weights = np.polynomial.legendre.leggauss(5)
     s, w = (at + 1.0) / 2.0, weights / 2.0
     u, v = (a.ravel() for a in np.meshgrid(s, s, indexing="ij"))

@@ -23,6 +23,7 @@ from geometry.base.child_server import ChildService
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.system_libraries import advice
 from geometry.imported.solid import facts_of_file, surface_of_file
+from geometry.meshing.file_mesh import MESH_TASKS, facts_of_mesh, surface_of_mesh
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesh_target import MeshTarget, mesh_target
 from geometry.meshing.solid_model import Solid, build, initialised, present, volume_centroid_inertia, write_step
@@ -88,8 +89,13 @@ TASKS: dict[str, Callable[..., object]] = {
     "sections": _sections,
 }
 """What the worker does with gmsh, a body that has been built, and further arguments."""
-FILE_TASKS: dict[str, Callable[..., object]] = {"facts": facts_of_file, "surface": surface_of_file}
-"""What it does with gmsh, in a model of its own, with the path and the digest of a STEP file, and further arguments."""
+FILE_TASKS: dict[str, Callable[..., object]] = {
+    "facts": facts_of_file,
+    "surface": surface_of_file,
+    "facts of mesh": facts_of_mesh,
+    "surface of mesh": surface_of_mesh,
+}
+"""What it does with gmsh, in a model of its own, with the path and the digest of a file, and further arguments."""
 
 
 class _Worker:
@@ -110,6 +116,8 @@ class _Worker:
             self._gmsh = self._gmsh or initialised()
             if task in FILE_TASKS:
                 return "done", self._about_file(FILE_TASKS[task], *subject, *arguments)
+            if subject.part.is_fixed:
+                return "done", MESH_TASKS[task](subject, *arguments)
             return "done", TASKS[task](self._gmsh, self._of(subject, task), *arguments)
         except CaseError as error:
             return "case", str(error)

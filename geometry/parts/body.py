@@ -60,6 +60,8 @@ class PartKind(Printable):
     """What the reader must know of its hand calculation; "" where beam theory holds."""
     has_holes: ClassVar[bool] = False
     """Whether its solid has its pin holes from the start."""
+    is_fixed: ClassVar[bool] = False
+    """Whether it comes as a mesh, which is not refined."""
     patches_anywhere: ClassVar[bool] = False
     """Whether a load point without a pin may lie anywhere on it, where a circle about the point is loaded; else it lies
     on the axis, and a stretch of the part is."""

@@ -8,9 +8,10 @@ from geometry.parts.bar import Bar
 from geometry.parts.body import Body
 from geometry.parts.disc import Disc
 from geometry.parts.features import EyeSizes, HoleRow, Pin, PlainEnd, Ring, Slot
+from geometry.parts.mesh_part import MeshPart
 from geometry.parts.plate import Plate
 from geometry.parts.section import Section, rectangle, ring
-from geometry.parts.step import StepPart
+from geometry.parts.step import FilePart, StepPart
 from geometry.parts.tube import Tube
 
 __all__ = [
@@ -18,7 +19,9 @@ __all__ = [
     "Body",
     "Disc",
     "EyeSizes",
+    "FilePart",
     "HoleRow",
+    "MeshPart",
     "Part",
     "Pin",
     "PlainEnd",
@@ -32,5 +35,5 @@ __all__ = [
     "ring",
 ]
 
-Part = Annotated[Tube | Bar | Disc | Plate | StepPart, Field(discriminator="shape")]
+Part = Annotated[Tube | Bar | Disc | Plate | StepPart | MeshPart, Field(discriminator="shape")]
 """Any kind of part; a new kind joins here."""

@@ -1,9 +1,9 @@
-"""The imported part: a solid from a STEP file, and how it lies in its link."""
+"""The imported part: a solid from a file, and how it lies in its link."""
 
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import AfterValidator, Field, ValidationInfo
 
@@ -21,7 +21,7 @@ Vector = tuple[float, float, float]
 def _beside_the_case(text: str, info: ValidationInfo) -> str:
     """Return the path of a file that stands beside the case file, or anywhere else if it is an absolute path."""
     if not text.strip() or "\0" in text:
-        raise refusal("a part needs the name of its file; name the STEP file, relative to the case file")
+        raise refusal("a part needs the name of its file; name it, relative to the case file")
     folder = (info.context or {}).get("folder", "")
     return str((Path(folder) / text).absolute())
 
@@ -29,13 +29,18 @@ def _beside_the_case(text: str, info: ValidationInfo) -> str:
 PartFile = Annotated[Text, Field(max_length=1000), AfterValidator(_beside_the_case)]
 
 
-class StepPart(Printable):
-    """A solid from a STEP file; its bores are matched to the points of the link that is made of it."""
+class FilePart(Printable):
+    """A solid from a file; its bores are matched to the points of the link that is made of it."""
 
-    shape: Literal["step"]
+    if TYPE_CHECKING:  # at run time it would stand in the way of a kind's field
+
+        @property
+        def shape(self) -> str:
+            """Name of the kind in the case file."""
+
     material: Name
     file: PartFile
-    """Name of the STEP file, relative to the folder of the case file."""
+    """Name of the file, relative to the folder of the case file."""
     bores: Annotated[dict[Name, Text], Field(max_length=100)] = {}
     """Point of the link -> name of its bore, as ``alula inspect`` names them; needed where the points and diameters of
     the link fit the part in several ways, and for ``points = "from-part"``."""
@@ -49,9 +54,20 @@ class StepPart(Printable):
     """Height above the middle of the first point's bore, along z of the link, of the plane in which the forces act;
     the mean of the bores' middles unless stated."""
 
+    @property
+    def mesh_unit(self) -> float | None:
+        """Unit of length of a mesh [mm]; None where the file holds a solid, with a unit of its own."""
+        return None
+
+
+class StepPart(FilePart):
+    """A solid from a STEP file; its bores are matched to the points of the link that is made of it."""
+
+    shape: Literal["step"]
+
 
 class ImportedPart(PartKind):
-    """A solid from a file, placed in the frame of a link: the kind of part that a body of a ``StepPart`` has.
+    """A solid from a file, placed in the frame of a link: the kind of part that a body of a ``FilePart`` has.
 
     A point p of the file lies at ``turn`` p + ``shift`` in the link's frame.
     """
@@ -59,10 +75,10 @@ class ImportedPart(PartKind):
     takes: ClassVar[frozenset[Feature]] = frozenset(("load points without a pin",))
     is_beam: ClassVar[bool] = False
 
-    shape: Literal["step"] = "step"
+    shape: Literal["step", "mesh"] = "step"
     material: Name
     file: str
-    """Path of the STEP file."""
+    """Path of the file."""
     digest: str
     """SHA-256 of its content when it was placed."""
     turn: tuple[Vector, Vector, Vector]

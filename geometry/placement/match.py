@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from geometry.base.errors import CaseError
 from geometry.imported.arrangement import PARALLEL, angle_between
 from geometry.imported.facts import Bore
-from geometry.parts.step import StepPart
+from geometry.parts.step import FilePart
 
 Real = NDArray[np.float64]
 
@@ -72,12 +72,12 @@ class Fit:
         return np.asarray(self.turn @ np.asarray(self.bores[point].centre) + self.shift)
 
 
-def place(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fit:
+def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fit:
     """Find how a part lies in its link.
 
     Parameters
     ----------
-    part : StepPart
+    part : FilePart
         The part, with its tolerances and what it states of its bores.
     bores : sequence of Bore
         All bores of its solid.
@@ -119,13 +119,13 @@ def place(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
 
 
 def with_loaded_bores(
-    part: StepPart, fit: Fit, bores: Sequence[Bore], points: Mapping[str, tuple[float, float]]
+    part: FilePart, fit: Fit, bores: Sequence[Bore], points: Mapping[str, tuple[float, float]]
 ) -> Fit:
     """Add the bores in which points without a joint stand: a load there is that of a pin.
 
     Parameters
     ----------
-    part : StepPart
+    part : FilePart
         The part.
     fit : Fit
         How it lies by the pins of its joints.
@@ -162,12 +162,12 @@ def with_loaded_bores(
     return replace(fit, bores=found)
 
 
-def points_of_part(part: StepPart, bores: Sequence[Bore]) -> dict[str, tuple[float, float]]:
+def points_of_part(part: FilePart, bores: Sequence[Bore]) -> dict[str, tuple[float, float]]:
     """Return the points that a part's named bores give its link, the first at the origin, the second on the x axis.
 
     Parameters
     ----------
-    part : StepPart
+    part : FilePart
         A part that names its bores.
     bores : sequence of Bore
         All bores of its solid.
@@ -200,7 +200,7 @@ def points_of_part(part: StepPart, bores: Sequence[Bore]) -> dict[str, tuple[flo
     return {point: (round(float(at[0]), 9), round(float(at[1]), 9)) for point, at in flat.items()}
 
 
-def _candidates(part: StepPart, bores: Sequence[Bore], one: Wanted) -> list[Bore]:
+def _candidates(part: FilePart, bores: Sequence[Bore], one: Wanted) -> list[Bore]:
     """Return the bores that may be a point's: the one that is named, else all of its diameter."""
     if one.name in part.bores:
         bore = _named(part, bores, one.name)
@@ -220,11 +220,11 @@ def _candidates(part: StepPart, bores: Sequence[Bore], one: Wanted) -> list[Bore
     return found
 
 
-def _holds(part: StepPart, bore: Bore, one: Wanted) -> bool:
+def _holds(part: FilePart, bore: Bore, one: Wanted) -> bool:
     return abs(bore.diameter - one.diameter) <= part.diameter_tolerance + 1e-9 * one.diameter
 
 
-def _named(part: StepPart, bores: Sequence[Bore], point: str) -> Bore:
+def _named(part: FilePart, bores: Sequence[Bore], point: str) -> Bore:
     name = part.bores[point]
     for bore in bores:
         if bore.name == name:
@@ -251,7 +251,7 @@ def listed(bores: Sequence[Bore]) -> str:
     return f"its bores are {shown}{', ...' if len(bores) > 12 else ''}"
 
 
-def _check_named_parallel(part: StepPart, wanted: Sequence[Wanted], candidates: Sequence[Sequence[Bore]]) -> None:
+def _check_named_parallel(part: FilePart, wanted: Sequence[Wanted], candidates: Sequence[Sequence[Bore]]) -> None:
     named = {one.name: found[0] for one, found in zip(wanted, candidates, strict=True) if one.name in part.bores}
     _check_parallel(named)
 
@@ -278,7 +278,7 @@ def _across(vector: Real, z: Real) -> Real:
     return np.asarray(vector - (vector @ z) * z)
 
 
-def _fits(part: StepPart, candidates: Sequence[Sequence[Bore]], wanted: Sequence[Wanted]) -> Iterator[Fit]:
+def _fits(part: FilePart, candidates: Sequence[Sequence[Bore]], wanted: Sequence[Wanted]) -> Iterator[Fit]:
     """Yield every way in which a part lies so that all points are bores: first those the right way up."""
     places = np.array([one.place for one in wanted])
     far = np.linalg.norm(places[:, None] - places, axis=2)
@@ -313,7 +313,7 @@ def _turned(arm: Real, along: Real, z: Real) -> Real:
     return np.array([cosine * unit - sine * across, sine * unit + cosine * across, z])
 
 
-def _fitted(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted], turn: Real) -> Fit | None:
+def _fitted(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted], turn: Real) -> Fit | None:
     """Return the placement whose bores are nearest to the points by least squares; None where one is too far off.
 
     The best rotation in the plane: Kabsch, Acta Cryst. A32 (1976) 922-923.
@@ -336,7 +336,7 @@ def _fitted(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted], tur
     return Fit(turn=turn, shift=shift, bores=named)
 
 
-def _none_fits(part: StepPart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> str:
+def _none_fits(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> str:
     """Say that no bores lie as the points do, with the distances of both."""
     pairs = list(itertools.combinations(wanted, 2))[:3]
     stated = ", ".join(f"{a.name} to {b.name} {math.dist(a.place, b.place):.5g} mm" for a, b in pairs)

@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,8 @@ from geometry.imported.read import part_facts
 from geometry.meshing.mesh import sections_and_rings
 from geometry.parts.body import Body
 from geometry.parts.features import Pin, Ring
-from geometry.parts.step import ImportedPart, StepPart
+from geometry.parts.mesh_part import MeshedPart
+from geometry.parts.step import FilePart, ImportedPart
 from geometry.placement.match import Fit, Wanted, place, with_loaded_bores
 
 EXACT = 1e-6
@@ -24,12 +26,12 @@ STATIONS = 16
 _bodies: dict[tuple[object, ...], Body] = {}
 
 
-def bores_of(part: StepPart) -> tuple[Bore, ...]:
+def bores_of(part: FilePart) -> tuple[Bore, ...]:
     """Return the bores of a part's file.
 
     Parameters
     ----------
-    part : StepPart
+    part : FilePart
         The part, as the case states it.
 
     Returns
@@ -44,17 +46,17 @@ def bores_of(part: StepPart) -> tuple[Bore, ...]:
     CannotRunError
         Where the kernel fails.
     """
-    return part_facts(Path(part.file)).bores
+    return part_facts(Path(part.file), part.mesh_unit).bores
 
 
 def placed_body(
-    part: StepPart, wanted: tuple[Wanted, ...], others: tuple[tuple[str, tuple[float, float]], ...] = ()
+    part: FilePart, wanted: tuple[Wanted, ...], others: tuple[tuple[str, tuple[float, float]], ...] = ()
 ) -> Body:
     """Place an imported part in its link.
 
     Parameters
     ----------
-    part : StepPart
+    part : FilePart
         The part, as the case states it.
     wanted : tuple of Wanted
         The pinned points of the link.
@@ -74,7 +76,7 @@ def placed_body(
     CannotRunError
         Where the kernel fails.
     """
-    facts = part_facts(Path(part.file))
+    facts = part_facts(Path(part.file), part.mesh_unit)
     key = facts.digest, part.model_dump_json(), wanted, others
     if key not in _bodies:
         try:
@@ -85,7 +87,7 @@ def placed_body(
 
 
 def _placed(
-    part: StepPart, facts: PartFacts, wanted: tuple[Wanted, ...], others: Mapping[str, tuple[float, float]]
+    part: FilePart, facts: PartFacts, wanted: tuple[Wanted, ...], others: Mapping[str, tuple[float, float]]
 ) -> Body:
     placement = with_loaded_bores(part, place(part, facts.bores, wanted), facts.bores, others)
     loaded = [
@@ -95,7 +97,8 @@ def _placed(
     ]
     corners = np.array(np.meshgrid(*zip(facts.low, facts.high, strict=True))).reshape(3, -1).T
     bounds = corners @ placement.turn.T + placement.shift
-    solid = ImportedPart(
+    kind = ImportedPart if part.mesh_unit is None else partial(MeshedPart, file_unit=part.mesh_unit)
+    solid = kind(
         material=part.material,
         build_direction=part.build_direction,
         file=part.file,

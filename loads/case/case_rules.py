@@ -7,7 +7,7 @@ from geometry.base.model import check_file_names
 from geometry.parts.body_rules import check_body
 from geometry.parts.laminate import ANISOTROPIC, is_laminate
 from geometry.parts.material import Material
-from geometry.parts.part import Body, StepPart
+from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase, check_moving, check_point
 from loads.case.load_rules import check_loads, check_masses, check_place
 from loads.records.check_spec import (
@@ -77,7 +77,7 @@ def check_rules(case: CoreCase) -> None:
         _check_ways_to_hold(case, case.ways_to_hold)
     _check_size(case)
     for name, hand in case.hand_calculations.items():
-        drawn = [part for part, record in case.parts.items() if not isinstance(record, StepPart)]
+        drawn = [part for part, record in case.parts.items() if not isinstance(record, FilePart)]
         require(f"hand_calculations.{name}.part", hand.part, drawn, "is no part of a shape of alula's own")
     if case.motion is not None:
         _check_motion(case, case.motion)
@@ -263,7 +263,7 @@ def _check_eyes(case: CoreCase, link: str) -> None:
     pinned = list(dict.fromkeys(linkage.point_of(name, link) for name in linkage.joints_of(link)))
     for point in record.eyes:
         require(f"links.{link}.eyes", point, pinned, "is no point with a joint")
-        if isinstance(part, StepPart) or "eyes of their own" not in part.takes:
+        if isinstance(part, FilePart) or "eyes of their own" not in part.takes:
             raise CaseError(
                 f"links.{link}.eyes.{point}: a part of shape {part.shape} takes no eyes of their own; leave them out"
             )

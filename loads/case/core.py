@@ -12,7 +12,7 @@ from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.parts.body import PartKind
 from geometry.parts.material import Material, library
-from geometry.parts.part import Body, Part, Pin, PlainEnd, Ring, StepPart
+from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd, Ring
 from geometry.placement.match import Wanted
 from geometry.placement.placed_body import placed_body
 from loads.case.revisable import Revisable
@@ -222,7 +222,7 @@ class CoreCase(Revisable):
             Where it has none.
         """
         part = self._stated_part(link)
-        return self.body(link).part if isinstance(part, StepPart) else part
+        return self.body(link).part if isinstance(part, FilePart) else part
 
     @cached_property
     def _imported(self) -> dict[str, Body]:
@@ -272,7 +272,7 @@ class CoreCase(Revisable):
                         'state it, for example "1.5 mm"'
                     )
                 pins.append(_pin(self, link, name, diameter))
-            elif isinstance(part, StepPart) or part.patches_anywhere:
+            elif isinstance(part, FilePart) or part.patches_anywhere:
                 ends.append(PlainEnd(name=name, x=x, patch=record.end_patch, y=y))
             elif abs(y) > 1e-9 * self.linkage.longest:
                 raise CaseError(
@@ -281,7 +281,7 @@ class CoreCase(Revisable):
                 )
             else:
                 ends.append(PlainEnd(name=name, x=x, patch=record.end_patch))
-        if isinstance(part, StepPart):
+        if isinstance(part, FilePart):
             wanted = tuple(Wanted(name=pin.name, place=(pin.x, pin.y), diameter=pin.diameter) for pin in pins)
             if link not in self._imported:
                 self._imported[link] = placed_body(part, wanted, tuple((end.name, (end.x, end.y)) for end in ends))
@@ -360,7 +360,7 @@ def _ring(case: CoreCase, link: str, name: str) -> Ring | None:
     """Return the ring about the pin hole at a point of a link, where the link states an eye there."""
     record = case.links[link]
     eye, part = record.eyes.get(name), case.parts[record.part or ""]
-    if eye is None or isinstance(part, StepPart):
+    if eye is None or isinstance(part, FilePart):
         return None
     half = (eye.thickness or part.eye_thickness) / 2.0
     return Ring(diameter=eye.diameter or part.eye_diameter, low=-half, high=half)

@@ -15,12 +15,15 @@ from pydantic_core import PydanticCustomError
 from geometry.base.errors import AlulaError, CaseError
 from geometry.base.units import parse
 from geometry.linkage.linkage import Joint
-from geometry.parts.step import StepPart
+from geometry.parts.mesh_part import MeshPart
+from geometry.parts.step import FilePart, StepPart
 from geometry.placement.match import Wanted, place, points_of_part, with_loaded_bores
 from geometry.placement.placed_body import bores_of
 from loads.text.explain import sentence
 
 FROM_PART = "from-part"
+KINDS: dict[str, type[FilePart]] = {"step": StepPart, "mesh": MeshPart}
+"""Shapes of parts that are imported."""
 DIGITS = 9
 """Of a place in mm."""
 
@@ -53,22 +56,25 @@ def with_part_points(tables: dict[str, Any], context: Mapping[str, object]) -> d
     changed = dict(links)
     for name, link in links.items():
         stated = parts.get(link.get("part")) if isinstance(link, dict) and isinstance(link.get("part"), str) else None
-        if isinstance(stated, dict) and stated.get("shape") == "step":
+        if isinstance(stated, dict) and stated.get("shape") in KINDS:
             part = _part(link["part"], stated, context)
             changed[name] = link | {"points": _points(name, link, part, tables.get("joints"))}
         elif isinstance(link, dict) and link.get("points") == FROM_PART:
-            raise CaseError(f'links.{name}.points: "{FROM_PART}" needs a part of shape "step"; state the points')
+            raise CaseError(
+                f'links.{name}.points: "{FROM_PART}" needs a part of shape "step" or "mesh"; state the points'
+            )
     return tables | {"links": changed}
 
 
-def _part(name: str, stated: dict[str, Any], context: Mapping[str, object]) -> StepPart:
+def _part(name: str, stated: dict[str, Any], context: Mapping[str, object]) -> FilePart:
+    kind = KINDS[stated["shape"]]
     try:
-        return StepPart.model_validate(stated, context=dict(context))
+        return kind.model_validate(stated, context=dict(context))
     except ValidationError as error:
-        raise CaseError(f"parts.{name}.{sentence(error, StepPart)}") from None
+        raise CaseError(f"parts.{name}.{sentence(error, kind)}") from None
 
 
-def _points(name: str, link: dict[str, Any], part: StepPart, joints: object) -> object:
+def _points(name: str, link: dict[str, Any], part: FilePart, joints: object) -> object:
     """Return the points of a link, in the form of the case file; those that bores give stand where the bores are."""
     points = link.get("points")
     try:

@@ -323,7 +323,12 @@ app.add_typer(materials)
 
 @app.command()
 def inspect(
-    file: Annotated[Path, typer.Argument(help="A STEP file that holds one solid.", show_default=False)],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="A STEP file, or a mesh (.msh, .inp, .vtu; lengths taken as mm), of one solid.", show_default=False
+        ),
+    ],
     material: Annotated[
         str | None, typer.Option("--material", help="Material of the library, for the mass.", show_default=False)
     ] = None,
@@ -335,7 +340,7 @@ def inspect(
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """List what a STEP file holds: solid, mass, bores, and the entries of a case file for it."""
+    """List what a STEP file or a mesh holds: solid, mass, bores, and the entries of a case file for it."""
     from reports.commands.inspect_part import as_json, inspect_file, print_inspection, write_inspection
     from reports.figures.figures import start_renderer
     from reports.page.output import refuse_unusable, write_folder

@@ -1,4 +1,4 @@
-"""Output of ``alula inspect``: what is found in a STEP file, and the entries of a case file for it."""
+"""Output of ``alula inspect``: what is found in a STEP file or a mesh, and the entries of a case file for it."""
 
 import json as jsonlib
 import math
@@ -12,7 +12,7 @@ from geometry.base.errors import AlulaError, CaseError
 from geometry.base.version import result_stamp
 from geometry.imported.arrangement import LinkFrame, angle_between, coaxial, link_frame, parallel_groups
 from geometry.imported.facts import Bore, PartFacts, Vector
-from geometry.imported.read import part_facts, part_surface
+from geometry.imported.read import mesh_unit_of, part_facts, part_surface
 from geometry.parts.material import Material, library
 from loads.text.explain import printable
 from reports.tables.data import entries
@@ -32,7 +32,7 @@ GRAMS = 1e6
 
 @dataclass(frozen=True, kw_only=True)
 class Inspection:
-    """What is found in a STEP file, with a material.
+    """What is found in the file of a part, with a material.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Inspection:
 
 
 def inspect_file(path: Path, material: str | None) -> Inspection:
-    """Look into a STEP file.
+    """Look into a STEP file or a mesh.
 
     Parameters
     ----------
@@ -90,13 +90,13 @@ def inspect_file(path: Path, material: str | None) -> Inspection:
     Raises
     ------
     CaseError
-        For an unknown material, and where the file is no STEP file of one solid.
+        For an unknown material, and where the file holds no single solid.
     CannotRunError
         Where the geometry kernel fails.
     """
     if material is not None and material not in library():
         raise CaseError(f"--material: there is no material '{material}'; the library has {', '.join(library())}")
-    return Inspection(path=path, facts=part_facts(path), material=material)
+    return Inspection(path=path, facts=part_facts(path, mesh_unit_of(path)), material=material)
 
 
 def record(found: Inspection) -> dict[str, Any]:
@@ -163,9 +163,14 @@ def case_entries(found: Inspection) -> str:
     if found.frame is None:
         return ""
     name, points = _quoted(found.name), found.frame.points
+    mesh = mesh_unit_of(found.path) is not None
     lines = [
         (f"[parts.{name}]", ""),
-        ('shape = "step"', ""),
+        *(
+            [('shape = "mesh"', ""), ('unit = "mm"', "the file states none: correct it")]
+            if mesh
+            else [('shape = "step"', "")]
+        ),
         (f"file = {_quoted(found.path.name, bare=False)}", "beside the case file"),
         (
             f'material = "{found.material or ASSUMED_MATERIAL}"',
@@ -232,7 +237,7 @@ def write_inspection(found: Inspection, folder: Path, progress: Callable[[str], 
     from reports.figures.part_picture import part_picture
 
     try:
-        picture, trouble = part_picture(found.facts, part_surface(found.path))
+        picture, trouble = part_picture(found.facts, part_surface(found.path, mesh_unit_of(found.path)))
     except AlulaError as error:
         picture, trouble = None, str(error)
     if picture is None:
