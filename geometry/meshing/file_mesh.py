@@ -26,7 +26,8 @@ from geometry.meshing.element_geometry import (
     triangle_rule,
 )
 from geometry.meshing.mesh_settings import MeshSettings
-from geometry.meshing.mesh_walls import bent_edges, cylinder_walls, on_cylinder
+from geometry.meshing.mesh_walls import bent_edges, cylinder_walls, inner_edges, on_cylinder
+from geometry.meshing.reentrant import ReentrantEdge
 from geometry.meshing.sections import StationSection
 from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.body import Body
@@ -41,7 +42,7 @@ _PARTS = 4
 """Into which the edges of a curved triangle are divided for flat ones."""
 NOTE = (
     "the mesh is that of the part's file; it is not refined, so that the band of its stress is four times the "
-    "estimated error, and sharp inner edges are not sought on it"
+    "estimated error"
 )
 
 
@@ -386,8 +387,9 @@ def _section(corners: Real, x: float) -> StationSection | None:
     )
 
 
-def _none(body: Body) -> list[object]:
-    return []
+def _reentrant(body: Body) -> list[ReentrantEdge]:
+    mesh = _placed(body)
+    return inner_edges(mesh.points, mesh.boundary)
 
 
 def _refused(body: Body, path: str) -> None:
@@ -398,7 +400,7 @@ MESH_TASKS: dict[str, Callable[..., object]] = {
     "mesh": mesh_of_body,
     "mass": _mass,
     "step": _refused,
-    "reentrant": _none,
+    "reentrant": _reentrant,
     "sections": _sections,
 }
 """What the worker does with a body that is made of a mesh file, and further arguments."""

@@ -1,8 +1,9 @@
-"""Cylindrical walls of a mesh: groups of its surface's triangles whose nodes lie on one cylinder.
+"""Cylindrical walls of a mesh: triangles of its surface whose nodes lie on one cylinder; and its sharp inner edges.
 
 Runs in a child process only (see ``geometry.meshing.mesh``).
 """
 
+from collections import defaultdict
 from collections.abc import Iterable
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.imported.walls import Line, Wall, fitted_circle, joined_walls, united, upwards
 from geometry.meshing.element_geometry import TRIANGLE_EDGES, shape_gradients
+from geometry.meshing.reentrant import ReentrantEdge
 
 Real = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -20,6 +22,8 @@ _BENT = 1e-5
 """Share of an edge's length by which its mid-node lies off the middle where the edge is curved."""
 _SMOOTH = float(np.cos(np.radians(10.0)))
 """Cosine of the angle between normals on both sides of an edge up to which a surface runs on smoothly."""
+INNER = float(np.radians(15.0))
+"""Angle above which a surface that turns inwards is sharp: of a round one with an edge per quarter it is 11 degrees."""
 _NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 _STEPS = 8
 """Of Gauss and Newton at most."""
@@ -63,10 +67,7 @@ def cylinder_walls(points: Real, triangles: Ints) -> list[Wall]:
     list of Wall
     """
     x = points[triangles]
-    gradients = shape_gradients(TRIANGLE_EDGES, _NODES)
-    tangents = np.einsum("knx,qnd->kqdx", x, gradients)
-    normals = np.cross(tangents[:, :, 0], tangents[:, :, 1])
-    normals /= np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-300)
+    normals = _normals(x)
     neighbours = _neighbours(triangles, normals)
     curved = np.asarray(bent_edges(points, triangles).any(axis=1))
     free = curved.copy()
@@ -109,18 +110,84 @@ def _arms(points: Real, line: Line) -> Real:
     return np.asarray(arms - (arms @ line.axis)[..., None] * line.axis)
 
 
-def _neighbours(triangles: Ints, normals: Real) -> Ints:
-    """Return the triangle (k, 3) beyond each edge where the surface runs on smoothly; -1 elsewhere."""
+def _normals(x: Real) -> Real:
+    """Return unit normals (k, 6, 3) at the nodes of triangles (k, 6, 3)."""
+    tangents = np.einsum("knx,qnd->kqdx", x, shape_gradients(TRIANGLE_EDGES, _NODES))
+    normals = np.cross(tangents[:, :, 0], tangents[:, :, 1])
+    return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-300))
+
+
+def inner_edges(points: Real, triangles: Ints) -> list[ReentrantEdge]:
+    """Return the edges at which the material's angle exceeds π by more than ``INNER``.
+
+    Parameters
+    ----------
+    points : array
+        Nodes (n, 3) [mm].
+    triangles : int array
+        (k, 6), counter-clockwise as seen from outside.
+
+    Returns
+    -------
+    list of ReentrantEdge
+        One for each chain of edges.
+    """
+    own = _normals(points[triangles])[:, 3:].reshape(-1, 3)
+    one, other = _pairs(triangles)
+    angle = np.arctan2(np.linalg.norm(np.cross(own[one], own[other]), axis=1), (own[one] * own[other]).sum(axis=1))
+    first, last = triangles[one // 3, TRIANGLE_EDGES[one % 3].T]
+    middle = triangles[one // 3, 3 + one % 3]
+    opposite = triangles[other // 3, np.array([2, 0, 1])[other % 3]]
+    inwards = np.cross(
+        own[other], points[last] - points[first]
+    )  # along the second triangle, away from the edge or to it
+    inwards *= np.sign((inwards * (points[opposite] - points[middle])).sum(axis=1))[:, None]
+    rising = (inwards * own[one]).sum(axis=1) > 0.0
+    found = np.flatnonzero(rising & (angle > INNER))
+    return [
+        ReentrantEdge(points=points[chain], angle=np.pi + turn)
+        for chain, turn in _chains(list(zip(*(a[found].tolist() for a in (first, middle, last, angle)), strict=True)))
+    ]
+
+
+def _chains(edges: list[tuple[int, int, int, float]]) -> list[tuple[list[int], float]]:
+    """Return edges (first, middle and last node, angle) as chains of nodes, with the greatest angle of each."""
+    at: dict[int, set[int]] = defaultdict(set)
+    for number, (first, _, last, _) in enumerate(edges):
+        at[first].add(number)
+        at[last].add(number)
+    chains = []
+    for node in sorted(at, key=lambda node: len(at[node]) == 2):  # ends and branches first, then closed chains
+        while at[node]:
+            chain, turn = [node], 0.0
+            while at[chain[-1]]:
+                number = min(at[chain[-1]])
+                first, middle, last, angle = edges[number]
+                at[first].discard(number)
+                at[last].discard(number)
+                chain += [middle, last if chain[-1] == first else first]
+                turn = max(turn, angle)
+            chains.append((chain, turn))
+    return chains
+
+
+def _pairs(triangles: Ints) -> tuple[Ints, Ints]:
+    """Return numbers of edges (three times that of the triangle, plus the edge's own) that are one and the same."""
     middles = triangles[:, 3:].ravel()
     order = np.argsort(middles, kind="stable")
     ordered = middles[order]
     starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
     counts = np.diff(np.append(starts, len(ordered)))
     pairs = starts[counts == 2]
-    one, other = order[pairs], order[pairs + 1]
+    return order[pairs], order[pairs + 1]
+
+
+def _neighbours(triangles: Ints, normals: Real) -> Ints:
+    """Return the triangle (k, 3) beyond each edge where the surface runs on smoothly; -1 elsewhere."""
+    one, other = _pairs(triangles)
     own = normals[:, 3:].reshape(-1, 3)
     smooth = (own[one] * own[other]).sum(axis=1) > _SMOOTH
-    found = np.full(middles.size, -1, dtype=np.int64)
+    found = np.full(triangles[:, 3:].size, -1, dtype=np.int64)
     found[one[smooth]], found[other[smooth]] = other[smooth] // 3, one[smooth] // 3
     return found.reshape(-1, 3)
 

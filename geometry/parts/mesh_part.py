@@ -38,11 +38,6 @@ class MeshedPart(ImportedPart):
     file_unit: float
     """Unit of length of the file [mm]."""
 
-    @property
-    def may_be_sharp(self) -> bool:
-        """False: a mesh has no edges to look for."""
-        return False
-
     def solid(self, kernel: Kernel, body: Body) -> Entity:
         """As ``PartKind.solid``: there is none.
 

@@ -15,7 +15,7 @@ from geometry.base.errors import CaseError
 from geometry.imported.read import part_facts
 from geometry.meshing.element_geometry import jacobian_coefficients
 from geometry.meshing.file_mesh import read_mesh
-from geometry.meshing.mesh import export_step, mass_properties, mesh_body
+from geometry.meshing.mesh import export_step, mass_properties, mesh_body, reentrant_edges
 from loads.case.case_file import read_case
 
 FORMATS = {"msh": "gmsh", "vtu": "vtu", "inp": "abaqus"}
@@ -114,6 +114,17 @@ def test_a_link_of_a_mesh_has_its_mass_sections_and_bores(tmp_path, step, mesh):
     for name, diameter in (("bore:O4", 5.0), ("bore:B", 6.0)):
         assert len(placed.surfaces[name]) == len(mesh.surfaces[name])
         assert placed.areas[name] == pytest.approx(np.pi * diameter * 5.0, rel=1e-3)
+
+
+def test_the_foot_of_the_boss_is_its_only_sharp_inner_edge(tmp_path, mesh):
+    """A circle of 10 mm in diameter about the middle, at the plate's top, where the material spans 270 degrees."""
+    body = read_case(str(of_mesh(tmp_path, mesh))).body("rocker")
+    [edge] = reentrant_edges(body)
+    assert np.hypot(*(edge.points - [20.01, 0.0, 0.0])[:, :2].T) == pytest.approx(5.0, abs=1e-3)
+    assert edge.points[:, 2] == pytest.approx(2.5, abs=1e-6)
+    assert edge.points[0] == pytest.approx(edge.points[-1])
+    assert np.linalg.norm(np.diff(edge.points, axis=0), axis=1).sum() == pytest.approx(10.0 * np.pi, rel=0.01)
+    assert edge.angle == pytest.approx(1.5 * np.pi, abs=0.05)
 
 
 def test_it_bears_what_the_same_mesh_bears_and_is_not_refined(tmp_path, step, mesh):
