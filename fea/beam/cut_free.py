@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,8 @@ def link_loads(
 ) -> LinkLoads:
     """Return all that acts on a link in a load case: a balanced set, at one pose or at n.
 
-    Forces at a pin are summed to one wrench. The drive torque stays apart, since it enters the part in its own way.
+    Forces at a pin are summed to one wrench. The drive torque stays apart, since it enters the part in its own way. On
+    the ground its support acts at the point where it is held, with the wrench that balances all else.
 
     Parameters
     ----------
@@ -70,7 +72,10 @@ def link_loads(
             inertia = own
     nothing = np.zeros((*place.shape, 6))
     drive, torque = reactions.drive, np.asarray(reactions.torque_on(link), dtype=float)[()]
-    return LinkLoads(
+    held_at = place.linkage.links[link].held_at
+    if held_at is not None:
+        wrenches[held_at] = nothing
+    found = LinkLoads(
         name=name,
         link=link,
         pins=tuple(_pin_load(place, link, pin, wrenches.get(pin.name, nothing), axes is None) for pin in body.pins),
@@ -87,6 +92,15 @@ def link_loads(
         lines=tuple(lines),
         inertia=inertia,
     )
+    return found if held_at is None else _supported(found, held_at)
+
+
+def _supported(loads: LinkLoads, held_at: str) -> LinkLoads:
+    """Return the loads on the ground with the wrench of its support, at an end or in a bore where nothing else acts."""
+    rest = -loads.resultant()
+    pins = [replace(p, wrench=shifted(rest, -p.centre)) if p.name == held_at else p for p in loads.pins]
+    ends = [replace(e, wrench=shifted(rest, -e.point)) if e.name == held_at else e for e in loads.ends]
+    return replace(loads, pins=tuple(pins), ends=tuple(ends))
 
 
 def _pin_load(place: Placement, link: str, pin: Pin, wrench: Real, own_axes: bool) -> PinLoad:

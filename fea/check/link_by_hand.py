@@ -58,7 +58,8 @@ def cut_link(
     """Return what acts on a link, with the second-order bending that the frame does not contain.
 
     A frame on its deformed shape lacks the bending between loaded places. Where no frame tells, all second-order
-    bending is added. Nothing is added where a frame found it small, or found no stable shape.
+    bending is added, as it is to the ground's part, which is rigid in the frame. Nothing is added where a frame found
+    it small, or found no stable shape.
 
     Parameters
     ----------
@@ -76,9 +77,9 @@ def cut_link(
     LinkLoads
     """
     deformed, longest = moved.links.get(link), case.linkage.longest
-    found = deformed or link_loads(load_case, link, case.body(link), reactions, loads)
+    found = deformed or link_loads(load_case, link, case.body(link), moved.reactions or reactions, loads)
     found = without_rounding(found, load_size(loads, longest), longest)
-    if deformed is None and moved.state not in ("off", "unknown"):
+    if deformed is None and moved.state not in ("off", "unknown") and link != case.linkage.ground:
         return found
     return second_order_loads(case, link, found, stays=deformed is not None)
 

@@ -55,10 +55,10 @@ def build_frame(
     CaseError
         For linkages without any part.
     """
-    if not case.checked_links:
+    if not case.bending_links:
         raise CaseError(
-            "links: none has a part, so no stiffness is known, which bonded joints, redundant linkages and loads out "
-            "of the plane need; give the links parts"
+            "links: no moving link has a part, so no stiffness is known, which bonded joints, redundant linkages and "
+            "loads out of the plane need; give the links parts"
         )
     loads = tuple(in_axes(load, "global", pose.placement) for load in loads)
     builder = _Builder(case, pose, loads)
@@ -123,7 +123,7 @@ class _Builder:
         self.slack = _SAME_PLACE * case.linkage.longest
         for link in case.linkage.moving:
             own = [load for load in loads if load.link == link]
-            if link in case.checked_links:
+            if link in case.bending_links:
                 self._beam(link, own)
             else:
                 self._rigid(link, own)
@@ -286,7 +286,7 @@ class _Builder:
                 self.node_loads.append(NodeLoad(node=node, wrench=shifted(load.resultant(self.pose.placement), arm)))
 
     def _stiff(self, a: int, b: int) -> None:
-        links = self.case.checked_links
+        links = self.case.bending_links
         young = max(self.case.material_of(link).youngs_modulus for link in links)
         sections = [self.case.part_of(link).section for link in links]
         second = RIGID * max(max(s.i_y, s.i_z) for s in sections)

@@ -264,7 +264,7 @@ def _links(
     case: Case, frame: LinkageFrame, solids: Container[str]
 ) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[int, Real]]]:
     """Zones of every element that is part of a link without solid, and these links' bores with the nodes in them."""
-    bodies = {link: case.body(link) for link in case.checked_links if link not in solids}
+    bodies = {link: case.body(link) for link in case.bending_links if link not in solids}
     beams = {}
     for i, beam in frame.beams.items():
         if beam.link not in bodies:

@@ -206,7 +206,7 @@ def examine(
             f"{size:.4g} mm (limit {100.0 * LARGE:g} %): equilibrium in the undeformed pose is accurate enough"
         ),
     )
-    materials = [compliance_scatter(case.material_of(link)) for link in case.checked_links]
+    materials = [compliance_scatter(case.material_of(link)) for link in case.bending_links]
     slack = Scatter(
         low=min(m.low for m in materials),
         high=max(m.high for m in materials),
@@ -337,7 +337,7 @@ def _deformed(
                 on_deformed_shape(frame, found, reactions, link, title, case.body(link), loads),
                 frame.model.load_scale,
             )
-            for link in case.checked_links
+            for link in case.bending_links
         },
         sentence=f"{lead}its points move by up to {moved:.3g} mm; joint forces and verdict come from that shape",
     )

@@ -5,8 +5,8 @@ take the section's place (``fea.beam.flanks``). How its joints hold it
 is known but in part, so that its factor is a band:
 
 value  the outermost pins stay where they are and leave the link free to turn, in the linkage's plane and out of it;
-       overhangs are free. A link on one pin is built in there. A pin in a slot of the link, and one on an arm, hold
-       nothing.
+       overhangs are free. A link on one pin is built in there, and the ground where its support holds it. A pin in
+       a slot of the link, and one on an arm, hold nothing.
 high   every pin stays where it is and keeps whatever angle it can: out of the plane the angle, which only stiff
        neighbours would keep, in the plane the driven link's at the drive's joint, and every angle where pins are
        bonded. No linkage whose joints stay where they are holds the link better, so that below 1 it buckles: a link
@@ -61,7 +61,7 @@ class Holding:
     Attributes
     ----------
     outermost : tuple of float
-        First and last pin on it, or the one that there is.
+        First and last pin on it, or the one that there is; of the ground the point where it is held.
     in_plane : tuple of float or None
         Where pins hold it in the linkage's plane, free to turn, at the most; None where that is not known.
     kept : tuple of float
@@ -109,7 +109,7 @@ class Column:
     compression : float
         The largest along the link in that pose [N].
     outermost : tuple of float
-        x of the pins that hold it [mm].
+        x of the pins, or of the ground's support, that hold it [mm].
     value, least, most : float
         Least factors of all poses, as in ``ColumnFactors``.
     """
@@ -266,6 +266,8 @@ def holding(case: Case, link: str) -> Holding:
     foot = {name: feet.get(point, places[point][0]) for name, point in joints.items()}
     on_arms = {name for name, point in joints.items() if point in feet}
     slack = ON_AXIS * linkage.longest
+    held_at = case.links[link].held_at
+    support = set() if held_at is None else {places[held_at][0]}
     off = on_arms | {name for name, point in joints.items() if abs(places[point][1]) > slack}
     plain = [foot[name] for name in joints if name not in carried | on_arms] or list(foot.values())
     first, last = min(plain), max(plain)
@@ -275,11 +277,11 @@ def holding(case: Case, link: str) -> Holding:
     slides = {name for name in carried if linkage.joints[name].type == "slider"}
     alone = {first, last} if bonded else {foot[name] for name in drive & set(joints)}
     return Holding(
-        outermost=(first, last) if last - first > slack else (first,),
-        in_plane=None if carried else tuple(sorted(set(foot.values()))),
-        kept=tuple(sorted({foot[name] for name in (fixed | drive | off) & set(joints)})),
-        across=None if slides else tuple(sorted({foot[name] for name in set(joints) - carried})) or None,
-        alone=tuple(sorted(alone)),
+        outermost=tuple(support) or ((first, last) if last - first > slack else (first,)),
+        in_plane=None if carried else tuple(sorted({*foot.values(), *support})),
+        kept=tuple(sorted({foot[name] for name in (fixed | drive | off) & set(joints)} | support)),
+        across=None if slides else tuple(sorted({foot[name] for name in set(joints) - carried} | support)) or None,
+        alone=() if support else tuple(sorted(alone)),
     )
 
 

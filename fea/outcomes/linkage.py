@@ -80,7 +80,7 @@ def by_linear_theory(
     -------
     CheckOutcome
     """
-    compliances = [compliance_scatter(case.material_of(link)) for link in case.checked_links]
+    compliances = [compliance_scatter(case.material_of(link)) for link in case.bending_links]
     slack = max((compliance.high for compliance in compliances), default=1.0)
     band = Band(
         value=least,

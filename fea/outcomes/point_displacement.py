@@ -113,7 +113,8 @@ def point_outcome(
         shares = _shares(case, moved, links, free, link, point)
         blind = [other for other in shares.beams if not _has_centre_line(case, other)]
         if blind:
-            why = f"the frame takes link {blind[0]} for a beam along its axis, which does not tell how far it gives"
+            taken = "rigid" if blind[0] == case.linkage.ground else "a beam along its axis"
+            why = f"the frame takes link {blind[0]} for {taken}, which does not tell how far it gives"
             if free and moved.state == "small" and not isinstance(links[blind[0]], SolidResult):
                 why += "; its solid model does: run --fidelity solid"
         elif moved.followed or not (near or size > LARGE * moved.span):
@@ -178,8 +179,8 @@ def _shares(
 
 
 def _has_centre_line(case: Case, link: str) -> bool:
-    """Whether a frame bounds how far a link gives."""
-    return case.part_of(link).has_centre_line(case.body(link))
+    """Whether a frame bounds how far a link gives; it does not know the ground's part."""
+    return link != case.linkage.ground and case.part_of(link).has_centre_line(case.body(link))
 
 
 def _beam_work(case: Case, link: str, real: LinkLoads, virtual: LinkLoads) -> float:
@@ -206,10 +207,15 @@ def _band(
     ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
     linear = float(np.linalg.norm(moved.solution.displacements[frame.points[link, point], :3]))
     found = point_bounds(case, frame, moved.solution, link, point, shares.solids, shares.carried)
+    # The ground's part is in no frame: it adds to the displacement, but does not make the frame softer.
+    bending = {other: bands for other, bands in shares.solids.items() if other != case.linkage.ground}
+    framed = found
+    if len(bending) < len(shares.solids):
+        framed = point_bounds(case, frame, moved.solution, link, point, bending, shares.carried)
     slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
     moduli = (compliance_scatter(material).sources for material in materials)
     sources = distinct(shares.sources, *moduli, load.sources)
-    low, high = (found.low / linear, found.high / linear) if linear > 0.0 else (1.0, 1.0)
+    low, high = (framed.low / linear, framed.high / linear) if linear > 0.0 else (1.0, 1.0)
     low, high = low * slack[0], high * slack[1]
     if moved.followed:
         if shares.solids and linear > 0.0:

@@ -24,6 +24,9 @@ class Link(CaseModel):
     """Pins and load points: name -> (x, y) in the link's frame, in order along the link."""
     part: Name | None = None
     """The part (shape and material) that the link is made of; none for a link that is not checked."""
+    held_at: Name | None = None
+    """Of the ground with a part, which is then checked: the point, without a joint, at which its support holds it. The
+    support's force and moment balance the joints' and enter the part there as a load at a point does."""
     holes: Annotated[tuple[HoleRow, ...], Field(max_length=10)] = ()
     """Rows of cross holes, such as those that hold feathers."""
     slots: Annotated[dict[Name, Slot], Field(max_length=10)] = {}

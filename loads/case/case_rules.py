@@ -53,6 +53,7 @@ def check_rules(case: CoreCase) -> None:
     for name, joint in case.joints.items():
         _check_material(case, f"joints.{name}.pin_material", joint.pin_material)
     for name, link in case.links.items():
+        _check_held(case, name)
         if link.part is not None:
             require(f"links.{name}.part", link.part, case.parts, "is unknown")
             _check_slots(case, name)
@@ -198,7 +199,7 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
                 'add [conditions] with its duration, for example "10 year"'
             )
         for link in check.links:
-            require(f"checks.{name}.links", link, case.checked_links, "is no moving link with a part")
+            require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
         if isinstance(check, SafetyFactorCheck) and check.minimum is None:
             for link in check.links or case.checked_links:
                 _check_minimum(name, case.part_of(link).material, case.material_of(link), f"link '{link}'")
@@ -267,6 +268,29 @@ def _check_eyes(case: CoreCase, link: str) -> None:
             raise CaseError(
                 f"links.{link}.eyes.{point}: a part of shape {part.shape} takes no eyes of their own; leave them out"
             )
+
+
+def _check_held(case: CoreCase, link: str) -> None:
+    """Check that the ground's part, and no other, is held at a point that its support has for itself."""
+    record, entry = case.links[link], f"links.{link}.held_at"
+    if record.held_at is None:
+        if record.ground and record.part is not None:
+            raise CaseError(
+                f"{entry}: it is missing, but the ground has a part, which something must hold; name a point of the "
+                "link without a joint, or remove the part"
+            )
+        return
+    if not record.ground:
+        raise CaseError(f"{entry}: link '{link}' moves, and its joints hold it; remove held_at")
+    if record.part is None:
+        raise CaseError(f"{entry}: the ground has no part that could be held; name a part, or remove held_at")
+    require(entry, record.held_at, record.points, "is no point of the link")
+    joints = [name for name in case.linkage.joints_of(link) if case.linkage.point_of(name, link) == record.held_at]
+    if joints:
+        raise CaseError(
+            f"{entry}: '{record.held_at}' is the point of joint '{joints[0]}', where another link acts; name a point "
+            "without a joint"
+        )
 
 
 def _check_slots(case: CoreCase, link: str) -> None:

@@ -89,8 +89,13 @@ class CoreCase(Revisable):
 
     @property
     def checked_links(self) -> tuple[str, ...]:
-        """The moving links that have a part, hence a stress."""
-        return tuple(name for name in self.linkage.moving if self.links[name].part is not None)
+        """The links that have a part, hence a stress."""
+        return tuple(name for name, link in self.links.items() if link.part is not None)
+
+    @property
+    def bending_links(self) -> tuple[str, ...]:
+        """The links that bend in frames: those with a part that move. A frame takes the ground for rigid."""
+        return tuple(name for name in self.checked_links if name != self.linkage.ground)
 
     def material_of(self, link: str) -> Material:
         """Return the material of a link that has a part, as it is under the case's conditions.

@@ -143,7 +143,7 @@ class _Drawing:
             labels.append((at(arc[::6]), text, colour))
             obstacles.append(arc)
         names = [(at(place[None]), name, INK) for name, place in self.pose.points.items()]
-        for link in self.linkage.moving:
+        for link in dict.fromkeys((*self.linkage.moving, *self.result.case.checked_links)):
             pieces = [(self.points[link, a], self.points[link, b]) for a, b in self.linkage.links[link].pieces]
             a, b = max(pieces, key=lambda ab: float(np.linalg.norm(ab[1] - ab[0])))
             middles = np.array([0.5 * a + 0.5 * b, 0.7 * a + 0.3 * b, 0.3 * a + 0.7 * b])
@@ -155,6 +155,7 @@ class _Drawing:
     def _links(self) -> list[Real]:
         """Draw the links; returns points of them."""
         thickness, found = 0.011 * self.size, []
+        solid = {*self.linkage.moving, *self.result.case.checked_links}  # the ground is a line unless it has a part
         for link, record in self.linkage.links.items():
             if (seen := self._silhouette(link)) is not None:
                 found.append(seen)
@@ -162,12 +163,12 @@ class _Drawing:
             for a, b in ((self.points[link, one], self.points[link, other]) for one, other in record.pieces):
                 if np.linalg.norm(b - a) <= 1e-9 * self.size:
                     continue
-                if link == self.linkage.ground:
+                if link not in solid:
                     self._line([a, b], 0.8, dashes=(4.8, 3.2))
                 else:
                     self._bar(a, b, thickness)
                 normal = np.array([a[1] - b[1], b[0] - a[0]]) / np.linalg.norm(b - a)
-                sides = (-1.0, 0.0, 1.0) if link != self.linkage.ground else (0.0,)
+                sides = (-1.0, 0.0, 1.0) if link in solid else (0.0,)
                 found += [along(a + side * thickness * normal, b + side * thickness * normal) for side in sides]
         return found
 
@@ -188,13 +189,15 @@ class _Drawing:
 
     def _joints(self) -> list[Real]:
         """Draw the joints; returns points of them."""
-        found = []
+        found, ground = [], self.linkage.ground
+        if (held_at := self.linkage.links[ground].held_at) is not None:
+            found.append(self._support((ground,), self.points[ground, held_at]))
         for name, joint in self.linkage.joints.items():
             at = self._joint(name)
             if joint.type != "revolute":
                 found.append(self._guide(name, at))
-            elif self.linkage.ground in joint.links:
-                found.append(self._support(name, at))
+            elif ground in joint.links and held_at is None:
+                found.append(self._support(joint.links, at))
             self.sheet.disc(self.axes.at(at), 2.75, "#ffffff", INK, 1.0)
             found.append(at[None])
         return found
@@ -209,11 +212,11 @@ class _Drawing:
         end = thickness * np.column_stack([np.cos(turn), np.sin(turn)])
         self.sheet.area(self.axes.at(np.vstack([b + end, a - end])), LINK, INK, 0.6)
 
-    def _support(self, joint: str, at: Real) -> Real:
-        """Hatched support of a joint to the ground, on the side where no link is; returns its points."""
+    def _support(self, links: tuple[str, ...], at: Real) -> Real:
+        """Hatched support of the ground at a point, on the side where none of the links is; returns its points."""
         others = [
             self.points[link, point] - at
-            for link in self.linkage.joints[joint].links
+            for link in links
             for point in self.linkage.links[link].points
             if np.linalg.norm(self.points[link, point] - at) > 1e-9 * self.size
         ]

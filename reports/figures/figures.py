@@ -217,6 +217,8 @@ def _composed(scene: Scene, strip: Any, close: Any, points: Mapping[str, Place])
     """Put both renderings, the colour bar and the labels on one sheet."""
     wide = 72.0 * WIDTH - 2.0 * MARGIN
     on_axis = {name: at for name, at in points.items() if abs(at[1]) < _ON_AXIS * scene.strip.half_width}
+    if len(on_axis) < 2 <= len(points):
+        on_axis = {}  # a body across the axis would have that name at its far end
     shares = scene.strip.share(np.array([[x, 0.0, 0.0] for x, _ in on_axis.values()]).reshape(-1, 3))[:, 0]
     names = stacked(on_axis, wide * shares)
     top = 12.0 + heights(names)

@@ -323,5 +323,5 @@ def test_what_no_frame_can_be_made_of():
     for link in ("left", "top", "right"):
         del data["links"][link]["part"]
     bare = validate(data)
-    with pytest.raises(CaseError, match=r"links: none has a part"):
+    with pytest.raises(CaseError, match=r"links: no moving link has a part"):
         build_frame(bare, bare.solve_pose(), (), held=bare.pinned_drive)
