@@ -138,7 +138,7 @@ def test_sustained_stress_is_the_one_that_decides_the_material(strength, von_mis
     result = check_case(case, name=WING, fidelity="beam").load_cases["weight"]
     stresses = {"von_mises_max": Band.exact(von_mises), "principal_max": Band.exact(principal)}
     links = {name: replace(link, decided_by="beam", **stresses) for name, link in result.links.items()}
-    found = outcomes(case, "weight", links, result.pins, result.large_displacement)
+    found = outcomes(case, "weight", links, result.pins, result.large_displacement, {})
     assert {check.verdict for check in found if check.quantity == "sustained stress"} == {verdict}
 
 
