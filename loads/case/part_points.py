@@ -56,7 +56,7 @@ def with_part_points(tables: dict[str, Any], context: Mapping[str, object]) -> d
     changed = dict(links)
     for name, link in links.items():
         stated = parts.get(link.get("part")) if isinstance(link, dict) and isinstance(link.get("part"), str) else None
-        if isinstance(stated, dict) and stated.get("shape") in KINDS:
+        if isinstance(stated, dict) and stated.get("shape") in tuple(KINDS):  # a tuple, since it may be unhashable
             part = _part(link["part"], stated, context)
             changed[name] = link | {"points": _points(name, link, part, tables.get("joints"))}
         elif isinstance(link, dict) and link.get("points") == FROM_PART:

@@ -153,3 +153,10 @@ def test_the_gap_of_a_fork_is_no_wall(tmp_path):
     mesh = mesh_body(body, COARSE)
     assert mesh.areas["bore:O4"] == pytest.approx(np.pi * 5.0 * 8.0, rel=1e-6)
     assert mesh.mirror is not None
+
+
+def test_a_shape_that_is_a_table_is_refused_like_any_other(tmp_path):
+    path = imported_case(tmp_path)
+    path.write_text(path.read_text().replace('shape = "step"', "shape = { step = 1 }"))
+    with pytest.raises(CaseError, match=r"parts\.own"):
+        read_case(str(path))
