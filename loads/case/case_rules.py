@@ -309,6 +309,13 @@ def _check_slots(case: CoreCase, link: str) -> None:
         For the first slot, pin or arm that does not fit.
     """
     record, linkage = case.links[link], case.linkage
+    part = case.parts[record.part or ""]
+    for entry, stated in (("slots", record.slots), ("arms", record.arms)):
+        if stated and isinstance(part, FilePart):
+            raise CaseError(
+                f"links.{link}.{entry}.{next(iter(stated))}: a part of shape {part.shape} takes no {entry}; "
+                "leave them out"
+            )
     sliding = {linkage.point_of(name, link): name for name in linkage.joints_of(link)
                if linkage.joints[name].type == "pin-in-slot" and linkage.joints[name].links[0] == link}  # fmt: skip
     for point in record.slots:

@@ -127,7 +127,9 @@ def pinned(name: str, points: object, joints: object) -> tuple[Wanted, ...] | No
     for joint, stated in joints.items():
         try:
             record = Joint.model_validate(stated)
-            if name in record.links and record.type == "revolute" and record.pin_diameter is not None:
+            if name in record.links and record.type == "revolute":
+                if record.pin_diameter is None:
+                    return None
                 point = record.points[record.links.index(name)] if record.points else joint
                 found.setdefault(point, Wanted(name=point, place=places[point], diameter=record.pin_diameter))
         except (ValidationError, KeyError):

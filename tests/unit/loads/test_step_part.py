@@ -160,3 +160,26 @@ def test_a_shape_that_is_a_table_is_refused_like_any_other(tmp_path):
     path.write_text(path.read_text().replace('shape = "step"', "shape = { step = 1 }"))
     with pytest.raises(CaseError, match=r"parts\.own"):
         read_case(str(path))
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        'eyes = { B = { diameter = "14 mm" } }',
+        'arms = { B = "O4" }',
+        'slots = { B = { first = "30 mm", last = "50 mm" } }',
+    ],
+)
+def test_features_that_a_file_cannot_take_are_not_ignored(tmp_path, entry):
+    path = imported_case(tmp_path)
+    path.write_text(path.read_text().replace('part = "own",', f'part = "own", {entry},'))
+    name = entry.partition(" ")[0]
+    with pytest.raises(CaseError, match=rf"links\.rocker\.{name}\.B: a part of shape step takes no {name}"):
+        read_case(str(path))
+
+
+def test_a_missing_pin_diameter_is_named(tmp_path):
+    path = imported_case(tmp_path)
+    path.write_text(path.read_text().replace(', pin_diameter = "5 mm"', ""))
+    with pytest.raises(CaseError, match=r"joints\.O4\.pin_diameter: .* needs a diameter"):
+        read_case(str(path))
