@@ -1,6 +1,6 @@
 """Cases with a changed material card."""
 
-from geometry.parts.material import TOLD, Material
+from geometry.materials.material import TOLD, Material
 from loads.case.case import Case
 
 SOURCED_ENTRIES = tuple(

@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 LAYERS = {
-    "geometry": ("base", "imported", "parts", "linkage", "mechanisms", "meshing", "placement"),
+    "geometry": ("base", "materials", "imported", "parts", "linkage", "mechanisms", "meshing", "placement"),
     "loads": ("text", "records", "statics", "sources", "case", "states"),
     "fea": ("common", "solid", "beam", "frame", "refine", "outcomes", "check", "motion", "calculix", "claims"),
     "reports": ("words", "tables", "figures", "page", "commands", "notebook"),

@@ -74,7 +74,7 @@ def test_the_wheel_holds_the_rooms_with_their_data_and_no_tests(wheel):
         if file.is_file() and "__pycache__" not in file.parts
     }
     assert shipped == tracked | {"alula.py"}
-    assert "geometry/materials.toml" in shipped
+    assert "geometry/materials/materials.toml" in shipped
 
 
 def test_the_wheel_carries_the_licence(wheel):

@@ -12,7 +12,7 @@ from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.common.ties import first_largest
 from fea.outcomes.result import HandResult, LinkResult
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 from loads.case.case import Case
 
 BEAM_ALONE = "beam theory without stress concentration"

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from fea.common.band import Band
 from fea.common.source import Source, SourceKind, distinct
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 from loads.case.case import Case
 
 

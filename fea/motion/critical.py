@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from fea.motion.fatigue import equivalent_peak, signed_stress
 from fea.motion.peaks import ModeMeasures, signed_bounds
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 
 Real = NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from fea.outcomes.layers import CHECK as LAYERS
 from fea.outcomes.layers import no_strength, without_shear
 from fea.outcomes.limits import layer_limit
 from fea.outcomes.pins import pin_outcome, stress_of
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 from loads.records.check_spec import BearingCheck, PinCheck, SafetyFactorCheck
 from loads.states.case_motion import CaseMotion
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.solid.stress import extreme_principal, von_mises
-from geometry.parts.material import Fatigue, Material
+from geometry.materials.material import Fatigue, Material
 
 Real = NDArray[np.float64]
 

@@ -26,7 +26,7 @@ from fea.solid.stress import stress_field
 from fea.solid.supports import LineReference
 from fea.solid.traction import Transfer
 from geometry.base.errors import CannotRunError
-from geometry.parts.material import Material, stress_measure
+from geometry.materials.material import Material, stress_measure
 from geometry.parts.part import Body, Pin
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw
 

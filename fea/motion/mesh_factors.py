@@ -12,7 +12,7 @@ from fea.refine.discretisation import Discretisation, discretisation_source, jud
 from fea.refine.link_series import STRESS
 from fea.refine.refinement import RefinedSolid
 from fea.solid.traction import Transfer
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 from loads.records.bearing import Span
 
 Real = NDArray[np.float64]

@@ -3,7 +3,7 @@
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.solid.layers import Layers
 from geometry.base.errors import CaseError
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 from loads.case.case import Case
 from loads.records.check_spec import DisplacementCheck, SafetyFactorCheck, SustainedCheck
 

@@ -20,7 +20,7 @@ from fea.refine.discretisation import Discretisation
 from fea.solid.solution import SolidCase, SolidSolution
 from fea.solid.stress import StressField
 from geometry.linkage.pose import Pose
-from geometry.parts.material import stress_measure
+from geometry.materials.material import stress_measure
 from loads.case.case import Case
 from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions

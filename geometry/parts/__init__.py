@@ -1,4 +1,4 @@
-"""What links are made of: kinds of parts with their sections, rules and solids; materials.
+"""The bodies of links: kinds of parts with their sections, rules and solids.
 
-Hands on ``Tube``, ``Bar``, ``Disc``, ``Body``, ``Section`` and ``Material``. A new kind derives from ``PartKind``.
+Hands on ``Tube``, ``Bar``, ``Disc``, ``Body`` and ``Section``. A new kind derives from ``PartKind``.
 """

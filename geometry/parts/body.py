@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
+from geometry.materials.printable import Printable
 from geometry.parts.features import HoleRow, Pin, PlainEnd, Ring
 from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.printable import Printable
 from geometry.parts.section import Section
 
 Feature = Literal["slots", "arms", "rows of holes", "load points without a pin", "eyes of their own"]

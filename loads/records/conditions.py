@@ -6,7 +6,7 @@ from typing import Annotated
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel
 from geometry.base.units import POSITIVE, Temperature, Time
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 
 
 class Conditions(CaseModel):

@@ -14,7 +14,7 @@ from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.unchecked import unchecked
 from geometry.base.version import result_stamp
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 from loads.records.check_spec import SafetyFactorCheck
 from reports.page.output import MARK, write_folder
 from reports.tables.console import say_checks, verdict_line

@@ -13,7 +13,7 @@ from geometry.base.version import result_stamp
 from geometry.imported.arrangement import LinkFrame, angle_between, coaxial, link_frame, parallel_groups
 from geometry.imported.facts import Bore, PartFacts, Vector
 from geometry.imported.read import mesh_unit_of, part_facts, part_surface
-from geometry.parts.material import Material, library
+from geometry.materials.material import Material, library
 from loads.text.explain import printable
 from reports.tables.data import entries
 from reports.words.terminal import KEPT, say, say_table

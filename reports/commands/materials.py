@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from geometry.parts.material import Material
+    from geometry.materials.material import Material
 
 app = typer.Typer()
 _COLUMNS = (
@@ -45,8 +45,8 @@ def materials(
 ) -> None:
     """List the material library: values, sources, what is assumed and what is missing."""
     from geometry.base.errors import CaseError
-    from geometry.parts.laminate import ANISOTROPIC, is_laminate
-    from geometry.parts.material import library
+    from geometry.materials.laminate import ANISOTROPIC, is_laminate
+    from geometry.materials.material import library
     from loads.text.explain import require
 
     if name is not None:
@@ -105,7 +105,7 @@ def card_text(name: str) -> str:
     str
         Its lines as they stand in the library.
     """
-    from geometry.parts.material import library_text
+    from geometry.materials.material import library_text
 
     lines, inside = [], False
     for line in library_text().splitlines():
@@ -125,7 +125,7 @@ def as_markdown() -> str:
 
 
 def _rows() -> list[tuple[str, ...]]:
-    from geometry.parts.material import library
+    from geometry.materials.material import library
 
     return [_row(name, material) for name, material in library().items()]
 
@@ -152,7 +152,7 @@ def _row(name: str, material: "Material") -> tuple[str, ...]:
 def _print(name: str | None) -> None:
     from rich.console import Console
 
-    from geometry.parts.material import library
+    from geometry.materials.material import library
     from reports.words.terminal import say, say_table
 
     console = Console()
@@ -188,7 +188,7 @@ def _text(value: Any) -> str:
 def _raw() -> dict[str, Any]:
     import tomllib
 
-    from geometry.parts.material import library_text
+    from geometry.materials.material import library_text
 
     return tomllib.loads(library_text())
 
@@ -198,7 +198,7 @@ def _as_json(name: str | None) -> str:
     import json
 
     from geometry.base.version import result_stamp
-    from geometry.parts.material import library
+    from geometry.materials.material import library
 
     cards = {one: card | {"missing": missing(library()[one])} for one, card in _raw().items() if name in (None, one)}
     return json.dumps({**result_stamp(), "materials": cards}, indent=2, ensure_ascii=False)

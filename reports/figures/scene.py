@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from fea.outcomes.result import SolidResult
 from fea.refine.discretisation import Discretisation, MeshStatus
 from fea.solid.stress import StressField
-from geometry.parts.material import stress_measure
+from geometry.materials.material import stress_measure
 from geometry.parts.part import Section
 from reports.figures.style import DPI, WIDTH
 

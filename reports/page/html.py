@@ -11,7 +11,7 @@ from fea.frame.joint_forces import PINNED_STATICS
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from geometry.base.version import alula_version
 from geometry.linkage.pose import NEAR_DEAD_POINT
-from geometry.parts.material import Material
+from geometry.materials.material import Material
 from loads.case.case_file import built_in_cases
 from reports.page.coverage import not_covered
 from reports.page.pictures import diagram_name, governing_load_cases, layers_name, linkage_name, stress_name

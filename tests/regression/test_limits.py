@@ -83,7 +83,9 @@ def test_the_ends_of_what_is_read_are_borne_by_all_that_solves(changes: dict[str
 def _starter(changes: dict[str, str]) -> dict[str, Any]:
     """Tables of the starter with a material of its own and a motion under inertia; the changes by their paths."""
     tables = tomllib.loads(files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8"))
-    card = tomllib.loads(files("geometry").joinpath("materials.toml").read_text(encoding="utf-8"))["pla-fdm-xy"]
+    card = tomllib.loads(files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))[
+        "pla-fdm-xy"
+    ]
     tables["materials"] = {"plate": card}
     tables["parts"]["bar"]["material"] = "plate"
     tables["motion"] = {

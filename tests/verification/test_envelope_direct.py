@@ -16,8 +16,8 @@ from fea.solid.layers import Layers
 from fea.solid.solution import solve_solid
 from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
+from geometry.materials.material import library
 from geometry.meshing.mirror import mirrored
-from geometry.parts.material import library
 from loads.records.bearing import NARROW, WIDE
 
 MATERIAL = library()["pvc-u"]

@@ -13,7 +13,7 @@ from fea.refine.link_series import precision
 from fea.refine.refinement import MeshRecord, RefinedSolid
 from fea.solid.solution import solve_solid
 from fea.solid.space import displacement_space
-from geometry.parts.material import library
+from geometry.materials.material import library
 
 MATERIAL = library()["pvc-u"]
 

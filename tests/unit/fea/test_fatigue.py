@@ -17,7 +17,7 @@ from fea.motion.fatigue import (
     turning_points,
 )
 from fea.motion.peaks import ModeMeasures
-from geometry.parts.material import Fatigue, library
+from geometry.materials.material import Fatigue, library
 
 PVC = library()["pvc-u"]
 RESIN = library()["resin-405nm"]

@@ -20,7 +20,7 @@ from fea.outcomes.limits import layer_limit, layer_limits, layers_of
 from fea.solid.layers import Layers, best_directions, build_directions, on_plane
 from fea.solid.stress import von_mises
 from geometry.base.errors import CaseError
-from geometry.parts.material import library
+from geometry.materials.material import library
 from loads.case.case_file import read_case
 
 RNG = np.random.default_rng(7)

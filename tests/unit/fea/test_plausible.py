@@ -3,7 +3,7 @@
 import pytest
 
 from fea.outcomes.plausible import class_of, unusual
-from geometry.parts.material import Material, library
+from geometry.materials.material import Material, library
 
 # Published typical values, each from a maker's or standard's sheet: kg/m3, GPa, MPa yield, MPa ultimate.
 USUAL = {

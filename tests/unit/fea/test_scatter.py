@@ -25,7 +25,7 @@ from fea.motion.envelope_outcomes import envelope_outcomes
 from fea.outcomes.linkage import linkage_outcomes
 from fea.refine.refinement import Effort
 from geometry.base.errors import CaseError
-from geometry.parts.material import library
+from geometry.materials.material import library
 from loads.states.case_motion import solve_case_motion
 from loads.text.shares import parse_scatter
 

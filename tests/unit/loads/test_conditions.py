@@ -13,7 +13,7 @@ from fea.common.scatter import compliance_scatter, strength_scatter
 from fea.common.verdict import Verdict
 from fea.outcomes.judge import outcomes
 from geometry.base.errors import CaseError
-from geometry.parts.material import library
+from geometry.materials.material import library
 from loads.records.check_spec import SustainedCheck
 from loads.records.conditions import Conditions, temperature_factor, under
 

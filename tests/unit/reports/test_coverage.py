@@ -57,7 +57,7 @@ def test_buckling_is_not_called_left_out_where_it_is_judged(wing, result):
 def test_scatter_that_is_stated_is_not_called_left_out(wing, ranged, loads, words):
     tree = tomllib.loads(read_text("owl-wing-static")[0])
     if ranged:
-        cards = tomllib.loads(files("geometry").joinpath("materials.toml").read_text(encoding="utf-8"))
+        cards = tomllib.loads(files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))
         [name] = {part["material"] for part in tree["parts"].values()}
         ranges = {"strength_range": ["40 MPa", "43 MPa"], "youngs_modulus_range": ["2 GPa", "3 GPa"]}
         tree["materials"] = {"ranged": cards[name] | ranges}

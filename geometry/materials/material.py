@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress, Temperature
-from geometry.parts.laminate import ANISOTROPIC, is_laminate
+from geometry.materials.laminate import ANISOTROPIC, is_laminate
 
 Status = Literal["measured", "datasheet", "handbook", "assumed"]
 TOLD = (
@@ -226,11 +226,11 @@ def stress_measure(*, brittle: bool) -> str:
 
 
 def library_text() -> str:
-    """Return the text of the library, ``geometry/materials.toml``."""
-    return files("geometry").joinpath("materials.toml").read_text(encoding="utf-8")
+    """Return the text of the library, ``geometry/materials/materials.toml``."""
+    return files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8")
 
 
 @cache
 def library() -> dict[str, Material]:
-    """Return the materials that alula ships (``geometry/materials.toml``), by name."""
+    """Return the materials that alula ships (``geometry/materials/materials.toml``), by name."""
     return {name: Material.model_validate(card) for name, card in tomllib.loads(library_text()).items()}
