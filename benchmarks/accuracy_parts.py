@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from solid_problems import Problem, Solved
 
-from fea.solid.quadrature import SurfaceQuadrature
+from fea.elements.quadrature import SurfaceQuadrature
 from geometry.meshing.tagged_mesh import TaggedMesh
 
 Answer = tuple[float, float]

@@ -25,8 +25,8 @@ from fea.beam.theory import BeamCheck, check_beam
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
+from geometry.bodies.eyes import RIM
 from geometry.meshing.mesh import MeshSettings, mesh_body
-from geometry.parts.eyes import RIM
 from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 FILE = Path(__file__).resolve().parents[1] / "fea" / "calibration.toml"

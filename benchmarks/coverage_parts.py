@@ -15,8 +15,8 @@ import numpy as np
 
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from geometry.base.errors import CaseError
+from geometry.bodies.eyes import RIM
 from geometry.meshing.mesh import check_body
-from geometry.parts.eyes import RIM
 from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Tube
 
 WIDTH = 10.0

@@ -15,7 +15,7 @@ from benchmarks.coverage_parts import YOUNG, Drawn
 from fea.common.link_loads import PinLoad
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesher import size_formulas
-from geometry.meshing.solid_model import build, initialised
+from geometry.solids.solid_model import build, initialised
 from loads.records.bearing import NARROW, WIDE, PressureLaw
 
 PLACED = 1e-9

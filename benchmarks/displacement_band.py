@@ -27,8 +27,8 @@ from fea.refine.link_series import precision
 from fea.solid.solution import SolidSolution, solve_solid
 from fea.solid.virtual_work import virtual_work
 from geometry.base.errors import CannotRunError, CaseError
+from geometry.bodies.body_rules import check_body
 from geometry.meshing.mesh import MeshSettings, mesh_body
-from geometry.parts.body_rules import check_body
 from geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
 
 FORCE = 100.0

@@ -26,12 +26,12 @@ import numpy as np
 from record import save
 
 from fea.common.threads import bounded
+from fea.elements.space import displacement_space
 from fea.motion.link_envelope import link_motion
 from fea.motion.link_history import link_histories
 from fea.solid.solution import solve_solid
-from fea.solid.solve import Method, available_methods
-from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
+from fea.solvers.solve import Method, available_methods
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case
 from loads.case.case_file import read_case

@@ -9,12 +9,12 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from fea.common.threads import bounded
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.quadrature import surface_quadrature
-from fea.solid.solve import factorise
-from fea.solid.space import DisplacementSpace, displacement_space
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import DisplacementSpace, displacement_space
 from fea.solid.stress import stress_field, von_mises
-from fea.solid.two_level import linear_level
+from fea.solvers.solve import factorise
+from fea.solvers.two_level import linear_level
 from geometry.meshing.tagged_mesh import TaggedMesh
 
 E, NU = 2900.0, 0.38

@@ -76,12 +76,12 @@ def measured(path: Path, solver: str, threads: int) -> dict[str, Any]:
 
     stage("import", imported)
     from fea.common.threads import bounded
-    from fea.solid.elasticity import assemble_stiffness
-    from fea.solid.solve import factorise
-    from fea.solid.space import displacement_space
+    from fea.elements.elasticity import assemble_stiffness
+    from fea.elements.space import displacement_space
+    from fea.elements.supports import isostatic_supports, rigid_motions
     from fea.solid.stress import stress_field
-    from fea.solid.supports import isostatic_supports, rigid_motions
-    from fea.solid.two_level import LinearLevel
+    from fea.solvers.solve import factorise
+    from fea.solvers.two_level import LinearLevel
     from geometry.meshing.tagged_mesh import TaggedMesh
 
     def read() -> TaggedMesh:

@@ -8,12 +8,12 @@ from scipy.sparse.linalg import splu
 from benchmarks.stability_report import Row, figure, table, timed
 from benchmarks.stability_solids import box
 from fea.beam.column_factor import AxialForce, column_factors
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.space import displacement_space
+from fea.elements.supports import isostatic_supports
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
-from fea.frame.stability import buckling_factor
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.space import displacement_space
-from fea.solid.supports import isostatic_supports
+from fea.nonlinear.stability import buckling_factor
 from geometry.parts.part import Section
 
 SECTION = Section(area=8.0, i_y=2.0, i_z=3.0, torsion=4.0, half_y=1.0, half_z=1.0, round=False)

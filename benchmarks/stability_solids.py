@@ -12,16 +12,16 @@ from benchmarks.stability_report import Row, figure, table, timed
 from fea.beam.deflection import deflection
 from fea.beam.loads import BeamLoads, PointLoad
 from fea.beam.theory import internal_forces
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.quadrature import surface_quadrature, volume_quadrature
+from fea.elements.space import DisplacementSpace, displacement_space
+from fea.elements.supports import isostatic_supports
 from fea.frame.linear import solve_frame
 from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
 from fea.refine.error_estimate import ErrorEstimate, energy_density, estimate_error
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.quadrature import surface_quadrature, volume_quadrature
-from fea.solid.solve import Method, factorise
-from fea.solid.space import DisplacementSpace, displacement_space
 from fea.solid.stress import stress_field, von_mises
-from fea.solid.supports import isostatic_supports
-from fea.solid.two_level import linear_level
+from fea.solvers.solve import Method, factorise
+from fea.solvers.two_level import linear_level
 from geometry.base.errors import CannotRunError
 from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.part import Section
@@ -335,8 +335,8 @@ def mesh_quality() -> Row:
 
 def stress_error(found: Solved, exact: Stress, nu: float) -> float:
     """True error in the energy norm [√(N mm)]: of the elements' own stress, against the exact one."""
+    from fea.elements.elasticity import reference_basis
     from fea.refine.error_estimate import DEGREE, _own_stress
-    from fea.solid.elasticity import reference_basis
 
     space = found.space
     _, W, phi, gradient = reference_basis(space, DEGREE)

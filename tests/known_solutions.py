@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.quadrature import surface_quadrature
-from fea.solid.solve import factorise
-from fea.solid.space import displacement_space
-from fea.solid.supports import isostatic_supports
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import displacement_space
+from fea.elements.supports import isostatic_supports
+from fea.solvers.solve import factorise
 
 E, NU = 2900.0, 0.38
 PRESSURE, INNER, OUTER = 10.0, 1.0, 2.0

@@ -5,8 +5,8 @@ from typing import Annotated
 from strip_part import Strip
 
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.parts.body import Body, extent
-from geometry.parts.kernel import Entity, Kernel
+from geometry.bodies.body import Body, extent
+from geometry.bodies.kernel import Entity, Kernel
 
 
 class Lopsided(Strip):

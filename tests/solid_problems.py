@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 from known_solutions import law
 
+from fea.elements.elasticity import assemble_stiffness, jacobians, reference_basis
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import EDGES, displacement_space
+from fea.elements.supports import rigid_motions
 from fea.refine.convergence import GridConvergence, grid_convergence, observed_order
 from fea.refine.error_estimate import energy_density, energy_factor, estimate_error, relative_error
-from fea.solid.elasticity import assemble_stiffness, jacobians, reference_basis
-from fea.solid.quadrature import surface_quadrature
-from fea.solid.solve import factorise
-from fea.solid.space import EDGES, displacement_space
 from fea.solid.stress import stress_field
-from fea.solid.supports import rigid_motions
+from fea.solvers.solve import factorise
 from geometry.meshing.tagged_mesh import TaggedMesh
 
 SIDES = ("u0", "u1", "v0", "v1", "w0", "w1")

@@ -4,9 +4,9 @@ from typing import Annotated, ClassVar, Literal
 
 from geometry.base.errors import CaseError
 from geometry.base.units import POSITIVE, Length
-from geometry.parts.body import Body, Feature, PartKind, extent
-from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.section import Section, rectangle
+from geometry.bodies.body import Body, Feature, PartKind, extent
+from geometry.bodies.kernel import Entity, Kernel
+from geometry.bodies.section import Section, rectangle
 
 
 class Strip(PartKind):

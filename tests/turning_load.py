@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.solid.quadrature import volume_quadrature
+from fea.elements.quadrature import volume_quadrature
 from geometry.parts.part import Bar, Body, Pin, PlainEnd
 from loads.records.applied import BodyForce, LineLoad, PartMass
 

@@ -11,8 +11,8 @@ from functools import cache
 from importlib.resources import files
 
 from fea.beam.critical_locations import LocationKind
-from geometry.parts.body import Body, PartKind, patch_span
-from geometry.parts.eyes import eye_reach
+from geometry.bodies.body import Body, PartKind, patch_span
+from geometry.bodies.eyes import eye_reach
 
 Interval = tuple[float, float]
 _GAPS = {

@@ -20,8 +20,8 @@ from fea.beam.piecewise import Side
 from fea.beam.section_stress import equivalent_stress, rim_shear, section_stress
 from fea.beam.theory import BeamCheck
 from fea.common.link_loads import LinkLoads, PinLoad
-from geometry.parts.body import extent, patch_span
-from geometry.parts.eyes import eye_reach
+from geometry.bodies.body import extent, patch_span
+from geometry.bodies.eyes import eye_reach
 from geometry.parts.part import Body, HoleRow, Pin
 
 LocationKind = Literal["eye", "hole", "end", "section"]

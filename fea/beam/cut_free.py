@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from fea.beam import loads as beam
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from geometry.base.errors import CaseError
+from geometry.bodies.body import extent, hand_section
 from geometry.linkage.placement import Placement
-from geometry.parts.body import extent, hand_section
 from geometry.parts.part import Body, Pin
 from loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, rotated, shifted, turned
 from loads.statics.statics import Equilibrium

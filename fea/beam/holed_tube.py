@@ -10,7 +10,7 @@ import numpy as np
 
 from fea.beam.section_stress import SectionStress, section_stress
 from fea.beam.theory import Floats
-from geometry.parts.section import Section
+from geometry.bodies.section import Section
 
 _SLICES = 33
 

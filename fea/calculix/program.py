@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.space import DisplacementSpace
+from fea.elements.space import DisplacementSpace
 from geometry.base import child
 from geometry.base.errors import CannotRunError
 

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.calculix import program as calculix
+from fea.elements.elasticity import assemble_stiffness, reference_basis
+from fea.elements.space import DisplacementSpace
+from fea.elements.supports import isostatic_supports, rigid_motions
 from fea.outcomes.opinion import Answer, SecondOpinion
 from fea.outcomes.result import CheckResult, SolidResult
-from fea.solid.elasticity import assemble_stiffness, reference_basis
 from fea.solid.solution import SolidCase, SolidSolution
-from fea.solid.space import DisplacementSpace
 from fea.solid.stress import StressField, von_mises
-from fea.solid.supports import isostatic_supports, rigid_motions
 from geometry.base.errors import CannotRunError
 
 TIME_LIMIT = 900.0

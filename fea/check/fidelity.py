@@ -17,9 +17,9 @@ from fea.common.source import CONTACT, Source, SourceKind
 from fea.refine.link_task import LinkTask
 from fea.refine.refinement import Effort, Progress, RefinedSolid, refine_links
 from geometry.base.errors import CannotRunError
+from geometry.bodies.body import extent, reference_line
+from geometry.bodies.eyes import eye_reach
 from geometry.meshing.mesh import MeshSettings
-from geometry.parts.body import extent, reference_line
-from geometry.parts.eyes import eye_reach
 from geometry.parts.part import Body
 from loads.records.bearing import CONTACT_SHORTFALL
 

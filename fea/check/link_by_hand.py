@@ -11,9 +11,9 @@ from fea.beam.section_stress import SectionStress
 from fea.beam.theory import BeamCheck, check_beam
 from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
-from fea.frame.large_displacement import LargeDisplacement
+from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.unloaded import load_size, without_rounding
-from geometry.parts.body import hand_section, reference_line
+from geometry.bodies.body import hand_section, reference_line
 from loads.case.case import Case
 from loads.records.applied import Load
 from loads.statics.statics import Reactions

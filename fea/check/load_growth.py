@@ -15,7 +15,7 @@ from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind
 from fea.frame.joint_forces import joint_forces
-from fea.frame.large_displacement import LargeDisplacement, examine
+from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case

@@ -7,6 +7,8 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from fea.beam.theory import CantileverCheck, uniform_cantilever
+from fea.buckling.buckling import buckling_outcomes
+from fea.buckling.linkage import unless_it_gives_way
 from fea.check.case_statics import CaseStatics, solve_case_statics
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
@@ -18,11 +20,9 @@ from fea.common.link_loads import LinkLoads
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.frame.joint_forces import PINNED_STATICS, ways_to_hold
-from fea.frame.large_displacement import LargeDisplacement, examine
+from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
-from fea.outcomes.buckling import buckling_outcomes
 from fea.outcomes.judge import outcomes
-from fea.outcomes.linkage import unless_it_gives_way
 from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.pins import PinStress, stress_at
 from fea.outcomes.result import CheckResult, LoadCaseResult
@@ -31,8 +31,8 @@ from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
 from geometry.base.errors import CaseError
+from geometry.bodies.body import PartKind
 from geometry.linkage.pose import NEAR_DEAD_POINT
-from geometry.parts.body import PartKind
 from loads.case.case import Case
 from loads.records.check_spec import BearingCheck, MotorCheck, PinCheck
 from loads.statics.statics import Reactions

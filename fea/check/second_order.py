@@ -24,9 +24,9 @@ from fea.beam.cut_free import beam_loads
 from fea.beam.flanks import flanks_of
 from fea.beam.piecewise import Piecewise, Side
 from fea.beam.theory import internal_forces
+from fea.buckling.buckling import columns, holding
 from fea.common.link_loads import LinkLoads
-from fea.outcomes.buckling import columns, holding
-from geometry.parts.body import hand_section
+from geometry.bodies.body import hand_section
 from loads.case.case import Case
 from loads.records.applied import LineLoad
 

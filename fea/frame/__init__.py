@@ -1,4 +1,4 @@
-"""All links together as a frame: joint forces, displacement of points, large displacement, stability.
+"""All links together as a frame in small displacements: its equations, joint forces, displacement of points.
 
-Hands on ``JointForces`` and ``LargeDisplacement``.
+Hands on ``LinkageFrame`` and ``JointForces``.
 """

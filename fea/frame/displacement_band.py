@@ -28,8 +28,8 @@ from fea.common.band import Band
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
-from geometry.parts.body import Body, PartKind, hand_section
-from geometry.parts.features import Pin
+from geometry.bodies.body import Body, PartKind, hand_section
+from geometry.bodies.features import Pin
 from loads.case.case import Case
 
 Real = NDArray[np.float64]

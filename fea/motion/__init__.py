@@ -1,4 +1,4 @@
-"""The same over a motion: loads of every pose, unit solutions, peaks, fatigue, verdicts.
+"""The same over a motion: loads of every pose, peaks and their bands, fatigue, verdicts.
 
 Hands on ``envelope_case``.
 """

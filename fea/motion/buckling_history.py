@@ -1,4 +1,4 @@
-"""Buckling factor of a link at every pose of a motion, by the rules of ``fea.outcomes.buckling``."""
+"""Buckling factor of a link at every pose of a motion, by the rules of ``fea.buckling.buckling``."""
 
 import itertools
 from dataclasses import replace
@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from fea.beam.column_factor import AxialForce
 from fea.beam.cut_free import beam_loads
+from fea.buckling.buckling import NO_COMPRESSION, ColumnFactors, link_factors
 from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
-from fea.frame.large_displacement import LEAST_FACTOR
-from fea.motion.unit_loads import unit_forces
-from fea.outcomes.buckling import NO_COMPRESSION, ColumnFactors, link_factors
-from geometry.parts.body import hand_section
+from fea.nonlinear.large_displacement import LEAST_FACTOR
+from fea.superposition.unit_loads import unit_forces
+from geometry.bodies.body import hand_section
 from loads.case.case import Case
 from loads.records.applied import LineLoad
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.motion.fatigue import equivalent_peak, signed_stress
-from fea.motion.peaks import ModeMeasures, signed_bounds
+from fea.superposition.peaks import ModeMeasures, signed_bounds
 from geometry.materials.material import Material
 
 Real = NDArray[np.float64]

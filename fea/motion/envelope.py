@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.buckling.linkage import unless_it_gives_way
 from fea.check.run import effort_of
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
@@ -19,6 +20,7 @@ from fea.common.link_loads import LinkLoads
 from fea.common.scatter import load_scatter
 from fea.common.threads import bounded, bounded_run
 from fea.common.verdict import CheckOutcome, overall
+from fea.elements.space import DisplacementSpace, displacement_space
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
@@ -27,12 +29,10 @@ from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import linkage_outcomes
 from fea.outcomes.limits import layers_of
-from fea.outcomes.linkage import unless_it_gives_way
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
 from fea.refine.refinement import START, Effort, refine_links
 from fea.solid.solution import require_compressible
-from fea.solid.space import DisplacementSpace, displacement_space
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case

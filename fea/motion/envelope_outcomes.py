@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.buckling.buckling import column_outcome, worst_column
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.ties import first_largest
@@ -14,7 +15,6 @@ from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.bearing import bearing_outcome
-from fea.outcomes.buckling import column_outcome, worst_column
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
 from fea.outcomes.layers import no_strength, without_shear

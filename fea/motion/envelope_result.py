@@ -11,7 +11,7 @@ from fea.common.verdict import CheckOutcome, Verdict
 from fea.motion.fatigue import FatigueLife
 from fea.refine.discretisation import Discretisation
 from fea.solid.stress import StressField
-from fea.solid.traction import Transfer
+from fea.tractions.traction import Transfer
 from loads.case.case import Case
 from loads.records.bearing import Span
 from loads.states.case_motion import CaseMotion

@@ -11,8 +11,8 @@ from fea.common.scatter import Scatter, layer_scatter
 from fea.common.source import Source, SourceKind, pin_sources
 from fea.motion.envelope_result import LayerEnvelope, VariantCurve
 from fea.motion.link_envelope import LinkMotion
-from fea.motion.peaks import ModeMeasures, largest_stress
 from fea.solid.layers import Layers
+from fea.superposition.peaks import ModeMeasures, largest_stress
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
 Real = NDArray[np.float64]

@@ -10,21 +10,21 @@ from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, strength_scatter
 from fea.common.source import Source, SourceKind, distinct, pin_sources
+from fea.elements.space import DisplacementSpace
+from fea.elements.supports import LineReference
 from fea.motion.critical import critical_nodes
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import fatigue_life, missing_data, strength_at
 from fea.motion.mesh_factors import MeshFactors
-from fea.motion.peaks import Peaks, largest_stress
-from fea.motion.unit_loads import unit_loads
-from fea.motion.unit_solutions import UnitSolutions, solve_units
 from fea.refine.convergence import ALONE
 from fea.refine.error_estimate import estimate_error
 from fea.refine.refinement import RefinedSolid
 from fea.solid.solution import IMBALANCE_LIMIT, REACTION_LIMIT
-from fea.solid.space import DisplacementSpace
 from fea.solid.stress import stress_field
-from fea.solid.supports import LineReference
-from fea.solid.traction import Transfer
+from fea.superposition.peaks import Peaks, largest_stress
+from fea.superposition.unit_loads import unit_loads
+from fea.superposition.unit_solutions import UnitSolutions, solve_units
+from fea.tractions.traction import Transfer
 from geometry.base.errors import CannotRunError
 from geometry.materials.material import Material, stress_measure
 from geometry.parts.part import Body, Pin

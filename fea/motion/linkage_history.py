@@ -5,11 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.buckling.linkage import by_linear_theory
 from fea.common.verdict import CheckOutcome, Verdict
 from fea.frame.build import build_frame
 from fea.frame.linear import solve_frame
-from fea.frame.stability import dead_point_factor, linkage_factor
-from fea.outcomes.linkage import by_linear_theory
+from fea.nonlinear.stability import dead_point_factor, linkage_factor
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
 from loads.records.applied import chosen
@@ -20,7 +20,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
     """Yield an outcome for every load case under which the linkage may give way at one of two poses.
 
     They are the pose next to a dead point of the driven link and that of the largest drive torque. The rule is that of
-    single poses (``fea.outcomes.linkage``).
+    single poses (``fea.buckling.linkage``).
 
     Parameters
     ----------

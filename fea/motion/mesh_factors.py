@@ -11,7 +11,7 @@ from fea.motion.envelope_result import VariantCurve
 from fea.refine.discretisation import Discretisation, discretisation_source, judged
 from fea.refine.link_series import STRESS
 from fea.refine.refinement import RefinedSolid
-from fea.solid.traction import Transfer
+from fea.tractions.traction import Transfer
 from geometry.materials.material import Material
 from loads.records.bearing import Span
 

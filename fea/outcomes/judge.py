@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping
 
+from fea.buckling.linkage import linkage_outcomes
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
-from fea.frame.large_displacement import LargeDisplacement
+from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.layers import layer_outcomes
 from fea.outcomes.limits import least_safety_factor
-from fea.outcomes.linkage import linkage_outcomes
 from fea.outcomes.pins import PinStress, pin_outcome
 from fea.outcomes.point_displacement import point_outcome
 from fea.outcomes.result import LinkResult, SolidResult
@@ -36,7 +36,7 @@ def outcomes(
 ) -> tuple[CheckOutcome, ...]:
     """Return the outcome of every check of a load case, but for motors, bearing and links' buckling.
 
-    These are in ``fea.outcomes.motor``, ``fea.outcomes.bearing`` and ``fea.outcomes.buckling``.
+    These are in ``fea.outcomes.motor``, ``fea.outcomes.bearing`` and ``fea.buckling.buckling``.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ from fea.common.source import Source, SourceKind
 from fea.common.verdict import CheckOutcome, Quantity, Subject
 from fea.outcomes.limits import least_safety_factor
 from geometry.base.errors import CaseError
-from geometry.parts.features import Ring
+from geometry.bodies.features import Ring
 from loads.case.case import Case
 from loads.records.check_spec import PinCheck
 from loads.statics.joint_reaction import JointReaction

@@ -15,8 +15,8 @@ from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import CONTACT, Source, SourceKind, distinct, pin_sources
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
-from fea.frame.large_displacement import LARGE, LargeDisplacement, displaced
-from fea.frame.stability import SNAP, growth
+from fea.nonlinear.large_displacement import LARGE, LargeDisplacement, displaced
+from fea.nonlinear.stability import SNAP, growth
 from fea.outcomes.result import LinkResult, SolidResult
 from fea.solid.virtual_work import virtual_work
 from loads.case.case import Case
@@ -196,9 +196,9 @@ def _band(
 ) -> Band:
     """Band of how far a point moves: what solids or beams leave open, the moduli, and the load.
 
-    The linear answer may grow as a toggle does (``fea.frame.stability``); on the deformed shape equilibrium is sought
-    again with the ends of load over stiffness, and with solids for the value: in a frame that is softer by the solids'
-    linear displacement over the frame's own.
+    The linear answer may grow as a toggle does (``fea.nonlinear.stability``); on the deformed shape equilibrium is
+    sought again with the ends of load over stiffness, and with solids for the value: in a frame that is softer by the
+    solids' linear displacement over the frame's own.
     """
     assert moved.frame is not None
     assert moved.solution is not None

@@ -12,7 +12,7 @@ from fea.beam.theory import BeamCheck, CantileverCheck
 from fea.common.band import Band
 from fea.common.verdict import LINKAGE, CheckOutcome, Verdict
 from fea.frame.joint_forces import JointForces, WayToHold
-from fea.frame.large_displacement import LargeDisplacement
+from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.opinion import SecondOpinion
 from fea.outcomes.pins import PinStress

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fea.outcomes.plausible import unusual
+from geometry.materials.plausible import unusual
 from loads.case.case import Case
 from loads.records.check_spec import PinCheck, SafetyFactorCheck, SustainedCheck
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.elasticity import reference_basis
+from fea.elements.elasticity import reference_basis
 from fea.solid.stress import StressField, carry_to_nodes, element_stress, von_mises
 
 DEGREE = 5

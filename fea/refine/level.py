@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.elements.space import UpperHalf, upper_half
 from fea.refine.error_estimate import ErrorEstimate, estimate_error
 from fea.solid.layers import Layers
 from fea.solid.solution import SolidCase, SolidSolution
-from fea.solid.space import UpperHalf, upper_half
 from fea.solid.stress import COMPONENTS, extreme_principal, stress_field
 from loads.records.bearing import Span
 

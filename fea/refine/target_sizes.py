@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.elements.space import EDGES, DisplacementSpace
 from fea.refine.convergence import FORMAL_ORDER, SERIES, GridConvergence
-from fea.solid.space import EDGES, DisplacementSpace
 
 SERIES_RATIO = 1.5
 """Least size of the last mesh over that of the next one at a peak; at least 1.3 (Celik et al. 2008)."""

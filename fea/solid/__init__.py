@@ -1,4 +1,4 @@
-"""One link as a solid: elements, stiffness, pin pressure, supports, solvers, stress.
+"""One link as a solid: its displacements, its stress, that on printed layers, and the motion of its bores.
 
 Hands on ``SolidSolution`` and ``StressField``.
 """

@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.link_loads import LinkLoads
-from fea.solid.block_matrix import SymmetricBlockMatrix
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.load_vectors import LoadVectors, Variant
-from fea.solid.solve import Method, factorise
-from fea.solid.space import DisplacementSpace, displacement_space, upper_half
-from fea.solid.supports import LineReference, half_supports, isostatic_supports, rigid_motions
-from fea.solid.traction import Transfer
-from fea.solid.two_level import linear_level
+from fea.elements.block_matrix import SymmetricBlockMatrix
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.space import DisplacementSpace, displacement_space, upper_half
+from fea.elements.supports import LineReference, half_supports, isostatic_supports, rigid_motions
+from fea.solvers.solve import Method, factorise
+from fea.solvers.two_level import linear_level
+from fea.tractions.load_vectors import LoadVectors, Variant
+from fea.tractions.traction import Transfer
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.records.bearing import NARROW, WIDE, PressureLaw, Span
@@ -100,7 +100,7 @@ class SolidSolution:
     solver_reason : str
         Why it was chosen.
     solver_error : float
-        Largest relative error that it left in a case, in the energy norm (``fea.solid.solved``).
+        Largest relative error that it left in a case, in the energy norm (``fea.solvers.solved``).
     notes : tuple of str
         What the report has to say about this solution.
     """

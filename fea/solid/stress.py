@@ -22,9 +22,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.solid.elasticity import jacobians, lame_constants, reference_basis
-from fea.solid.quadrature import SurfaceQuadrature, face_quadrature
-from fea.solid.space import DisplacementSpace
+from fea.elements.elasticity import jacobians, lame_constants, reference_basis
+from fea.elements.quadrature import SurfaceQuadrature, face_quadrature
+from fea.elements.space import DisplacementSpace
 from geometry.base.errors import CannotRunError
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")

@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import DisplacementSpace
 from fea.solid.bore_motion import mean_motion, work
-from fea.solid.quadrature import surface_quadrature
-from fea.solid.slot_traction import DEGREE, slot_traction
 from fea.solid.solution import SolidSolution
-from fea.solid.space import DisplacementSpace
-from fea.solid.traction import Transfer, couple_traction, pin_traction
+from fea.tractions.slot_traction import DEGREE, slot_traction
+from fea.tractions.traction import Transfer, couple_traction, pin_traction
 from loads.records.bearing import NARROW, WIDE, PressureLaw, Span
 
 Real = NDArray[np.float64]

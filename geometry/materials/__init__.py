@@ -1,4 +1,4 @@
-"""What links are made of: material cards, the library of them, laminates that no isotropic card describes, printing.
+"""What links are made of: material cards and whether they are usual, the library, laminates, printing.
 
 Hands on ``Material``, ``Fatigue``, ``Printable`` and ``library``, which reads ``materials.toml``.
 """

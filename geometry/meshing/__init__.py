@@ -1,4 +1,4 @@
-"""From a part to a mesh: CAD solid, sizes, gmsh in a child process, checks of what came back.
+"""From a solid to a mesh: sizes, gmsh in a child process, meshes from files, checks of what came back.
 
 Hands on ``TaggedMesh``, whose named surfaces are where loads enter.
 """

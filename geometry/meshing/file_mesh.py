@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError, CaseError
+from geometry.bodies.body import Body
 from geometry.imported.bores import find_bores
 from geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface, Vector
 from geometry.imported.walls import Line
@@ -27,11 +28,10 @@ from geometry.meshing.element_geometry import (
 )
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesh_walls import bent_edges, cylinder_walls, inner_edges, on_cylinder
-from geometry.meshing.reentrant import ReentrantEdge
-from geometry.meshing.sections import StationSection
 from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.body import Body
 from geometry.parts.mesh_part import MeshedPart
+from geometry.solids.reentrant import ReentrantEdge
+from geometry.solids.sections import StationSection
 
 Real = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from geometry.base.errors import AlulaError
 from geometry.base.kernel_child import KernelWords, ask_kernel
+from geometry.bodies.body_rules import check_body
 from geometry.meshing.mesh_settings import COARSE, MeshSettings
-from geometry.meshing.reentrant import ReentrantEdge
-from geometry.meshing.sections import StationSection
 from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.body_rules import check_body
 from geometry.parts.part import Body
+from geometry.solids.reentrant import ReentrantEdge
+from geometry.solids.sections import StationSection
 
 __all__ = [
     "COARSE",

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
-from geometry.meshing.patches import patch_faces
-from geometry.meshing.solid_model import Solid
-from geometry.parts.body import Body, patch_span
-from geometry.parts.kernel import ON_SURFACE
+from geometry.bodies.body import Body, patch_span
+from geometry.bodies.kernel import ON_SURFACE
+from geometry.solids.patches import patch_faces
+from geometry.solids.solid_model import Solid
 
 SAME = 1e-3
 """Distance of two centroids, and relative difference of two areas or volumes, up to which a face and the image of

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.imported.walls import Line, Wall, fitted_circle, joined_walls, united, upwards
 from geometry.meshing.element_geometry import TRIANGLE_EDGES, shape_gradients
-from geometry.meshing.reentrant import ReentrantEdge
+from geometry.solids.reentrant import ReentrantEdge
 
 Real = NDArray[np.float64]
 Ints = NDArray[np.int64]

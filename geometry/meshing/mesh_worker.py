@@ -22,12 +22,12 @@ from geometry.base.child_memory import MemoryGuard
 from geometry.base.child_server import ChildService
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.system_libraries import advice
+from geometry.bodies.body import Body
 from geometry.imported.solid import facts_of_file, surface_of_file
 from geometry.meshing.file_mesh import MESH_TASKS, facts_of_mesh, surface_of_mesh
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesh_target import MeshTarget, mesh_target
-from geometry.meshing.solid_model import Solid, build, initialised, present, volume_centroid_inertia, write_step
-from geometry.parts.body import Body
+from geometry.solids.solid_model import Solid, build, initialised, present, volume_centroid_inertia, write_step
 
 MOST_SOLIDS = 16
 """Solids that are kept at most; each takes a few megabytes."""
@@ -61,7 +61,7 @@ def _mass(gmsh: Any, built: _Built) -> object:
 
 
 def _reentrant(gmsh: Any, built: _Built) -> object:
-    from geometry.meshing.reentrant import find_reentrant_edges
+    from geometry.solids.reentrant import find_reentrant_edges
 
     present(gmsh, built.solid.tag)
     return find_reentrant_edges(gmsh, built.solid)
@@ -75,7 +75,7 @@ def _step(gmsh: Any, built: _Built, path: str) -> None:
 
 
 def _sections(gmsh: Any, built: _Built, stations: tuple[float, ...]) -> object:
-    from geometry.meshing.sections import cut_sections, ring_diameters
+    from geometry.solids.sections import cut_sections, ring_diameters
 
     present(gmsh, built.solid.tag)
     return cut_sections(gmsh, built.solid, stations), ring_diameters(gmsh, built.solid)

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError, CoarseMeshError
+from geometry.bodies.body import Body
 from geometry.meshing.element_count import SAFETY, Sizes, estimated_elements
 from geometry.meshing.element_geometry import flatten, jacobian_coefficients, scaled_jacobians, triangle_areas
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesh_target import MeshTarget
 from geometry.meshing.mirror import mirrored
-from geometry.meshing.solid_model import SECTION_UNITS, present
 from geometry.meshing.tagged_mesh import TaggedMesh
-from geometry.parts.body import Body
+from geometry.solids.solid_model import SECTION_UNITS, present
 
 SLOT_ELEMENTS = 1.5
 """Element edges along a slot to those round a hole of its width: a pin pushes on a shorter stretch of a flank."""

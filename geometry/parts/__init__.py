@@ -1,4 +1,4 @@
-"""The bodies of links: kinds of parts with their sections, rules and solids.
+"""The kinds of parts that a case may state, each with its sizes, sections, rules and solid.
 
-Hands on ``Tube``, ``Bar``, ``Disc``, ``Body`` and ``Section``. A new kind derives from ``PartKind``.
+Hands on ``Part``: ``Tube``, ``Bar``, ``Disc``, ``Plate`` and those from files.
 """

@@ -4,8 +4,8 @@ import itertools
 import math
 
 from geometry.base.errors import CaseError
-from geometry.parts.body import Body, apart, extent
-from geometry.parts.eyes import TOUCHING, arm_angle, flush
+from geometry.bodies.body import Body, apart, extent
+from geometry.bodies.eyes import TOUCHING, arm_angle, flush
 
 LEAST_ARM_ANGLE = math.radians(30.0)
 """Between an arm and the link's axis: below it, bar and arm run into one another."""

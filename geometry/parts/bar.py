@@ -8,10 +8,10 @@ from pydantic_core import PydanticCustomError
 from geometry.base.errors import CaseError
 from geometry.base.model import Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.parts.body import ON_AXIS, Body, Feature, extent
-from geometry.parts.eyes import EYE_WIDTH, RIM, ROUNDING
-from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.section import Section, rectangle
+from geometry.bodies.body import ON_AXIS, Body, Feature, extent
+from geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
+from geometry.bodies.kernel import Entity, Kernel
+from geometry.bodies.section import Section, rectangle
 from geometry.parts.straight import Piece, Straight
 
 

@@ -10,10 +10,10 @@ from pydantic_core import PydanticCustomError
 from geometry.base.errors import CaseError
 from geometry.base.model import Name
 from geometry.base.units import POSITIVE, Length
-from geometry.parts.body import Body, Feature, PartKind, apart, extent
-from geometry.parts.eyes import check_flat_eyes
-from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.section import Section, rectangle
+from geometry.bodies.body import Body, Feature, PartKind, apart, extent
+from geometry.bodies.eyes import check_flat_eyes
+from geometry.bodies.kernel import Entity, Kernel
+from geometry.bodies.section import Section, rectangle
 
 _CHORDS = 200
 

@@ -3,8 +3,8 @@
 from typing import ClassVar, Literal
 
 from geometry.base.errors import CaseError
-from geometry.parts.body import Body, Feature
-from geometry.parts.kernel import Entity, Kernel
+from geometry.bodies.body import Body, Feature
+from geometry.bodies.kernel import Entity, Kernel
 from geometry.parts.step import FilePart, ImportedPart
 
 UNITS = {"um": 1e-3, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}

@@ -4,13 +4,13 @@ from typing import Annotated
 
 from pydantic import Field
 
+from geometry.bodies.body import Body
+from geometry.bodies.features import EyeSizes, HoleRow, Pin, PlainEnd, Ring, Slot
+from geometry.bodies.section import Section, rectangle, ring
 from geometry.parts.bar import Bar
-from geometry.parts.body import Body
 from geometry.parts.disc import Disc
-from geometry.parts.features import EyeSizes, HoleRow, Pin, PlainEnd, Ring, Slot
 from geometry.parts.mesh_part import MeshPart
 from geometry.parts.plate import Plate
-from geometry.parts.section import Section, rectangle, ring
 from geometry.parts.step import FilePart, StepPart
 from geometry.parts.tube import Tube
 

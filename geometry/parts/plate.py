@@ -10,11 +10,11 @@ from geometry.base.errors import CaseError
 from geometry.base.hull import Hull, hull
 from geometry.base.model import CaseModel, Name
 from geometry.base.units import POSITIVE, Length
-from geometry.parts.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
-from geometry.parts.eyes import check_flat_eyes
-from geometry.parts.features import Pin, PlainEnd
-from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.section import Section, rectangle
+from geometry.bodies.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
+from geometry.bodies.eyes import check_flat_eyes
+from geometry.bodies.features import Pin, PlainEnd
+from geometry.bodies.kernel import Entity, Kernel
+from geometry.bodies.section import Section, rectangle
 
 LEAST_WALL = 0.05
 """Least wall beside a lightening hole over its diameter. Assumed: a thinner one is hardly made."""

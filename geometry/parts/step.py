@@ -10,10 +10,10 @@ from pydantic import AfterValidator, Field, ValidationInfo
 from geometry.base.errors import CannotRunError
 from geometry.base.model import Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from geometry.bodies.body import Body, Feature, PartKind
+from geometry.bodies.kernel import Entity, Kernel
+from geometry.bodies.section import Section, rectangle
 from geometry.materials.printable import Printable
-from geometry.parts.body import Body, Feature, PartKind
-from geometry.parts.kernel import Entity, Kernel
-from geometry.parts.section import Section, rectangle
 
 Vector = tuple[float, float, float]
 

@@ -14,11 +14,11 @@ from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
 from geometry.base.errors import CaseError
+from geometry.bodies.body import FLAT_WALL, Body, PartKind, extent
+from geometry.bodies.eyes import check_eyes, flush, plain_eye
+from geometry.bodies.features import Pin
+from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
 from geometry.parts.arms import check_arms
-from geometry.parts.body import FLAT_WALL, Body, PartKind, extent
-from geometry.parts.eyes import check_eyes, flush, plain_eye
-from geometry.parts.features import Pin
-from geometry.parts.kernel import ON_SURFACE, Entity, Kernel
 
 CLEAR_EYE = 1.1
 """Eye over width of a bar from which on the eye's rim stands clear of the bar's sides."""

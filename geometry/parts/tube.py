@@ -11,11 +11,11 @@ from pydantic_core import PydanticCustomError
 
 from geometry.base.model import Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
-from geometry.parts.body import Body, Feature, extent, patch_span
-from geometry.parts.eyes import EYE_WIDTH, RIM, ROUNDING
-from geometry.parts.features import Pin, Ring
-from geometry.parts.kernel import ON_SURFACE, Entity, Kernel
-from geometry.parts.section import Section, ring
+from geometry.bodies.body import Body, Feature, extent, patch_span
+from geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
+from geometry.bodies.features import Pin, Ring
+from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
+from geometry.bodies.section import Section, ring
 from geometry.parts.straight import Piece, Straight
 from geometry.parts.tube_pins import check_pins_through
 

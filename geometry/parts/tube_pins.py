@@ -3,8 +3,8 @@
 import itertools
 
 from geometry.base.errors import CaseError
-from geometry.parts.body import Body, apart
-from geometry.parts.eyes import ROUNDING
+from geometry.bodies.body import Body, apart
+from geometry.bodies.eyes import ROUNDING
 
 DEEPEST = 0.9
 """Largest reach of a hole across the tube, from the tube's axis, over the outer radius."""

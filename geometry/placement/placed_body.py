@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from geometry.base.errors import AlulaError, CaseError
+from geometry.bodies.body import Body
+from geometry.bodies.features import Pin, Ring
 from geometry.imported.facts import Bore, PartFacts
 from geometry.imported.read import part_facts
 from geometry.meshing.mesh import sections_and_rings
-from geometry.parts.body import Body
-from geometry.parts.features import Pin, Ring
 from geometry.parts.mesh_part import MeshedPart
 from geometry.parts.step import FilePart, ImportedPart
 from geometry.placement.match import Fit, Wanted, place, with_loaded_bores

@@ -4,9 +4,9 @@ import math
 
 from geometry.base.errors import CaseError
 from geometry.base.model import check_file_names
+from geometry.bodies.body_rules import check_body
 from geometry.materials.laminate import ANISOTROPIC, is_laminate
 from geometry.materials.material import Material
-from geometry.parts.body_rules import check_body
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase, check_moving, check_point
 from loads.case.load_rules import check_loads, check_masses, check_place

@@ -8,10 +8,10 @@ from pydantic import Field
 
 from geometry.base.errors import CaseError
 from geometry.base.model import Name, Text
+from geometry.bodies.body import PartKind
 from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.materials.material import Material, library
-from geometry.parts.body import PartKind
 from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd, Ring
 from geometry.placement.match import Wanted
 from geometry.placement.placed_body import placed_body

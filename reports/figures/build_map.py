@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.solid.layers import AZIMUTH, POLAR, build_directions
-from reports.figures.canvas import Canvas
-from reports.figures.style import GROUND, INK
+from reports.sheet.canvas import Canvas
+from reports.sheet.style import GROUND, INK
 from reports.tables.layers import BuildDirections, direction
 from reports.words.wording import number
 

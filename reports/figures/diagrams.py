@@ -4,10 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.theory import BeamCheck
-from reports.figures.canvas import Canvas, faint
-from reports.figures.labels import heights, stacked, write_stacked
-from reports.figures.plot import Axes
-from reports.figures.style import GROUND, INK, WIDTH
+from reports.sheet.canvas import Canvas, faint
+from reports.sheet.labels import heights, stacked, write_stacked
+from reports.sheet.plot import Axes
+from reports.sheet.style import GROUND, INK, WIDTH
 from reports.words.wording import number
 
 Real = NDArray[np.float64]

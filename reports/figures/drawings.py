@@ -9,11 +9,11 @@ from fea.outcomes.result import CheckResult, SolidResult
 from loads.records.aero import shares
 from loads.records.applied import LineLoad, PointLoad, in_axes
 from loads.states.actions import stated_loads
-from reports.figures.canvas import Canvas, extent
-from reports.figures.labels import along, place_labels
-from reports.figures.plot import Axes, ticks, widest
 from reports.figures.silhouette import silhouette
-from reports.figures.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, TORQUE, WIDTH
+from reports.sheet.canvas import Canvas, extent
+from reports.sheet.labels import along, place_labels
+from reports.sheet.plot import Axes, ticks, widest
+from reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, TORQUE, WIDTH
 from reports.words.wording import number, turning
 
 Real = NDArray[np.float64]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from fea.common.verdict import Quantity, Subject
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from reports.figures.motion_figures import COLOURS, DASHES, quiet_glyphs
-from reports.figures.style import GROUND, INK, STYLE, WIDTH, as_png
+from reports.sheet.style import GROUND, INK, STYLE, WIDTH, as_png
 from reports.words.wording import number, plain
 
 Real = NDArray[np.float64]

@@ -20,11 +20,11 @@ from fea.outcomes.result import LinkResult, SolidResult
 from geometry.base import child
 from geometry.base.child_server import ChildEndedError, ServerPool
 from geometry.base.system_libraries import OSMESA, loads
-from reports.figures.canvas import SIZE, Canvas, faint
-from reports.figures.labels import heights, stacked, write_stacked
-from reports.figures.plot import Axes
 from reports.figures.scene import MARGIN, SIDE, Rendering, Scene, View, round_scale, scene_of
-from reports.figures.style import INK, WIDTH
+from reports.sheet.canvas import SIZE, Canvas, faint
+from reports.sheet.labels import heights, stacked, write_stacked
+from reports.sheet.plot import Axes
+from reports.sheet.style import INK, WIDTH
 from reports.words.wording import fixed, number, plain
 
 Real = NDArray[np.float64]

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from geometry.imported.arrangement import LinkFrame, viewing_frame
 from geometry.imported.facts import Bore, PartFacts, PartSurface
-from reports.figures.canvas import SIZE, Canvas, faint
 from reports.figures.figures import rendered, scale_bar
-from reports.figures.labels import place_labels
-from reports.figures.plot import Axes
 from reports.figures.scene import Rendering, View, axes_of, hits
-from reports.figures.style import GROUND, INK, LOAD, WIDTH
+from reports.sheet.canvas import SIZE, Canvas, faint
+from reports.sheet.labels import place_labels
+from reports.sheet.plot import Axes
+from reports.sheet.style import GROUND, INK, LOAD, WIDTH
 
 Real = NDArray[np.float64]
 

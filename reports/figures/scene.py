@@ -11,7 +11,7 @@ from fea.refine.discretisation import Discretisation, MeshStatus
 from fea.solid.stress import StressField
 from geometry.materials.material import stress_measure
 from geometry.parts.part import Section
-from reports.figures.style import DPI, WIDTH
+from reports.sheet.style import DPI, WIDTH
 
 Real = NDArray[np.float64]
 Int = NDArray[np.int64]

@@ -8,9 +8,9 @@ from euler_column import euler_load
 from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipkinc
 
-from fea.frame.corotational import solve_large_displacement
 from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
-from fea.frame.stability import buckling_factor
+from fea.nonlinear.corotational import solve_large_displacement
+from fea.nonlinear.stability import buckling_factor
 from geometry.parts.part import rectangle, ring
 
 ROD = ring(0.5, 0.25)

@@ -9,9 +9,9 @@ test/referenceData/LeeFrameDeadLoad): displacement of the loaded point down and 
 import numpy as np
 import pytest
 
-from fea.frame.corotational import solve_large_displacement
-from fea.frame.equilibrium_path import NoEquilibriumError
 from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
+from fea.nonlinear.corotational import solve_large_displacement
+from fea.nonlinear.equilibrium_path import NoEquilibriumError
 from geometry.parts.part import rectangle
 
 DOWN = [(4.0306, 4.9238), (11.325, 10.487), (34.384, 17.026)]

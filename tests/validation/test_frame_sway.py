@@ -18,9 +18,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fea.frame.corotational import solve_large_displacement
 from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
-from fea.frame.stability import buckling_factor
+from fea.nonlinear.corotational import solve_large_displacement
+from fea.nonlinear.stability import buckling_factor
 from geometry.parts.part import Section
 
 YOUNG, HEIGHT, WIDTH, INERTIA = 2400.0, 100.0, 150.0, 3.0

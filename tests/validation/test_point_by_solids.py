@@ -21,9 +21,9 @@ import rocker_case
 from fea.check.run import check_case
 from fea.common.source import SourceKind
 from fea.common.verdict import CheckOutcome, Quantity
+from fea.elements.quadrature import surface_quadrature
 from fea.outcomes.result import CheckResult
 from fea.solid.bore_motion import mean_motion
-from fea.solid.quadrature import surface_quadrature
 from loads.case.case_file import validate
 
 CLAMPED = 3.2264

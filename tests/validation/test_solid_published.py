@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.quadrature import surface_quadrature
-from fea.solid.solve import factorise
-from fea.solid.space import displacement_space
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import displacement_space
+from fea.elements.supports import isostatic_supports, rigid_motions
 from fea.solid.stress import stress_field, von_mises
-from fea.solid.supports import isostatic_supports, rigid_motions
+from fea.solvers.solve import factorise
 
 
 def solved(space, load, fixed, E, nu):

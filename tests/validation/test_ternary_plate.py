@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fea.common.link_loads import LinkLoads, PinLoad
+from fea.elements.quadrature import surface_quadrature
 from fea.refine.refinement import START, Effort, LinkTask, refine_links
-from fea.solid.quadrature import surface_quadrature
 from geometry.parts.part import Body, Pin, Plate, Ring
 
 PLACES = {"A": (0.0, 0.0, 5.0, 14.0), "B": (60.0, 0.0, 4.0, 12.0), "C": (22.0, 34.0, 6.0, 16.0)}

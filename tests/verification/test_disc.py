@@ -10,8 +10,8 @@ from fea.beam.theory import check_beam
 from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
+from geometry.bodies.body import hand_section
 from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
-from geometry.parts.body import hand_section
 from geometry.parts.part import Body, Disc, Pin
 from loads.records.applied import BodyForce, PartMass
 from loads.records.bearing import NARROW

@@ -7,15 +7,15 @@ import pytest
 import solid_meshes
 from turning_load import BODY, POSES, RHO, L, history
 
+from fea.elements.space import displacement_space
 from fea.motion.layer_envelope import layer_envelopes
 from fea.motion.link_envelope import link_motion
-from fea.motion.peaks import largest_stress
-from fea.motion.unit_loads import TRANSFERS, unit_loads
-from fea.motion.unit_solutions import solve_units
 from fea.solid.layers import Layers
 from fea.solid.solution import solve_solid
-from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
+from fea.superposition.peaks import largest_stress
+from fea.superposition.unit_loads import TRANSFERS, unit_loads
+from fea.superposition.unit_solutions import solve_units
 from geometry.materials.material import library
 from geometry.meshing.mirror import mirrored
 from loads.records.bearing import NARROW, WIDE

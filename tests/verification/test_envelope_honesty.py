@@ -7,12 +7,12 @@ import pytest
 import solid_meshes
 from turning_load import BODY, POSES, RHO, history
 
+from fea.elements.space import displacement_space
 from fea.motion.link_envelope import ELSEWHERE, FATIGUE_ELSEWHERE, link_motion
 from fea.refine.level import level_of
 from fea.refine.link_series import precision
 from fea.refine.refinement import MeshRecord, RefinedSolid
 from fea.solid.solution import solve_solid
-from fea.solid.space import displacement_space
 from geometry.materials.material import library
 
 MATERIAL = library()["pvc-u"]

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from fea.common.link_loads import LinkLoads
+from fea.elements.space import displacement_space
 from fea.motion.link_envelope import link_motion
 from fea.motion.link_history import link_histories
-from fea.motion.unit_loads import unit_loads
-from fea.motion.unit_solutions import solve_units
 from fea.solid.solution import solve_solid
-from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
+from fea.superposition.unit_loads import unit_loads
+from fea.superposition.unit_solutions import solve_units
 from geometry.base.errors import CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case_file import read_case

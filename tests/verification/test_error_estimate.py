@@ -6,8 +6,8 @@ import pytest
 import solid_meshes
 from known_solutions import NU, E
 
+from fea.elements.elasticity import jacobians, reference_basis
 from fea.refine.error_estimate import energy_density, estimate_error
-from fea.solid.elasticity import jacobians, reference_basis
 from fea.solid.stress import stress_field
 
 DEGREE = 5

@@ -9,12 +9,12 @@ import pytest
 from euler_column import euler_load
 
 from fea.beam.column_factor import AxialForce, column_factors
+from fea.buckling.buckling import beyond_strength
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
 from fea.frame.linear import solve_frame
 from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support
-from fea.frame.stability import buckling_factor
-from fea.outcomes.buckling import beyond_strength
+from fea.nonlinear.stability import buckling_factor
 from geometry.parts.part import Section
 from loads.case.case_file import validate
 

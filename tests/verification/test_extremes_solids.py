@@ -15,16 +15,16 @@ from solid_meshes import bar, box, ring
 
 from fea.check.run import check_case
 from fea.common.link_loads import LinkLoads, PinLoad
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import displacement_space
+from fea.elements.supports import isostatic_supports
 from fea.frame.linear import solve_frame
 from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support
 from fea.refine.error_estimate import estimate_error
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.quadrature import surface_quadrature
 from fea.solid.solution import LARGEST_POISSON_RATIO, solve_solid
-from fea.solid.solve import factorise
-from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
-from fea.solid.supports import isostatic_supports
+from fea.solvers.solve import factorise
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.parts.part import Section
 from loads.records.bearing import WIDE

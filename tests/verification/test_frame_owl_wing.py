@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.frame.corotational import solve_large_displacement
 from fea.frame.linear import solve_frame
 from fea.frame.model import ALL_DOFS, FrameElement, FrameModel, NodeLoad, Support, Tie
+from fea.nonlinear.corotational import solve_large_displacement
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import ring
 

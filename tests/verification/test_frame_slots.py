@@ -22,13 +22,13 @@ from slotted_cases import (
 )
 
 from fea.frame.build import build_frame
-from fea.frame.corotational import solve_large_displacement, subdivide
-from fea.frame.corotational_element import guide_gap
-from fea.frame.equilibrium_path import EquilibriumPath
 from fea.frame.joint_forces import PINNED_FRAME, joint_forces
-from fea.frame.large_displacement import examine
 from fea.frame.linear import solve_frame
 from fea.frame.model import FrameModel, Guide
+from fea.nonlinear.corotational import solve_large_displacement, subdivide
+from fea.nonlinear.corotational_element import guide_gap
+from fea.nonlinear.equilibrium_path import EquilibriumPath
+from fea.nonlinear.large_displacement import examine
 from geometry.base.errors import CannotRunError
 from loads.case.case import Case
 from loads.case.case_file import read_case

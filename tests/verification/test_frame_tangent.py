@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from fea.frame.corotational_element import CorotationalElements
 from fea.frame.model import FrameElement, FrameModel
+from fea.nonlinear.corotational_element import CorotationalElements
 from geometry.parts.part import rectangle
 
 MODEL = FrameModel(

@@ -7,11 +7,11 @@ from imported_case import imported_case
 
 from fea.check.run import check_case
 from fea.common.link_loads import PinLoad
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import displacement_space
 from fea.outcomes.limits import layers_of
 from fea.solid.layers import Layers
-from fea.solid.quadrature import surface_quadrature
-from fea.solid.space import displacement_space
-from fea.solid.traction import bore_middle, pin_traction
+from fea.tractions.traction import bore_middle, pin_traction
 from geometry.meshing.mesh import COARSE, export_step, mesh_body
 from loads.case.case_file import read_case
 from loads.records.bearing import WIDE

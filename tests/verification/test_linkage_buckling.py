@@ -9,9 +9,9 @@ from scipy.optimize import brentq
 from fea.check.run import check_case
 from fea.common.verdict import LINKAGE, Verdict
 from fea.frame.build import build_frame
-from fea.frame.corotational import solve_large_displacement
-from fea.frame.equilibrium_path import NoEquilibriumError
-from fea.frame.stability import buckling_factor
+from fea.nonlinear.corotational import solve_large_displacement
+from fea.nonlinear.equilibrium_path import NoEquilibriumError
+from fea.nonlinear.stability import buckling_factor
 from loads.case.case import Case
 from loads.case.case_file import read_case, validate
 from loads.records.applied import PointLoad

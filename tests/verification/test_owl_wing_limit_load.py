@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from fea.frame.build import build_frame
-from fea.frame.corotational import solve_large_displacement
-from fea.frame.equilibrium_path import NoEquilibriumError
+from fea.nonlinear.corotational import solve_large_displacement
+from fea.nonlinear.equilibrium_path import NoEquilibriumError
 from loads.case.case_file import read_case
 from loads.records.applied import PointLoad
 from loads.statics.statics import Drive

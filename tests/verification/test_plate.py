@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.solid.load_vectors import LoadVectors
-from fea.solid.space import displacement_space
+from fea.elements.space import displacement_space
+from fea.tractions.load_vectors import LoadVectors
 from geometry.base.errors import CaseError
+from geometry.bodies.body import Body
+from geometry.bodies.body_rules import check_body
 from geometry.meshing.mesh import mass_properties, mesh_body
 from geometry.meshing.mesh_settings import COARSE
-from geometry.parts.body import Body
-from geometry.parts.body_rules import check_body
 from geometry.parts.part import Bar, Pin, PlainEnd, Plate, Ring
 from loads.records.bearing import WIDE
 

@@ -17,12 +17,12 @@ from fea.beam.cut_free import beam_loads, link_loads
 from fea.beam.deflection import deflection
 from fea.beam.flanks import flanks_of
 from fea.beam.theory import internal_forces
+from fea.buckling.buckling import link_factors
 from fea.frame.build import build_frame
-from fea.frame.corotational import solve_large_displacement
 from fea.frame.linear import solve_frame
 from fea.frame.model import Support
-from fea.frame.stability import buckling_factor
-from fea.outcomes.buckling import link_factors
+from fea.nonlinear.corotational import solve_large_displacement
+from fea.nonlinear.stability import buckling_factor
 from loads.states.actions import acting_loads
 from loads.statics.statics import solve_statics
 

@@ -7,9 +7,9 @@ import pytest
 import solid_meshes
 
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
-from fea.solid.quadrature import volume_quadrature
+from fea.elements.quadrature import volume_quadrature
+from fea.elements.space import displacement_space
 from fea.solid.solution import solve_solid
-from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
 from geometry.parts.part import Tube
 from loads.records.applied import BodyForce, PartMass

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
-from fea.solid.quadrature import surface_quadrature, volume_quadrature
+from fea.elements.quadrature import surface_quadrature, volume_quadrature
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from geometry.meshing.mesh import mesh_body

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.quadrature import surface_quadrature
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import displacement_space
 from fea.solid.solution import solve_free
-from fea.solid.solve import factorise
-from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
+from fea.solvers.solve import factorise
 from geometry.meshing.mirror import mirrored
 
 E, NU = 2900.0, 0.38

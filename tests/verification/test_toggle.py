@@ -1,7 +1,7 @@
 """Toggles that snap through: the linear frame's factors, the deformed shape and the verdict against closed forms.
 
 Two bars of half-span 50 mm push a lever of 100 mm, built in by the drive. With a lever of stiffness k and bars that
-keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³), derived in ``fea.frame.stability``.
+keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³), derived in ``fea.nonlinear.stability``.
 """
 
 import math
@@ -16,8 +16,8 @@ from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
-from fea.frame.stability import SNAP, growth
 from fea.motion.linkage_history import linkage_outcomes
+from fea.nonlinear.stability import SNAP, growth
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.records.check_spec import BearingCheck, PinCheck

@@ -10,7 +10,7 @@ import rocker_case
 from fea.check.run import check_case
 from fea.motion.envelope import envelope_case
 from fea.refine.refinement import Effort
-from fea.solid import solve, two_level
+from fea.solvers import solve, two_level
 from geometry.base.errors import CannotRunError
 from loads.case.case_file import validate
 

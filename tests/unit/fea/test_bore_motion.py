@@ -5,13 +5,13 @@ import pytest
 import solid_meshes
 
 from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import displacement_space
+from fea.elements.supports import rigid_motions
 from fea.solid.bore_motion import flexibility, mean_motion, work
-from fea.solid.quadrature import surface_quadrature
 from fea.solid.solution import solve_free, solve_solid
-from fea.solid.space import displacement_space
-from fea.solid.supports import rigid_motions
-from fea.solid.traction import wrench_density
 from fea.solid.virtual_work import virtual_work
+from fea.tractions.traction import wrench_density
 from geometry.meshing.mirror import mirrored
 
 E, NU = 2900.0, 0.38

@@ -5,11 +5,11 @@ import pytest
 
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import BeamCheck, check_beam, internal_forces
+from fea.buckling.buckling import column
 from fea.common.link_loads import LinkLoads
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.link_history import link_histories
-from fea.outcomes.buckling import column
-from geometry.parts.body import hand_section
+from geometry.bodies.body import hand_section
 from loads.case.case import Case
 from loads.case.case_file import read_case
 from loads.states.case_motion import solve_case_motion

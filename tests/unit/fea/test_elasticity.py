@@ -6,9 +6,9 @@ from skfem import Basis, ElementVector
 from skfem.models.elasticity import linear_elasticity
 
 from fea.common import memory
-from fea.solid import elasticity
-from fea.solid.elasticity import CURVED_DEGREE, assemble_stiffness, lame_constants
-from fea.solid.space import displacement_space
+from fea.elements import elasticity
+from fea.elements.elasticity import CURVED_DEGREE, assemble_stiffness, lame_constants
+from fea.elements.space import displacement_space
 from fea.solid.stress import components
 from geometry.base.errors import CannotRunError
 

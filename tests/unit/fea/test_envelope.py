@@ -15,24 +15,24 @@ from result_paths import compare
 
 from fea.beam.cut_free import beam_loads, link_loads
 from fea.beam.theory import check_beam
+from fea.buckling.buckling import buckling_outcomes
 from fea.check.case_statics import solve_case_statics
 from fea.common.band import Band
 from fea.common.source import SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
+from fea.elements.space import displacement_space
 from fea.motion import envelope
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
 from fea.motion.fatigue import signed_stress
 from fea.motion.link_envelope import closed_history, link_motion
 from fea.motion.link_history import link_histories
-from fea.motion.peaks import ModeMeasures, deviator, largest_stress, signed_bounds
-from fea.motion.unit_solutions import nodal_stress
 from fea.outcomes.bearing import bearing_outcome
-from fea.outcomes.buckling import buckling_outcomes
 from fea.outcomes.pins import stress_at, stress_of
 from fea.refine.refinement import START, Effort
-from fea.solid.space import displacement_space
 from fea.solid.stress import principal, stress_field, von_mises
+from fea.superposition.peaks import ModeMeasures, deviator, largest_stress, signed_bounds
+from fea.superposition.unit_solutions import nodal_stress
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.meshing.mesh import mesh_body
 from loads.case.case_file import read_case

@@ -16,7 +16,7 @@ from fea.motion.fatigue import (
     strength_at,
     turning_points,
 )
-from fea.motion.peaks import ModeMeasures
+from fea.superposition.peaks import ModeMeasures
 from geometry.materials.material import Fatigue, library
 
 PVC = library()["pvc-u"]

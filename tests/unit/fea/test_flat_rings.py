@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from fea.common.link_loads import DriveCouple, LinkLoads, PinLoad
-from fea.motion.unit_loads import TRANSFERS, unit_loads
-from fea.solid.load_vectors import LoadVectors
-from fea.solid.space import displacement_space
+from fea.elements.space import displacement_space
+from fea.superposition.unit_loads import TRANSFERS, unit_loads
+from fea.tractions.load_vectors import LoadVectors
 from geometry.meshing.mesh import mesh_body
 from geometry.meshing.mesh_settings import COARSE
-from geometry.meshing.solid_model import scaled
 from geometry.parts.part import Bar, Body, Pin, Ring
+from geometry.solids.solid_model import scaled
 from loads.records.bearing import WIDE
 
 L, TORQUE, THRUST = 30.0, 6.0, 4.0

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from fea.frame.corotational import solve_large_displacement, subdivide
 from fea.frame.linear import solve_frame
 from fea.frame.model import FrameElement, FrameModel, NodeLoad, Support, Tie
-from fea.frame.stability import buckling_factor
+from fea.nonlinear.corotational import solve_large_displacement, subdivide
+from fea.nonlinear.stability import buckling_factor
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import rectangle, ring
 

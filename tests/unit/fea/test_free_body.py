@@ -7,11 +7,11 @@ import pytest
 import solid_meshes
 
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from fea.elements.space import displacement_space, upper_half
+from fea.elements.supports import half_supports, rigid_motions
 from fea.solid import solution
 from fea.solid.solution import solve_free, solve_solid
-from fea.solid.space import displacement_space, upper_half
 from fea.solid.stress import stress_field
-from fea.solid.supports import half_supports, rigid_motions
 from geometry.base.errors import CannotRunError
 from geometry.meshing.mirror import mirrored
 from loads.records.applied import BodyForce, PartMass
@@ -46,7 +46,7 @@ def mesh():
 
 @pytest.fixture(scope="module")
 def loads(mesh):
-    from fea.solid.quadrature import volume_quadrature
+    from fea.elements.quadrature import volume_quadrature
 
     volume = volume_quadrature(displacement_space(mesh))
     measured = (volume.measure, volume.centroid)

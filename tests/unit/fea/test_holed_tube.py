@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fea.beam.holed_tube import holed_tube_stress
-from geometry.parts.section import ring
+from geometry.bodies.section import ring
 
 
 def on_grid(outer, inner, diameter, offset, forces, n=2001):

@@ -14,10 +14,10 @@ from fea.check.run import check_case
 from fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
 from fea.common.verdict import LINKAGE, Verdict
 from fea.frame.build import build_frame
-from fea.frame.corotational import solve_large_displacement
-from fea.frame.deformed_links import balanced, bent, in_slots
 from fea.frame.joint_forces import joint_forces
-from fea.frame.large_displacement import LARGE, LEAST_FACTOR, PATH_SUBDIVISIONS, examine, span
+from fea.nonlinear.corotational import solve_large_displacement
+from fea.nonlinear.deformed_links import balanced, bent, in_slots
+from fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, PATH_SUBDIVISIONS, examine, span
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.parts.part import Pin
 from loads.case.case_file import read_case
@@ -63,7 +63,7 @@ def test_small_displacements_leave_the_undeformed_pose_alone():
 def test_the_limits_are_five_percent_of_the_span_and_ten_times_the_load(monkeypatch, limit, of):
     assert (LARGE, LEAST_FACTOR) == (0.05, 10.0)
     for name, value in limit.items():
-        monkeypatch.setattr(f"fea.frame.large_displacement.{name}", value)
+        monkeypatch.setattr(f"fea.nonlinear.large_displacement.{name}", value)
     one, _ = examined(under([0, -0.01], *HELD_AT_GF))
     for share, state in ((0.99, "small"), (1.01, "deformed")):
         assert examined(under([0, -0.01 * share * of(one)], *HELD_AT_GF))[0].state == state
@@ -121,7 +121,7 @@ def test_an_elastic_answer_beyond_the_strength_says_that_it_is_void():
 
 def test_the_drive_torque_keeps_its_axis_where_the_driven_link_tilts(monkeypatch):
     """Pushed out of the plane the driven link leaves the axis of the torque: taken about its own z, 5 % is missing."""
-    monkeypatch.setattr("fea.frame.deformed_links.LARGEST_SHIFT", 0.01)
+    monkeypatch.setattr("fea.nonlinear.deformed_links.LARGEST_SHIFT", 0.01)
     case = read_case("owl-wing-braking")
     statics = solve_case_statics(case, "owl-wing-braking")
     found = examine(case, "complete", statics.forces["complete"], statics.loads["complete"])

@@ -13,12 +13,12 @@ from fea.common.scatter import layer_scatter
 from fea.common.verdict import Verdict
 from fea.motion.envelope_outcomes import layer_outcomes as envelope_layers
 from fea.motion.envelope_result import LayerEnvelope
-from fea.motion.peaks import ModeMeasures, largest_stress
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.layers import layer_outcomes
 from fea.outcomes.limits import layer_limit, layer_limits, layers_of
 from fea.solid.layers import Layers, best_directions, build_directions, on_plane
 from fea.solid.stress import von_mises
+from fea.superposition.peaks import ModeMeasures, largest_stress
 from geometry.base.errors import CaseError
 from geometry.materials.material import library
 from loads.case.case_file import read_case

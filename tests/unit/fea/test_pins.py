@@ -11,8 +11,8 @@ from fea.check.run import check_case
 from fea.common.verdict import Verdict
 from fea.outcomes.pins import eyes, pin_stress, stress_at
 from geometry.base.errors import CaseError
+from geometry.bodies.features import Ring
 from geometry.materials.material import library
-from geometry.parts.features import Ring
 from loads.case.case_file import read_case
 from loads.statics.joint_reaction import JointReaction
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from fea.outcomes.plausible import class_of, unusual
 from geometry.materials.material import Material, library
+from geometry.materials.plausible import class_of, unusual
 
 # Published typical values, each from a maker's or standard's sheet: kg/m3, GPa, MPa yield, MPa ultimate.
 USUAL = {

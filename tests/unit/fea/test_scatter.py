@@ -12,17 +12,17 @@ from edited_cases import edited
 from materials import SOURCED_ENTRIES
 from pydantic_core import PydanticCustomError
 
+from fea.buckling.linkage import linkage_outcomes
 from fea.check.fidelity import decided_by_hand, hand_bands
 from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, strength_scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import Verdict
-from fea.frame import large_displacement
-from fea.frame.equilibrium_path import NoEquilibriumError
 from fea.motion.envelope import envelope_case
 from fea.motion.envelope_outcomes import envelope_outcomes
-from fea.outcomes.linkage import linkage_outcomes
+from fea.nonlinear import large_displacement
+from fea.nonlinear.equilibrium_path import NoEquilibriumError
 from fea.refine.refinement import Effort
 from geometry.base.errors import CaseError
 from geometry.materials.material import library

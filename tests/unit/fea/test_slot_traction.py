@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from fea.common.link_loads import PinLoad
-from fea.motion.slot_units import lagrange_weights, places_for
-from fea.solid.quadrature import SurfaceQuadrature, surface_quadrature
-from fea.solid.slot_traction import DEGREE, slot_traction
-from fea.solid.space import displacement_space
+from fea.elements.quadrature import SurfaceQuadrature, surface_quadrature
+from fea.elements.space import displacement_space
+from fea.superposition.slot_units import lagrange_weights, places_for
+from fea.tractions.slot_traction import DEGREE, slot_traction
 from geometry.base.errors import CannotRunError
 from geometry.meshing.mesh import COARSE, mesh_body
 from geometry.parts.part import Bar, Body, Pin

@@ -5,13 +5,13 @@ import pytest
 import solid_meshes
 
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
+from fea.elements.quadrature import surface_quadrature, volume_quadrature
+from fea.elements.space import displacement_space
+from fea.elements.supports import LineReference
 from fea.refine.error_estimate import energy_density
 from fea.solid import solution as solid
-from fea.solid.quadrature import surface_quadrature, volume_quadrature
 from fea.solid.solution import solve_solid
-from fea.solid.space import displacement_space
 from fea.solid.stress import stress_field
-from fea.solid.supports import LineReference
 from geometry.base.errors import CannotRunError
 from loads.records.applied import BodyForce, LineLoad, PartMass
 from loads.records.bearing import WIDE

@@ -5,12 +5,12 @@ import pytest
 import solid_meshes
 
 from fea.common import mkl
-from fea.solid.direct import PardisoFactor
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.solve import available_methods, factorise
-from fea.solid.solved import ENERGY_TARGET, refined, sampled_error
-from fea.solid.space import displacement_space
-from fea.solid.supports import isostatic_supports
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.space import displacement_space
+from fea.elements.supports import isostatic_supports
+from fea.solvers.direct import PardisoFactor
+from fea.solvers.solve import available_methods, factorise
+from fea.solvers.solved import ENERGY_TARGET, refined, sampled_error
 from geometry.base.errors import CannotRunError
 
 METHODS = available_methods()

@@ -7,12 +7,12 @@ import pytest
 import solid_meshes
 
 from fea.common import memory, mkl
-from fea.solid import solve
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.solve import available_methods, direct_memory, factorise, two_level_memory
-from fea.solid.space import displacement_space
-from fea.solid.supports import isostatic_supports
-from fea.solid.two_level import LinearLevel
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.space import displacement_space
+from fea.elements.supports import isostatic_supports
+from fea.solvers import solve
+from fea.solvers.solve import available_methods, direct_memory, factorise, two_level_memory
+from fea.solvers.two_level import LinearLevel
 from geometry.base.errors import CannotRunError
 
 

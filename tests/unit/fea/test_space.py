@@ -7,8 +7,8 @@ import pytest
 import solid_meshes
 from skfem import Basis, ElementVector
 
-from fea.solid.quadrature import surface_quadrature, volume_quadrature
-from fea.solid.space import displacement_space
+from fea.elements.quadrature import surface_quadrature, volume_quadrature
+from fea.elements.space import displacement_space
 from geometry.base.errors import CannotRunError
 
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import solid_meshes
 
+from fea.elements.space import displacement_space
 from fea.refine.error_estimate import energy_density
-from fea.solid.space import displacement_space
 from fea.solid.stress import extreme_principal, principal, stress_field, von_mises
 from geometry.base.errors import CannotRunError
 

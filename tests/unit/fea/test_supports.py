@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import solid_meshes
 
-from fea.solid.space import displacement_space
-from fea.solid.supports import checked_supports, isostatic_supports, rigid_motions
+from fea.elements.space import displacement_space
+from fea.elements.supports import checked_supports, isostatic_supports, rigid_motions
 from geometry.base.errors import CannotRunError
 
 

@@ -6,10 +6,10 @@ import pytest
 import solid_meshes
 
 from fea.common.link_loads import PinLoad
-from fea.solid.quadrature import surface_quadrature, volume_quadrature
-from fea.solid.space import displacement_space
-from fea.solid.supports import rigid_motions
-from fea.solid.traction import (
+from fea.elements.quadrature import surface_quadrature, volume_quadrature
+from fea.elements.space import displacement_space
+from fea.elements.supports import rigid_motions
+from fea.tractions.traction import (
     body_density,
     couple_traction,
     line_density,

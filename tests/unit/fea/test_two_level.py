@@ -6,14 +6,14 @@ import pytest
 import solid_meshes
 from scipy.sparse import csr_array
 
-from fea.solid import cycle, solve, two_level
-from fea.solid.cycle import SmoothedAggregation
-from fea.solid.direct import DirectFactor
-from fea.solid.elasticity import assemble_stiffness
-from fea.solid.solve import factorise
-from fea.solid.space import EDGES, displacement_space
-from fea.solid.supports import isostatic_supports, rigid_motions
-from fea.solid.two_level import LinearLevel, linear_level
+from fea.elements.elasticity import assemble_stiffness
+from fea.elements.space import EDGES, displacement_space
+from fea.elements.supports import isostatic_supports, rigid_motions
+from fea.solvers import cycle, solve, two_level
+from fea.solvers.cycle import SmoothedAggregation
+from fea.solvers.direct import DirectFactor
+from fea.solvers.solve import factorise
+from fea.solvers.two_level import LinearLevel, linear_level
 from geometry.base.errors import CannotRunError
 
 E = 2900.0

@@ -7,12 +7,12 @@ import solid_meshes
 from turning_load import BODY, RHO, L, history
 
 from fea.common.link_loads import PinLoad
-from fea.motion.pin_units import fourier_coefficients
-from fea.motion.unit_loads import TRANSFERS, unit_loads
-from fea.solid.quadrature import surface_quadrature
-from fea.solid.space import displacement_space
-from fea.solid.supports import rigid_motions
-from fea.solid.traction import pin_traction
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import displacement_space
+from fea.elements.supports import rigid_motions
+from fea.superposition.pin_units import fourier_coefficients
+from fea.superposition.unit_loads import TRANSFERS, unit_loads
+from fea.tractions.traction import pin_traction
 from geometry.base.errors import CannotRunError
 from loads.records.applied import PartMass
 from loads.records.bearing import NARROW, WIDE

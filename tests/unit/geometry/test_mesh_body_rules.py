@@ -6,9 +6,9 @@ import re
 import pytest
 
 from geometry.base.errors import CaseError
-from geometry.parts.body import extent, patch_span
-from geometry.parts.body_rules import check_body
-from geometry.parts.eyes import eye_reach
+from geometry.bodies.body import extent, patch_span
+from geometry.bodies.body_rules import check_body
+from geometry.bodies.eyes import eye_reach
 from geometry.parts.part import Bar, Body, HoleRow, Pin, PlainEnd, Tube
 
 TUBE = Tube(

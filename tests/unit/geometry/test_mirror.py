@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import solid_meshes as meshes
 
-from fea.solid.quadrature import surface_quadrature, volume_quadrature
-from fea.solid.space import displacement_space
+from fea.elements.quadrature import surface_quadrature, volume_quadrature
+from fea.elements.space import displacement_space
 from geometry.base.errors import CannotRunError
 from geometry.meshing.element_geometry import jacobian_coefficients, scaled_jacobians
 from geometry.meshing.mirror import mirrored

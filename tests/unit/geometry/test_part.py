@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from geometry.parts.eyes import flush
+from geometry.bodies.eyes import flush
 from geometry.parts.part import Bar, Body, HoleRow, Part, Pin, Section, Tube
 
 TUBE: dict[str, Any] = {

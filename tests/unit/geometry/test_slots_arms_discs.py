@@ -6,10 +6,10 @@ import pytest
 from pydantic import ValidationError
 
 from geometry.base.errors import CaseError
+from geometry.bodies.body import apart, extent, hand_section, reference_line
+from geometry.bodies.body_rules import check_body
+from geometry.bodies.eyes import eye_reach
 from geometry.mechanisms.ornithopter import OrnithopterRules, variants
-from geometry.parts.body import apart, extent, hand_section, reference_line
-from geometry.parts.body_rules import check_body
-from geometry.parts.eyes import eye_reach
 from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Slot, Tube
 
 BAR = Bar(

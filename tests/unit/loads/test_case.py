@@ -9,8 +9,8 @@ from edited_cases import edited
 from materials import SOURCED
 
 from geometry.base.errors import CaseError
+from geometry.bodies.body_rules import check_body
 from geometry.linkage.pose import CLOSED
-from geometry.parts.body_rules import check_body
 from loads.case.case import Case
 from loads.case.case_file import read_case, read_text, validate
 from loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad

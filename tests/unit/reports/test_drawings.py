@@ -10,10 +10,11 @@ from PIL import Image
 from fea.beam.loads import BeamLoads, PointLoad
 from fea.beam.theory import check_beam
 from loads.records.load_case import LoadCase
-from reports.figures import diagrams, drawings, plot, style
-from reports.figures.canvas import Canvas
-from reports.figures.labels import along, place_labels
-from reports.figures.marks import Area, Stroke
+from reports.figures import diagrams, drawings
+from reports.sheet import plot, style
+from reports.sheet.canvas import Canvas
+from reports.sheet.labels import along, place_labels
+from reports.sheet.marks import Area, Stroke
 
 
 def drawn(result, load_case="weight"):

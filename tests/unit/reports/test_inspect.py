@@ -19,8 +19,9 @@ from geometry.placement.match import Wanted, place, points_of_part
 from geometry.placement.placed_body import bores_of
 from reports.commands.cli import app
 from reports.commands.inspect_part import case_entries, inspect_file, record
-from reports.figures import figures, style
+from reports.figures import figures
 from reports.figures.part_picture import part_picture
+from reports.sheet import style
 
 FILES = Path(__file__).parents[2] / "data" / "step"
 

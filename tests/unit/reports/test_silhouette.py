@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fea.solid.space import displacement_space
+from fea.elements.space import displacement_space
 from geometry.meshing.mesh import COARSE, mesh_body
 from geometry.parts.part import Body, Disc, Pin
 from reports.figures.silhouette import silhouette

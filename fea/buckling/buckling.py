@@ -1,0 +1,389 @@
+"""Buckling of links in compression, each by itself.
+
+A link is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks
+take the section's place (``fea.beam.flanks``). How its joints hold it
+is known but in part, so that its factor is a band:
+
+value  the outermost pins stay where they are and leave the link free to turn, in the linkage's plane and out of it;
+       overhangs are free. A link on one pin is built in there, and the ground where its support holds it. A pin in
+       a slot of the link, and one on an arm, hold nothing.
+high   every pin stays where it is and keeps whatever angle it can: out of the plane the angle, which only stiff
+       neighbours would keep, in the plane the driven link's at the drive's joint, and every angle where pins are
+       bonded. No linkage whose joints stay where they are holds the link better, so that below 1 it buckles: a link
+       fails on this end alone. Times the largest modulus over the modulus.
+low    a third of the value, since nothing is relied on below 3 (see below), times the least modulus over the
+       modulus. Joints of a driven link and of bonded ones may move with the link as it bends: there it is a third of
+       the lesser of the value and the factor of the link built in at the drive's joint, or at either of the
+       outermost pins, and free elsewhere.
+
+That joints stay where they are is taken for granted: sway of the whole linkage is the subject of
+``fea.buckling.linkage``.
+
+Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
+Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
+(5.2.1(3)): below it stress and deflection are those of second-order theory (``fea.check.second_order``). For n >= 3 a
+factor may stand for it (section 5.2.2); below 3, where small faults of shape grow much, no link passes.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.column_factor import AxialForce, Stretch, column_factors
+from fea.beam.flanks import Flanks, flanks_of
+from fea.beam.theory import BeamCheck
+from fea.common.band import Band
+from fea.common.scatter import compliance_scatter, load_scatter
+from fea.common.source import Source, SourceKind
+from fea.common.ties import first_largest
+from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
+from geometry.parts.part import Section
+from loads.case.case import Case
+
+Real = NDArray[np.float64]
+
+NAME = "buckling"
+NO_COMPRESSION = 1e-9
+"""Share of the largest force in the link below which compression is rounding."""
+ON_AXIS = 1e-9
+"""Share of a link's length below which a pin stands on its axis."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Holding:
+    """Where joints hold a link as a column; x along its axis [mm].
+
+    Attributes
+    ----------
+    outermost : tuple of float
+        First and last pin on it, or the one that there is; of the ground the point where it is held.
+    in_plane : tuple of float or None
+        Where pins hold it in the linkage's plane, free to turn, at the most; None where that is not known.
+    kept : tuple of float
+        Where they keep its angle in that plane as well, at the most.
+    across : tuple of float or None
+        Where they hold it and keep its angle out of the plane, at the most; None where that is not known.
+    alone : tuple of float
+        Where it may be built in and free elsewhere, each by itself; empty where its joints stay in place.
+    """
+
+    outermost: tuple[float, ...]
+    in_plane: tuple[float, ...] | None
+    kept: tuple[float, ...]
+    across: tuple[float, ...] | None
+    alone: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ColumnFactors:
+    """Buckling factors of a link as a column; infinite where nothing makes it buckle, NaN where not known.
+
+    Attributes
+    ----------
+    value : ndarray, shape (P,)
+        Outermost pins in place and free to turn.
+    least : ndarray, shape (P,)
+        The least where the joints of a driven or a bonded link move as well.
+    most : ndarray, shape (P,)
+        Joints hold it as well as they can.
+    """
+
+    value: Real
+    least: Real
+    most: Real
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """A link in compression as a column, over one pose or several.
+
+    Attributes
+    ----------
+    pose : int
+        Number of the pose with the least factor.
+    compression : float
+        The largest along the link in that pose [N].
+    outermost : tuple of float
+        x of the pins, or of the ground's support, that hold it [mm].
+    value, least, most : float
+        Least factors of all poses, as in ``ColumnFactors``.
+    """
+
+    pose: int
+    compression: float
+    outermost: tuple[float, ...]
+    value: float
+    least: float
+    most: float
+
+
+def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
+    """Return the column that stands for a link in one pose; None where nothing makes it buckle.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    beam : BeamCheck
+        Its hand calculation, whose normal force is that of the column.
+
+    Returns
+    -------
+    Column or None
+    """
+    _, _, compression = beam.forces.largest(lambda f: -float(f[0]))
+    forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
+    if compression <= NO_COMPRESSION * forces:
+        return None
+    breaks, at = beam.forces.breaks, beam.forces.at
+    values = [
+        [-at(a, "after")[0], -at((a + b) / 2.0, "after")[0], -at(b, "before")[0]] for a, b in itertools.pairwise(breaks)
+    ]
+    factors = link_factors(case, link, beam.section, AxialForce(breaks=breaks, values=np.array(values)[:, :, None]))
+    return worst_column(case, link, np.array([compression]), factors, np.array([True]))
+
+
+def worst_column(
+    case: Case, link: str, compression: Real, factors: ColumnFactors, counted: NDArray[np.bool_]
+) -> Column | None:
+    """Return the column of several poses; None where nothing makes the link buckle in any.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    compression : ndarray, shape (P,)
+        The largest along the link in every pose [N].
+    factors : ColumnFactors
+        Of every pose.
+    counted : ndarray of bool, shape (P,)
+        The poses that count.
+
+    Returns
+    -------
+    Column or None
+    """
+    pose = first_largest(np.where(counted, 1.0 / factors.value, -np.inf))
+    if math.isinf(factors.value[pose]):
+        return None
+    value, least, most = (float(f[counted].min()) for f in (factors.value, factors.least, factors.most))
+    outermost, pressed = holding(case, link).outermost, float(compression[pose])
+    return Column(pose=pose, compression=pressed, outermost=outermost, value=value, least=least, most=most)
+
+
+def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
+    """Return the factors of a link in every pose, for the modulus of its card.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    section : Section
+    force : AxialForce
+        Compression along the link, in P poses.
+
+    Returns
+    -------
+    ColumnFactors
+        Each of shape (P,).
+    """
+    where, young = holding(case, link), case.material_of(link).youngs_modulus
+    in_plane, across = columns(section, flanks_of(case.body(link)))
+
+    def factors(
+        column: tuple[float, Sequence[Stretch]], held: Sequence[float] = (), built_in: Sequence[float] = ()
+    ) -> Real:
+        inertia, stretches = column
+        return column_factors(force, young * inertia, held=held, built_in=built_in, stretches=stretches)
+
+    def softer(held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
+        planes = (in_plane, across) if in_plane[1] else (min(in_plane, across, key=lambda plane: plane[0]),)
+        return np.asarray(np.min([factors(plane, held, built_in) for plane in planes], axis=0))
+
+    value = softer(held=where.outermost) if len(where.outermost) > 1 else softer(built_in=where.outermost)
+    least = value
+    for x in where.alone:
+        least = np.minimum(least, softer(built_in=(x,)))
+    most = np.full(len(value), np.inf)
+    if where.in_plane is not None:
+        most = factors(in_plane, where.in_plane, where.kept)
+    if where.across is not None:
+        most = np.minimum(most, factors(across, built_in=where.across))
+    return ColumnFactors(value=value, least=least, most=np.maximum(most, value))
+
+
+def columns(
+    section: Section, slots: Sequence[Flanks]
+) -> tuple[tuple[float, Sequence[Stretch]], tuple[float, Sequence[Stretch]]]:
+    """Return the second moments and softer stretches of a link's column.
+
+    Parameters
+    ----------
+    section : Section
+    slots : sequence of Flanks
+        Beside which two flanks take the section's place.
+
+    Returns
+    -------
+    tuple of two (float, sequence of Stretch)
+        Second moment [mm⁴] and stretches in the plane, and out of it.
+    """
+    in_plane = [
+        Stretch(
+            first=slot.first,
+            last=slot.last,
+            bending=slot.together.i_z / section.i_z,
+            pair=slot.pair / section.i_z,
+        )
+        for slot in slots
+    ]
+    across = [Stretch(first=slot.first, last=slot.last, bending=slot.together.i_y / section.i_y) for slot in slots]
+    return (section.i_z, in_plane), (section.i_y, across)
+
+
+def holding(case: Case, link: str) -> Holding:
+    """Return where joints hold a link as a column.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    Holding
+    """
+    linkage, bonded = case.linkage, case.joint_model == "bonded"
+    pins = {pin.name: pin for pin in case.body(link).pins}
+    joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
+    carried = {n for n in joints if linkage.joints[n].type != "revolute" and linkage.joints[n].links[0] == link}
+    places, feet = case.links[link].points, {point: pin.foot[0] for point, pin in pins.items() if pin.foot is not None}
+    foot = {name: feet.get(point, places[point][0]) for name, point in joints.items()}
+    on_arms = {name for name, point in joints.items() if point in feet}
+    slack = ON_AXIS * linkage.longest
+    held_at = case.links[link].held_at
+    support = set() if held_at is None else {places[held_at][0]}
+    off = on_arms | {name for name, point in joints.items() if abs(places[point][1]) > slack}
+    plain = [foot[name] for name in joints if name not in carried | on_arms] or list(foot.values())
+    first, last = min(plain), max(plain)
+    drive = {case.drive.joint} if case.drive is not None and case.drive.link == link else set()
+    # A pin that holds the link off its axis may keep its angle, held by other pins as well.
+    fixed = {name for name in joints if bonded and linkage.joints[name].type == "revolute"}
+    slides = {name for name in carried if linkage.joints[name].type == "slider"}
+    alone = {first, last} if bonded else {foot[name] for name in drive & set(joints)}
+    return Holding(
+        outermost=tuple(support) or ((first, last) if last - first > slack else (first,)),
+        in_plane=None if carried else tuple(sorted({*foot.values(), *support})),
+        kept=tuple(sorted({foot[name] for name in (fixed | drive | off) & set(joints)} | support)),
+        across=None if slides else tuple(sorted({foot[name] for name in set(joints) - carried} | support)) or None,
+        alone=() if support else tuple(sorted(alone)),
+    )
+
+
+def buckling_outcomes(
+    case: Case, load_case: str, beams: Mapping[str, BeamCheck], moved: LargeDisplacement
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every link that is compressed under a load case.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    beams : mapping of str to BeamCheck
+        Link -> its hand calculation.
+    moved : LargeDisplacement
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    for link, beam in beams.items():
+        if (found := column(case, link, beam)) is not None:
+            outcome = column_outcome(case, load_case, link, found, moved)
+            yield outcome.because(outcome.reason + beyond_strength({link: beam}))
+
+
+def column_outcome(
+    case: Case, load_case: str, link: str, found: Column, moved: LargeDisplacement | None = None, where: str = ""
+) -> CheckOutcome:
+    """Return the outcome of a link in compression.
+
+    A link fails where its compression buckles it however its joints hold it, whatever its stress says.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    link : str
+    found : Column
+    moved : LargeDisplacement, optional
+        What became of the linkage in large displacement; left out over a motion, whose links are taken as rigid.
+    where : str, optional
+        Of several poses the one of ``found``, for people.
+
+    Returns
+    -------
+    CheckOutcome
+    """
+    compliance = compliance_scatter(case.material_of(link))
+    band = Band(
+        value=found.value,
+        low=found.least / LEAST_LINEAR / compliance.high,
+        high=found.most / compliance.low,
+        sources=(
+            *compliance.sources,
+            Source(kind=SourceKind.IMPERFECTION, detail="bending that grows with compression"),
+            Source(kind=SourceKind.RESTRAINT),
+        ),
+    )
+    band = load_scatter(case, load_case).inverse.on(band)
+    pins = " and ".join(f"{x:.4g}" for x in found.outermost)
+    held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
+    load = f"largest compression {found.compression:.3g} N{where}; buckling at {band.value:.3g} times that, {held}"
+    outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, load)
+    return outcome.because(load + _judgement(outcome, moved))
+
+
+def _judgement(outcome: CheckOutcome, moved: LargeDisplacement | None) -> str:
+    band, verdict = outcome.value, outcome.verdict
+    if verdict is Verdict.FAIL:
+        return f", and at {band.high:.3g} times with the stiffest joints, so it buckles"
+    if verdict is Verdict.UNDECIDED and band.value < 1.0:
+        return f"; stiffer joints can raise this to {band.high:.3g} times"
+    if verdict is Verdict.UNDECIDED:
+        return f"; within {LEAST_LINEAR:g} times the load, geometric imperfections grow too much"
+    if band.value < LEAST_FACTOR and moved is not None and moved.state == "small":
+        return f"; the linkage buckles at {moved.buckling:.3g} times its load, so bending grows little"
+    if band.value < LEAST_FACTOR and (moved is None or moved.state in ("deformed", "off", "unknown")):
+        times = 1.0 / (1.0 - 1.0 / band.value)
+        return f"; bending is up to {times:.3g} times that of linear theory; stress and deflection include this"
+    return ""
+
+
+def beyond_strength(beams: Mapping[str, BeamCheck]) -> str:
+    """Say, for the end of a reason, which link bears more than its strength by beam theory; nothing where none does.
+
+    Parameters
+    ----------
+    beams : mapping of str to BeamCheck
+        Link -> its hand calculation.
+
+    Returns
+    -------
+    str
+    """
+    link, worst = max(beams.items(), key=lambda item: item[1].worst.equivalent / item[1].strength)
+    stress = worst.worst.equivalent
+    if stress <= worst.strength:
+        return ""
+    return (
+        f"; all this is elastic and void once material gives way, and {link} bears {stress:.3g} MPa by beam theory "
+        f"where its strength is {worst.strength:.3g} MPa"
+    )

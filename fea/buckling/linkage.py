@@ -1,0 +1,142 @@
+"""The linkage as a whole: equilibrium that was followed on the deformed shape, else buckling by linear theory.
+
+Sway of the whole linkage is the lowest factor on all loads at which its linear frame becomes unstable
+(``fea.nonlinear.stability.buckling_factor``). It leaves out how the frame moves before that, by which a toggle snaps
+through at a linear factor of 5.2 (same module): the lower end of its band. Where equilibrium was followed on
+the deformed shape (``fea.nonlinear.large_displacement``), as it is below a factor of 10, that answer rules and is the
+only outcome.
+"""
+
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from fea.beam.theory import BeamCheck
+from fea.buckling.buckling import NAME as BUCKLING
+from fea.buckling.buckling import beyond_strength
+from fea.common.band import Band
+from fea.common.scatter import compliance_scatter, load_scatter
+from fea.common.source import Source, SourceKind, distinct
+from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, CheckOutcome, Quantity, Verdict
+from fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement
+from fea.nonlinear.stability import SNAP, growth
+from loads.case.case import Case
+
+NAME = "large displacement"
+NO_EQUILIBRIUM = "the linkage gives way, so the number is that of the undeformed pose, which is no equilibrium"
+
+
+def linkage_outcomes(
+    case: Case, load_case: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]
+) -> Iterator[CheckOutcome]:
+    """Yield the one outcome of the linkage as a whole; none where its frame never buckles.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    moved : LargeDisplacement
+        What became of it.
+    beams : mapping of str to BeamCheck
+        Link -> its hand calculation, which says where material gives way first.
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    value, least = moved.buckling, moved.factor
+    if moved.followed:
+        yield _followed(load_case, moved, beyond_strength(beams))
+    elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
+        how = f"the linkage becomes unstable at {value:.3g} times its load by linear theory"
+        if least < value:
+            how = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
+        found = by_linear_theory(case, load_case, least, value, how)
+        yield found.because(found.reason + beyond_strength(beams))
+
+
+def by_linear_theory(
+    case: Case, load_case: str, least: float, factor: float, how: str, remedy: str = "follow its deformed shape"
+) -> CheckOutcome:
+    """Return the outcome of the linkage by its linear frame.
+
+    The band goes from what a shallow toggle holds, with the largest stated compliance, to linear theory's factor.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    least : float
+        The lesser of ``factor`` and the factor on the displacements that takes the linkage to a dead point.
+    factor : float
+        On all loads, at which the linear frame becomes unstable.
+    how : str
+        What happens at ``least``, for people.
+    remedy : str, optional
+        What tells more, for people.
+
+    Returns
+    -------
+    CheckOutcome
+    """
+    compliances = [compliance_scatter(case.material_of(link)) for link in case.bending_links]
+    slack = max((compliance.high for compliance in compliances), default=1.0)
+    band = Band(
+        value=least,
+        low=least / SNAP / slack,
+        high=factor,
+        sources=(
+            *distinct(*(compliance.sources for compliance in compliances)),
+            Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high"),
+        ),
+    )
+    band = load_scatter(case, load_case).inverse.on(band)
+    found = CheckOutcome.of(BUCKLING, LINKAGE, load_case, Quantity.BUCKLING_FACTOR, band, 1.0, how)
+    if found.verdict is Verdict.FAIL:
+        return found.because(f"{how}, so the linkage gives way")
+    if found.verdict is Verdict.UNDECIDED:
+        return found.because(f"{how}; it may snap through at {least / SNAP:.3g} times its load: {remedy}")
+    if least < LEAST_FACTOR:
+        return found.because(f"{how}; displacements are up to {growth(least):.3g} times those of linear theory")
+    return found
+
+
+def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] = ()) -> list[CheckOutcome]:
+    """Return outcomes of which none passes that rests on an equilibrium which the linkage does not have.
+
+    Parameters
+    ----------
+    outcomes : sequence of CheckOutcome
+        Of one or several load cases.
+    lost : collection of str, optional
+        Load cases without stable equilibrium, besides those under which the linkage as a whole fails.
+
+    Returns
+    -------
+    list of CheckOutcome
+        Under these load cases links and pins that passed are undecided. What fails in the undeformed pose still
+        fails. Motors are judged on a rigid linkage and stay; a point without equilibrium has no value anyway.
+    """
+    failed = {one.load_case for one in outcomes if one.subject == LINKAGE and one.verdict is Verdict.FAIL}
+    failed |= set(lost)
+    return [_in_no_equilibrium(one) if one.load_case in failed and _rests_on_it(one) else one for one in outcomes]
+
+
+def _rests_on_it(outcome: CheckOutcome) -> bool:
+    return outcome.subject.kind in ("link", "pin") and outcome.quantity not in MOTOR_QUANTITIES
+
+
+def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
+    if outcome.verdict is Verdict.PASS:
+        return outcome.left_open(NO_EQUILIBRIUM)
+    return outcome.because(f"{outcome.reason}; {NO_EQUILIBRIUM}")
+
+
+def _followed(load_case: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome:
+    """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
+    found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, moved.held_band, 1.0)
+    open_end = f"; {found.reason}" if found.verdict is Verdict.UNDECIDED else ""
+    linear = moved.buckling is not None and math.isfinite(moved.buckling)
+    informs = f"; the buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
+    return found.because(moved.sentence + open_end + informs + beyond)

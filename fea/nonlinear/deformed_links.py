@@ -1,0 +1,206 @@
+"""What acts on each link on the deformed shape: loads on its straight shape along the chord, which balance."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.cut_free import in_slot, link_loads
+from fea.common.link_loads import LinkLoads
+from fea.frame.linkage_frame import LinkageFrame
+from fea.nonlinear.equilibrium_path import CorotationalSolution
+from geometry.base.errors import CannotRunError
+from geometry.parts.part import Body
+from loads.records.applied import Load, shifted
+from loads.statics.statics import Reactions
+
+Real = NDArray[np.float64]
+NOTHING = 1e-7
+"""Share of the whole load below which what acts on a link is taken for the iteration's rest."""
+LARGEST_SHIFT = 0.05
+"""Moment or force that bending of a link under spread loads may leave unbalanced, as a share of the load."""
+
+
+def on_deformed_shape(
+    frame: LinkageFrame,
+    found: CorotationalSolution,
+    reactions: Reactions,
+    link: str,
+    title: str,
+    body: Body,
+    loads: Sequence[Load],
+) -> LinkLoads:
+    """Return what acts on a link on the deformed shape, for its straight shape along the chord.
+
+    The chord runs from the first to the last station; z is that of the first node, turned normal to it.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        Of the linkage.
+    found : CorotationalSolution
+        Its equilibrium on the deformed shape.
+    reactions : Reactions
+        On that shape.
+    link : str
+        Its name.
+    title : str
+        Of the load case.
+    body : Body
+        Geometry of the link.
+    loads : sequence of Load
+        That act on the linkage, global axes.
+
+    Returns
+    -------
+    LinkLoads
+        Loads on the straight link.
+    """
+    nodes, stations = frame.model.nodes + found.displacements[: len(frame.model.nodes)], frame.stations[link]
+    (x, first), (_, last) = stations[0], stations[-1]
+    start, end = (nodes[n] + found.rotations[n] @ frame.arms.get(n, np.zeros(3)) for n in (first, last))
+    along = (end - start) / np.linalg.norm(end - start)
+    across = np.cross(found.rotations[first][:, 2], along)
+    across /= np.linalg.norm(across)
+    axes = np.column_stack([along, across, np.cross(along, across)])
+    moved = {
+        point: axes.T @ (nodes[frame.points[link, point]] - start) + np.array([x - x_p, -y_p, 0.0])
+        for point, (x_p, y_p) in frame.pose.linkage.links[link].points.items()
+    }
+    return in_slots(bent(_driven(link_loads(title, link, body, reactions, loads, axes), axes), moved), body, link)
+
+
+def _driven(loads: LinkLoads, axes: Real) -> LinkLoads:
+    """Return the loads with what the drive torque, about the global z, has off the link's own z, at the pin driven."""
+    pins = {pin.name: pin for pin in loads.pins}
+    for couple in loads.couples:
+        wrench = pins[couple.pin].wrench.copy()
+        wrench[3:] += couple.torque * (axes[2] - np.array([0.0, 0.0, 1.0]))
+        pins[couple.pin] = replace(pins[couple.pin], wrench=wrench)
+    return replace(loads, pins=tuple(pins.values()))
+
+
+def in_slots(loads: LinkLoads, body: Body, link: str) -> LinkLoads:
+    """Return the loads with every pin in a slot at the place to which it has slid, pushing across the slot alone.
+
+    On a bent link a slot is not parallel to the chord; what the pin's force has along it is left to ``balanced``.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+        Of one link.
+    body : Body
+        Geometry of the link.
+    link : str
+        Its name.
+
+    Returns
+    -------
+    LinkLoads
+        Loads with pins where they have slid.
+
+    Raises
+    ------
+    CaseError
+        Where a pin has slid out of its slot.
+    """
+    pins = []
+    for pin in loads.pins:
+        if pin.slotted:
+            across, moment = pin.wrench[1], pin.wrench[5]
+            slid = moment / across if abs(across) > NOTHING * float(np.linalg.norm(pin.wrench[:3])) else 0.0
+            own = next(p for p in body.pins if p.name == pin.name)
+            x = in_slot(own, np.array([pin.centre[0] + slid]), link)[0]
+            wrench = np.array([0.0, across, 0.0, pin.wrench[3], 0.0, 0.0])
+            pin = replace(pin, centre=np.array([x, *pin.centre[1:]]), wrench=wrench)
+        pins.append(pin)
+    return replace(loads, pins=tuple(pins))
+
+
+def bent(loads: LinkLoads, moved: Mapping[str, Real]) -> LinkLoads:
+    """Return the loads of a straight link with pairs of transverse forces that stand for its being bent.
+
+    Between two loaded stations that have left the chord by d1 and d2, a normal force N (tension positive) has the
+    moment of the transverse forces N (d2 - d1)/L, one at each station: bending moments at the stations so are those of
+    the bent link (the fictitious lateral loads of the P-Δ method: Wilson & Habibullah, Engineering Journal AISC 24
+    (1987) 172-175). Transverse forces take the moment of having left their places along.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+        Of the straight link.
+    moved : dict of str to ndarray
+        Point -> (3,) by which it has left its place in the straight link [mm].
+
+    Returns
+    -------
+    LinkLoads
+        Loads with the pairs of forces.
+    """
+    stations = [(float(pin.centre[0]), pin.name, pin.wrench) for pin in loads.pins]
+    stations += [(float(end.point[0]), end.name, end.wrench) for end in loads.ends]
+    stations.sort(key=lambda station: station[0])
+    normal, extra = 0.0, {name: np.zeros(6) for _, name, _ in stations}
+    for _, name, wrench in stations:
+        extra[name][3:] += np.cross(moved[name], [0.0, wrench[1], wrench[2]])
+    for (x0, first, wrench), (x1, last, _) in itertools.pairwise(stations):
+        normal -= float(wrench[0])
+        if x1 - x0 > 0.0:
+            shear = normal * (moved[last] - moved[first]) / (x1 - x0)
+            extra[first][1:3] += shear[1:]
+            extra[last][1:3] -= shear[1:]
+    return replace(
+        loads,
+        pins=tuple(replace(pin, wrench=pin.wrench + extra[pin.name]) for pin in loads.pins),
+        ends=tuple(replace(end, wrench=end.wrench + extra[end.name]) for end in loads.ends),
+    )
+
+
+def balanced(loads: LinkLoads, whole: float = 0.0) -> LinkLoads:
+    """Return the loads of a link with what they leave unbalanced taken by the pin with the largest force, in no slot.
+
+    Spread loads stay on the undeformed axis while the link bends off it, which leaves a little. Where all on the link
+    is but ``NOTHING`` of the whole load, it is what the iteration left, and nothing acts.
+
+    Parameters
+    ----------
+    loads : LinkLoads
+        Of one link.
+    whole : float, optional
+        Sum of all loads on the linkage [N].
+
+    Returns
+    -------
+    LinkLoads
+        Loads that balance.
+
+    Raises
+    ------
+    CannotRunError
+        Where more than ``LARGEST_SHIFT`` of the link's load is unbalanced.
+    """
+    places = [place for place, _ in loads.wrenches]
+    reach = max(float(np.linalg.norm(place - places[0])) for place in places)
+    total = loads.resultant()
+    size = sum(float(np.linalg.norm(part[:3])) for part in loads.parts())
+    if size <= NOTHING * whole:
+        return replace(
+            loads,
+            pins=tuple(replace(pin, wrench=np.zeros(6)) for pin in loads.pins),
+            ends=tuple(replace(end, wrench=np.zeros(6)) for end in loads.ends),
+        )
+    left = max(float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:])) / reach if reach else 0.0)
+    if left > LARGEST_SHIFT * size:
+        raise CannotRunError(
+            f"on the deformed shape the loads of a link in case '{loads.name}' leave {left / size:.1%} of them "
+            f"unbalanced (at most {LARGEST_SHIFT:.0%}): it bends too far for its undeformed shape to carry them; "
+            "stiffen the link"
+        )
+    takes = [i for i, pin in enumerate(loads.pins) if not pin.slotted] or range(len(loads.pins))
+    strongest = max(takes, key=lambda i: float(np.linalg.norm(loads.pins[i].wrench[:3])))
+    pins = list(loads.pins)
+    taken = shifted(-total, -pins[strongest].centre)
+    pins[strongest] = replace(pins[strongest], wrench=pins[strongest].wrench + taken)
+    return replace(loads, pins=tuple(pins))

@@ -1,0 +1,343 @@
+"""Newton's method along the equilibrium path of a frame in large displacement."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.model import FrameModel, Guide
+from fea.nonlinear.corotational_element import CorotationalElements, ElementResponse, guide_gap
+from fea.nonlinear.kinematic_chain import KinematicChain, Places
+from geometry.base.errors import CannotRunError
+
+Floats = NDArray[np.float64]
+
+_TOLERANCE = 1e-9
+_MOST_ROUNDING = 1e-6
+_LARGEST_TURN = 0.3
+_DIVERGED = 100.0
+_DENSE = 100
+"""Unknowns up to which a dense factorisation is quicker than a sparse one, and has no threads."""
+_JUMP = 4.0
+"""A step this much longer than the tangent at its start or at its end predicts has jumped to another branch.
+
+Up to a limit point it is twice as far as predicted at its start (displacement grows with the square root of the
+load), along a path that stiffens with the cube of the displacement three times as far as predicted at its end.
+"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CorotationalSolution:
+    """A frame in equilibrium on its deformed shape.
+
+    Attributes
+    ----------
+    model : FrameModel
+        The divided frame: the given nodes first, the new ones after them.
+    displacements : ndarray, shape (n, 3)
+        Global axes [mm].
+    rotations : ndarray, shape (n, 3, 3)
+        Rotation matrices of the nodes.
+    end_forces : ndarray, shape (m, 2, 6)
+        What the nodes do to each element, global axes, moments about the nodes [N, N·mm].
+    joint_wrenches : ndarray, shape (n, 6)
+        What ties, guides and supports together do to the part of the frame at each node, global axes.
+    residual : float
+        Largest force left over, over the sum of the loads (moments over the frame's size).
+    stable : bool
+        True where every small motion stores energy (on the symmetric part of the tangent): otherwise the frame has
+        buckled on its way here, and this shape will not be seen.
+    """
+
+    model: FrameModel
+    displacements: Floats
+    rotations: Floats
+    end_forces: Floats
+    joint_wrenches: Floats
+    residual: float
+    stable: bool
+
+
+class NoEquilibriumError(CannotRunError):
+    """The path of equilibrium ends before the whole load acts; ``reached`` is the share of it that was held."""
+
+    def __init__(self, reached: float) -> None:
+        super().__init__(
+            f"the frame gives way at {100.0 * reached:.3g} % of its load (a limit load or a snap-through); reduce the "
+            "load or stiffen the frame"
+        )
+        self.reached = reached
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """Displacements and rotations of the nodes, and forces of the guides.
+
+    Attributes
+    ----------
+    displacements : ndarray, shape (n, 3)
+        Of the nodes [mm].
+    rotations : ndarray, shape (n, 3, 3)
+        Of the nodes.
+    guide_forces : ndarray, shape (g,)
+        Of the guides [N, N·mm].
+    """
+
+    displacements: Floats
+    rotations: Floats
+    guide_forces: Floats
+
+
+class EquilibriumPath:
+    """The equilibrium path of a frame from load factor 0 to 1."""
+
+    def __init__(self, model: FrameModel) -> None:
+        n = len(model.nodes)
+        self.model = model
+        self.chain = KinematicChain(model)
+        self.elements = CorotationalElements(model)
+        self.pairs = np.array([e.nodes for e in model.elements])
+        guided = [[-1 if node is None else node for node in (g.carrier, g.pin)] for g in model.guides]
+        self.size = self.chain.count + len(guided)
+        self.places = Places(self.chain, self.pairs, self.size)
+        self.guided = Places(self.chain, np.array(guided, dtype=np.int64).reshape(-1, 2), self.size)
+        self.state = State(
+            displacements=np.zeros((n, 3)),
+            rotations=np.tile(np.eye(3), (n, 1, 1)),
+            guide_forces=np.zeros(len(model.guides)),
+        )
+        self.scale = model.load_scale or 1.0
+        stiffness = float(np.median(self.elements.stiffness[:, 0, 0]))
+        moving = np.where(self.chain.is_turn, 1.0 / model.size, 1.0)
+        self.gap_unit = np.array([1.0 / model.size if guide.axis is None else 1.0 for guide in model.guides])
+        self.unit = np.concatenate([moving, stiffness * model.size * self.gap_unit])
+        self.reached = 0.0
+
+    def respond(self, state: State, factor: float) -> ElementResponse:
+        """Return what the elements answer in a state.
+
+        Parameters
+        ----------
+        state : State
+            Of the frame.
+        factor : float
+            Share of the line loads.
+
+        Returns
+        -------
+        ElementResponse
+            Forces and tangent of all elements.
+        """
+        return self.elements.respond(state.displacements[self.pairs], state.rotations[self.pairs], factor)
+
+    def follow(self, least_step: float, most_iterations: int) -> None:
+        """Go on to the whole load, halving the step where Newton's method fails.
+
+        Parameters
+        ----------
+        least_step : float
+            Of the load.
+        most_iterations : int
+            Of Newton's method in one step.
+
+        Raises
+        ------
+        NoEquilibriumError
+            Where the step falls below ``least_step``.
+        """
+        step = 0.25
+        while self.reached < 1.0:
+            target = min(1.0, self.reached + step)
+            found = self._newton(target, most_iterations)
+            if found is None:
+                step /= 2.0
+                if step < least_step:
+                    raise NoEquilibriumError(self.reached)
+                continue
+            self.state, iterations = found
+            self.reached = target
+            if iterations <= 6:
+                step *= 2.0
+
+    def _newton(self, factor: float, most_iterations: int) -> tuple[State, int] | None:
+        """Equilibrium at a load factor from the present state, with the iterations it took; None where it fails."""
+        state, predicted = self.state, 0.0
+        for iteration in range(most_iterations):
+            try:
+                residual, tangent = self.balance(state, factor)
+                if self._measure(residual) <= max(_TOLERANCE * factor, self._rounding(state)) and iteration > 0:
+                    predicted = min(predicted, self._size(self._solve(tangent, self.balance(state, self.reached)[0])))
+                    moved = float(np.linalg.norm(state.displacements - self.state.displacements))
+                    return (state, iteration) if moved <= _JUMP * predicted else None
+                change = -self._solve(tangent, residual)
+            except CannotRunError:
+                return None
+            if iteration == 0:
+                predicted = self._size(change)
+            turn = float(np.abs(change[: self.chain.count][self.chain.is_turn]).max(initial=0.0))
+            if not np.isfinite(change).all() or turn > _DIVERGED:
+                return None
+            state = self._moved(state, change * min(1.0, _LARGEST_TURN / turn if turn > 0.0 else 1.0))
+        return None
+
+    def balance(self, state: State, factor: float) -> tuple[Floats, Floats]:
+        """Return the out-of-balance forces and gaps of the guides, with their derivative.
+
+        Parameters
+        ----------
+        state : State
+            Of the frame.
+        factor : float
+            Share of the loads.
+
+        Returns
+        -------
+        tuple of 2 ndarray
+            What is left over (k + g,) and its derivative (k + g, k + g).
+        """
+        answer = self.respond(state, factor)
+        return self.assemble(answer, state, factor)
+
+    def _solve(self, tangent: Floats, right: Floats) -> Floats:
+        # Single-threaded either way: threads that wait for each other cost more than matrices this small.
+        from scipy.linalg.lapack import dgesv
+        from scipy.sparse import csc_matrix
+        from scipy.sparse.linalg import splu
+
+        matrix, scaled = tangent * np.outer(self.unit, self.unit), right * self.unit
+        if len(right) <= _DENSE:
+            *_, found, singular = dgesv(matrix, scaled)
+            if singular:
+                raise CannotRunError("the tangent stiffness of the frame is singular")
+            return np.asarray(found * self.unit)
+        try:
+            return np.asarray(splu(csc_matrix(matrix)).solve(scaled) * self.unit)
+        except RuntimeError as error:
+            raise CannotRunError(f"the tangent stiffness of the frame is singular: {error}") from None
+
+    def _size(self, change: Floats) -> float:
+        """Norm of the displacements of all nodes in a change of the unknowns."""
+        places = self.chain.translations
+        return float(np.linalg.norm(np.where(places >= 0, change[places], 0.0)))
+
+    def _rounding(self, state: State) -> float:
+        """What rounding of displacements and rotations leaves of forces in the stiffest element, over the loads."""
+        k = self.elements.stiffness
+        stretched = k[:, 0, 0].max() * np.abs(state.displacements).max()
+        bent = (k[:, [1, 3], [1, 3]].max(axis=1) / self.elements.lengths).max()
+        return min(8.0 * float(np.finfo(float).eps * (stretched + bent)) / self.scale, _MOST_ROUNDING)
+
+    def _measure(self, residual: Floats) -> float:
+        """Largest force left over, over the sum of the loads; or gap of a guide, over the frame's size or in rad."""
+        count = self.chain.count
+        forces = float(np.abs(residual[:count] * self.unit[:count]).max(initial=0.0)) / self.scale
+        return max(forces, float(np.abs(residual[count:] * self.gap_unit).max(initial=0.0)))
+
+    def _moved(self, state: State, change: Floats) -> State:
+        places = self.chain.translations
+        displacements = state.displacements + np.where(places >= 0, change[places], 0.0)
+        return State(
+            displacements=displacements,
+            rotations=self.chain.turned(state.rotations, change[: self.chain.count]),
+            guide_forces=state.guide_forces + change[self.chain.count :],
+        )
+
+    def assemble(self, answer: ElementResponse, state: State, factor: float) -> tuple[Floats, Floats]:
+        """Return the out-of-balance forces and gaps, with their derivative, from what the elements answer.
+
+        Parameters
+        ----------
+        answer : ElementResponse
+            Of the elements.
+        state : State
+            Of the frame.
+        factor : float
+            Share of the loads.
+
+        Returns
+        -------
+        tuple of 2 ndarray
+            What is left over (k + g,) and its derivative (k + g, k + g).
+        """
+        count, model = self.chain.count, self.model
+        axes = self.chain.axes(state.rotations)
+        residual, tangent = np.zeros(self.size), np.zeros((self.size, self.size))
+        moments = np.zeros((len(model.nodes) + 1, 3))  # the last row is that of the ground
+
+        def add(places: Places, forces: Floats, stiffness: Floats) -> Floats:
+            T = places.matrices(axes)
+            np.add(residual, places.gathered((T @ forces[..., None])[..., 0]), out=residual)
+            np.add(tangent, places.gathered(T @ stiffness @ T.swapaxes(1, 2)), out=tangent)
+            np.add.at(moments, places.nodes, forces.reshape(-1, 2, 6)[..., 3:])
+            return T
+
+        add(self.places, answer.forces, answer.tangent)
+        if model.guides:
+            gaps, units = zip(*(self._gap(guide, state) for guide in model.guides), strict=True)
+            unit = np.concatenate([u.forces for u in units])
+            bent = np.concatenate([u.tangent for u in units])
+            T = add(self.guided, state.guide_forces[:, None] * unit, state.guide_forces[:, None, None] * bent)
+            ways = np.zeros((len(gaps), self.size + 1))
+            np.add.at(ways, (np.arange(len(gaps))[:, None], self.guided.numbers), (T @ unit[..., None])[..., 0])
+            tangent[:, count:] += ways[:, :-1].T
+            tangent[count:] += ways[:, :-1]
+            residual[count:] = gaps
+        for load in model.loads:
+            places = self.chain.translations[load.node]
+            np.add.at(residual, places[places >= 0], -factor * load.wrench[:3][places >= 0])
+            numbers = [step.number for step in self.chain.nodes[load.node]]
+            np.add.at(residual, numbers, -factor * (axes[numbers] @ load.wrench[3:]))
+            moments[load.node] -= factor * load.wrench[3:]
+        pin, before, gain = self.chain.carried(axes, moments)
+        np.add.at(tangent, (pin, before), gain)
+        return residual, tangent
+
+    def _gap(self, guide: Guide, state: State) -> tuple[float, ElementResponse]:
+        """Gap of a guide, and what a unit of its force does; what the latter does to the ground stands for nothing."""
+        nodes = [guide.carrier, guide.pin]
+        displacements = np.array([np.zeros(3) if node is None else state.displacements[node] for node in nodes])
+        rotations = np.array([np.eye(3) if node is None else state.rotations[node] for node in nodes])
+        return guide_gap(guide, displacements, rotations)
+
+    def free(self, bordered: Floats) -> Floats:
+        """Return the scaled stiffness of the motions that the guides allow.
+
+        Parameters
+        ----------
+        bordered : ndarray, shape (k + g, k + g)
+            Derivative with the guides' rows and columns.
+
+        Returns
+        -------
+        ndarray
+            Square matrix over the motions that are left.
+        """
+        from scipy.linalg import null_space
+
+        count = self.chain.count
+        scaled = bordered * np.outer(self.unit, self.unit)
+        if count == len(scaled):
+            return scaled
+        Z = null_space(bordered[count:, :count] * self.unit[:count])
+        return np.asarray(Z.T @ scaled[:count, :count] @ Z)
+
+    def record(self) -> CorotationalSolution:
+        """Return the present state as the frame's solution."""
+        model, state = self.model, self.state
+        answer = self.respond(state, 1.0)
+        residual, tangent = self.assemble(answer, state, 1.0)
+        joints = np.zeros((len(model.nodes), 6))
+        ends = answer.forces.reshape(-1, 2, 6)
+        np.add.at(joints, self.pairs, ends)
+        for load in model.loads:
+            joints[load.node] -= load.wrench
+        scaled = self.free(tangent)
+        return CorotationalSolution(
+            model=model,
+            displacements=state.displacements,
+            rotations=state.rotations,
+            end_forces=ends,
+            joint_wrenches=joints,
+            residual=self._measure(residual),
+            stable=bool(np.linalg.eigvalsh((scaled + scaled.T) / 2.0).min(initial=1.0) > 0.0),
+        )

@@ -1,0 +1,177 @@
+"""How near to giving way a linkage is, by what its linear frame says: to buckling, and to a dead point.
+
+Near a dead point it is a shallow toggle, where the leverage r of the load over whatever gives (a spring, a lever that
+bends, the links themselves) falls in proportion to the distance that is left: r = r0 (1 - w/d), where d is the distance
+to the dead point and w the way gone. Then the spring has given u = r0 (w - w²/(2d)), and virtual work with stiffness k
+gives the load
+
+    P(w) = k u du/dw = (k r0²/(2 d²)) (2 d² w - 3 d w² + w³)
+
+For two bars of half-span L and rise h = d that push a spring, u = (2 h w - w²)/L and P = (2k/L²)(2h²w - 3hw² + w³).
+The load is largest where 3w² - 6dw + 2d² = 0, at w = d (1 - 1/√3), and is d k r0²/(3√3) there. Beyond it the toggle
+snaps through. Linear theory moves it by w1 = P/(k r0²), 0.19 d at that load, and finds it unstable at the factor d/w1
+on the load: 3√3 = 5.2 at the true limit.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.linear import FrameSolution, solve_frame
+from fea.frame.linkage_frame import LinkageFrame, slot_normal
+from fea.frame.model import FrameModel
+from fea.nonlinear.corotational import SUBDIVISIONS, subdivide
+from fea.nonlinear.equilibrium_path import EquilibriumPath
+from geometry.linkage.pose import Pose, constraint_jacobian, held_motion
+
+COARSE_SUBDIVISIONS, NEAR_BUCKLING = 2, 30.0
+"""Elements per beam for a first buckling factor, and the factor below which it is computed with ``SUBDIVISIONS``."""
+SNAP = 3.0 * math.sqrt(3.0)
+"""Linear factor at which a shallow toggle snaps through."""
+
+
+def growth(factor: float) -> float:
+    """Return what a toggle moves over what linear theory gives.
+
+    With the linear factor n it is the lowest root of x (1 - x) (2 - x)/2 = 1/n with x = w/d, times n. It is more than
+    1/(1 - 1/n), the growth of a column, for every n.
+
+    Parameters
+    ----------
+    factor : float
+        By linear theory, to the dead point.
+
+    Returns
+    -------
+    float
+        Infinite below ``SNAP``.
+    """
+    if factor < SNAP:
+        return math.inf
+    if factor > _FAR:
+        return 1.0 + 1.5 / factor
+    return factor * (1.0 - 2.0 / math.sqrt(3.0) * math.cos(math.acos(-SNAP / factor) / 3.0))
+
+
+_ROUNDING = 1e-9
+_FAR = 1e6
+"""Factor from which on two terms of the series are exact to rounding."""
+
+
+def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> float:
+    """Return the factor on all loads at which the frame, as it stands, becomes unstable.
+
+    Linear stability: (K + λ K_g) φ = 0 with the geometric stiffness K_g of the linear solution's forces (Przemieniecki,
+    Theory of Matrix Structural Analysis, 1968, chapter 15). Pinned column, eight elements: π² E I/L² within 0.01 %,
+    less what shear takes. Bending before buckling is left out, which is right for small deflections.
+
+    Parameters
+    ----------
+    model : FrameModel
+        The frame.
+    subdivisions : int, optional
+        Elements per beam.
+
+    Returns
+    -------
+    float
+        Infinite where no factor does.
+    """
+    from scipy.linalg import eigh
+
+    divided = subdivide(model, subdivisions)
+    linear = solve_frame(divided)
+    path = EquilibriumPath(divided)
+    start = path.state
+    f = linear.end_forces
+    natural = np.column_stack(
+        [(f[:, 1, 0] - f[:, 0, 0]) / 2.0, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]]
+    )
+    K = path.free(path.assemble(path.respond(start, 0.0), start, 0.0)[1])
+    loaded = replace(start, guide_forces=linear.guide_forces)
+    G = path.free(path.assemble(path.elements.geometric(natural), loaded, 1.0)[1])
+    largest = float(eigh(-(G + G.T) / 2.0, (K + K.T) / 2.0, eigvals_only=True)[-1])
+    return 1.0 / largest if largest > 1e-12 else np.inf
+
+
+def linkage_factor(frame: LinkageFrame) -> float:
+    """Return the factor on all loads at which the linear frame becomes unstable.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        Of the linkage.
+
+    Returns
+    -------
+    float
+        Infinite where it never does.
+    """
+    factor = buckling_factor(frame.model, COARSE_SUBDIVISIONS)
+    return buckling_factor(frame.model) if factor < NEAR_BUCKLING else factor
+
+
+def dead_point_factor(frame: LinkageFrame, solution: FrameSolution) -> float:
+    """Return the factor on linear displacements that takes a linkage to a dead point.
+
+    With every link turned as its points have moved, each singular value of the constraints with the drive held (which
+    is 0 at a dead point) has changed; extrapolated in proportion, the first of them vanishes at this factor.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        Of the linkage.
+    solution : FrameSolution
+        In small displacements.
+
+    Returns
+    -------
+    float
+        Infinite where they lead away.
+    """
+    if frame.bonded:
+        return math.inf
+    matrix = _constraints(frame, frame.pose)
+    u, sizes, v = np.linalg.svd(matrix, full_matrices=False)
+    after = np.einsum("ri,rc,ic->i", u, _constraints(frame, _moved(frame, solution)), v)
+    nearer = float(np.max(1.0 - after / np.maximum(sizes, _ROUNDING)))
+    return 1.0 / nearer if nearer > _ROUNDING else math.inf
+
+
+def _constraints(frame: LinkageFrame, pose: Pose) -> NDArray[np.float64]:
+    rows = constraint_jacobian(pose)
+    if frame.held is None:
+        return rows
+    slides = frame.held.pushes(pose.linkage)
+    return np.vstack([rows, held_motion(pose, frame.held.joint if slides else frame.held.link, slides=slides)])
+
+
+def _moved(frame: LinkageFrame, solution: FrameSolution) -> Pose:
+    """Return the pose with its links turned, and its pins slid, as the linear frame says."""
+    pose, moved = frame.pose, frame.at_points(solution.displacements)
+    turns = []
+    for link in pose.linkage.moving:
+        points = pose.linkage.links[link].points
+        places = np.array([pose.position(link, point) for point in points])
+        moves = np.array([moved[link, point][:2] for point in points])
+        arms = places - places.mean(axis=0)
+        size = float((arms**2).sum())
+        turns.append(float((arms[:, 0] * moves[:, 1] - arms[:, 1] * moves[:, 0]).sum()) / size if size > 0.0 else 0.0)
+    slides = []
+    for name in pose.closure.slots:
+        across = slot_normal(pose, name)
+        apart = np.zeros(3)
+        for link, point, sign in zip(
+            pose.linkage.joints[name].links, pose.linkage.joint_points(name), (-1.0, 1.0), strict=True
+        ):
+            apart = apart + sign * moved.get((link, point), np.zeros(3))
+        slides.append(float(across[1] * apart[0] - across[0] * apart[1]))
+    return Pose(
+        linkage=pose.linkage,
+        q=pose.q + np.array([*turns, *slides]),
+        coordinate=pose.coordinate,
+        residual=pose.residual,
+        slides=pose.slides,
+    )

@@ -1,0 +1,243 @@
+"""Displacement and stress of everything that a link undergoes over a motion, from as few solutions as span it.
+
+All loads lie in the span of the unit loads. Those of one motion span a smaller part of it, since the force on an eye
+follows one curve. Singular value decompositions of the coefficients find that part. The pressure fields, which have no
+resultant, have one of their own, truncated by ``TRUNCATION``; that of all other unit loads is kept whole.
+One factorisation and one solution per mode then serve every pose.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common import memory
+from fea.elements.elasticity import jacobians, lame_constants, reference_basis
+from fea.elements.space import DisplacementSpace, upper_half
+from fea.solid.solution import FreeSolution, solve_free
+from fea.solid.stress import PAIRS, carry_to_nodes
+from fea.solvers.solve import Method
+from fea.superposition.peaks import ModeMeasures
+from fea.superposition.unit_loads import UnitLoads
+
+Real = NDArray[np.float64]
+
+TRUNCATION = 1e-3
+"""Part of a load's pressure fields that may be left out, by the norm of their nodal forces."""
+_EXACT = 1e-11
+_CHUNK = 128
+"""Elements whose stresses are recovered at once: their numbers stay in the cache, at half the time of 1024."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class UnitSolutions:
+    """Modes of a link and what they add up to.
+
+    Attributes
+    ----------
+    space : DisplacementSpace
+        Of the link's mesh.
+    displacement : ndarray, shape (3 nodes, modes)
+        Supported isostatically [mm].
+    nodes : ndarray of int, shape (h,)
+        Those that tell all stress: all, or those of the upper half of a body and loads that are their own image.
+    stress : ndarray, shape (h, 6, modes)
+        Recovered at these nodes [MPa].
+    combination : ndarray, shape (modes, N)
+        Of the modes under N loads.
+    reaction : ndarray, shape (N,)
+        Largest support reaction relative to the load.
+    imbalance : ndarray, shape (N,)
+        Resultant of the load vectors relative to the load.
+    units : int
+        Number of unit loads that the modes are made of.
+    solver, solver_reason : str
+        Its name, and why it was chosen.
+    solver_error : float
+        Largest relative error of a mode (energy norm).
+    """
+
+    space: DisplacementSpace
+    displacement: Real
+    nodes: NDArray[np.int64]
+    stress: Real
+    combination: Real
+    reaction: Real
+    imbalance: Real
+    units: int
+    solver: str
+    solver_reason: str
+    solver_error: float
+
+    @cached_property
+    def measures(self) -> ModeMeasures:
+        """Numbers of the modes from which peaks are found."""
+        return ModeMeasures.of(self.stress)
+
+    def field(self, load: int) -> Real:
+        """Return the displacements under one of the loads.
+
+        Parameters
+        ----------
+        load : int
+            Its number.
+
+        Returns
+        -------
+        ndarray, shape (nodes, 3)
+            [mm]
+        """
+        return np.asarray((self.displacement @ self.combination[:, load]).reshape(-1, 3))
+
+
+def solve_units(
+    units: UnitLoads,
+    coefficients: Real,
+    scale: Real,
+    *,
+    E: float,
+    nu: float,
+    method: Method | None = None,
+    threads: int | None = None,
+) -> UnitSolutions:
+    """Solve for the modes of N loads.
+
+    Parameters
+    ----------
+    units : UnitLoads
+    coefficients : ndarray, shape (units, N)
+        Of the unit loads.
+    scale : ndarray, shape (N,)
+        What resultants are compared with [N].
+    E, nu : float
+        Of the material [MPa, -].
+    method : {"pardiso", "superlu", "two-level"}, optional
+        The solver; chosen by size and memory when left out.
+    threads : int, optional
+
+    Returns
+    -------
+    UnitSolutions
+
+    Raises
+    ------
+    CannotRunError
+        Where memory does not suffice or a solver fails.
+    """
+    space = units.space
+    modes, combination = _modes(units, coefficients, scale)
+    count = modes.shape[1]
+    memory.require(
+        8.0 * count * (2.0 * space.unknowns + 6.0 * len(space.nodes)),
+        f"the stress of {count} unit loads at {len(space.nodes):,} nodes",
+        None,
+    )
+    size = np.linalg.norm(np.ptp(space.nodes, axis=0))
+    whole = units.wrenches @ coefficients
+    whole[3:] -= np.cross(space.nodes.mean(axis=0), whole[:3].T).T
+    imbalance = np.maximum(np.linalg.norm(whole[:3], axis=0), np.linalg.norm(whole[3:], axis=0) / size) / scale
+    F = np.empty((space.unknowns, count), order="F")  # as solvers take it
+    for mode, column in zip(modes.T, F.T, strict=True):
+        column[:] = units.vectors @ mode
+    free = solve_free(space, F, E=E, nu=nu, method=method, threads=threads)
+    nodes, stress = _stress(space, free, E=E, nu=nu)
+    return UnitSolutions(
+        space=space,
+        displacement=free.displacement,
+        nodes=nodes,
+        stress=stress,
+        combination=combination,
+        reaction=np.abs(free.reactions @ combination).max(axis=0) / scale,
+        imbalance=imbalance,
+        units=units.count,
+        solver=free.solver,
+        solver_reason=free.reason,
+        solver_error=free.error,
+    )
+
+
+def _stress(space: DisplacementSpace, free: FreeSolution, *, E: float, nu: float) -> tuple[NDArray[np.int64], Real]:
+    """Return the nodes that tell all stress, those of the upper half if it can, and the stress there."""
+    half = upper_half(space)
+    if half is None or not free.symmetric.all():
+        return np.arange(len(space.nodes)), nodal_stress(space, free.displacement, E=E, nu=nu)
+    upper = free.displacement.reshape(-1, 3, len(free.symmetric))[half.nodes].reshape(half.space.unknowns, -1)
+    stress = nodal_stress(half.space, upper, E=E, nu=nu)
+    stress[half.on_plane, 4:] = 0.0  # yz and xz have the other sign in the images of the elements there
+    return half.nodes, stress
+
+
+def _modes(units: UnitLoads, coefficients: Real, scale: Real) -> tuple[Real, Real]:
+    """Return modes (units, m) and their combinations (m, N)."""
+    norm = np.sqrt(np.asarray(units.vectors.multiply(units.vectors).sum(axis=0)).ravel())
+    norm[norm == 0.0] = 1.0
+    found, parts = [], []
+    for members, tolerance in ((~units.local, _EXACT), (units.local, TRUNCATION)):
+        M = norm[members, None] * coefficients[members]
+        # Every load counts by itself, or the small ones of a motion would be lost beside the large ones.
+        weight = np.linalg.norm(M, axis=0) if tolerance == TRUNCATION else scale
+        shares = M / np.where(weight > 0.0, weight, 1.0)
+        left, values, right = np.linalg.svd(shares, full_matrices=False)
+        rest = np.sqrt(np.cumsum((values[:, None] * right)[::-1] ** 2, axis=0))[::-1].max(axis=1, initial=0.0)
+        keep = int(np.count_nonzero(rest > tolerance * (rest[0] if len(rest) else 0.0)))
+        mode = np.zeros((units.count, keep))
+        mode[members] = left[:, :keep] / norm[members, None]
+        found.append(mode)
+        parts.append(left[:, :keep].T @ M)
+    return np.hstack(found), np.vstack(parts)
+
+
+def nodal_stress(space: DisplacementSpace, displacement: Real, *, E: float, nu: float) -> Real:
+    """Return the stress recovered at the nodes from m displacement fields, as ``stress_field`` does.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+    displacement : ndarray, shape (3 nodes, m)
+        [mm]
+    E, nu : float
+        Of the material [MPa, -].
+
+    Returns
+    -------
+    ndarray, shape (nodes, 6, m)
+        [MPa]
+    """
+    from scipy.sparse import csr_array
+
+    X, _, _, gradient = reference_basis(space, space.order)
+    carry = carry_to_nodes(X, space.cells.shape[1])
+    m = displacement.shape[1]
+    fields = np.ascontiguousarray(displacement).reshape(-1, 3 * m)
+    sums = np.zeros((len(space.nodes), 6 * m))
+    for start in range(0, len(space.cells), _CHUNK):
+        cells = space.cells[start : start + _CHUNK]
+        k, b = cells.shape
+        inverse, _ = jacobians(space.nodes[cells], gradient)
+        q = inverse.shape[1]
+        slopes = (inverse @ gradient.transpose(0, 2, 1)).reshape(k, 3 * q, b)
+        G = (slopes @ fields[cells]).reshape(k, q, 3, 3, m)
+        nodes, row = np.unique(cells, return_inverse=True)
+        mean = csr_array(
+            (
+                np.broadcast_to(carry, (k, b, q)).ravel(),
+                (np.repeat(row.ravel(), q), np.broadcast_to(np.arange(k * q).reshape(k, 1, q), (k, b, q)).ravel()),
+            ),
+            shape=(len(nodes), k * q),
+        )
+        sums[nodes] += mean @ _components(G, E, nu).reshape(k * q, 6 * m)
+    sums /= np.bincount(space.cells.ravel(), minlength=len(space.nodes))[:, None]
+    return sums.reshape(-1, 6, m)
+
+
+def _components(G: Real, E: float, nu: float) -> Real:
+    """Stresses (..., 6, m) of displacement gradients (..., 3, 3, m), ∂u_j/∂x_i at [i, j]."""
+    lam, mu = lame_constants(E, nu)
+    found = np.empty((*G.shape[:-3], 6, G.shape[-1]))
+    dilatation = lam * (G[..., 0, 0, :] + G[..., 1, 1, :] + G[..., 2, 2, :])
+    for n, (i, j) in enumerate(PAIRS):
+        found[..., n, :] = mu * (G[..., i, j, :] + G[..., j, i, :])
+        if i == j:
+            found[..., n, :] += dilatation
+    return found

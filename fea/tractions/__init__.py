@@ -1,0 +1,4 @@
+"""What acts on a link as a solid: pressure of pins, pushes in slots, thrust, couples, weight, as nodal loads.
+
+Hands on force densities and ``LoadVectors``.
+"""

@@ -1,0 +1,164 @@
+"""Consistent nodal loads of all that acts on one link as a solid."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.link_loads import LinkLoads, PinLoad
+from fea.elements.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
+from fea.elements.space import DisplacementSpace
+from fea.tractions.slot_traction import DEGREE, slot_traction
+from fea.tractions.traction import (
+    Transfer,
+    body_density,
+    couple_traction,
+    line_density,
+    pin_traction,
+    thrust_traction,
+    wrench_density,
+)
+from geometry.base.errors import CannotRunError
+from loads.records.bearing import PressureLaw, Span
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Variant:
+    """One load case under one model of pin pressure and one of torque transfer.
+
+    Attributes
+    ----------
+    name : str
+        Of the load case.
+    span : Span
+        Loaded angle of the pin holes [degrees].
+    transfer : Transfer or None
+        How the drive torque enters; None where the link carries no torque, or only where no flat face is.
+    load : ndarray, shape (3n,)
+        Consistent nodal forces [N].
+    scale : float
+        Sum of all forces, and of all moments over the link's size [N].
+    """
+
+    name: str
+    span: Span
+    transfer: Transfer | None
+    load: NDArray[np.float64]
+    scale: float
+
+
+class LoadVectors:
+    """Consistent load vectors of the loads on one link; surfaces are integrated once."""
+
+    def __init__(self, space: DisplacementSpace, density: float) -> None:
+        self._space = space
+        self._density = density
+        self._surfaces: dict[tuple[str, ...], SurfaceQuadrature] = {}
+        self._size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
+
+    def variants(self, case: LinkLoads, laws: Sequence[PressureLaw], transfers: Sequence[Transfer]) -> list[Variant]:
+        """Return every variant of a load case.
+
+        Parameters
+        ----------
+        case : LinkLoads
+            Loads of the link.
+        laws : sequence of PressureLaw
+            Of pin pressure.
+        transfers : sequence of Transfer
+            Of the drive torque; they count only where the link carries a torque at a pin with flat faces about its
+            hole, since else it can enter through the bore alone.
+
+        Returns
+        -------
+        list of Variant
+            One per law and transfer.
+        """
+        torque = any(torque != 0.0 and self._space.flat_faces(name) for name, torque in self._torques(case))
+        scale, rest = self._scale(case), self._spread(case)
+        turned = {transfer: self._couples(case, transfer) for transfer in (transfers if torque else (None,))}
+        found = []
+        for law in laws:
+            pushed = rest + self._pins(case, law)
+            for transfer, couples in turned.items():
+                load = pushed + couples
+                found.append(Variant(name=case.name, span=law.span, transfer=transfer, load=load, scale=scale))
+        return found
+
+    def _torques(self, case: LinkLoads) -> list[tuple[str, float]]:
+        """Pins and the torques about them: of the drive, and of pins that turn the link."""
+        turning = [(pin.name, float(pin.wrench[5])) for pin in case.pins if not pin.slotted]
+        return [(couple.pin, couple.torque) for couple in case.couples] + turning
+
+    def _surface(self, *names: str, degree: int | None = None) -> SurfaceQuadrature:
+        if names not in self._surfaces:
+            options = {} if degree is None else {"degree": degree}
+            self._surfaces[names] = surface_quadrature(self._space, *names, **options)
+        return self._surfaces[names]
+
+    @cached_property
+    def _volume(self) -> Quadrature:
+        return volume_quadrature(self._space)
+
+    def _scale(self, case: LinkLoads) -> float:
+        """Sum of all forces, and of all moments over the link's size [N]: what a resultant is compared with."""
+        wrenches = [p.wrench for p in case.pins] + [e.wrench for e in case.ends]
+        total = sum(float(np.linalg.norm(w[:3]) + np.linalg.norm(w[3:]) / self._size) for w in wrenches)
+        total += sum(abs(c.torque) / self._size for c in case.couples)
+        for line in case.lines:
+            total += float(np.linalg.norm([line.at_start, line.at_end], axis=1).mean()) * (line.end - line.start)
+        if case.inertia is not None:
+            force = np.linalg.norm(body_density(self._volume, case.inertia, self._density), axis=2)
+            total += float((self._volume.w * force).sum())
+        if total == 0.0:
+            raise CannotRunError(f"load case '{case.name}' puts no load on the link; leave it out")
+        return float(total)
+
+    def _pins(self, case: LinkLoads, law: PressureLaw) -> NDArray[np.float64]:
+        """Load vector (3n,) of the pins' pressures and thrusts."""
+        count = len(self._space.nodes)
+        load = np.zeros(3 * count)
+        for pin in case.pins:
+            bore = self._surface(f"bore:{pin.name}", degree=DEGREE if pin.slotted else None)
+            push = slot_traction if pin.slotted else pin_traction
+            load += bore.load_vector(push(bore, pin, law), count)
+            if pin.wrench[2] != 0.0:
+                load += self._thrust(pin, bore)
+        return load
+
+    def _thrust(self, pin: PinLoad, bore: SurfaceQuadrature) -> NDArray[np.float64]:
+        """Load vector (3n,) of a pin's force along z: on a flat face, or where there is none evenly in the bore."""
+        count = len(self._space.nodes)
+        if not self._space.flat_faces(pin.name):
+            target = np.array([0.0, 0.0, pin.wrench[2], 0.0, 0.0, 0.0])
+            return np.asarray(bore.load_vector(wrench_density(bore, pin.centre, target), count))
+        face = self._surface(f"{'bottom' if pin.wrench[2] > 0.0 else 'top'}:{pin.name}")
+        return np.asarray(face.load_vector(thrust_traction(face, pin), count))
+
+    def _couples(self, case: LinkLoads, transfer: Transfer | None) -> NDArray[np.float64]:
+        """Load vector (3n,) of the torques about the pins."""
+        count = len(self._space.nodes)
+        load = np.zeros(3 * count)
+        centres = {pin.name: pin.centre for pin in case.pins}
+        for name, torque in self._torques(case):
+            if torque != 0.0:
+                bore = self._surface(f"bore:{name}")
+                faces = self._space.flat_faces(name) if transfer != "bore-shear" else ()
+                surface = self._surface(*faces) if faces else bore
+                load += surface.load_vector(couple_traction(surface, centres.get(name, bore.centroid), torque), count)
+        return load
+
+    def _spread(self, case: LinkLoads) -> NDArray[np.float64]:
+        """Load vector (3n,) of what does not come from pins: plain ends, weight and inertia, spread loads."""
+        count = len(self._space.nodes)
+        load = np.zeros(3 * count)
+        for end in case.ends:
+            patch = self._surface(f"end:{end.name}")
+            load += patch.load_vector(wrench_density(patch, end.point, end.wrench), count)
+        if case.inertia is not None:
+            load += self._volume.load_vector(body_density(self._volume, case.inertia, self._density), count)
+        for line in case.lines:
+            load += self._volume.load_vector(line_density(self._volume, line), count)
+        return load

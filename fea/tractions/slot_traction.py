@@ -1,0 +1,116 @@
+"""The push of a pin on the flank of the slot in which it slides, as a traction whose resultant is the load's.
+
+The pin is free along the slot, so its force is normal to it: p(s) = p0 cos(π s/w) over a length w of the flank about
+the place where the pin stands, even along the pin. True contact is a line, so w stands for it (``PressureLaw.patch``);
+tests/verification/test_slotted_bar.py holds what that choice is worth.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.link_loads import PinLoad
+from fea.elements.quadrature import SurfaceQuadrature
+from fea.tractions.traction import LARGEST_CORRECTION, wrench_density
+from geometry.base.errors import CannotRunError
+from loads.records.bearing import PressureLaw
+
+Density = NDArray[np.float64]
+
+DEGREE = 16
+"""Of the integration over a slot's wall, since a patch may be as short as an element: it then misses its moment by up
+to 0.5 % of force times half its length before that is mended, with degree 8 by 2.3 %."""
+
+
+def flank_pressure(wall: SurfaceQuadrature, centre: NDArray[np.float64], length: float, side: float) -> Density:
+    """Return the pressure on one flank of a slot.
+
+    It counts per projected area, so that a patch that reaches round the end of the slot still pushes along y alone.
+
+    Parameters
+    ----------
+    wall : SurfaceQuadrature
+        Of the slot.
+    centre : ndarray, shape (3,)
+        Of the pressure [mm].
+    length : float
+        Of the pressure along the slot [mm].
+    side : float
+        1 for the flank at y > 0, -1 for that at y < 0.
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Pressure of unit peak.
+    """
+    along = wall.x[..., 0] - centre[0]
+    near = np.abs(along) < length / 2.0
+    size = np.where(near, np.cos(math.pi * along / length), 0.0) * np.maximum(-side * wall.normals[..., 1], 0.0)
+    return np.asarray(size[..., None] * np.array([0.0, side, 0.0]))
+
+
+def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Density:
+    """Return the pressure of a pin in a slot that delivers its wrench, but for Fz.
+
+    The force Fy is even along the pin; the moment Mx about the slot's axis is that of a tilted pin, which presses on
+    one flank above the mid-plane and on the other below it, in proportion to the height. Amplitude and slope along
+    the slot are solved on the meshed flank, so that force and moment are exact. What else the wrench holds is rounding,
+    or small on a deformed shape, and comes as a traction of the rigid-body fields.
+
+    Parameters
+    ----------
+    wall : SurfaceQuadrature
+        Of the slot.
+    pin : PinLoad
+        What the pin does to the link.
+    law : PressureLaw
+        Of the pressure's length.
+
+    Returns
+    -------
+    ndarray, shape (k, q, 3)
+        Traction [MPa].
+
+    Raises
+    ------
+    CannotRunError
+        For a wrench that a slot cannot take, or a flank meshed too coarsely.
+    """
+    fx, fy, _, mx, my, mz = pin.wrench
+    size = float(np.linalg.norm(pin.wrench[:3]) + np.linalg.norm(pin.wrench[3:]) / pin.diameter)
+    if max(abs(fx), abs(my) / pin.diameter, abs(mz) / pin.diameter) > LARGEST_CORRECTION * size:
+        raise CannotRunError(
+            f"the pin in the slot at {pin.name} would have to push along it with {fx:.4g} N or turn it with "
+            f"{my:.4g} N mm about y and {mz:.4g} N mm about z, which a pin free to slide and turn cannot do"
+        )
+    length = law.patch(pin.diameter)
+    # From -1 to 1 over the pressure's length, and over the height of the wall.
+    arm = (wall.x - pin.centre) / np.array([length / 2.0, 1.0, np.abs(wall.x[..., 2] - pin.centre[2]).max()])
+
+    def flank(side: float) -> Density:
+        return flank_pressure(wall, pin.centre, length, math.copysign(1.0, side))
+
+    density = wrench_density(wall, pin.centre, np.array([fx, 0.0, 0.0, 0.0, my, mz]))
+    if fy != 0.0:
+        pushed = flank(fy)
+        density = density + _exact(wall, pin, [pushed, arm[..., :1] * pushed, arm[..., 2:] * pushed], [fy, 0.0])
+    if mx != 0.0:
+        above = arm[..., 2:]
+        tilted = np.abs(above) * np.where(above > 0.0, flank(-mx), flank(mx))
+        density = density + _exact(wall, pin, [tilted, arm[..., :1] * flank(mx), flank(mx)], [0.0, mx])
+    return density
+
+
+def _exact(wall: SurfaceQuadrature, pin: PinLoad, fields: list[Density], target: list[float]) -> Density:
+    """Return the sum of three fields along y that delivers Fy and Mx (``target``) about the pin, and no Mz."""
+    columns = np.array([wall.wrench(field, pin.centre)[[1, 3, 5]] for field in fields]).T
+    columns[1:] /= pin.diameter
+    if np.linalg.cond(columns) < 1e9:
+        factors = np.linalg.solve(columns, [target[0], target[1] / pin.diameter, 0.0])
+        if np.abs(factors[1:]).max() <= LARGEST_CORRECTION * abs(factors[0]):
+            return np.asarray(sum(factor * field for factor, field in zip(factors, fields, strict=True)))
+    raise CannotRunError(
+        f"the slot at {pin.name} is meshed too coarsely at x = {pin.centre[0]:.4g} mm to carry the pin's pressure; "
+        "refine it"
+    )
