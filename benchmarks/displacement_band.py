@@ -138,7 +138,7 @@ class Link:
                 if case.load == loads.name
             )
             (work,) = virtual_work(solution, loads, [loads], transfer="eye-faces", error=index)
-            bands[direction] = replace(work, value=work.value / FORCE, low=work.low / FORCE, high=work.high / FORCE)
+            bands[direction] = work.band().times(1.0 / FORCE)
         return bands
 
 

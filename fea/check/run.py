@@ -1,5 +1,7 @@
 """The whole check of a case: pose, statics, beams, solids, bands, verdict."""
 
+import math
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +16,7 @@ from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.link_result import link_result
 from fea.check.load_growth import Growths, growths
+from fea.check.point_solids import decide_point
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
@@ -25,7 +28,8 @@ from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
 from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.pins import PinStress, stress_at
-from fea.outcomes.result import CheckResult, LoadCaseResult
+from fea.outcomes.point_displacement import meshes_to_refine
+from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.refinement import START, Effort
@@ -34,13 +38,15 @@ from geometry.base.errors import CaseError
 from geometry.bodies.body import PartKind
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from loads.case.case import Case
-from loads.records.check_spec import BearingCheck, MotorCheck, PinCheck
+from loads.records.check_spec import BearingCheck, DisplacementCheck, MotorCheck, PinCheck
 from loads.statics.statics import Reactions
 from loads.text.shares import parse_accuracy
 
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
 BY_HAND = ("beam", "frame")
+POINT_ROUNDS = 4
+"""At most, in which links are solved or refined for the displacement of a point."""
 
 
 def effort_of(
@@ -116,18 +122,26 @@ class _LoadCase:
         """True where nothing acts on any link."""
         return bool(self.cut) and not any(map(self.acts_on, self.cut))
 
+    @property
+    def free(self) -> Mapping[str, LinkLoads]:
+        """Loads of every link cut free; empty where equilibrium alone does not give the joint forces."""
+        return self.cut if self.statics.forces[self.load_case].frame is None else {}
+
+    def links(self, decided: Mapping[str, DecidedLink]) -> dict[str, LinkResult]:
+        """Return the results of links."""
+        case, load_case = self.statics.case, self.load_case
+        return {
+            link: link_result(case, link, load_case, hand, decided.get(link), self.uneven)
+            for link, hand in self.hands.items()
+        }
+
     def judged(self, decided: Mapping[str, DecidedLink], motors: Sequence[CheckOutcome]) -> LoadCaseResult:
         """Return the result, with the outcomes of ``motors`` after those of links, joints and linkage."""
         case, load_case, moved = self.statics.case, self.load_case, self.moved
         reactions = moved.reactions or self.statics.reactions[load_case]
-        links = {
-            link: link_result(case, link, load_case, hand, decided.get(link), self.uneven)
-            for link, hand in self.hands.items()
-        }
-        pins = _pins(case, reactions)
-        free = self.cut if self.statics.forces[load_case].frame is None else {}
+        links, pins = self.links(decided), _pins(case, reactions)
         found = (
-            *outcomes(case, load_case, links, pins, moved, free, self.uneven.joints),
+            *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints),
             *_bearing(case, load_case, reactions, self.uneven),
             *buckling_outcomes(case, load_case, {link: hand.check for link, hand in self.hands.items()}, moved),
             *motors,
@@ -244,8 +258,27 @@ def _decided(
         for task in tasks.values():
             require_compressible(task.nu)  # before the first mesh
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
-    effort = effort or effort_of(case)
-    return decide(tasks, beams, start, effort, fidelity=fidelity, threads=threads, progress=progress)
+    effort, begun = effort or effort_of(case), time.perf_counter()
+    decided = decide(tasks, beams, start, effort, fidelity=fidelity, threads=threads, progress=progress)
+    for _ in range(POINT_ROUNDS):
+        wanted = _wanted(load_cases, decided)
+        left = max(effort.time_limit - (time.perf_counter() - begun), 0.0)
+        spent = replace(effort, time_limit=left)
+        closer = decide_point(decided, tasks, wanted, start, spent, threads=threads, progress=progress)
+        if not closer:
+            break
+        decided |= closer
+    return decided
+
+
+def _wanted(load_cases: Sequence[_LoadCase], decided: Mapping[str, DecidedLink]) -> dict[str, float]:
+    """Return the error of displacements that links must keep to for the checks of points, the least of all."""
+    found: dict[str, float] = {}
+    for one in load_cases:
+        if any(isinstance(check, DisplacementCheck) and check.at for check in one.statics.case.checks.values()):
+            wanted = meshes_to_refine(one.statics.case, one.load_case, one.moved, one.links(decided), one.free)
+            found |= {link: min(error, found.get(link, math.inf)) for link, error in wanted.items()}
+    return found
 
 
 def _pins(case: Case, reactions: Reactions) -> dict[str, PinStress]:

@@ -23,7 +23,6 @@ class SourceKind(StrEnum):
     RESTRAINT = "restraint by the neighbouring links"
     SNAP_THROUGH = "snap-through of a shallow toggle"
     EYES = "flexibility of eyes, bores and holes"
-    SINKING = "sinking of pins into their bores"
     EYE_SHARING = "load sharing between the two eyes of a pin"
     FLYWHEEL = "energy that a flywheel stores"
 

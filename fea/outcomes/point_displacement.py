@@ -1,72 +1,224 @@
-"""How far a point of the linkage moves: by the links' solids where these are solved, else by the frame."""
+"""How far a point of the linkage moves: by the links' solids where these are solved, else by the frame.
+
+Pins move as the mean of their bores. What they could sink into these beyond that is no part of the band; the reason of
+the outcome states it.
+"""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from fea.beam.cut_free import beam_loads, link_loads
-from fea.beam.deflection import virtual_work as plain_work
-from fea.beam.theory import internal_forces
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import compliance_scatter, load_scatter
-from fea.common.source import CONTACT, Source, SourceKind, distinct, pin_sources
+from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.nonlinear.large_displacement import LARGE, LargeDisplacement, displaced
 from fea.nonlinear.stability import SNAP, growth
+from fea.outcomes.point_shares import Shares, has_centre_line, shares_of
 from fea.outcomes.result import LinkResult, SolidResult
-from fea.solid.virtual_work import virtual_work
 from loads.case.case import Case
-from loads.records.applied import PointLoad
 from loads.records.check_spec import DisplacementCheck
-from loads.statics.statics import solve_statics
 
-NOTHING = 1e-9
-"""Share of the unit load that is rounding: in what a link bears of it, and in what is left over of its balance."""
-SINKING = Source(kind=SourceKind.SINKING, detail="pins move as the mean of their bores, or follow the side they press")
-MESHES = Source(kind=SourceKind.DISCRETISATION, detail="of every link's solid, as that of its largest displacement")
+ROOM = 0.8
+"""Share of the way to a limit that meshes may leave open, since a finer mesh moves the number as well."""
+WORTH_TELLING = 0.01
+"""Share of the displacement that the sinking of pins must add to be told."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shares:
-    """Which model tells what every link adds to the displacement of a point.
+class PointDisplacement:
+    """How far a point moves under a load case, and by which model.
 
     Attributes
     ----------
-    solids : dict of str to tuple of Band
-        Link, and what its solid adds along x and y [mm].
-    carried : dict of str to tuple of float
-        The same of its plain beam, where the solid bears the loads of the deformed shape [mm].
-    beams : tuple of str
-        Links that add something by their beams in the frame.
-    driven : bool
-        Whether a drive torque acts on one of the solids.
+    case : Case
+    load_case, link, point : str
+    moved : LargeDisplacement
+        The frame's answer.
+    shares : Shares
+        What every link adds.
+    why : str
+        Why nothing tells it; "" where something does.
     """
 
-    solids: Mapping[str, tuple[Band, ...]]
-    carried: Mapping[str, tuple[float, ...]]
-    beams: tuple[str, ...] = ()
-    driven: bool = False
+    case: Case
+    load_case: str
+    link: str
+    point: str
+    moved: LargeDisplacement
+    shares: Shares
+    why: str = ""
 
-    @property
-    def model(self) -> str:
-        """Which model gives the displacement, for people."""
-        if not self.solids:
-            return "the frame of the linkage"
-        found = f"virtual work of the solid model{'s' if len(self.solids) > 1 else ''} of {', '.join(self.solids)}"
-        return found + (f" and of the frame's beams of {', '.join(self.beams)}" if self.beams else "")
+    @classmethod
+    def of(
+        cls,
+        case: Case,
+        name: str,
+        check: DisplacementCheck,
+        load_case: str,
+        moved: LargeDisplacement,
+        links: Mapping[str, LinkResult],
+        free: Mapping[str, LinkLoads],
+    ) -> "PointDisplacement":
+        """Return how far the point of a check moves.
 
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        """What makes it uncertain."""
-        eyes = (Source(kind=SourceKind.EYES),) if self.beams or not self.solids else ()
-        if not self.solids:
-            return eyes
-        pins = (source for source in pin_sources(driven=self.driven) if source != CONTACT)
-        return (MESHES, *pins, SINKING, *eyes)
+        Parameters
+        ----------
+        case, name, check, load_case, moved, links, free
+            As of ``point_outcome``.
+
+        Returns
+        -------
+        PointDisplacement
+        """
+        link, point = case.displaced_point(name, check)
+        displacement, factor, shares = moved.points.get((link, point)), moved.factor, Shares()
+        why = f"the frame gives no displacement: {moved.sentence}"
+        if displacement is not None and moved.state in ("small", "deformed", "off"):
+            size, why = float(np.linalg.norm(displacement)), ""
+            near = factor is not None and factor < SNAP
+            shares = shares_of(case, moved, links, free, link, point)
+            blind = [other for other in shares.beams if not has_centre_line(case, other)]
+            if blind:
+                taken = "rigid" if blind[0] == case.linkage.ground else "a beam along its axis"
+                why = f"the frame takes link {blind[0]} for {taken}, which does not tell how far it gives"
+                if free and moved.state == "small" and not isinstance(links[blind[0]], SolidResult):
+                    why += "; its solid model does: run --fidelity solid"
+            elif not moved.followed and (near or size > LARGE * moved.span):
+                far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
+                what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
+                why = f"the linear frame {what}, so it is not valid; remove large_displacement = off from the case"
+        return cls(case=case, load_case=load_case, link=link, point=point, moved=moved, shares=shares, why=why)
+
+    @cached_property
+    def value(self) -> Band:
+        """The displacement [mm]."""
+        return Band.unknown() if self.why else self.band()
+
+    @cached_property
+    def sinking(self) -> float:
+        """What pins could add that sink into their bores beyond the mean motion of these [mm]."""
+        return self.band(sunk=True).high - self.value.high if self.shares.solids and not self.why else 0.0
+
+    def band(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
+        """Return the band: what solids or beams leave open, the moduli, and the load.
+
+        The linear answer may grow as a toggle does (``fea.nonlinear.stability``); on the deformed shape equilibrium is
+        sought again with the ends of load over stiffness, and with solids for the value: in a frame that is softer by
+        the solids' linear displacement over the frame's own.
+
+        Parameters
+        ----------
+        meshes : float, optional
+            Share of what meshes of solids leave open that the band holds.
+        sunk : bool, optional
+            Whether pins may sink into their bores.
+
+        Returns
+        -------
+        Band
+            [mm]
+        """
+        case, moved, shares, link, point = self.case, self.moved, self.shares, self.link, self.point
+        assert moved.frame is not None
+        assert moved.solution is not None
+        solids = shares.bands(meshes=meshes, sunk=sunk)
+        load, frame = load_scatter(case, self.load_case), moved.frame
+        materials = [case.material_of(other) for other in case.checked_links]
+        ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
+        found = point_bounds(case, frame, moved.solution, link, point, solids, shares.carried)
+        slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
+        moduli = (compliance_scatter(material).sources for material in materials)
+        sources = distinct(shares.sources, *moduli, load.sources)
+        if moved.followed:
+            return self._followed(found, solids, slack, sources)
+        linear = float(np.linalg.norm(moved.solution.displacements[frame.points[link, point], :3]))
+        # The ground's part is in no frame: it adds to the displacement, but does not make the frame softer.
+        framed = self._framed(found, solids)
+        near_by = 0.0
+        if moved.factor is not None:
+            near_by = (framed.high / linear if linear > 0.0 else 1.0) * slack[1] / moved.factor
+        grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
+        value = found.value if solids else float(np.linalg.norm(moved.points[link, point]))
+        grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
+        return Band(
+            value=value,
+            low=min(found.low * slack[0], value),
+            high=max(found.high * slack[1] * grown, value),
+            sources=(*sources, grows),
+        )
+
+    def _framed(self, found: Band, solids: Mapping[str, tuple[Band, ...]]) -> Band:
+        """Band of the displacement without what the ground's part adds."""
+        case, moved, ground = self.case, self.moved, self.case.linkage.ground
+        if ground not in solids:
+            return found
+        assert moved.frame is not None
+        assert moved.solution is not None
+        bending = {other: bands for other, bands in solids.items() if other != ground}
+        return point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
+
+    def _followed(
+        self,
+        found: Band,
+        solids: Mapping[str, tuple[Band, ...]],
+        slack: tuple[float, float],
+        sources: tuple[Source, ...],
+    ) -> Band:
+        """Band on the deformed shape."""
+        moved, link, point = self.moved, self.link, self.point
+        assert moved.frame is not None
+        assert moved.solution is not None
+        framed, size = self._framed(found, solids), float(np.linalg.norm(moved.points[link, point]))
+        linear = float(np.linalg.norm(moved.solution.displacements[moved.frame.points[link, point], :3]))
+        low, high = (framed.low / linear, framed.high / linear) if linear > 0.0 else (1.0, 1.0)
+        low, high = low * slack[0], high * slack[1]
+        if solids and linear > 0.0:
+            softer = displaced(moved.frame, link, point, found.value / linear)
+            size = softer if math.isfinite(softer) else size
+        ends = [displaced(moved.frame, link, point, factor) for factor in (low, high) if factor > 0.0]
+        return Band(value=size, low=min(size, *ends) if low > 0.0 else 0.0, high=max(size, *ends), sources=sources)
+
+    def meshes_to_refine(self, limit: float, links: Mapping[str, LinkResult]) -> dict[str, float]:
+        """Return the error of displacements that the meshes of links must keep to for a decision.
+
+        The links whose meshes leave most open of the point's displacement are to leave equally much, and all of them
+        together no more than the way from the limit to the band that exact solutions would have. Nothing is returned
+        where the limit lies inside that band, since no mesh decides then.
+
+        Parameters
+        ----------
+        limit : float
+            [mm]
+        links : mapping of str to LinkResult
+            Under the load case.
+
+        Returns
+        -------
+        dict of str to float
+            Link -> relative error; infinite for a link that is to be solved as a solid in the first place.
+        """
+        if self.why or not self.value.low <= limit < self.value.high:
+            return {}
+        if self.shares.unsolved:
+            return dict.fromkeys(self.shares.unsolved, math.inf)
+        exact, missing = self.band(meshes=0.0), self.shares.missing
+        way = limit - exact.high if limit >= exact.high else exact.low - limit
+        width = self.value.high - exact.high if limit >= exact.high else exact.low - self.value.low
+        if way <= 0.0 or width <= 0.0:
+            return {}
+        each = _equal_share(list(missing.values()), ROOM * way / width * sum(missing.values()))
+        wanted = {}
+        for link, open_by in missing.items():
+            result = links[link]
+            if open_by > each and isinstance(result, SolidResult):
+                wanted[link] = result.discretisation.displacement.index * each / open_by
+        return wanted
 
 
 def point_outcome(
@@ -99,137 +251,73 @@ def point_outcome(
     -------
     CheckOutcome
     """
-    link, point = case.displaced_point(name, check)
-    displacement, factor, value, shares = (
-        moved.points.get((link, point)),
-        moved.factor,
-        Band.unknown(),
-        Shares(solids={}, carried={}),
-    )
-    why = f"the frame gives no displacement: {moved.sentence}"
-    if displacement is not None and moved.state in ("small", "deformed", "off"):
-        size = float(np.linalg.norm(displacement))
-        near = factor is not None and factor < SNAP
-        shares = _shares(case, moved, links, free, link, point)
-        blind = [other for other in shares.beams if not _has_centre_line(case, other)]
-        if blind:
-            taken = "rigid" if blind[0] == case.linkage.ground else "a beam along its axis"
-            why = f"the frame takes link {blind[0]} for {taken}, which does not tell how far it gives"
-            if free and moved.state == "small" and not isinstance(links[blind[0]], SolidResult):
-                why += "; its solid model does: run --fidelity solid"
-        elif moved.followed or not (near or size > LARGE * moved.span):
-            value, why = _band(case, load_case, moved, link, point, size, shares), ""
-        else:
-            far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
-            what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
-            why = f"the linear frame {what}, so it is not valid; remove large_displacement = off from the case"
-    subject = Subject.point(point, link)
-    found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, value, check.maximum, why)
-    if why:
+    told = PointDisplacement.of(case, name, check, load_case, moved, links, free)
+    subject = Subject.point(told.point, told.link)
+    found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, told.value, check.maximum, told.why)
+    if told.why:
         return found
     shape = "on its deformed shape" if moved.followed else "by linear theory"
     notes = list(() if moved.frame is None else moved.frame.notes)
-    by_hand = free and any(not isinstance(links[other], SolidResult) for other in shares.beams)
-    if by_hand and found.verdict is Verdict.UNDECIDED:
-        notes.append("solid models of all links, --fidelity solid, have a narrower band")
-    return found.because("; ".join([f"by {shares.model}, {shape}: {found.reason}", *notes]))
+    if told.sinking > WORTH_TELLING * told.value.value:
+        beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
+        notes.append(
+            "pins move as the mean of their bores; sinking into the sides that they press could add up to "
+            f"{told.sinking:.2g} mm, which the band does not hold{' and which would miss the limit' if beyond else ''}"
+        )
+    if found.verdict is Verdict.UNDECIDED:
+        notes += _remedies(told, check.maximum, links)
+    return found.because("; ".join([f"by {told.shares.model}, {shape}: {found.reason}", *notes]))
 
 
-def _shares(
+def meshes_to_refine(
     case: Case,
+    load_case: str,
     moved: LargeDisplacement,
     links: Mapping[str, LinkResult],
     free: Mapping[str, LinkLoads],
-    link: str,
-    point: str,
-) -> Shares:
-    """Work that unit loads at a point do on every link, by its solid where one was solved under the load case."""
-    assert moved.frame is not None
-    if not free:
-        return Shares(solids={}, carried={}, beams=case.checked_links)
-    pose, held = moved.frame.pose, moved.frame.held
-    longest = pose.linkage.longest
-    units = [PointLoad(link=link, point=point, wrench=unit) for unit in np.eye(6)[:2]]
-    reactions = [solve_statics(pose, held, (unit,)) for unit in units]
-    solids, carried, beams, driven = {}, {}, [], False
-    for name, real in free.items():
-        every = zip(reactions, units, strict=True)
-        virtual = [link_loads("unit", name, case.body(name), forces, (unit,)) for forces, unit in every]
-        if real.size(longest) == 0.0 or max(loads.size(longest) for loads in virtual) <= NOTHING:
-            continue
-        # A load along a slot, at the pin in it, balances on no solid.
-        left = max(np.abs(loads.resultant() / np.repeat([1.0, longest], 3)).max() for loads in virtual)
-        result, body = links[name], case.body(name)
-        plain = all(pin.foot is None and pin.slot == 0.0 for pin in body.pins) and _has_centre_line(case, name)
-        known = moved.state == "small" or plain
-        if isinstance(result, SolidResult) and not result.displacement_max.unknowable and left <= NOTHING and known:
-            if moved.state != "small":
-                carried[name] = tuple(_beam_work(case, name, real, loads) for loads in virtual)
-            solids[name] = virtual_work(
-                result.solution,
-                real,
-                virtual,
-                transfer=case.torque_transfer,
-                error=result.discretisation.displacement.index,
-            )
-            driven = driven or any(loads.couples for loads in (real, *virtual))
-        else:
-            beams.append(name)
-    return Shares(solids=solids, carried=carried, beams=tuple(beams), driven=driven)
+) -> dict[str, float]:
+    """Return the error of displacements that links' meshes must keep to for the checks of points, the least of all.
 
+    Parameters
+    ----------
+    case, load_case, moved, links, free
+        As of ``point_outcome``.
 
-def _has_centre_line(case: Case, link: str) -> bool:
-    """Whether a frame bounds how far a link gives; it does not know the ground's part."""
-    return link != case.linkage.ground and case.part_of(link).has_centre_line(case.body(link))
-
-
-def _beam_work(case: Case, link: str, real: LinkLoads, virtual: LinkLoads) -> float:
-    """Work of virtual loads on a link's plain beam [N mm]."""
-    body, material = case.body(link), case.material_of(link)
-    first, second = (internal_forces(beam_loads(loads, body, material.density)) for loads in (real, virtual))
-    section, young, poisson = case.part_of(link).section, material.youngs_modulus, material.poissons_ratio
-    return plain_work(first, second, section, young=young, poisson=poisson)
-
-
-def _band(
-    case: Case, load_case: str, moved: LargeDisplacement, link: str, point: str, size: float, shares: Shares
-) -> Band:
-    """Band of how far a point moves: what solids or beams leave open, the moduli, and the load.
-
-    The linear answer may grow as a toggle does (``fea.nonlinear.stability``); on the deformed shape equilibrium is
-    sought again with the ends of load over stiffness, and with solids for the value: in a frame that is softer by the
-    solids' linear displacement over the frame's own.
+    Returns
+    -------
+    dict of str to float
+        As of ``PointDisplacement.meshes_to_refine``.
     """
-    assert moved.frame is not None
-    assert moved.solution is not None
-    load, frame = load_scatter(case, load_case), moved.frame
-    materials = [case.material_of(other) for other in case.checked_links]
-    ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
-    linear = float(np.linalg.norm(moved.solution.displacements[frame.points[link, point], :3]))
-    found = point_bounds(case, frame, moved.solution, link, point, shares.solids, shares.carried)
-    # The ground's part is in no frame: it adds to the displacement, but does not make the frame softer.
-    bending = {other: bands for other, bands in shares.solids.items() if other != case.linkage.ground}
-    framed = found
-    if len(bending) < len(shares.solids):
-        framed = point_bounds(case, frame, moved.solution, link, point, bending, shares.carried)
-    slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
-    moduli = (compliance_scatter(material).sources for material in materials)
-    sources = distinct(shares.sources, *moduli, load.sources)
-    low, high = (framed.low / linear, framed.high / linear) if linear > 0.0 else (1.0, 1.0)
-    low, high = low * slack[0], high * slack[1]
-    if moved.followed:
-        if shares.solids and linear > 0.0:
-            softer = displaced(frame, link, point, found.value / linear)
-            size = softer if math.isfinite(softer) else size
-        ends = [displaced(frame, link, point, factor) for factor in (low, high) if factor > 0.0]
-        return Band(value=size, low=min(size, *ends) if low > 0.0 else 0.0, high=max(size, *ends), sources=sources)
-    near_by = 0.0 if moved.factor is None else high / moved.factor
-    grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
-    value = found.value if shares.solids else size
-    grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
-    return Band(
-        value=value,
-        low=min(found.low * slack[0], value),
-        high=max(found.high * slack[1] * grown, value),
-        sources=(*sources, grows),
-    )
+    found: dict[str, float] = {}
+    for name, check in case.checks.items():
+        if isinstance(check, DisplacementCheck) and check.at is not None:
+            told = PointDisplacement.of(case, name, check, load_case, moved, links, free)
+            for link, error in told.meshes_to_refine(check.maximum, links).items():
+                found[link] = min(error, found.get(link, math.inf))
+    return found
+
+
+def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[str]:
+    """Say what would decide, where something would."""
+    if told.shares.unsolved:
+        return ["solid models of all links, --fidelity solid, have a narrower band"]
+    wanted = told.meshes_to_refine(limit, links)
+    if not told.shares.beams and not wanted:
+        return ["no finer mesh decides"]
+    stopped = {link: links[link] for link in wanted}
+    return [
+        f"refinement of {link} ended because {result.discretisation.stopped}"
+        for link, result in stopped.items()
+        if isinstance(result, SolidResult) and result.discretisation.stopped
+    ]
+
+
+def _equal_share(shares: list[float], total: float) -> float:
+    """Return the largest share e for which the sum of min(share, e) is at most a total; infinite where all fit."""
+    left, ordered = total, sorted(shares)
+    for number, share in enumerate(ordered):
+        each = left / (len(ordered) - number)
+        if share > each:
+            return each
+        left -= share
+    return math.inf

@@ -1,5 +1,6 @@
 """What is to be solved of a link, and the limits that its numbers must clear."""
 
+import math
 from dataclasses import dataclass
 
 from fea.common.link_loads import LinkLoads
@@ -37,6 +38,8 @@ class LinkTask:
         Of a printed part whose layers are checked.
     layer_limits : tuple of tuple of 2 float
         As ``stress_limits``, on the stress on the layers.
+    displacement_error : float
+        Largest relative error of the displacement, which a check of the linkage needs.
     """
 
     body: Body
@@ -50,6 +53,7 @@ class LinkTask:
     displacement_limits: tuple[tuple[float, float], ...]
     layers: Layers | None = None
     layer_limits: tuple[tuple[float, float], ...] = ()
+    displacement_error: float = math.inf
 
     @property
     def measures(self) -> tuple[Measure, ...]:

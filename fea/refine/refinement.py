@@ -6,6 +6,7 @@ estimate asks (``fea.refine.target_sizes``), until every limit lies outside the 
 asked for; or until a limit of time, unknowns or number of meshes stops it, which the link's numbers then say.
 """
 
+import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -116,6 +117,10 @@ class RefinedSolid:
         That was aimed at, relative.
     sharp_edges : int
         Number of re-entrant edges of the link; 0 where its shape left none to look for.
+    levels : tuple of Level
+        What is kept of every mesh, from which refinement goes on.
+    settings : MeshSettings
+        Of the finest mesh.
     """
 
     solution: SolidSolution
@@ -125,6 +130,8 @@ class RefinedSolid:
     far: bool
     accuracy: float
     sharp_edges: int
+    levels: tuple[Level, ...] = ()
+    settings: MeshSettings = START
 
 
 def refine_links(
@@ -133,6 +140,7 @@ def refine_links(
     effort: Effort,
     *,
     first: Mapping[str, TaggedMesh] | None = None,
+    earlier: Mapping[str, RefinedSolid] | None = None,
     threads: int | None = None,
     progress: Progress = lambda message: None,
 ) -> dict[str, RefinedSolid]:
@@ -148,6 +156,8 @@ def refine_links(
         What accuracy is asked for and what it may cost.
     first : dict of str to TaggedMesh, optional
         First meshes that are there already.
+    earlier : dict of str to RefinedSolid, optional
+        Meshes from which links go on, where their task asks for more than it did.
     threads : int or None, optional
         That work at once: links side by side, and libraries where there are fewer links. None leaves the libraries
         their own choice, and takes one link after another.
@@ -164,16 +174,19 @@ def refine_links(
     AlulaError
         What ``mesh_body`` and ``solve_solid`` raise on a link's first mesh, with the link's name before it.
     """
-    links = [_Link(name, task, start, effort) for name, task in tasks.items()]
+    links = [_Link(name, task, start, effort, (earlier or {}).get(name)) for name, task in tasks.items()]
     begun = time.perf_counter()
     beside = max(min(threads or 1, len(links)), 1)
     own = None if threads is None else max(threads // beside, 1)
     with bounded(own, children=threads), ThreadPoolExecutor(2) as meshers, ThreadPoolExecutor(beside) as solvers:
         try:
             for link in links:
-                link.order_mesh(meshers, (first or {}).get(link.name))
+                if link.levels:
+                    link.go_on(meshers, begun)
+                else:
+                    link.order_mesh(meshers, (first or {}).get(link.name))
             # Links take turns, mesh by mesh, so that a limit of time leaves each of them with about as many.
-            turns = {solvers.submit(link.advance, meshers, begun, progress): link for link in links}
+            turns = {solvers.submit(link.advance, meshers, begun, progress): link for link in links if not link.done}
             while turns:
                 for turn in wait(turns, return_when=FIRST_COMPLETED).done:
                     link = turns.pop(turn)
@@ -190,19 +203,26 @@ def refine_links(
 class _Link:
     """One link on its way through the meshes."""
 
-    def __init__(self, name: str, task: LinkTask, settings: MeshSettings, effort: Effort) -> None:
-        self.name, self.task, self.settings, self.effort = name, task, settings, effort
-        self.levels: list[Level] = []
-        self.meshes: list[MeshRecord] = []
-        self.precision: tuple[CasePrecision, ...] = ()
-        self.solution: SolidSolution | None = None
-        self.stopped, self.done, self.far = "", False, False
+    def __init__(
+        self, name: str, task: LinkTask, settings: MeshSettings, effort: Effort, earlier: RefinedSolid | None = None
+    ) -> None:
+        self.name, self.task, self.effort = name, task, effort
+        self.settings = settings if earlier is None else earlier.settings
+        self.levels: list[Level] = [*(earlier.levels if earlier else ())]
+        self.meshes: list[MeshRecord] = [*(earlier.meshes if earlier else ())]
+        self.precision: tuple[CasePrecision, ...] = earlier.precision if earlier else ()
+        self.solution: SolidSolution | None = earlier.solution if earlier else None
+        self.stopped, self.done = "", False
+        self.far = earlier is not None and earlier.far
         self._mesh: Callable[[], TaggedMesh] | None = None
         self._sharp: Future[list[ReentrantEdge]] | None = None
 
     def order_mesh(self, pool: ThreadPoolExecutor, mesh: TaggedMesh | None = None) -> None:
         """Have the next mesh made unless it is there, and the re-entrant edges found where they may matter."""
         self._mesh = (lambda: mesh) if mesh else pool.submit(mesh_body, self.task.body, self.settings).result
+        self._look_for_edges(pool)
+
+    def _look_for_edges(self, pool: ThreadPoolExecutor) -> None:
         if self._sharp is None and (self.task.may_be_sharp or self._growing):
             self._sharp = pool.submit(reentrant_edges, self.task.body)
 
@@ -230,6 +250,14 @@ class _Link:
             MeshRecord(elements=len(level.cells), unknowns=3 * len(level.nodes), error=error, seconds=taken)
             for level, error, taken in zip(self.levels, energy_errors(self.levels), seconds, strict=True)
         ]
+        self._next(pool, start)
+
+    def go_on(self, pool: ThreadPoolExecutor, start: float) -> None:
+        """Take up earlier meshes, and order the next one if need be."""
+        self._look_for_edges(pool)
+        self._next(pool, start)
+
+    def _next(self, pool: ThreadPoolExecutor, start: float) -> None:
         if self._settled():
             self.done = True
         elif self.task.body.part.is_fixed:
@@ -249,9 +277,11 @@ class _Link:
             precision=self.precision,
             meshes=tuple(self.meshes),
             stopped=self.stopped,
-            far=self.far,
+            far=self.far and len(self.levels) == 1,
             accuracy=self.effort.accuracy,
             sharp_edges=len(self.edges),
+            levels=tuple(self.levels),
+            settings=self.settings,
         )
 
     def _solved(self, mesh: TaggedMesh, progress: Progress) -> SolidSolution | None:
@@ -284,8 +314,11 @@ class _Link:
         """Whether nothing finer is needed."""
         if any(p.unreliable == "coarse" for p in self.precision):
             return False
-        if len(self.levels) == 1:
+        if len(self.levels) == 1 or self.far:
             self.far = not self.effort.stated and self._far()
+        if any(p.displacement.index > self.task.displacement_error for p in self.precision):
+            return False
+        if self.far or len(self.levels) == 1:
             return self.far
         if len(self.levels) <= SERIES and any(p.sharp and not p.sharp.resolved for p in self.precision):
             return False
@@ -344,14 +377,20 @@ class _Link:
         assert self.solution is not None
         accuracy, level = self.effort.accuracy, self.levels[-1]
         allowed = float(np.sqrt(accuracy)) / 2.0  # of the energy norm: displacements miss its square
+        closer = [self.task.displacement_error / max(p.displacement.index, 1e-300) for p in self.precision]
         exponent = element_exponents(self.edges, level.centres, element_sizes(self.solution.space))
         factors = [
-            reduction(figures.estimate.energy, figures.estimate.energy_norm, allowed, exponent)
-            for figures in level.figures
+            reduction(
+                figures.estimate.energy,
+                figures.estimate.energy_norm,
+                allowed if share >= 1.0 else min(allowed, figures.estimate.relative * math.sqrt(share)),
+                exponent,
+            )
+            for figures, share in zip(level.figures, closer, strict=True)
         ]
         wanted = [
             goal
-            for measure in self.task.measures
+            for measure in (() if self.far else self.task.measures)
             for goal in goals(
                 self.levels,
                 accuracy / SEVERAL,

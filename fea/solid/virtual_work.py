@@ -6,14 +6,14 @@ Shigley's Mechanical Engineering Design, 10th ed., section 4-8). They enter a li
 of their bores (``fea.solid.bore_motion``) in the solution under the real loads, whatever these are. They balance on
 each link, so that rigid motions of the solution do no work.
 
-A pin that fits closely moves as its bore does on average. One with clearance follows the side on which it presses, and
-so sinks into the bore beyond that: along its force F by s, with F s + F · (mean motion) the work of its own pressure.
-Every pin counts as either, at its worst. The torque that holds a link does work on what it enters through: the flat
+The motion of a pin is the mean motion of its bore. A stiff pin follows the side on which it presses, and so sinks into
+the bore beyond that: along its force F by s, with F s + F · (mean motion) the work of its own pressure. What this could
+add is told apart, each pin at its worst. The torque that holds a link does work on what it enters through: the flat
 faces of an eye, or the bore.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import get_args
 
 import numpy as np
@@ -36,9 +36,45 @@ NO_FORCE = 1e-9
 """Share of the largest pin force on a link below which a pin does not press: its direction is rounding."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Work:
+    """Work of virtual loads on a link's solid under real ones [N mm].
+
+    Attributes
+    ----------
+    mean : Band
+        For pins that move as the mean of their bores: under the pressure over 180°, and the ends under all variants.
+    sunk : Band
+        The same with all that pins may sink into their bores in its ends.
+    missing : float
+        What the mesh leaves open on either side.
+    """
+
+    mean: Band
+    sunk: Band
+    missing: float
+
+    def band(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
+        """Return the work with a share of what the mesh leaves open.
+
+        Parameters
+        ----------
+        meshes : float, optional
+            That share.
+        sunk : bool, optional
+            Whether pins may sink.
+
+        Returns
+        -------
+        Band
+        """
+        found, missing = self.sunk if sunk else self.mean, meshes * self.missing
+        return replace(found, low=found.low - missing, high=found.high + missing)
+
+
 def virtual_work(
     solution: SolidSolution, real: LinkLoads, virtual: Sequence[LinkLoads], *, transfer: Transfer, error: float
-) -> tuple[Band, ...]:
+) -> tuple[Work, ...]:
     """Return the work of virtual loads on a link's solid under real ones, over all variants of the solution.
 
     Parameters
@@ -52,35 +88,37 @@ def virtual_work(
     transfer : Transfer
         Of torques, by which the value goes.
     error : float
-        Relative, of displacements: what the mesh leaves open.
+        Relative, of displacements: what the mesh leaves open of every component of every pin's motion.
 
     Returns
     -------
-    tuple of Band
-        One per set of virtual loads [N mm]: the value for mean motions under the pressure over 180°; the ends with the
-        error, for pins that sink or do not, under all variants.
+    tuple of Work
+        One per set of virtual loads.
     """
     surfaces = _Surfaces(solution.space, real, {end.name: end.point for loads in virtual for end in loads.ends})
-    found: list[tuple[Span, Transfer, list[Band]]] = []
+    found: list[tuple[Span, Transfer, list[tuple[Real, Real]]]] = []
     for case in (case for case in solution.cases if case.load == real.name):
         for way in (case.transfer,) if case.transfer else get_args(Transfer):
             law = LAWS[case.span]
             mean = surfaces.mean(case.displacement, way, law)
             sunk = surfaces.sunk(case.displacement, mean, law)
-            found.append((case.span, way, [_band(_work(loads, mean), _work(loads, sunk), error) for loads in virtual]))
+            found.append((case.span, way, [(_work(loads, mean), _work(loads, sunk)) for loads in virtual]))
     _, _, chosen = min(found, key=lambda one: (one[0] != WIDE.span, one[1] != transfer))
-    return tuple(
-        Band(value=band.value, low=min(other.low for other in every), high=max(other.high for other in every))
-        for band, every in zip(chosen, zip(*(bands for *_, bands in found), strict=True), strict=True)
+    every = zip(*(terms for _, _, terms in found), strict=True)
+    return tuple(_band(float(own.sum()), terms, error) for (own, _), terms in zip(chosen, every, strict=True))
+
+
+def _band(value: float, variants: Sequence[tuple[Real, Real]], error: float) -> Work:
+    """Work over variants: terms (places, 6) of mean motions, and of sinking, of which each place has all or nothing."""
+    sums = np.array([terms.sum() for terms, _ in variants])
+    deep = [sinking.sum(axis=1) for _, sinking in variants]
+    lower = sums + [np.minimum(depth, 0.0).sum() for depth in deep]
+    upper = sums + [np.maximum(depth, 0.0).sum() for depth in deep]
+    return Work(
+        mean=Band(value=value, low=float(sums.min()), high=float(sums.max())),
+        sunk=Band(value=value, low=float(lower.min()), high=float(upper.max())),
+        missing=error * max(float(np.abs(terms).sum()) for terms, _ in variants),
     )
-
-
-def _band(terms: Real, sinking: Real, error: float) -> Band:
-    """Band of a sum of terms (places, 6), each within a relative error, where any of the places may sink or not."""
-    total, open_by = float(terms.sum()), error * float(np.abs(terms).sum() + np.abs(sinking).sum())
-    deep = sinking.sum(axis=1)
-    low, high = float(np.minimum(deep, 0.0).sum()), float(np.maximum(deep, 0.0).sum())
-    return Band(value=total, low=total + low - open_by, high=total + high + open_by)
 
 
 def _work(loads: LinkLoads, motion: Mapping[str, Real]) -> Real:

@@ -31,7 +31,7 @@ class DisplacementCheck(CaseModel):
     """The links to check, each by itself; all that have a part when neither these nor a point are stated."""
     at: Name | None = None
     """The point whose displacement with the whole linkage is checked: by the solid models of the links where these are
-    solved and equilibrium gives the joint forces, else by the frame."""
+    solved and equilibrium gives the joint forces, else by the frame. Pins move as the mean of their bores."""
     link: Name | None = None
     """The moving link that has the point; may be left out where only one has, or where pins join those that have."""
 

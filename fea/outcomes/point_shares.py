@@ -1,0 +1,171 @@
+"""What every link adds to how far a point of the linkage moves, and which model tells it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fea.beam.cut_free import beam_loads, link_loads
+from fea.beam.deflection import virtual_work as plain_work
+from fea.beam.theory import internal_forces
+from fea.common.band import Band
+from fea.common.link_loads import LinkLoads
+from fea.common.source import CONTACT, Source, SourceKind, pin_sources
+from fea.nonlinear.large_displacement import LargeDisplacement
+from fea.outcomes.result import LinkResult, SolidResult
+from fea.solid.virtual_work import Work, virtual_work
+from loads.case.case import Case
+from loads.records.applied import PointLoad
+from loads.statics.statics import solve_statics
+
+NOTHING = 1e-9
+"""Share of the unit load that is rounding: in what a link bears of it, and in what is left over of its balance."""
+MESHES = Source(kind=SourceKind.DISCRETISATION, detail="of every link's solid, as that of its largest displacement")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shares:
+    """Which model tells what every link adds to the displacement of a point.
+
+    Attributes
+    ----------
+    solids : dict of str to tuple of Work
+        Link, and what its solid adds along x and y [mm].
+    carried : dict of str to tuple of float
+        The same of its plain beam, where the solid bears the loads of the deformed shape [mm].
+    beams : tuple of str
+        Links that add something by their beams in the frame.
+    unsolved : tuple of str
+        Those of them whose solid would tell more, if it were solved.
+    driven : bool
+        Whether a drive torque acts on one of the solids.
+    """
+
+    solids: Mapping[str, tuple[Work, ...]] = field(default_factory=dict)
+    carried: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    beams: tuple[str, ...] = ()
+    unsolved: tuple[str, ...] = ()
+    driven: bool = False
+
+    @property
+    def model(self) -> str:
+        """Which model gives the displacement, for people."""
+        if not self.solids:
+            return "the frame of the linkage"
+        found = f"virtual work of the solid model{'s' if len(self.solids) > 1 else ''} of {', '.join(self.solids)}"
+        return found + (f" and of the frame's beams of {', '.join(self.beams)}" if self.beams else "")
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """What makes it uncertain."""
+        eyes = (Source(kind=SourceKind.EYES),) if self.beams or not self.solids else ()
+        if not self.solids:
+            return eyes
+        pins = (source for source in pin_sources(driven=self.driven) if source != CONTACT)
+        return (MESHES, *pins, *eyes)
+
+    @property
+    def missing(self) -> dict[str, float]:
+        """How much of the displacement the mesh of each solid leaves open [mm]."""
+        return {link: max(work.missing for work in works) for link, works in self.solids.items()}
+
+    def bands(self, *, meshes: float = 1.0, sunk: bool = False) -> dict[str, tuple[Band, ...]]:
+        """Return what every solid adds along x and y.
+
+        Parameters
+        ----------
+        meshes : float, optional
+            Share of what meshes leave open that the bands hold.
+        sunk : bool, optional
+            Whether pins may sink into their bores.
+
+        Returns
+        -------
+        dict of str to tuple of Band
+            Link -> its bands [mm].
+        """
+        every = self.solids.items()
+        return {link: tuple(work.band(meshes=meshes, sunk=sunk) for work in works) for link, works in every}
+
+
+def shares_of(
+    case: Case,
+    moved: LargeDisplacement,
+    links: Mapping[str, LinkResult],
+    free: Mapping[str, LinkLoads],
+    link: str,
+    point: str,
+) -> Shares:
+    """Return the work that unit loads at a point do on every link, by its solid where one was solved.
+
+    Parameters
+    ----------
+    case : Case
+    moved : LargeDisplacement
+        The frame's answer under the load case, with a frame.
+    links : mapping of str to LinkResult
+        Under the load case.
+    free : mapping of str to LinkLoads
+        Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
+    link, point : str
+
+    Returns
+    -------
+    Shares
+    """
+    assert moved.frame is not None
+    if not free:
+        return Shares(beams=case.checked_links)
+    pose, held = moved.frame.pose, moved.frame.held
+    longest = pose.linkage.longest
+    units = [PointLoad(link=link, point=point, wrench=unit) for unit in np.eye(6)[:2]]
+    reactions = [solve_statics(pose, held, (unit,)) for unit in units]
+    solids: dict[str, tuple[Work, ...]] = {}
+    carried: dict[str, tuple[float, ...]] = {}
+    beams: list[str] = []
+    unsolved: list[str] = []
+    driven = False
+    for name, real in free.items():
+        every = zip(reactions, units, strict=True)
+        virtual = [link_loads("unit", name, case.body(name), forces, (unit,)) for forces, unit in every]
+        if real.size(longest) == 0.0 or max(loads.size(longest) for loads in virtual) <= NOTHING:
+            continue
+        # A load along a slot, at the pin in it, balances on no solid.
+        left = max(np.abs(loads.resultant() / np.repeat([1.0, longest], 3)).max() for loads in virtual)
+        result, body = links[name], case.body(name)
+        plain = all(pin.foot is None and pin.slot == 0.0 for pin in body.pins) and has_centre_line(case, name)
+        known = left <= NOTHING and (moved.state == "small" or plain)
+        if not (known and isinstance(result, SolidResult) and not result.displacement_max.unknowable):
+            beams.append(name)
+            if known and not isinstance(result, SolidResult):
+                unsolved.append(name)
+            continue
+        if moved.state != "small":
+            carried[name] = tuple(_beam_work(case, name, real, loads) for loads in virtual)
+        error = result.discretisation.displacement.index
+        solids[name] = virtual_work(result.solution, real, virtual, transfer=case.torque_transfer, error=error)
+        driven = driven or any(loads.couples for loads in (real, *virtual))
+    return Shares(solids=solids, carried=carried, beams=tuple(beams), unsolved=tuple(unsolved), driven=driven)
+
+
+def has_centre_line(case: Case, link: str) -> bool:
+    """Return whether a frame bounds how far a link gives; it does not know the ground's part.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    bool
+    """
+    return link != case.linkage.ground and case.part_of(link).has_centre_line(case.body(link))
+
+
+def _beam_work(case: Case, link: str, real: LinkLoads, virtual: LinkLoads) -> float:
+    """Work of virtual loads on a link's plain beam [N mm]."""
+    body, material = case.body(link), case.material_of(link)
+    first, second = (internal_forces(beam_loads(loads, body, material.density)) for loads in (real, virtual))
+    section, young, poisson = case.part_of(link).section, material.youngs_modulus, material.poissons_ratio
+    return plain_work(first, second, section, young=young, poisson=poisson)
