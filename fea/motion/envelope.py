@@ -118,7 +118,7 @@ class _Envelope:
             layers = layers_of(case, link)
             if layers is None or not found.worst.known:
                 return found
-            return replace(found, layers=layer_envelopes(motion, layers, scatter))
+            return replace(found, layers=layer_envelopes(motion, layers, scatter, repetitions))
 
     def _tell(self, message: str) -> None:
         """Report progress; ends the work on a link once another has failed or the run was interrupted."""

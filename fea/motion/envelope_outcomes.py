@@ -12,7 +12,7 @@ from fea.common.link_loads import LinkLoads
 from fea.common.ties import first_largest
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.motion.buckling_history import axial_compression, factors_over_motion
-from fea.motion.envelope_result import LinkEnvelope, LinkFatigue
+from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import safety_factor_outcome
@@ -20,7 +20,7 @@ from fea.outcomes.layers import CHECK as LAYERS
 from fea.outcomes.layers import no_strength, without_shear
 from fea.outcomes.limits import layer_limit
 from fea.outcomes.pins import pin_outcome, stress_of
-from geometry.materials.material import Material
+from geometry.materials.material import Fatigue, Material
 from loads.records.check_spec import BearingCheck, PinCheck, SafetyFactorCheck
 from loads.states.case_motion import CaseMotion
 
@@ -65,7 +65,9 @@ def envelope_outcomes(
         found += [_complete(outcome, evaluated) for outcome in layer_outcomes(moved, link, envelope)]
         for load_case, over in envelope.load_cases.items():
             if over.fatigue is not None:
-                found += fatigue_outcomes(case.material_of(link), link, load_case, over.fatigue)
+                found += fatigue_outcomes(case.material_of(link).fatigue, link, load_case, over.fatigue)
+        for load_case, layers in envelope.layers.items():
+            found += layer_fatigue_outcomes(case.material_of(link), link, load_case, layers)
     return found
 
 
@@ -101,15 +103,54 @@ def layer_outcomes(moved: CaseMotion, link: str, envelope: LinkEnvelope) -> Iter
             yield outcome.because(over.discretisation.sentence if over.discretisation else "its peak is not known")
 
 
-def fatigue_outcomes(material: Material, link: str, load_case: str, fatigue: LinkFatigue) -> Iterator[CheckOutcome]:
-    """Yield the outcomes of a link's fatigue: on stress, and on life where the card has an exponent.
+def layer_fatigue_outcomes(
+    material: Material, link: str, load_case: str, layers: LayerEnvelope
+) -> Iterator[CheckOutcome]:
+    """Yield the outcomes of the fatigue of a printed link's layers, as ``fatigue_outcomes``.
 
     Parameters
     ----------
     material : Material
     link : str
     load_case : str
-    fatigue : LinkFatigue
+    layers : LayerEnvelope
+
+    Yields
+    ------
+    CheckOutcome
+        None where no fatigue is asked for.
+    """
+    fatigue, name = layers.fatigue, f"fatigue of {LAYERS}"
+    if fatigue is None:
+        if layers.no_fatigue:
+            unknown = Band.unknown(layers.no_fatigue)
+            subject = Subject.link(link)
+            yield CheckOutcome.of(
+                name, subject, load_case, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, layers.no_fatigue
+            )
+        return
+    x, y, z = (f"{at:.1f}" for at in fatigue.location)
+    pull, slip = (f"{mean:.3g} ± {amplitude:.3g} MPa" for mean, amplitude in (fatigue.tension, fatigue.shear))
+    where = f"{pull} across the layers, {slip} of shear along them, at x = {x}, y = {y}, z = {z} mm"
+    for outcome in fatigue_outcomes(material.fatigue_across_layers, link, load_case, fatigue, name=name):
+        told = outcome.because(f"{outcome.reason}; {where}")
+        yield told if material.shear_strength_between_layers else without_shear(told, material.title)
+
+
+def fatigue_outcomes(
+    data: Fatigue | None, link: str, load_case: str, fatigue: LinkFatigue | LayerFatigue, *, name: str = "fatigue"
+) -> Iterator[CheckOutcome]:
+    """Yield the outcomes of a link's fatigue: on stress, and on life where the card has an exponent.
+
+    Parameters
+    ----------
+    data : Fatigue
+        Of the material's card.
+    link : str
+    load_case : str
+    fatigue : LinkFatigue or LayerFatigue
+    name : str, optional
+        Of the check.
 
     Yields
     ------
@@ -118,18 +159,18 @@ def fatigue_outcomes(material: Material, link: str, load_case: str, fatigue: Lin
     subject, wanted = Subject.link(link), fatigue.wanted
     if fatigue.strength is not None:
         factor = fatigue.stress.inverse(fatigue.strength)
-        yield CheckOutcome.of("fatigue", subject, load_case, Quantity.FATIGUE_STRESS, factor, STRESS_FACTOR)
+        yield CheckOutcome.of(name, subject, load_case, Quantity.FATIGUE_STRESS, factor, STRESS_FACTOR)
     elif fatigue.repetitions is None:
-        assert material.fatigue is not None
+        assert data is not None
         unknown = Band.unknown(BEYOND_CARD)
         why = (
-            f"the material's card ends at {material.fatigue.cycles:g} cycles and states no exponent, so its strength "
+            f"the material's card ends at {data.cycles:g} cycles and states no exponent, so its strength "
             f"for {wanted:g} repetitions is not known; ask for at most as many, or add an exponent to the card"
         )
-        yield CheckOutcome.of("fatigue", subject, load_case, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, why)
+        yield CheckOutcome.of(name, subject, load_case, Quantity.FATIGUE_STRESS, unknown, STRESS_FACTOR, why)
     if fatigue.repetitions is not None:
         share = fatigue.repetitions.times(1.0 / wanted)
-        yield CheckOutcome.of("fatigue", subject, load_case, Quantity.FATIGUE_LIFE, share, LIFE_FACTOR)
+        yield CheckOutcome.of(name, subject, load_case, Quantity.FATIGUE_LIFE, share, LIFE_FACTOR)
 
 
 def _joints(

@@ -129,6 +129,37 @@ class LoadCaseEnvelope:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class LayerFatigue:
+    """Fatigue of the layers of a printed link under one load case, the motion repeated for ever.
+
+    Attributes
+    ----------
+    location : ndarray, shape (3,)
+        Of the critical node in the link's frame [mm].
+    tension : tuple of (float, float)
+        Mean and amplitude of the stress normal to the layers there [MPa].
+    shear : tuple of (float, float)
+        Of the shear stress along them [MPa]; zero where the card has no strength against it.
+    stress : Band
+        The equivalent peak of tension across the layers [MPa].
+    wanted : float
+        Repetitions that are asked for.
+    strength : float or None
+        Peak stress borne for as many cycles [MPa]; None where the card does not tell.
+    repetitions : Band or None
+        The life; None where the card has no exponent.
+    """
+
+    location: Real
+    tension: tuple[float, float]
+    shear: tuple[float, float]
+    stress: Band
+    wanted: float
+    strength: float | None
+    repetitions: Band | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class LayerEnvelope:
     """The layers of a printed link over the motion under one load case.
 
@@ -140,11 +171,16 @@ class LayerEnvelope:
         Its number.
     location : ndarray, shape (3,)
         Where, in the link's frame [mm].
+    fatigue : LayerFatigue or None
+    no_fatigue : str
+        Why there is no fatigue of layers although it is asked for; empty where there is one, or none is asked for.
     """
 
     safety_factor: Band
     pose: int
     location: Real
+    fatigue: LayerFatigue | None
+    no_fatigue: str
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

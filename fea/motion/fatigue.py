@@ -48,6 +48,38 @@ def signed_stress(stress: Real, *, brittle: bool) -> Real:
     return np.asarray(largest if brittle else np.copysign(von_mises(stress), largest))
 
 
+def closed_history(history: Real, *, returns: bool) -> Real:
+    """Return one repetition of a motion's history: a full turn, or there and back.
+
+    Parameters
+    ----------
+    history : ndarray, shape (n,)
+        At the poses of the motion.
+    returns : bool
+        True where the last pose is the first again.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+    """
+    return history[:-1] if returns else np.concatenate([history, history[-2:0:-1]])
+
+
+def not_closed(evaluated: NDArray[np.bool_]) -> str:
+    """Say why the stress over a motion is no closed history; "" where it is.
+
+    Parameters
+    ----------
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+
+    Returns
+    -------
+    str
+    """
+    return "" if evaluated.all() else "poses near a dead point are left out, so the stress history is not closed"
+
+
 def turning_points(history: Real) -> Real:
     """Return peaks and valleys of a history, its ends included.
 

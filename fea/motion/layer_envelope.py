@@ -1,4 +1,4 @@
-"""Layers of a printed link over a motion: the least safety factor of every load case."""
+"""Layers of a printed link over a motion: the least safety factor of every load case, and their fatigue."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from fea.common.band import Band
 from fea.common.scatter import Scatter, layer_scatter
-from fea.common.source import Source, SourceKind, pin_sources
-from fea.motion.envelope_result import LayerEnvelope, VariantCurve
+from fea.common.source import Source, SourceKind, distinct, pin_sources
+from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, VariantCurve
+from fea.motion.fatigue import closed_history, not_closed, strength_at
+from fea.motion.layer_fatigue import LayerCycle, critical_layer
 from fea.motion.link_envelope import LinkMotion
 from fea.solid.layers import Layers
 from fea.superposition.peaks import ModeMeasures, largest_stress
@@ -21,7 +23,9 @@ ESTIMATED = Source(
 )
 
 
-def layer_envelopes(motion: LinkMotion, layers: Layers, scatter: Mapping[str, Scatter]) -> dict[str, LayerEnvelope]:
+def layer_envelopes(
+    motion: LinkMotion, layers: Layers, scatter: Mapping[str, Scatter], repetitions: float | None = None
+) -> dict[str, LayerEnvelope]:
     """Return the layers of a link over a motion under every load case.
 
     Parameters
@@ -31,16 +35,39 @@ def layer_envelopes(motion: LinkMotion, layers: Layers, scatter: Mapping[str, Sc
     layers : Layers
     scatter : mapping of str to Scatter
         Load case -> that of its loads.
+    repetitions : float, optional
+        Of the motion that are wanted.
 
     Returns
     -------
     dict of str to LayerEnvelope
     """
     value, place, upper = _peaks(motion, layers)
-    return {
-        name: _over_motion(motion, layers, curves, value, place, upper, scatter.get(name, Scatter()))
-        for name, curves in motion.curves.items()
-    }
+    lacking = _lacking(motion, repetitions)
+    known = motion.material.fatigue_across_layers is not None and not lacking
+    found = {}
+    for name, curves in motion.curves.items():
+        load = scatter.get(name, Scatter())
+        fatigue = _fatigue(motion, layers, curves, load, repetitions) if known else None
+        own = _over_motion(motion, layers, curves, value, place, upper, load)
+        found[name] = replace(own, fatigue=fatigue, no_fatigue=lacking)
+    return found
+
+
+def _lacking(motion: LinkMotion, repetitions: float | None) -> str:
+    """Say why there is no fatigue of layers; "" where there is one, or none is asked for.
+
+    It is asked for where repetitions are stated, or the card has fatigue data of either kind.
+    """
+    material = motion.material
+    if material.fatigue_across_layers is not None:
+        return not_closed(motion.evaluated)
+    if repetitions is None and material.fatigue is None:
+        return ""
+    return (
+        f"the card of '{material.title}' has no fatigue data across the layers; add "
+        "[materials.<name>.fatigue_across_layers] with stress, cycles and source, measured on specimens built upright"
+    )
 
 
 def _peaks(motion: LinkMotion, layers: Layers) -> tuple[Real, NDArray[np.int64], NDArray[np.bool_]]:
@@ -49,10 +76,9 @@ def _peaks(motion: LinkMotion, layers: Layers) -> tuple[Real, NDArray[np.int64],
     Where the upper half of the link tells all, the lower one has the same stress on mirrored layers.
     """
     solved = motion.solved
-    halved = len(solved.nodes) < len(solved.space.nodes)
     sides = [
         largest_stress(ModeMeasures.of(solved.stress, one), solved.combination, brittle=False, layers=one)
-        for one in ((layers, layers.mirrored) if halved else (layers,))
+        for one, _ in _sides(motion, layers)
     ]
     values = np.array([side.value for side in sides])
     best = np.argmax(values, axis=0)
@@ -92,4 +118,62 @@ def _over_motion(
         safety_factor=factor if layers.between is not None else replace(factor, low=0.0),
         pose=int(np.flatnonzero(motion.evaluated)[worst - curve.first]),
         location=at,
+        fatigue=None,
+        no_fatigue="",
     )
+
+
+def _fatigue(
+    motion: LinkMotion, layers: Layers, curves: Sequence[VariantCurve], load: Scatter, repetitions: float | None
+) -> LayerFatigue:
+    """Return the fatigue of the layers under a load case, at the critical node of the variant that governs."""
+    data = motion.material.fatigue_across_layers
+    assert data is not None
+    own, stresses, lives = [], [], []
+    for curve in curves:
+        cycle, at, factors = _critical(motion, layers, curve)
+        ends = [(cycle.stress(data, layers.across, f), cycle.repetitions(data, layers.across, f))
+                for f in (1.0, factors[0] * load.low, factors[1] * load.high)]  # fmt: skip
+        stresses += [stress for stress, _ in ends]
+        lives += [life for _, life in ends if life is not None]
+        if curve.transfer in (None, motion.stated):
+            own.append((*ends[0], cycle, at, curve))
+    stress, life, cycle, at, curve = max(own, key=lambda one: one[0])
+    sources = distinct(pin_sources(driven=curve.transfer is not None), (ESTIMATED,), load.sources)
+    wanted = data.cycles if repetitions is None else repetitions
+    share = 0.0 if layers.between is None else layers.between / layers.across
+    return LayerFatigue(
+        location=at,
+        tension=cycle.tension,
+        shear=(share * cycle.shear[0], share * cycle.shear[1]),
+        stress=Band.around(stress, tuple(stresses), *sources),
+        wanted=wanted,
+        strength=strength_at(data, wanted),
+        repetitions=None if life is None else Band.around(life, tuple(lives), *sources),
+    )
+
+
+def _critical(motion: LinkMotion, layers: Layers, curve: VariantCurve) -> tuple[LayerCycle, Real, tuple[float, float]]:
+    """Return the worst cycle of a variant, its place, and by which factors its stress may be off."""
+    solved, data = motion.solved, motion.material.fatigue_across_layers
+    assert data is not None
+    part = solved.combination[:, curve.first : curve.first + int(motion.evaluated.sum())]
+    found = []
+    for one, sign in _sides(motion, layers):
+        number, traction = critical_layer(solved.stress, part, one, data)
+        closed = np.array([closed_history(row, returns=motion.returns) for row in traction])
+        found.append((LayerCycle.of(closed), int(solved.nodes[number]), sign, traction))
+    cycle, node, sign, traction = max(found, key=lambda one: one[0].stress(data, layers.across))
+    size = np.linalg.norm(traction, axis=0)
+    pose = int(np.argmax(size))
+    if size[pose] == 0.0:
+        return cycle, solved.space.nodes[node] * (1.0, 1.0, sign), (1.0, 1.0)
+    error = layers.sensitivity * motion.local_error(curve.first + pose, node) / float(size[pose])
+    contact = 1.0 - CONTACT_SHORTFALL if curve.span == NARROW.span else 1.0
+    return cycle, solved.space.nodes[node] * (1.0, 1.0, sign), (max(1.0 - error, 0.0), (1.0 + error) / contact)
+
+
+def _sides(motion: LinkMotion, layers: Layers) -> list[tuple[Layers, float]]:
+    """Layers that the solved nodes have, and the sign of z: where the upper half tells all, those of its image too."""
+    halved = len(motion.solved.nodes) < len(motion.solved.space.nodes)
+    return [(layers, 1.0), (layers.mirrored, -1.0)] if halved else [(layers, 1.0)]

@@ -14,7 +14,7 @@ from fea.elements.space import DisplacementSpace
 from fea.elements.supports import LineReference
 from fea.motion.critical import critical_nodes
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
-from fea.motion.fatigue import fatigue_life, missing_data, strength_at
+from fea.motion.fatigue import closed_history, fatigue_life, missing_data, not_closed, strength_at
 from fea.motion.mesh_factors import MeshFactors
 from fea.refine.convergence import ALONE
 from fea.refine.error_estimate import estimate_error
@@ -90,12 +90,6 @@ def link_motion(
         solved=solved,
         curves=curves,
     )
-
-
-def _lacking(material: Material, evaluated: NDArray[np.bool_]) -> str:
-    """Say why there is no fatigue calculation; "" where there is one."""
-    left_out = "" if evaluated.all() else "poses near a dead point are left out, so the stress history is not closed"
-    return missing_data(material) or left_out
 
 
 def _solved(
@@ -224,7 +218,7 @@ class LinkMotion:
         LinkEnvelope
         """
         solved, material, space = self.solved, self.material, self.solved.space
-        lacking = _lacking(material, self.evaluated) if fatigue else "it was not asked for"
+        lacking = (missing_data(material) or not_closed(self.evaluated)) if fatigue else "it was not asked for"
         found = {}
         for name, curves in self.curves.items():
             series, load = MeshFactors.of(refined, name, material), (scatter or {}).get(name, Scatter())
@@ -399,20 +393,3 @@ def _scattered(load_case: LoadCaseEnvelope, material: Material, load: Scatter) -
 
 def _sources(governing: VariantCurve) -> tuple[Source, ...]:
     return pin_sources(driven=governing.transfer is not None)
-
-
-def closed_history(history: Real, *, returns: bool) -> Real:
-    """Return one repetition of a motion's history: a full turn, or there and back.
-
-    Parameters
-    ----------
-    history : ndarray, shape (n,)
-        At the poses of the motion.
-    returns : bool
-        True where the last pose is the first again.
-
-    Returns
-    -------
-    ndarray, shape (k,)
-    """
-    return history[:-1] if returns else np.concatenate([history, history[-2:0:-1]])

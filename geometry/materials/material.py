@@ -88,6 +88,8 @@ class Material(CaseModel):
     temperature_factors: tuple[tuple[Temperature, Annotated[float, Field(gt=0)]], ...] = ()
     """(temperature, factor on strength), rising in temperature."""
     fatigue: Fatigue | None = None
+    fatigue_across_layers: Fatigue | None = None
+    """Of a printed material: of specimens built upright, so that its stress is tension normal to the layers."""
     minimum_safety_factor: Annotated[float, Field(gt=0)] | None = None
     """Default limit for a static check of an untested part."""
     minimum_safety_factor_tested: Annotated[float, Field(gt=0)] | None = None
@@ -130,7 +132,8 @@ class Material(CaseModel):
         if is_laminate(self.title):
             raise refusal(f"'{self.title}' {ANISOTROPIC}")
         layers = "strength_across_layers", "shear_strength_between_layers"
-        for entry, needed in ((layers[1], layers[0]), *((f"{entry}_range", entry) for entry in layers)):
+        upon = (layers[1], layers[0]), ("fatigue_across_layers", layers[0])
+        for entry, needed in (*upon, *((f"{entry}_range", entry) for entry in layers)):
             if getattr(self, entry) is not None and getattr(self, needed) is None:
                 raise refusal(f"{entry} needs {needed}; state it too")
         if unknown := [entry for entry in (*self.sources, *self.status) if entry not in type(self).model_fields]:

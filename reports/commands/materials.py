@@ -87,6 +87,7 @@ def missing(material: "Material") -> tuple[str, ...]:
         "scatter of strength": material.strength_range is None,
         "scatter of E": material.youngs_modulus_range is None,
         "shear between layers": layers,
+        "fatigue of layers": material.strength_across_layers is not None and material.fatigue_across_layers is None,
         "least safety factor": material.minimum_safety_factor is None,
     }
     return tuple(what for what, absent in lacking.items() if absent)
@@ -166,9 +167,9 @@ def _print(name: str | None) -> None:
     sources, status = stated.pop("sources"), stated.pop("status")
     rows = []
     for entry, value in stated.items():
-        if entry == "fatigue":
-            rows += [(f"fatigue.{key}", str(x), "", "") for key, x in value.items() if key != "source"]
-            rows.append(("fatigue", "", "", value["source"]))
+        if isinstance(value, dict):
+            rows += [(f"{entry}.{key}", str(x), "", "") for key, x in value.items() if key != "source"]
+            rows.append((entry, "", "", value["source"]))
         elif entry != "title":
             rows.append((entry, _text(value), status.get(entry, ""), sources.get(entry, "")))
     say_table(console, [("entry", False), ("value", False), ("status", False), ("source", False)], rows)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
+from scipy.optimize import minimize
 from turning_load import BODY, POSES, RHO, L, history
 
 from fea.elements.space import displacement_space
@@ -16,7 +17,7 @@ from fea.solid.stress import stress_field
 from fea.superposition.peaks import largest_stress
 from fea.superposition.unit_loads import TRANSFERS, unit_loads
 from fea.superposition.unit_solutions import solve_units
-from geometry.materials.material import library
+from geometry.materials.material import Fatigue, library
 from geometry.meshing.mirror import mirrored
 from loads.records.bearing import NARROW, WIDE
 
@@ -138,17 +139,24 @@ def test_envelope_of_a_link_finds_the_pose_of_the_largest_direct_peak(mesh, spac
 
 @pytest.mark.parametrize("halves", [False, True])
 def test_layers_over_a_motion_have_their_direct_peaks(mesh, halves):
-    """Oblique layers: the lower half of a symmetric body is another part."""
+    """Oblique layers: the lower half of a symmetric body is another part.
+
+    Their fatigue by the peak-stress rule: largest tension, and mean and amplitude of shear by a search for the circle.
+    """
     if halves:
         mesh = mirrored(solid_meshes.half_bar(around=12, radial=2, along=2, layers=1, tail=4.0))
     space, layers = displacement_space(mesh), Layers(normal=(1.0, 0.5, 1.0), across=12.0, between=5.0)
     loads = history(space)
+    rule = Fatigue.model_validate({"stress": "3 MPa", "cycles": 1e6, "rule": "peak-stress", "source": "made up"})
     motion = link_motion(
-        space, link="bar", body=BODY, material=MATERIAL.model_copy(update={"density": RHO}), histories=[loads],
+        space, link="bar", body=BODY, histories=[loads],
+        material=MATERIAL.model_copy(update={"density": RHO, "fatigue_across_layers": rule}),
         evaluated=np.ones(POSES, dtype=bool), stated="bore-shear", returns=True, threads=1,
     )  # fmt: skip
     assert (len(motion.solved.nodes) < len(space.nodes)) is halves
     [found] = layer_envelopes(motion, layers, {}).values()
+    fatigue, frame, tractions = found.fatigue, np.linalg.qr([[1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [1.0, 0.0, 1.0]])[0], {}
+    at = int(np.argmin(np.linalg.norm(space.nodes - fatigue.location, axis=1)))
     direct = {}
     for pose in range(POSES):
         solution = solve_solid(
@@ -156,7 +164,11 @@ def test_layers_over_a_motion_have_their_direct_peaks(mesh, halves):
             transfers=["bore-shear"], threads=1,
         )  # fmt: skip
         for case in solution.cases:
-            stress = layers.stress(stress_field(space, case.displacement, E=E, nu=NU).nodal)
+            nodal = stress_field(space, case.displacement, E=E, nu=NU).nodal
+            stress = layers.stress(nodal)
+            xx, yy, zz, xy, yz, xz = nodal[at]
+            turned = frame.T @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ frame[:, 0]
+            tractions.setdefault(case.span, []).append(turned * (1.0, 12.0 / 5.0, 12.0 / 5.0))
             direct[pose, case.span] = stress.max(), space.nodes[int(np.argmax(stress))]
     worst = max(direct, key=lambda key: direct[key][0])
     assert found.safety_factor.value == pytest.approx(12.0 / direct[worst][0], rel=EXACT)
@@ -164,3 +176,15 @@ def test_layers_over_a_motion_have_their_direct_peaks(mesh, halves):
     assert found.location == pytest.approx(direct[worst][1])
     assert found.safety_factor.low < found.safety_factor.value < found.safety_factor.high
     assert layer_envelopes(motion, replace(layers, between=None), {})["turn"].safety_factor.low == 0.0
+    expected = []
+    for span in tractions:
+        tension, *shear = np.array(tractions[span]).T
+        path = np.array(shear).T
+        radius = minimize(
+            lambda c, p=path: np.linalg.norm(p - c, axis=1).max(), path.mean(axis=0), method="Nelder-Mead"
+        )
+        expected.append(np.hypot(max(tension.max(), 0.0), np.linalg.norm(radius.x) + radius.fun))
+    assert fatigue.stress.value == pytest.approx(max(expected), rel=EXACT)
+    assert fatigue.stress.value >= (1.0 - EXACT) * direct[worst][0]  # no less than the static peak at any node
+    assert fatigue.stress.low < fatigue.stress.value < fatigue.stress.high
+    assert (fatigue.wanted, fatigue.strength, fatigue.repetitions) == (1e6, 3.0, None)

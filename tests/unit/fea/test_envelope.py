@@ -24,8 +24,8 @@ from fea.elements.space import displacement_space
 from fea.motion import envelope
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
-from fea.motion.fatigue import signed_stress
-from fea.motion.link_envelope import closed_history, link_motion
+from fea.motion.fatigue import closed_history, signed_stress
+from fea.motion.link_envelope import link_motion
 from fea.motion.link_history import link_histories
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.pins import stress_at, stress_of

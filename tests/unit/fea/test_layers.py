@@ -199,7 +199,11 @@ def test_peaks_over_many_loads_are_those_of_all_nodes():
 
 def over_motion(case, factor):
     motion = SimpleNamespace(coordinate="GF", angles=np.radians([0.0, 45.0]))
-    layers = {"weight": LayerEnvelope(safety_factor=factor, pose=1, location=np.zeros(3))} if factor else {}
+    layers = (
+        {"weight": LayerEnvelope(safety_factor=factor, pose=1, location=np.zeros(3), fatigue=None, no_fatigue="")}
+        if factor
+        else {}
+    )
     envelope = SimpleNamespace(layers=layers, load_cases={"weight": SimpleNamespace(discretisation=state("singular"))})
     [found] = envelope_layers(SimpleNamespace(case=case, motion=motion), "AE", envelope)
     return found

@@ -50,7 +50,7 @@ def test_one_card_whole() -> None:
     shown = programs.inside("materials", "pla-fdm-xy").stdout
     assert re.search(r"strength_across_layers +12 MPa +datasheet +PolyTerra", shown)
     assert "23 MPa to 65 MPa" in shown
-    assert "Missing: sustained load, temperature." in shown
+    assert "Missing: sustained load, temperature, fatigue of layers." in shown
 
 
 def test_cards_as_json() -> None:
