@@ -7,7 +7,17 @@ from pathlib import Path
 from typing import Any
 
 DOCUMENT = Path(__file__).resolve().parents[1] / "docs" / "result.md"
-NAMED = {"links", "load_cases", "joints", "timings_s", "motion.points", "points.branches", "link_points", "link_bores"}
+NAMED = {
+    "links",
+    "load_cases",
+    "joints",
+    "timings_s",
+    "motion.points",
+    "points.branches",
+    "link_points",
+    "link_bores",
+    "link_slots",
+}
 """Keys whose own keys are names: by their last part, or by the whole."""
 SHAPES = {
     "extremes": {"first", "last", "smallest", "largest", "unbounded"},

@@ -75,12 +75,14 @@ def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.
     Returns
     -------
     tuple of Detail
-        One per slot, arm and pin through the walls of a tube.
+        One per slot, arm and pin through the walls of a tube; none of a part that is no beam.
     """
+    if not body.part.is_beam:
+        return ()
     pushed = {load.name: load for load in loads.pins}
     found = [_slot(body, pin, pushed[pin.name], forces, poisson) for pin in body.pins if pin.slot > 0.0]
     found += [_arm(body, pin, pin.foot, pushed[pin.name], poisson) for pin in body.pins if pin.foot is not None]
-    if body.part.section.round and body.part.is_beam:
+    if body.part.section.round:
         found += [_through(body, pin, forces, poisson) for pin in body.pins if body.ring(pin).diameter == 0.0]
     return tuple(found)
 

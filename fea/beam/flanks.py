@@ -70,8 +70,10 @@ def flanks_of(body: Body) -> tuple[Flanks, ...]:
     Returns
     -------
     tuple of Flanks
-        One per slot.
+        One per slot; none of a part that is no beam.
     """
+    if not body.part.is_beam:
+        return ()
     return tuple(sorted((_flanks(body, pin) for pin in body.pins if pin.slot > 0.0), key=lambda found: found.first))
 
 

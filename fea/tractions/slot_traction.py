@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from fea.common.link_loads import PinLoad
 from fea.elements.quadrature import SurfaceQuadrature
-from fea.tractions.traction import LARGEST_CORRECTION, wrench_density
+from fea.tractions.traction import LARGEST_CORRECTION, bore_middle, wrench_density
 from geometry.base.errors import CannotRunError
+from loads.records.applied import shifted
 from loads.records.bearing import PressureLaw
 
 Density = NDArray[np.float64]
@@ -53,10 +54,12 @@ def flank_pressure(wall: SurfaceQuadrature, centre: NDArray[np.float64], length:
 def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Density:
     """Return the pressure of a pin in a slot that delivers its wrench, but for Fz.
 
-    The force Fy is even along the pin; the moment Mx about the slot's axis is that of a tilted pin, which presses on
-    one flank above the mid-plane and on the other below it, in proportion to the height. Amplitude and slope along
-    the slot are solved on the meshed flank, so that force and moment are exact. What else the wrench holds is rounding,
-    or small on a deformed shape, and comes as a traction of the rigid-body fields.
+    The force Fy is even along the pin; the moment Mx about the slot's axis is that of a tilted pin, which presses
+    on one flank above the mid-plane and on the other below it, in proportion to the height. Amplitude and slope
+    along the slot are solved on the meshed flank, so that force and moment are exact. In a slot whose middle lies
+    off the link's plane of forces, heights count from its middle, and the force's moment about it is added. What
+    else the wrench holds is rounding, or small on a deformed shape, and comes as a traction of the rigid-body
+    fields.
 
     Parameters
     ----------
@@ -77,7 +80,8 @@ def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> De
     CannotRunError
         For a wrench that a slot cannot take, or a flank meshed too coarsely.
     """
-    fx, fy, _, mx, my, mz = pin.wrench
+    middle = bore_middle(wall, pin.centre)
+    fx, fy, _, mx, my, mz = shifted(pin.wrench, pin.centre - middle)
     size = float(np.linalg.norm(pin.wrench[:3]) + np.linalg.norm(pin.wrench[3:]) / pin.diameter)
     if max(abs(fx), abs(my) / pin.diameter, abs(mz) / pin.diameter) > LARGEST_CORRECTION * size:
         raise CannotRunError(
@@ -86,25 +90,27 @@ def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> De
         )
     length = law.patch(pin.diameter)
     # From -1 to 1 over the pressure's length, and over the height of the wall.
-    arm = (wall.x - pin.centre) / np.array([length / 2.0, 1.0, np.abs(wall.x[..., 2] - pin.centre[2]).max()])
+    arm = (wall.x - middle) / np.array([length / 2.0, 1.0, np.abs(wall.x[..., 2] - middle[2]).max()])
 
     def flank(side: float) -> Density:
-        return flank_pressure(wall, pin.centre, length, math.copysign(1.0, side))
+        return flank_pressure(wall, middle, length, math.copysign(1.0, side))
 
-    density = wrench_density(wall, pin.centre, np.array([fx, 0.0, 0.0, 0.0, my, mz]))
+    density = wrench_density(wall, middle, np.array([fx, 0.0, 0.0, 0.0, my, mz]))
     if fy != 0.0:
         pushed = flank(fy)
-        density = density + _exact(wall, pin, [pushed, arm[..., :1] * pushed, arm[..., 2:] * pushed], [fy, 0.0])
+        density = density + _exact(wall, pin, middle, [pushed, arm[..., :1] * pushed, arm[..., 2:] * pushed], [fy, 0.0])
     if mx != 0.0:
         above = arm[..., 2:]
         tilted = np.abs(above) * np.where(above > 0.0, flank(-mx), flank(mx))
-        density = density + _exact(wall, pin, [tilted, arm[..., :1] * flank(mx), flank(mx)], [0.0, mx])
+        density = density + _exact(wall, pin, middle, [tilted, arm[..., :1] * flank(mx), flank(mx)], [0.0, mx])
     return density
 
 
-def _exact(wall: SurfaceQuadrature, pin: PinLoad, fields: list[Density], target: list[float]) -> Density:
-    """Return the sum of three fields along y that delivers Fy and Mx (``target``) about the pin, and no Mz."""
-    columns = np.array([wall.wrench(field, pin.centre)[[1, 3, 5]] for field in fields]).T
+def _exact(
+    wall: SurfaceQuadrature, pin: PinLoad, middle: NDArray[np.float64], fields: list[Density], target: list[float]
+) -> Density:
+    """Return the sum of three fields along y that delivers Fy and Mx (``target``) about a pin's middle, and no Mz."""
+    columns = np.array([wall.wrench(field, middle)[[1, 3, 5]] for field in fields]).T
     columns[1:] /= pin.diameter
     if np.linalg.cond(columns) < 1e9:
         factors = np.linalg.solve(columns, [target[0], target[1] / pin.diameter, 0.0])

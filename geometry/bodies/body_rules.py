@@ -101,7 +101,7 @@ def _check_pins(body: Body) -> None:
                 f"the pin hole at {pin.name} has a diameter of {pin.diameter:.4g} mm, but must be positive and less "
                 f"than {entry} {eye:.4g} mm; reduce pin_diameter or increase {entry.removeprefix('2 ')}"
             )
-        if pin.slot > 0.0 and abs(pin.y) > ON_AXIS * pin.diameter:
+        if pin.slot > 0.0 and body.part.is_beam and abs(pin.y) > ON_AXIS * pin.diameter:
             raise CaseError(
                 f"the slot at {pin.name} lies {abs(pin.y):.4g} mm off the link's axis, but must lie on it; turn the "
                 "link's frame so that the slot has y = 0"

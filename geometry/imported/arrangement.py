@@ -1,7 +1,7 @@
 """How the bores of a part lie to each other: on one axis, parallel, and as the points of a link."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -53,9 +53,15 @@ class LinkFrame:
 
     @property
     def points(self) -> dict[str, tuple[float, float]]:
-        """Point -> (x, y) [mm]."""
+        """Point -> (x, y) of the middle of its bore [mm]."""
         found = {name: self.place(np.array(bore.centre)) for name, bore in self.bores.items()}
         return {name: (round(float(at[0]), 6) + 0.0, round(float(at[1]), 6) + 0.0) for name, at in found.items()}
+
+    @property
+    def slots(self) -> dict[str, tuple[float, float]]:
+        """Point of a slot -> x of the centres of its round ends [mm]."""
+        halves = {name: bore.slot / 2.0 for name, bore in self.bores.items() if bore.slot}
+        return {name: (self.points[name][0] - half, self.points[name][0] + half) for name, half in halves.items()}
 
 
 def angle_between(one: Bore, other: Bore) -> float:
@@ -133,8 +139,9 @@ def parallel_groups(bores: Sequence[Bore]) -> list[list[Bore]]:
 def link_frame(bores: Sequence[Bore]) -> LinkFrame | None:
     """Return the frame of the link that a part may be.
 
-    Its points are the round bores of the largest group of parallel ones; of several on one axis that with the longest
-    wall, and only those that go through if at least two do.
+    Its points are the bores of the largest group of parallel ones; of several on one axis that with the longest wall,
+    and only those that go through if at least two do. Slots come after the round bores, and x runs along the longest of
+    them; one that stands otherwise is no point.
 
     Parameters
     ----------
@@ -146,22 +153,48 @@ def link_frame(bores: Sequence[Bore]) -> LinkFrame | None:
     LinkFrame or None
         None where there are not two axes.
     """
-    groups = parallel_groups([bore for bore in bores if not bore.slot])
-    chosen = _one_for_each_axis(groups[0]) if groups else []
+    groups = [_one_for_each_axis(group) for group in parallel_groups(bores)]
+    chosen = max(groups, key=lambda group: (sum(not bore.slot for bore in group), len(group)), default=[])
     through = [bore for bore in chosen if bore.through]
     chosen = through if len(through) > 1 else chosen
+    slots = sorted((bore for bore in chosen if bore.slot), key=lambda bore: -round(bore.slot, 6))
+    slots = [slot for slot in slots if abs(np.dot(slot.slot_axis, slots[0].slot_axis)) > math.cos(PARALLEL)]
+    rounds = [bore for bore in chosen if not bore.slot]
+    chosen = [*rounds, *slots]
     if len(chosen) < 2:
         return None
-    pairs = list(combinations(chosen, 2))
+    pairs = list(combinations(rounds if len(rounds) > 1 else chosen, 2))
     lengths = [distance_between(*pair) for pair in pairs]
     first, second = next(pair for pair, far in zip(pairs, lengths, strict=True) if far >= max(lengths) * (1.0 - 1e-9))
     rest = [bore for bore in chosen if bore is not first and bore is not second]
     origin, z = np.array(first.centre), np.array(first.axis)
     arm = np.array(second.centre) - origin
-    x = arm - (arm @ z) * z
-    x /= np.linalg.norm(x)
+    x = along_slot(slots, arm, z)
     named = {_letters(k): bore for k, bore in enumerate([first, second, *rest])}
     return LinkFrame(origin=origin, axes=np.array([x, np.cross(z, x), z]), bores=named)
+
+
+def along_slot(bores: Iterable[Bore], towards: Real, z: Real) -> Real:
+    """Return the direction x of a link: along the first slot among its bores, or else towards another bore.
+
+    Parameters
+    ----------
+    bores : iterable of Bore
+        Of the link.
+    towards : array
+        (3,), to which a slot's direction is at 90 degrees or less.
+    z : array
+        Unit vector (3,) along the bores.
+
+    Returns
+    -------
+    array
+        Unit vector (3,), normal to z.
+    """
+    slot = next((np.array(bore.slot_axis) for bore in bores if bore.slot), None)
+    way = towards if slot is None else slot * (1.0 if slot @ towards >= 0.0 else -1.0)
+    across = way - (way @ z) * z
+    return np.asarray(across / np.linalg.norm(across))
 
 
 def _one_for_each_axis(bores: Sequence[Bore]) -> list[Bore]:

@@ -17,7 +17,6 @@ from geometry.base.errors import CannotRunError, CaseError
 from geometry.bodies.body import Body
 from geometry.imported.bores import find_bores
 from geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface, Vector
-from geometry.imported.walls import Line
 from geometry.meshing.element_geometry import (
     TETRA_EDGES,
     TRIANGLE_EDGES,
@@ -27,7 +26,7 @@ from geometry.meshing.element_geometry import (
     triangle_rule,
 )
 from geometry.meshing.mesh_settings import MeshSettings
-from geometry.meshing.mesh_walls import bent_edges, cylinder_walls, inner_edges, on_cylinder
+from geometry.meshing.mesh_walls import ON_WALL, bent_edges, cylinder_walls, inner_edges
 from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.mesh_part import MeshedPart
 from geometry.solids.reentrant import ReentrantEdge
@@ -308,10 +307,10 @@ def mesh_of_body(body: Body, settings: MeshSettings) -> TaggedMesh:
     corners = mesh.points[mesh.boundary]
     for pin in body.pins:
         ring, radius = body.ring(pin), pin.diameter / 2.0
-        axis = Line(point=np.array([pin.x, pin.y, 0.0]), axis=np.array([0.0, 0.0, 1.0]))
         near = 1e-3 * radius
         within = (corners[..., 2] >= ring.low - near) & (corners[..., 2] <= ring.high + near)
-        wall = mesh.boundary[(on_cylinder(corners, axis, radius) & within).all(axis=1)]
+        off = np.abs(pin.distance(corners[..., 0], corners[..., 1]) - radius)
+        wall = mesh.boundary[((off <= ON_WALL * radius) & within).all(axis=1)]
         surfaces[f"bore:{pin.name}"] = np.ascontiguousarray(wall[:, :3])
         areas[f"bore:{pin.name}"] = float(triangle_areas(mesh.points, wall).sum())
     volume, centroid, _ = _integrals(mesh.points, mesh.boundary)

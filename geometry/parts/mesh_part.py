@@ -30,7 +30,7 @@ class MeshPart(FilePart):
 class MeshedPart(ImportedPart):
     """A mesh from a file, placed in the frame of a link: the kind of part that a body of a ``MeshPart`` has."""
 
-    takes: ClassVar[frozenset[Feature]] = frozenset()
+    takes: ClassVar[frozenset[Feature]] = frozenset(("slots",))
     is_fixed: ClassVar[bool] = True
     patches_anywhere: ClassVar[bool] = False
 

@@ -72,7 +72,7 @@ class ImportedPart(PartKind):
     A point p of the file lies at ``turn`` p + ``shift`` in the link's frame.
     """
 
-    takes: ClassVar[frozenset[Feature]] = frozenset(("load points without a pin",))
+    takes: ClassVar[frozenset[Feature]] = frozenset(("slots", "load points without a pin"))
     is_beam: ClassVar[bool] = False
 
     shape: Literal["step", "mesh"] = "step"

@@ -6,70 +6,18 @@ The link's plane is normal to the common axis of its bores.
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CaseError
-from geometry.imported.arrangement import PARALLEL, angle_between
+from geometry.imported.arrangement import PARALLEL, along_slot, angle_between
 from geometry.imported.facts import Bore
 from geometry.parts.step import FilePart
+from geometry.placement.fit import Fit, SlotEnd, Wanted, ends_of
 
 Real = NDArray[np.float64]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Wanted:
-    """A point of a link that must be a bore of its part.
-
-    Attributes
-    ----------
-    name : str
-        Of the point.
-    place : tuple of float
-        (x, y) in the link's frame [mm].
-    diameter : float
-        Of its pin [mm].
-    """
-
-    name: str
-    place: tuple[float, float]
-    diameter: float
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Fit:
-    """Where a part lies in its link: a point p of the file at ``turn`` p + ``shift``.
-
-    Attributes
-    ----------
-    turn : ndarray
-        Rotation (3, 3).
-    shift : ndarray
-        Translation (3,) [mm].
-    bores : mapping of str to Bore
-        Point of the link -> its bore, in the file's frame.
-    """
-
-    turn: Real
-    shift: Real
-    bores: Mapping[str, Bore]
-
-    def middle(self, point: str) -> Real:
-        """Return the middle (3,) of a point's bore in the link's frame [mm].
-
-        Parameters
-        ----------
-        point : str
-            Name of the point.
-
-        Returns
-        -------
-        ndarray
-            The place.
-        """
-        return np.asarray(self.turn @ np.asarray(self.bores[point].centre) + self.shift)
 
 
 def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fit:
@@ -100,11 +48,17 @@ def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
             f"an imported part needs two pins or more to tell how it lies, but the link has {len(wanted)}; add a joint"
         )
     _check_named_parallel(part, wanted, candidates)
+    spots = [end for one in wanted for end in one.ends]
+    rounds = [
+        [end for bore in own for end in ends_of(bore)]
+        for one, own in zip(wanted, candidates, strict=True)
+        for _ in one.ends
+    ]
     found: dict[tuple[str, ...], list[Fit]] = {}
-    for placement in _fits(part, candidates, wanted):
+    for placement in _fits(part, rounds, spots):
         found.setdefault(tuple(placement.bores[one.name].name for one in wanted), []).append(placement)
     if not found:
-        raise CaseError(_none_fits(part, bores, wanted))
+        raise CaseError(_none_fits(part, [end for bore in bores for end in ends_of(bore)], spots))
     if len(found) > 1:
         ways = "; or ".join(
             ", ".join(f"{one.name} = {bore}" for one, bore in zip(wanted, names, strict=True))
@@ -149,7 +103,14 @@ def with_loaded_bores(
         if name in part.bores:
             near = [_named(part, bores, name)]
         else:
-            near = [bore for bore in bores if angle_between(bore, upright) <= PARALLEL]
+            near = [bore for bore in bores if not bore.slot and angle_between(bore, upright) <= PARALLEL]
+            if not near:
+                continue
+        if near[0].slot:
+            raise CaseError(
+                f"bores.{name}: {near[0].name} is a slot, in which the pin of a joint slides, but the point {name} has "
+                f'no joint; add one of type "pin-in-slot", or take {name} out of the part\'s bores'
+            )
         away = {bore.name: math.dist((fit.turn @ bore.centre + fit.shift)[:2], at) for bore in near}
         bore = min(near, key=lambda one: away[one.name])
         if away[bore.name] <= part.place_tolerance:
@@ -164,6 +125,9 @@ def with_loaded_bores(
 
 def points_of_part(part: FilePart, bores: Sequence[Bore]) -> dict[str, tuple[float, float]]:
     """Return the points that a part's named bores give its link, the first at the origin, the second on the x axis.
+
+    Where a slot is among them, x runs along the first one instead, in the sense in which the second point is at x > 0.
+    The point of a slot is its middle.
 
     Parameters
     ----------
@@ -194,7 +158,7 @@ def points_of_part(part: FilePart, bores: Sequence[Bore]) -> dict[str, tuple[flo
         raise CaseError(
             f"the bores of {names[0]} and {names[1]} are coaxial, so they tell no direction; swap the order"
         )
-    x = across / np.linalg.norm(across)
+    x = along_slot(own.values(), across, z)
     axes = np.array([x, np.cross(z, x)])
     flat = {point: axes @ np.subtract(bore.centre, first.centre) for point, bore in own.items()}
     return {point: (round(float(at[0]), 9), round(float(at[1]), 9)) for point, at in flat.items()}
@@ -202,8 +166,12 @@ def points_of_part(part: FilePart, bores: Sequence[Bore]) -> dict[str, tuple[flo
 
 def _candidates(part: FilePart, bores: Sequence[Bore], one: Wanted) -> list[Bore]:
     """Return the bores that may be a point's: the one that is named, else all of its diameter."""
+    what = "bore" if one.slot is None else "slot"
     if one.name in part.bores:
         bore = _named(part, bores, one.name)
+        if bool(bore.slot) != (one.slot is not None):
+            is_a, wants = ("slot", "turns in a round bore") if bore.slot else ("round bore", "slides in a slot")
+            raise CaseError(f"the pin at {one.name} {wants}, but {bore.name} is a {is_a}; name another bore")
         if not _holds(part, bore, one):
             raise CaseError(
                 f"the pin at {one.name} has a diameter of {one.diameter:g} mm, but {bore.name} has {bore.diameter:.6g} "
@@ -211,17 +179,18 @@ def _candidates(part: FilePart, bores: Sequence[Bore], one: Wanted) -> list[Bore
                 "bore"
             )
         return [bore]
-    found = [bore for bore in bores if _holds(part, bore, one)]
+    found = [bore for bore in bores if bool(bore.slot) == (one.slot is not None) and _holds(part, bore, one)]
     if not found:
+        loose = f" and {one.clearance:g} mm of clearance" if one.clearance else ""
         raise CaseError(
-            f"no bore is within {part.diameter_tolerance:g} mm (diameter_tolerance) of the diameter of the pin at "
-            f"{one.name}, {one.diameter:g} mm; {listed(bores)}"
+            f"no {what} is within {part.diameter_tolerance:g} mm (diameter_tolerance) of the diameter of the pin at "
+            f"{one.name}, {one.diameter:g} mm{loose}; {listed(bores)}"
         )
     return found
 
 
 def _holds(part: FilePart, bore: Bore, one: Wanted) -> bool:
-    return abs(bore.diameter - one.diameter) <= part.diameter_tolerance + 1e-9 * one.diameter
+    return abs(bore.diameter - one.diameter - one.clearance) <= part.diameter_tolerance + 1e-9 * one.diameter
 
 
 def _named(part: FilePart, bores: Sequence[Bore], point: str) -> Bore:
@@ -247,7 +216,7 @@ def listed(bores: Sequence[Bore]) -> str:
     """
     if not bores:
         return "the part has no bores"
-    shown = ", ".join(f"{bore.name} ({bore.diameter:.4g} mm)" for bore in bores[:12])
+    shown = ", ".join(f"{bore.name} ({'slot of ' if bore.slot else ''}{bore.diameter:.4g} mm)" for bore in bores[:12])
     return f"its bores are {shown}{', ...' if len(bores) > 12 else ''}"
 
 
@@ -297,8 +266,11 @@ def _fits(part: FilePart, candidates: Sequence[Sequence[Bore]], wanted: Sequence
                 min(found, key=lambda bore: float(np.linalg.norm(flat @ np.asarray(bore.centre) + shift - at)))
                 for found, at in zip(candidates, places, strict=True)
             ]
-            if len({bore.name for bore in chosen}) == len(chosen) and all(
-                angle_between(one, b) <= PARALLEL for b in chosen
+            wholes = {(at.name, b.whole.name) for at, b in zip(wanted, chosen, strict=True) if isinstance(b, SlotEnd)}
+            if (
+                len({bore.name for bore in chosen}) == len(chosen)
+                and len(wholes) == len({point for point, _ in wholes})
+                and all(angle_between(one, b) <= PARALLEL for b in chosen)
             ):
                 placement = _fitted(part, chosen, wanted, turn)
                 if placement is not None:
@@ -316,7 +288,8 @@ def _turned(arm: Real, along: Real, z: Real) -> Real:
 def _fitted(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted], turn: Real) -> Fit | None:
     """Return the placement whose bores are nearest to the points by least squares; None where one is too far off.
 
-    The best rotation in the plane: Kabsch, Acta Cryst. A32 (1976) 922-923.
+    The best rotation in the plane: Kabsch, Acta Cryst. A32 (1976) 922-923. Where there is a slot, it is the one that
+    brings the (first) slot along x instead, since a pin pushes across it alone.
     """
     places = np.array([one.place for one in wanted])
     centres = np.array([bore.centre for bore in bores]) @ turn.T
@@ -326,13 +299,19 @@ def _fitted(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted], tur
         [[math.cos(turned), -math.sin(turned), 0.0], [math.sin(turned), math.cos(turned), 0.0], [0.0, 0.0, 1.0]]
     )
     turn = about @ turn
+    slot = next((bore for bore in bores if isinstance(bore, SlotEnd)), None)
+    if slot is not None:
+        x = along_slot([slot.whole], turn[0], turn[2])
+        turn = np.array([x, np.cross(turn[2], x), turn[2]])
     centres = np.array([bore.centre for bore in bores]) @ turn.T
     shift = np.append((places - centres[:, :2]).mean(axis=0), 0.0)
     if np.linalg.norm(centres[:, :2] + shift[:2] - places, axis=1).max() > part.place_tolerance:
         return None
-    heights = centres[:, 2]
+    named = {
+        one.name: bore.whole if isinstance(bore, SlotEnd) else bore for one, bore in zip(wanted, bores, strict=True)
+    }
+    heights = np.array([turn[2] @ bore.centre for bore in named.values()])
     shift[2] = -(heights.mean() if part.plane is None else heights[0] + part.plane)
-    named = {one.name: bore for one, bore in zip(wanted, bores, strict=True)}
     return Fit(turn=turn, shift=shift, bores=named)
 
 

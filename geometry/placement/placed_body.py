@@ -17,7 +17,8 @@ from geometry.imported.read import part_facts
 from geometry.meshing.mesh import sections_and_rings
 from geometry.parts.mesh_part import MeshedPart
 from geometry.parts.step import FilePart, ImportedPart
-from geometry.placement.match import Fit, Wanted, place, with_loaded_bores
+from geometry.placement.fit import Fit, Wanted
+from geometry.placement.match import place, with_loaded_bores
 
 EXACT = 1e-6
 """Share of its diameter by which the centre of a bore may lie off its point."""
@@ -112,7 +113,7 @@ def _placed(
     body = Body(
         part=solid, pins=tuple(_pin(placement, one) for one in (wanted[0], *loaded, *wanted[1:])), ends=(), holes=()
     )
-    first, last = min(pin.x for pin in body.pins), max(pin.x for pin in body.pins)
+    first, last = min(pin.span[0] for pin in body.pins), max(pin.span[1] for pin in body.pins)
     stations = tuple(first + (last - first) * (i + 0.5) / STATIONS for i in range(STATIONS))
     sections, rings = sections_and_rings(body, stations)
     found = [(s.area, *s.principal, s.i_z, s.high[0] - s.low[0], s.high[1] - s.low[1]) for s in sections]
@@ -130,12 +131,14 @@ def _with_ring(pin: Pin, diameter: float) -> Pin:
 
 
 def _pin(placement: Fit, one: Wanted) -> Pin:
-    """Return the pin hole of a point, which stands at its bore."""
+    """Return the pin hole or slot of a point, which stands at its bore."""
     bore, (x, y, middle) = placement.bores[one.name], placement.middle(one.name).tolist()
     if math.hypot(x - one.place[0], y - one.place[1]) > EXACT * bore.diameter:
         raise CaseError(
             f"the point {one.name} does not stand at {bore.name}; read the case by read_case, which moves it there"
         )
+    if bore.slot and math.dist(placement.turn[1:] @ bore.slot_axis, (0.0, 0.0)) * bore.slot > EXACT * bore.diameter:
+        raise CaseError(f"the slot at {one.name} does not run along x of the link as another of its slots does")
     along = 1.0 if np.dot(placement.turn[2], bore.axis) > 0.0 else -1.0
     walls = sorted(tuple(sorted(middle + along * end for end in span)) for span in bore.spans)
     return Pin(
@@ -143,6 +146,7 @@ def _pin(placement: Fit, one: Wanted) -> Pin:
         x=one.place[0],
         y=one.place[1],
         diameter=bore.diameter,
+        slot=bore.slot,
         clearance=bore.diameter - one.diameter,
         ring=Ring(
             diameter=0.0,

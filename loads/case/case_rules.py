@@ -310,12 +310,10 @@ def _check_slots(case: CoreCase, link: str) -> None:
     """
     record, linkage = case.links[link], case.linkage
     part = case.parts[record.part or ""]
-    for entry, stated in (("slots", record.slots), ("arms", record.arms)):
-        if stated and isinstance(part, FilePart):
-            raise CaseError(
-                f"links.{link}.{entry}.{next(iter(stated))}: a part of shape {part.shape} takes no {entry}; "
-                "leave them out"
-            )
+    if record.arms and isinstance(part, FilePart):
+        raise CaseError(
+            f"links.{link}.arms.{next(iter(record.arms))}: a part of shape {part.shape} takes no arms; leave them out"
+        )
     sliding = {linkage.point_of(name, link): name for name in linkage.joints_of(link)
                if linkage.joints[name].type == "pin-in-slot" and linkage.joints[name].links[0] == link}  # fmt: skip
     for point in record.slots:

@@ -13,7 +13,7 @@ from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.materials.material import Material, library
 from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd, Ring
-from geometry.placement.match import Wanted
+from geometry.placement.fit import Wanted
 from geometry.placement.placed_body import placed_body
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
@@ -287,7 +287,16 @@ class CoreCase(Revisable):
             else:
                 ends.append(PlainEnd(name=name, x=x, patch=record.end_patch))
         if isinstance(part, FilePart):
-            wanted = tuple(Wanted(name=pin.name, place=(pin.x, pin.y), diameter=pin.diameter) for pin in pins)
+            wanted = tuple(
+                Wanted(
+                    name=pin.name,
+                    place=(pin.x, pin.y),
+                    diameter=pin.pin_diameter,
+                    slot=pin.span if pin.slot > 0.0 else None,
+                    clearance=pin.clearance,
+                )
+                for pin in pins
+            )
             if link not in self._imported:
                 self._imported[link] = placed_body(part, wanted, tuple((end.name, (end.x, end.y)) for end in ends))
             bores = {pin.name for pin in self._imported[link].pins}

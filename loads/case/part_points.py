@@ -6,6 +6,7 @@ A link states its points and the part must agree within its tolerance, or it tak
 
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,12 @@ from pydantic_core import PydanticCustomError
 
 from geometry.base.errors import AlulaError, CaseError
 from geometry.base.units import parse
+from geometry.bodies.features import Slot
 from geometry.linkage.linkage import Joint
 from geometry.parts.mesh_part import MeshPart
 from geometry.parts.step import FilePart, StepPart
-from geometry.placement.match import Wanted, place, points_of_part, with_loaded_bores
+from geometry.placement.fit import Wanted
+from geometry.placement.match import place, points_of_part, with_loaded_bores
 from geometry.placement.placed_body import bores_of
 from loads.text.explain import sentence
 
@@ -58,7 +61,7 @@ def with_part_points(tables: dict[str, Any], context: Mapping[str, object]) -> d
         stated = parts.get(link.get("part")) if isinstance(link, dict) and isinstance(link.get("part"), str) else None
         if isinstance(stated, dict) and stated.get("shape") in tuple(KINDS):  # a tuple, since it may be unhashable
             part = _part(link["part"], stated, context)
-            changed[name] = link | {"points": _points(name, link, part, tables.get("joints"))}
+            changed[name] = link | _placed(name, link, part, tables.get("joints"))
         elif isinstance(link, dict) and link.get("points") == FROM_PART:
             raise CaseError(
                 f'links.{name}.points: "{FROM_PART}" needs a part of shape "step" or "mesh"; state the points'
@@ -74,21 +77,41 @@ def _part(name: str, stated: dict[str, Any], context: Mapping[str, object]) -> F
         raise CaseError(f"parts.{name}.{sentence(error, kind)}") from None
 
 
-def _points(name: str, link: dict[str, Any], part: FilePart, joints: object) -> object:
-    """Return the points of a link, in the form of the case file; those that bores give stand where the bores are."""
-    points = link.get("points")
+def _placed(name: str, link: dict[str, Any], part: FilePart, joints: object) -> dict[str, object]:
+    """Return points and slots of a link, in the form of the case file; those that bores give stand where bores are."""
+    points, slots = link.get("points"), link.get("slots", {})
     try:
         if points == FROM_PART:
-            found = points_of_part(part, bores_of(part))
-            return {point: _stated(*at) for point, at in found.items()}
-        wanted = pinned(name, points, joints)
-        if wanted is None or not isinstance(points, dict):
-            return points
-        others = {point: at for point, at in _places(points).items() if point not in {one.name for one in wanted}}
+            points = {point: _stated(*at) for point, at in points_of_part(part, bores_of(part)).items()}
+            slots = _slots_of_part(part, slots) if isinstance(slots, dict) else slots
+        wanted = pinned(name, points, slots, joints)
+        if wanted is None or not isinstance(points, dict) or not isinstance(slots, dict):
+            return {"points": points, "slots": slots}
+        places = _places(points)
+        others = {point: at for point, at in places.items() if point not in {one.name for one in wanted}}
         fit = with_loaded_bores(part, place(part, bores_of(part), wanted), bores_of(part), others)
     except AlulaError as error:
         raise type(error)(f"links.{name}, part {Path(part.file).name}: {error}") from None
-    return points | {point: _stated(*fit.middle(point)[:2].tolist()) for point in fit.bores}
+    own = {point: fit.middle(point)[:2].tolist() for point in fit.bores}
+    own |= {one.name: (places[one.name][0], own[one.name][1]) for one in wanted if one.slot is not None}
+    ends = {one.name: _stated(*fit.span(one.name)) for one in wanted if one.slot is not None}
+    return {
+        "points": points | {point: _stated(*at) for point, at in own.items()},
+        "slots": slots | {point: slots[point] | {"first": a, "last": b} for point, (a, b) in ends.items()},
+    }
+
+
+def _slots_of_part(part: FilePart, stated: dict[str, Any]) -> dict[str, Any]:
+    """Return the slots that a part's named bores give its link, whose points are their middles."""
+    bores = bores_of(part)
+    lengths = {bore.name: bore.slot for bore in bores if bore.slot}
+    points = points_of_part(part, bores)
+    found: dict[str, Any] = dict(stated)
+    for point, name in part.bores.items():
+        if name in lengths and isinstance(own := stated.get(point, {}), dict):
+            first, last = _stated(*(points[point][0] + side * lengths[name] / 2.0 for side in (-1.0, 1.0)))
+            found[point] = {"first": first, "last": last} | own
+    return found
 
 
 def _places(points: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
@@ -105,14 +128,14 @@ def _stated(x: float, y: float) -> list[str]:
     return [f"{round(x, DIGITS)!r} mm", f"{round(y, DIGITS)!r} mm"]
 
 
-def pinned(name: str, points: object, joints: object) -> tuple[Wanted, ...] | None:
-    """Return the points of a link that are pins.
+def pinned(name: str, points: object, slots: object, joints: object) -> tuple[Wanted, ...] | None:
+    """Return the points of a link that are pins, or slots in which pins slide.
 
     Parameters
     ----------
     name : str
         Of the link.
-    points, joints : object
+    points, slots, joints : object
         Tables of the case file, not validated.
 
     Returns
@@ -120,18 +143,27 @@ def pinned(name: str, points: object, joints: object) -> tuple[Wanted, ...] | No
     tuple of Wanted or None
         None where something is malformed.
     """
-    if not isinstance(points, dict) or not isinstance(joints, dict):
+    if not isinstance(points, dict) or not isinstance(slots, dict) or not isinstance(joints, dict):
         return None
     found: dict[str, Wanted] = {}
     places = _places(points)
     for joint, stated in joints.items():
         try:
             record = Joint.model_validate(stated)
-            if name in record.links and record.type == "revolute":
+            if name in record.links:
                 if record.pin_diameter is None:
                     return None
-                point = record.points[record.links.index(name)] if record.points else joint
-                found.setdefault(point, Wanted(name=point, place=places[point], diameter=record.pin_diameter))
+                side = record.links.index(name)
+                point = record.points[side] if record.points else joint
+                wanted = Wanted(name=point, place=places[point], diameter=record.pin_diameter)
+                if record.type == "pin-in-slot" and side == 0:
+                    wanted = _slotted(wanted, Slot.model_validate(slots[point]))
+                found.setdefault(point, wanted)
         except (ValidationError, KeyError):
             return None
     return tuple(found[point] for point in points if point in found)
+
+
+def _slotted(point: Wanted, slot: Slot) -> Wanted:
+    middle = (slot.first + slot.last) / 2.0, point.place[1]
+    return replace(point, place=middle, slot=(slot.first, slot.last), clearance=slot.clearance)

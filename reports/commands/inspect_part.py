@@ -130,6 +130,7 @@ def record(found: Inspection) -> dict[str, Any]:
         "parallel": [[bore.name for bore in group] for group in parallel_groups(facts.bores)],
         "link_points": {} if frame is None else {name: list(at) for name, at in frame.points.items()},
         "link_bores": {} if frame is None else {name: bore.name for name, bore in frame.bores.items()},
+        "link_slots": {} if frame is None else {name: list(ends) for name, ends in frame.slots.items()},
         "entries": case_entries(found),
     }
 
@@ -162,7 +163,7 @@ def case_entries(found: Inspection) -> str:
     """
     if found.frame is None:
         return ""
-    name, points = _quoted(found.name), found.frame.points
+    name, points, slots = _quoted(found.name), found.frame.points, found.frame.slots
     mesh = mesh_unit_of(found.path) is not None
     lines = [
         (f"[parts.{name}]", ""),
@@ -183,9 +184,16 @@ def case_entries(found: Inspection) -> str:
         *(
             (
                 f'points.{point} = ["{_exact(x)} mm", "{_exact(y)} mm"]',
-                f"pin of {_short(found.frame.bores[point].diameter)} mm",
+                f"{'slot' if point in slots else 'pin'} of {_short(found.frame.bores[point].diameter)} mm",
             )
             for point, (x, y) in points.items()
+        ),
+        *(
+            (
+                f'slots.{point} = {{ first = "{_exact(first)} mm", last = "{_exact(last)} mm" }}',
+                'for a joint of type "pin-in-slot", this link first',
+            )
+            for point, (first, last) in slots.items()
         ),
     ]
     wide = max(len(line) for line, told in lines if told)
@@ -297,7 +305,7 @@ def _remarks(found: Inspection) -> list[str]:
         angle = math.degrees(angle_between(groups[0][0], one[0]))
         told.append(f"{one[0].name} stands at {fixed(angle, 2)}° to {groups[0][0].name}.")
     if bores and frame is None:
-        told.append("There are not two round bores with parallel axes, so that the part is no link yet.")
+        told.append("There are not two bores with parallel axes, so that the part is no link yet.")
     if frame is not None:
         middles = {point: float(frame.place(_array(bore.centre))[2]) for point, bore in frame.bores.items()}
         if max(middles.values()) - min(middles.values()) > 1e-3 * min(bore.diameter for bore in frame.bores.values()):

@@ -73,6 +73,13 @@ def slotted() -> cq.Shape:
     return body.val().moved(STAND)
 
 
+def lever() -> cq.Shape:
+    """Lever of 70 by 12 by 4 mm: hub of 14 mm, 8 mm high, bore 5 mm at x = 0; slot of 4 mm from x = 34 to 48 mm."""
+    body = cq.Workplane("XY").center(25.0, 0.0).rect(70.0, 12.0).extrude(4.0).union(hole(0.0, 0.0, 14.0, 0.0, 8.0))
+    body = body.cut(hole(0.0, 0.0, 5.0, -1.0, 9.0))
+    return body.cut(cq.Workplane("XY", origin=(41, 0, -1)).slot2D(18.0, 4.0).extrude(9.0)).val().moved(STAND)
+
+
 def halves() -> cq.Shape:
     """Strip of 40 by 12 by 4 mm glued of two along its middle and not unified, so that its bores are half-cylinders."""
     upper = cq.Workplane("XY").center(0.0, 3.0).rect(40.0, 6.0).extrude(4.0)
@@ -124,7 +131,7 @@ def shell() -> cq.Shape:
 
 def main() -> None:
     """Write the files."""
-    for make in (plate, bell_crank, fork, slotted, halves, cross_tube, sleeve, splines, inch, two_solids, shell):
+    for make in (plate, bell_crank, fork, slotted, lever, halves, cross_tube, sleeve, splines, inch, two_solids, shell):
         shape = make()
         if isinstance(shape, cq.Compound) and len(shape.Solids()) == 1:
             shape = shape.Solids()[0]

@@ -1,5 +1,7 @@
 """The push of a pin on the flank of its slot: exact resultants, where it acts, what it refuses."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,18 @@ def pin(*wrench: float, x: float = 6.5) -> PinLoad:
 def test_force_and_moment_are_exact(wall: SurfaceQuadrature, law: PressureLaw, x: float, wrench) -> None:
     load = pin(*wrench, x=x)
     assert wall.wrench(slot_traction(wall, load, law), load.centre) == pytest.approx(np.array(wrench, float), abs=1e-12)
+
+
+def test_in_a_slot_off_the_plane_of_forces_the_pin_tilts_about_its_middle(wall: SurfaceQuadrature) -> None:
+    """The slot reaches from 0.5 to 3.5 mm, so that a force of 3 N in the plane tilts the pin by 6 N mm about x.
+
+    Both flanks are pushed then, or one of them alone were pulled where it is lower than the middle.
+    """
+    off = replace(wall, x=wall.x + np.array([0.0, 0.0, 2.0]))
+    load = pin(0.0, 3.0, 0.0, 0.0, 0.0, 0.0)
+    density = slot_traction(off, load, WIDE)
+    assert off.wrench(density, load.centre) == pytest.approx(load.wrench, abs=1e-12)
+    assert slot_traction(wall, pin(0.0, 3.0, 0.0, 6.0, 0.0, 0.0), WIDE) == pytest.approx(density, abs=1e-12)
 
 
 @pytest.mark.parametrize("law", [WIDE, NARROW])

@@ -31,10 +31,16 @@ def test_the_points_of_a_bell_crank_are_those_of_its_triangle():
 
 
 def test_of_a_rotated_part_its_own_distances_are_the_points():
-    """Holes at -40, -25 and 20 mm along it; none is what is blind, a slot or the wider part of a stepped hole."""
+    """Holes at -40, -25 and 20 mm along it; none is what is blind or the wider part of a stepped hole.
+
+    The slot at -8 mm, 30 degrees from the others' line, is 10 mm long, and x runs along it.
+    """
     frame = link_frame(part_facts(FILES / "slotted.step").bores)
-    assert [found.diameter for found in frame.bores.values()] == pytest.approx([6.0, 5.0, 5.0])
-    assert frame.points == {"A": (0.0, 0.0), "B": (60.0, 0.0), "C": (15.0, 0.0)}
+    assert [found.diameter for found in frame.bores.values()] == pytest.approx([6.0, 5.0, 5.0, 4.0])
+    away = {name: np.hypot(*at) for name, at in frame.points.items()}
+    assert away == pytest.approx({"A": 0.0, "B": 60.0, "C": 15.0, "D": 32.0}, abs=1e-6)
+    assert np.abs(np.arctan2(*frame.points["D"][::-1])) == pytest.approx(np.radians(30.0))
+    assert frame.slots == {"D": pytest.approx((32.0 * np.sqrt(0.75) - 5.0, 32.0 * np.sqrt(0.75) + 5.0))}
 
 
 def test_of_bores_on_one_axis_that_with_the_longest_wall_is_the_point():

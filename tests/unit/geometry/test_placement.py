@@ -8,7 +8,8 @@ import pytest
 from geometry.base.errors import CaseError
 from geometry.imported.facts import Bore
 from geometry.parts.step import StepPart
-from geometry.placement.match import Wanted, place, points_of_part
+from geometry.placement.fit import Wanted
+from geometry.placement.match import place, points_of_part
 
 POINTS = {"A": (0.0, 0.0), "B": (60.0, 0.0), "C": (22.0, 34.0)}
 DIAMETERS = {"A": 5.0, "B": 4.0, "C": 6.0}

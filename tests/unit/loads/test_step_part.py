@@ -167,7 +167,6 @@ def test_a_shape_that_is_a_table_is_refused_like_any_other(tmp_path):
     [
         'eyes = { B = { diameter = "14 mm" } }',
         'arms = { B = "O4" }',
-        'slots = { B = { first = "30 mm", last = "50 mm" } }',
     ],
 )
 def test_features_that_a_file_cannot_take_are_not_ignored(tmp_path, entry):

@@ -15,7 +15,8 @@ from typer.testing import CliRunner
 from geometry.base.errors import CaseError
 from geometry.imported.read import part_facts, part_surface
 from geometry.parts.step import StepPart
-from geometry.placement.match import Wanted, place, points_of_part
+from geometry.placement.fit import Wanted
+from geometry.placement.match import place, points_of_part
 from geometry.placement.placed_body import bores_of
 from reports.commands.cli import app
 from reports.commands.inspect_part import case_entries, inspect_file, record
@@ -55,7 +56,7 @@ def test_it_lists_the_solid_its_mass_and_every_bore():
         ("fork", ["through, 2 walls (fork)"]),
         ("slotted", ["slot, 10 mm between the centres of its ends, through", "blind, coaxial with bore 8"]),
         ("cross_tube", ["bore 2 stands at 90.00° to bore 1.", "No point of the link: bore 2."]),
-        ("sleeve", ["There are not two round bores with parallel axes, so that the part is no link yet."]),
+        ("sleeve", ["There are not two bores with parallel axes, so that the part is no link yet."]),
     ],
 )
 def test_it_says_what_kinds_of_holes_there_are(name, sentences):
@@ -85,20 +86,28 @@ def test_the_entries_name_part_points_and_bores(tmp_path):
     }
 
 
-@pytest.mark.parametrize("name", ["plate", "bell_crank", "fork", "slotted", "cross_tube", "splines", "inch"])
+@pytest.mark.parametrize("name", ["plate", "bell_crank", "fork", "slotted", "lever", "cross_tube", "splines", "inch"])
 def test_a_link_with_these_entries_has_its_part_where_they_say(name):
     """A case finds how the part lies from points and diameters by least squares; here it is the frame of the list."""
     found = inspect_file(FILES / f"{name}.step", None)
     tables = tomllib.loads(case_entries(found))
     stated = tables["parts"][found.name]
     part = StepPart.model_validate(stated, context={"folder": str(FILES)})
+    slots = tables["links"][found.name].get("slots", {})
+    ends = {point: (parse_length(slot["first"]), parse_length(slot["last"])) for point, slot in slots.items()}
     wanted = tuple(
-        Wanted(name=point, place=tuple(map(parse_length, at)), diameter=found.frame.bores[point].diameter)
+        Wanted(
+            name=point,
+            place=tuple(map(parse_length, at)),
+            diameter=found.frame.bores[point].diameter,
+            slot=ends.get(point),
+        )
         for point, at in tables["links"][found.name]["points"].items()
     )
     fit = place(part, bores_of(part), wanted)
     assert {point: bore.name for point, bore in fit.bores.items()} == stated["bores"]
     assert np.allclose(fit.turn, found.frame.axes, atol=1e-6)
+    assert {point: fit.span(point) for point in slots} == {point: pytest.approx(at) for point, at in ends.items()}
     assert points_of_part(part, bores_of(part)) == {
         point: pytest.approx(at) for point, at in found.frame.points.items()
     }
