@@ -18,8 +18,8 @@ Real = NDArray[np.float64]
 class Layers:
     """Direction and strengths of the layers of a part.
 
-    The criterion is the quadratic one for the initiation of delamination. Compression normal to the layers neither helps
-    nor harms. (Friction would help; crushing is no parting of layers.)
+    The criterion is the quadratic one for the initiation of delamination. Compression normal to the layers neither
+    helps nor harms. (Friction would help; crushing is no parting of layers.)
 
     Attributes
     ----------
@@ -33,8 +33,8 @@ class Layers:
     References
     ----------
     The formula is the "quadratic nominal stress" criterion by which cohesive elements begin to part (Abaqus, criterion
-    QUADS; LS-DYNA, *MAT_240), checked against descriptions of these. It is ascribed to J. C. Brewer and P. A. Lagace, J.
-    Compos. Mater. 22 (1988) 1141-1155, and with the positive part of the normal stress to P. P. Camanho and C. G.
+    QUADS; LS-DYNA, *MAT_240), checked against descriptions of these. It is ascribed to J. C. Brewer and P. A. Lagace,
+    J. Compos. Mater. 22 (1988) 1141-1155, and with the positive part of the normal stress to P. P. Camanho and C. G.
     Davila, NASA/TM-2002-211737; the text of neither was at hand.
     """
 
