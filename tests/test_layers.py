@@ -16,10 +16,10 @@ LAYERS = {
         *("base", "materials", "imported", "bodies", "parts"),
         *("linkage", "mechanisms", "solids", "meshing", "placement"),
     ),
-    "loads": ("text", "records", "statics", "sources", "case", "states"),
+    "loads": ("text", "records", "statics", "sources", "case", "states", "plans"),
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
-        *("refine", "outcomes", "check", "superposition", "motion", "calculix", "claims"),
+        *("refine", "outcomes", "check", "superposition", "motion", "calculix", "claims", "study"),
     ),
     "reports": ("words", "tables", "sheet", "figures", "page", "commands", "notebook"),
 }

@@ -57,19 +57,77 @@ def read_case(name_or_path: str, overrides: Sequence[str] = ()) -> Case:
     CaseError
         With one sentence for whatever is wrong.
     """
+    return _changed(read_tables(name_or_path), stated_changes(overrides), name_or_path)
+
+
+def read_tables(name_or_path: str) -> dict[str, Any]:
+    """Read the tables of a case or of another TOML file, without validating them.
+
+    Parameters
+    ----------
+    name_or_path : str
+        Name of a built-in case, or path of a file.
+
+    Returns
+    -------
+    dict of str to object
+        As ``tomllib`` reads them.
+
+    Raises
+    ------
+    CaseError
+        As ``read_text``, and for text that is no TOML.
+    """
     text, where = read_text(name_or_path)
     try:
-        data = tomllib.loads(text)
+        return tomllib.loads(text)
     except RecursionError:
         raise CaseError(f"{where}: the tables are nested too deeply; flatten them") from None
     except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
         raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; correct that line") from None
-    return _changed(data, tuple(map(_stated, overrides)), name_or_path)
 
 
-def _changed(tables: dict[str, Any], changes: Sequence[Change], name: str) -> Case:
-    """Return the case that the tables of a file state after some changes, which later ones can be added to."""
-    data = deepcopy(tables)
+def stated_changes(overrides: Sequence[str]) -> tuple[Change, ...]:
+    """Read other values for some entries.
+
+    Parameters
+    ----------
+    overrides : sequence of str
+        Each as ``path=value``; a value that is not TOML is text.
+
+    Returns
+    -------
+    tuple of Change
+
+    Raises
+    ------
+    CaseError
+        For text of another form.
+    """
+    return tuple(map(_stated, overrides))
+
+
+def changed_tables(tables: Mapping[str, Any], changes: Sequence[Change]) -> dict[str, Any]:
+    """Return the tables of a case after some changes, with what its tables for sources derive from them.
+
+    Parameters
+    ----------
+    tables : mapping
+        Of a case file; they stay as they are.
+    changes : sequence of Change
+        In the order in which they are made.
+
+    Returns
+    -------
+    dict of str to object
+        Not validated yet.
+
+    Raises
+    ------
+    CaseError
+        For an entry that there is not.
+    """
+    data = deepcopy(dict(tables))
     for change in changes:
         _override(data, change)
     derived = Case.derived(data)
@@ -78,7 +136,12 @@ def _changed(tables: dict[str, Any], changes: Sequence[Change], name: str) -> Ca
             _override(data, Change(path, value, f"{table} sets"))
     for change in changes if derived else ():  # what is stated outright wins
         _override(data, change)
-    return validate(data, _folder(name)).read_from(
+    return data
+
+
+def _changed(tables: dict[str, Any], changes: Sequence[Change], name: str) -> Case:
+    """Return the case that the tables of a file state after some changes, which later ones can be added to."""
+    return validate(changed_tables(tables, changes), folder_of(name)).read_from(
         Origin(name=name, revise=partial(_revised, tables, tuple(changes), name))
     )
 
@@ -163,8 +226,18 @@ def read_companion(case_path: str, name: str) -> str:
     raise CaseError(f"'{printable(name)}' is not a readable file beside the case file; put it there")
 
 
-def _folder(name: str) -> str:
-    """Return the folder in which the files of a case's parts are sought."""
+def folder_of(name: str) -> str:
+    """Return the folder in which the files of a case's parts are sought.
+
+    Parameters
+    ----------
+    name : str
+        Built-in name or path of the case.
+
+    Returns
+    -------
+    str
+    """
     return str(files("loads.cases")) if name in built_in_cases() else str(Path(name).parent)
 
 

@@ -11,6 +11,7 @@ import typer
 
 from reports.commands.ending import end_if_stopped, run
 from reports.commands.materials import app as materials
+from reports.commands.study import app as study
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -319,6 +320,7 @@ def cases() -> None:
 
 
 app.add_typer(materials)
+app.add_typer(study)
 
 
 @app.command()
@@ -357,25 +359,30 @@ def inspect(
 
 
 @app.command()
-def schema() -> None:
+def schema(
+    study: Annotated[bool, typer.Option("--study", help="Of the plan of a study instead.")] = False,
+) -> None:
     """Print the JSON Schema of the case file."""
     import json
 
     from loads.case.case import Case
+    from loads.plans.plan import StudyPlan
 
-    print(json.dumps(Case.model_json_schema(), indent=2))
+    print(json.dumps((StudyPlan if study else Case).model_json_schema(), indent=2))
 
 
 @app.command()
 def new(
     path: Annotated[Path, typer.Argument(help="The file to write.", show_default=False)],
+    study: Annotated[bool, typer.Option("--study", help="Write the plan of a study instead.")] = False,
 ) -> None:
     """Write a commented starter case: a four-bar linkage."""
     from importlib.resources import files
 
     from geometry.base.errors import CannotRunError, CaseError
 
-    text = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
+    source = files("loads.plans" if study else "loads.cases")
+    text = source.joinpath("starter-study.toml.txt" if study else "starter.toml.txt").read_text(encoding="utf-8")
     try:
         with path.open("x", encoding="utf-8") as stream:
             stream.write(text)
@@ -385,7 +392,8 @@ def new(
         if path.is_file():
             path.unlink()  # half of it
         raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
-    print(f"Wrote {path}. Check it with: alula check {path} -o out")
+    command = "study" if study else "check"
+    print(f"Wrote {path}. {command.capitalize()} it with: alula {command} {path} -o out")
 
 
 @app.command()

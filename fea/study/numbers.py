@@ -1,0 +1,230 @@
+"""What a variant hands to the store: the outcome of each check and the main numbers, in plain values."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from fea.common.verdict import CheckOutcome, Verdict, overall
+from fea.motion.envelope_result import EnvelopeResult
+from fea.outcomes.motor import motor_outcomes
+from fea.outcomes.result import CheckResult
+from loads.case.case import Case
+from loads.records.check_spec import MotorCheck
+from loads.states.case_motion import CaseMotion
+from loads.states.masses import part_masses
+
+State = Literal["done", "refused", "crashed"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariantNumber:
+    """One number of a variant, with its band, and what it was held against.
+
+    Attributes
+    ----------
+    check : str
+        Name of the check; "" for a number that nothing is asked of.
+    subject : str
+        Such as ``AE``, ``pin A``, ``the linkage``.
+    load_case : str
+        "" where the number belongs to none.
+    quantity : str
+        Such as ``safety factor``, ``mass``.
+    unit : str
+        "1" for a pure number.
+    value, low, high : float
+        NaN where nothing stands for it.
+    limit : float
+        NaN without check.
+    verdict : Verdict or None
+        None without check.
+    """
+
+    check: str = ""
+    subject: str
+    load_case: str = ""
+    quantity: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    limit: float = math.nan
+    verdict: Verdict | None = None
+
+    @classmethod
+    def exact(cls, quantity: str, unit: str, value: float, subject: str, load_case: str = "") -> "VariantNumber":
+        """Return a number without band that nothing is asked of.
+
+        Parameters
+        ----------
+        quantity, unit : str
+        value : float
+        subject : str
+        load_case : str, optional
+
+        Returns
+        -------
+        VariantNumber
+        """
+        value = float(value)
+        return cls(
+            quantity=quantity, unit=unit, value=value, low=value, high=value, subject=subject, load_case=load_case
+        )
+
+    @classmethod
+    def of(cls, outcome: CheckOutcome) -> "VariantNumber":
+        """Return a check's outcome.
+
+        Parameters
+        ----------
+        outcome : CheckOutcome
+
+        Returns
+        -------
+        VariantNumber
+        """
+        return cls(
+            check=outcome.name,
+            subject=str(outcome.subject),
+            load_case=outcome.load_case,
+            quantity=outcome.quantity.value,
+            unit=outcome.unit or "1",
+            value=float(outcome.value.value),
+            low=float(outcome.value.low),
+            high=float(outcome.value.high),
+            limit=float(outcome.limit),
+            verdict=outcome.verdict,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariantResult:
+    """What became of one variant.
+
+    Attributes
+    ----------
+    state : {"done", "refused", "crashed"}
+        "refused" where the case's own rules forbid it, "crashed" where no answer came.
+    verdict : Verdict or None
+        Of all checks; None where nothing was checked.
+    sentence : str
+        Why it was refused or crashed.
+    seconds, processor : float
+        Wall and processor time of the process that computed it [s], without those of its mesher.
+    numbers : tuple of VariantNumber
+    """
+
+    state: State
+    verdict: Verdict | None = None
+    sentence: str = ""
+    seconds: float = 0.0
+    processor: float = 0.0
+    numbers: tuple[VariantNumber, ...] = ()
+
+
+def of_check(result: CheckResult, *, weighs: bool) -> tuple[Verdict, tuple[VariantNumber, ...]]:
+    """Return verdict and numbers of a check.
+
+    Parameters
+    ----------
+    result : CheckResult
+    weighs : bool
+        Whether the links are weighed.
+
+    Returns
+    -------
+    Verdict
+    tuple of VariantNumber
+    """
+    found: list[VariantNumber] = []
+    for name, load_case in result.load_cases.items():
+        found += map(VariantNumber.of, load_case.checks)
+        reactions = load_case.large_displacement.reactions or load_case.forces.reactions
+        largest = max((joint.magnitude for joint in reactions.joints.values()), default=0.0)
+        found.append(VariantNumber.exact("drive torque", "N·mm", reactions.drive_torque, "the drive", name))
+        found.append(VariantNumber.exact("largest joint force", "N", largest, "the linkage", name))
+    return result.verdict, (*found, *_masses(result.case, weighs=weighs))
+
+
+def of_envelope(result: EnvelopeResult, *, weighs: bool) -> tuple[Verdict, tuple[VariantNumber, ...]]:
+    """Return verdict and numbers of an envelope.
+
+    Parameters
+    ----------
+    result : EnvelopeResult
+    weighs : bool
+        Whether the links are weighed.
+
+    Returns
+    -------
+    Verdict
+    tuple of VariantNumber
+    """
+    found = (*map(VariantNumber.of, result.checks), *_of_motion(result.moved))
+    return result.verdict, (*found, *_masses(result.case, weighs=weighs))
+
+
+def of_motion(result: CaseMotion, *, weighs: bool) -> tuple[Verdict | None, tuple[VariantNumber, ...]]:
+    """Return numbers of a motion, with a verdict where a motor is checked.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    weighs : bool
+        Whether the links are weighed.
+
+    Returns
+    -------
+    Verdict or None
+    tuple of VariantNumber
+    """
+    case = result.case
+    motors = [
+        outcome
+        for name, check in case.checks.items()
+        if isinstance(check, MotorCheck)
+        for outcomes in motor_outcomes(case, name, check).values()
+        for outcome in outcomes
+    ]
+    verdict = overall(outcome.verdict for outcome in motors) if motors else None
+    return verdict, (*map(VariantNumber.of, motors), *_of_motion(result), *_masses(case, weighs=weighs))
+
+
+def _of_motion(moved: CaseMotion) -> Iterator[VariantNumber]:
+    """Largest drive torque and joint force, how far every link swings, and the figures of a flapping wing."""
+    name, unit = moved.effort
+    for load_case, torque in moved.torque.items():
+        yield VariantNumber.exact(f"largest drive {name}", unit, _largest(torque), moved.drive.link, load_case)
+    for load_case, forces in moved.forces.items():
+        largest = max((_largest(np.hypot(f[..., 0], f[..., 1])) for f in forces.forces.values()), default=0.0)
+        yield VariantNumber.exact("largest joint force", "N", largest, "the linkage", load_case)
+    for link in moved.case.linkage.links:
+        if link != moved.case.linkage.ground:
+            yield VariantNumber.exact("swing", "deg", math.degrees(float(np.ptp(moved.motion.angle(link)))), link)
+    yield VariantNumber.exact("dead points", "1", len(moved.dead_points), moved.drive.link)
+    if moved.case.flapping_wing is not None:
+        wing = moved.case.flapping_wing.wing(moved.case.linkage)
+        figures = {"": wing.metrics(), ", as published": wing.published_metrics()}
+        for which, metrics in figures.items():
+            for figure in ("phase_lag", "oscillation", "asymmetry"):
+                value = math.degrees(getattr(metrics, figure))
+                yield VariantNumber.exact(figure.replace("_", " ") + which, "deg", value, "the linkage")
+
+
+def _largest(values: object) -> float:
+    """The greatest size; NaN where no pose has one."""
+    sizes = np.abs(np.asarray(values, dtype=float))
+    return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else math.nan
+
+
+def _masses(case: Case, *, weighs: bool) -> Iterable[VariantNumber]:
+    if not weighs:
+        return ()
+    masses: Mapping[str, float] = {link: 1e6 * mass.mass for link, mass in part_masses(case).items()}
+    return (
+        *(VariantNumber.exact("mass", "g", mass, link) for link, mass in masses.items()),
+        VariantNumber.exact("mass", "g", sum(masses.values()), "the linkage"),
+    )

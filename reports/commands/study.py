@@ -1,0 +1,257 @@
+"""The command ``alula study``: many variants of a case, and what became of them."""
+
+import csv
+import json as jsonlib
+import math
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+import typer.core
+
+if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
+    from fea.study.engine import Engine
+    from fea.study.study import Progress
+    from loads.plans.plan import StudyPlan
+    from loads.plans.variants import Variants
+
+MANY = 10_000
+"""Points above which ``--yes`` is asked for."""
+
+
+class _Group(typer.core.TyperGroup):
+    """``alula study CASE`` runs a study; ``alula study show FOLDER`` shows one."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        return super().resolve_command(ctx, args if args and args[0] in self.commands else ["run", *args])
+
+
+app = typer.Typer(
+    name="study",
+    cls=_Group,
+    no_args_is_help=True,
+    help="Compute many variants of a case into one file: alula study CASE --vary ... -o FOLDER. "
+    "Show them: alula study show FOLDER.",
+)
+
+
+@app.command(hidden=True)
+def run(
+    case: Annotated[
+        str,
+        typer.Argument(help="A case, as for check, or a plan (study.toml, with a table [vary]).", show_default=False),
+    ],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for study.sqlite, on a local disk.")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--vary",
+            help='An entry and its values: parts.bar.thickness="2 mm..8 mm/7", "2 mm..8 mm by 1 mm", "2 mm, 3 mm".',
+        ),
+    ] = None,
+    link: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--link", help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'
+        ),
+    ] = None,
+    points: Annotated[
+        str, typer.Option("--points", help="CSV file of points; entries in its first line.", show_default=False)
+    ] = "",
+    sample: Annotated[
+        str,
+        typer.Option("--sample", help="latin-hypercube or sobol, and how many: sobol:64.", show_default=False),
+    ] = "",
+    seed: Annotated[int, typer.Option(min=0, help="Of the sample.")] = 0,
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", help="Override an entry of the case in all variants.")
+    ] = None,
+    analysis: Annotated[str, typer.Option(help="check, motion or envelope.")] = "check",
+    fidelity: Annotated[str, typer.Option(help="Model of a check: auto, beam or solid.")] = "auto",
+    accuracy: Annotated[
+        str | None, typer.Option(help='Discretisation error of solids, such as "5 %".', show_default=False)
+    ] = None,
+    mass: Annotated[
+        bool | None, typer.Option("--mass/--no-mass", help="Weigh the links; default: where solids are built.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=256, help="Processes; default: one a core.", show_default=False)
+    ] = None,
+    retry: Annotated[bool, typer.Option("--retry", help="Try crashed points again that had three attempts.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help=f"Run more than {MANY} points.")] = False,
+) -> None:
+    """Compute the variants of a case that are missing in a folder."""
+    from fea.study.store import Store
+    from fea.study.study import Study
+    from loads.plans.variants import Variants
+
+    plan, folder = _plan(case, _stated(vary, "--vary"), _stated(link, "--link"), points, sample, seed, overrides, {
+        "analysis": analysis, "fidelity": fidelity, "accuracy": accuracy, "mass": mass,
+    })  # fmt: skip
+    variants = Variants(plan, folder)
+    if len(variants) > MANY and not yes:
+        _refuse_many(variants, workers)
+    with Store.writing(output) as store:
+        study = Study(variants=variants, store=store, retry=retry, tell=_teller())
+        done = study.run(lambda: _engine(variants, workers, output))
+        counts = store.counts()
+    print(summary(done, counts))
+    print(f"Show them: alula study show {output}")
+
+
+def _stated(options: Sequence[str] | None, name: str) -> dict[str, str]:
+    """Read ``path=text`` options."""
+    from geometry.base.errors import CaseError
+    from loads.text.explain import printable
+
+    found: dict[str, str] = {}
+    for option in options or ():
+        path, sign, text = option.partition("=")
+        path, text = path.strip(), text.strip().strip('"')
+        if not (sign and path and text):
+            raise CaseError(f"{name} '{printable(option)}': write it as entry=..., for example parts.bar.thickness=...")
+        if path in found:
+            raise CaseError(f"{name} '{printable(path)}': the entry is stated twice; state it once")
+        found[path] = text
+    return found
+
+
+def _plan(
+    case: str,
+    vary: Mapping[str, str],
+    link: Mapping[str, str],
+    points: str,
+    sample: str,
+    seed: int,
+    overrides: Sequence[str] | None,
+    more: Mapping[str, object],
+) -> "tuple[StudyPlan, Path]":
+    """The plan of the options, or of a file of its own, which takes none of them."""
+    from geometry.base.errors import CaseError
+    from loads.case.case_file import built_in_cases, read_tables, stated_changes
+    from loads.plans.plan import plan_of, read_plan
+
+    stated = bool(vary or link or points or sample or overrides)
+    if not stated and case not in built_in_cases() and "case" in read_tables(case):
+        return read_plan(Path(case))
+    data: dict[str, Any] = {"case": case, "vary": dict(vary), "link": dict(link), "points": points} | dict(more)
+    data["set"] = {change.path: change.value for change in stated_changes(overrides or ())}
+    if sample:
+        method, _, count = sample.partition(":")
+        if not (count.isascii() and count.isdigit()):
+            raise CaseError(f"--sample '{sample}': write method and number of points, for example sobol:64")
+        data["sample"] = {"method": method, "count": int(count), "seed": seed}
+    return plan_of(data), Path()
+
+
+def _engine(variants: "Variants", workers: int | None, output: Path) -> "AbstractContextManager[Engine]":
+    from fea.study.engine import local_engine, usable_cores
+
+    contents = {name: path.read_bytes() for name, path in variants.files.items()}
+    return local_engine(workers or usable_cores(), contents, folder=output)
+
+
+def _refuse_many(variants: "Variants", workers: int | None) -> None:
+    """Estimate time and bytes from one point, and ask for ``--yes``."""
+    from fea.study.engine import usable_cores
+    from fea.study.evaluate import evaluate
+    from fea.study.study import task_of
+    from geometry.base.errors import CaseError
+
+    tables = variants.tables(variants.points[0])
+    contents = {name: path.read_bytes() for name, path in variants.files.items()}
+    answer = evaluate(task_of(variants.plan, tables), contents)
+    cores = workers or usable_cores()
+    hours = len(variants) * answer.seconds / cores / 3600.0
+    megabytes = len(variants) * (300 + 60 * len(answer.numbers)) / 1e6
+    raise CaseError(
+        f"study: {len(variants)} points would take some {hours:.2g} hours with {cores} workers (the first took "
+        f"{answer.seconds:.2g} s) and {megabytes:.2g} MB; add --yes to compute them, or vary less"
+    )
+
+
+def _teller() -> "Callable[[Progress], None]":
+    """Tell on standard error how far the study is, every second at most."""
+    begun = last = time.monotonic()
+
+    def tell(progress: "Progress") -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last < 1.0:
+            return
+        last = now
+        left = progress.total - progress.stood - progress.computed
+        seconds = left * (now - begun) / max(progress.computed, 1)
+        print(
+            f"{progress.stood + progress.computed} of {progress.total} points; about {_duration(seconds)} left",
+            file=sys.stderr,
+            flush=True,
+        )
+
+    return tell
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{math.ceil(seconds)} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def summary(done: "Progress", counts: Mapping[str, int]) -> str:
+    """Say what a run did.
+
+    Parameters
+    ----------
+    done : Progress
+    counts : mapping of str to int
+        Points by verdict or state.
+
+    Returns
+    -------
+    str
+    """
+    order = ("pass", "fail", "undecided", "done", "refused", "crashed")
+    told = ", ".join(f"{counts[name]} {name}" for name in order if name in counts)
+    stood = f"; {done.stood} stood already" if done.stood else ""
+    return f"{done.total} points: {told}. Computed {done.computed}{stood}."
+
+
+@app.command()
+def show(
+    folder: Annotated[Path, typer.Argument(help="Folder of a study.", show_default=False)],
+    csv_file: Annotated[
+        Path | None, typer.Option("--csv", help="Write all points and numbers to a CSV file.", show_default=False)
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print points as JSON.")] = False,
+    most: Annotated[int, typer.Option("--most", min=1, help="Rows of the table.")] = 40,
+) -> None:
+    """Show what became of the points of a study: table, best, worst, undecided."""
+    from fea.study.store import Store
+    from reports.tables.study import as_record, columns, print_study
+
+    with Store.reading(folder) as store:
+        if csv_file is not None:
+            _write_csv(csv_file, columns(store))
+        if json:
+            print(jsonlib.dumps(as_record(store), indent=2, allow_nan=False))
+        else:
+            from rich.console import Console
+
+            print_study(store, Console(), most)
+
+
+def _write_csv(path: Path, rows: Iterator[Sequence[object]]) -> None:
+    from geometry.base.errors import CannotRunError, CaseError
+
+    try:
+        with path.open("x", encoding="utf-8", newline="") as stream:
+            csv.writer(stream, lineterminator="\n").writerows(rows)
+    except FileExistsError:
+        raise CaseError(f"'{path}' exists, and existing files are not overwritten; choose another name") from None
+    except OSError as error:
+        raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None

@@ -1,0 +1,66 @@
+"""``alula study`` as a user meets it: a study, its tables, and one sentence per mistake."""
+
+import csv
+import json
+import tomllib
+from pathlib import Path
+
+import programs
+import pytest
+
+MOTION = ("study", "four-bar-synthesis", "--analysis", "motion", "--workers", "1")
+
+
+def test_a_study_of_motions_is_computed_and_shown(tmp_path: Path) -> None:
+    """Numbers are the same in the CSV file and as JSON; nothing is computed a second time, and nothing else is left."""
+    arguments = (*MOTION, "--vary", "motion.poses=3, 361", "-o", "out")
+    done = programs.inside(*arguments, folder=tmp_path)
+    assert done.stdout.startswith("2 points: 2 done. Computed 2.\n"), done.stderr
+    assert "Computed 0; 2 stood already" in programs.inside(*arguments, folder=tmp_path).stdout
+    shown = programs.inside("study", "show", "out", "--csv", "all.csv", folder=tmp_path)
+    assert "2 of 2 points" in shown.stdout
+    assert "motion.poses" in shown.stdout
+    with (tmp_path / "all.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    record = json.loads(programs.inside("study", "show", "out", "--json", folder=tmp_path).stdout)
+    swings = {n["subject"]: n["value"] for n in record["results"][1]["numbers"] if n["quantity"] == "swing"}
+    assert float(rows[1][f"swing of {next(iter(swings))} [deg]"]) == next(iter(swings.values()))
+    assert record["counts"] == {"done": 2}
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["study.sqlite"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["four-bar-synthesis", "-o", "out"], ["nothing varies"]),
+        (["four-bar-synthesis", "--vary", "motion.poses", "-o", "out"], ["--vary", "entry="]),
+        (["four-bar-synthesis", "--vary", "motion.poses=9..3/3", "-o", "out"], ["motion.poses", "larger"]),
+        (["four-bar-synthesis", "--vary", "motion.pose=3..9/3", "-o", "out"], ["motion.pose", "did you mean 'poses'"]),
+        (["four-bar-synthesis", "--vary", "pose.angle=1 deg..9 deg", "--sample", "sobol", "-o", "out"], ["sobol:64"]),
+        (["show", "nowhere"], ["nowhere", "no study"]),
+        (["no-such.toml", "--vary", "a=1..2/2", "-o", "out"], ["no-such.toml"]),
+        (["no-such.toml", "-o", "out"], ["no-such.toml"]),
+        ([*MOTION[1:], "--vary", "motion.poses=3..20002/20000", "-o", "out"], ["20000 points", "--yes", "MB"]),
+    ],
+)
+def test_a_mistake_is_one_sentence_and_leaves_no_folder(arguments: list[str], words: list[str], tmp_path: Path) -> None:
+    done = programs.inside("study", *arguments, folder=tmp_path)
+    assert done.returncode == 2
+    assert all(word in done.stderr for word in words), done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_starter_plan_is_valid_and_its_schema_is_one(tmp_path: Path) -> None:
+    import jsonschema
+
+    from loads.plans.plan import read_plan
+    from loads.plans.variants import Variants
+
+    for arguments in (["four-bar.toml"], ["study.toml", "--study"]):
+        assert programs.inside("new", *arguments, folder=tmp_path).returncode == 0
+    plan, folder = read_plan(tmp_path / "study.toml")
+    assert len(Variants(plan, folder)) == 14
+    schema = json.loads(programs.inside("schema", "--study").stdout)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    jsonschema.validate(tomllib.loads((tmp_path / "study.toml").read_text(encoding="utf-8")), schema)
