@@ -199,7 +199,8 @@ class _Builder:
         self.stations[link] = tuple(stations)
         lines = [load for load in loads if isinstance(load, LineLoad)]
         lines += [self._spread(link, load, slots) for load in loads if isinstance(load, BodyForce)]
-        material, section = self.case.material_of(link), self.case.part_of(link).section
+        material, body = self.case.material_of(link), self.case.body(link)
+        section = body.part.frame_section(body)
         for (x0, a), (x1, b) in itertools.pairwise(stations):
             if not any(slot.first < (x0 + x1) / 2.0 < slot.last for slot in slots):
                 self._along(link, (x0, a), (x1, b), section, lines)

@@ -173,6 +173,21 @@ class PartKind(Printable):
         """
         return self.section
 
+    def frame_section(self, body: "Body") -> Section:
+        """Return the section with which the link stands in a frame of beams.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+
+        Returns
+        -------
+        Section
+            The section between the eyes unless the kind knows better.
+        """
+        return self.section
+
     def has_centre_line(self, body: "Body") -> bool:
         """Return whether a beam along the x axis, with what is known of eyes, bounds how far a body gives.
 

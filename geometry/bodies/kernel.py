@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
-from geometry.base.hull import Hull
+from geometry.base.outline import Outline
 from geometry.bodies.features import Pin
 
 Entity = tuple[int, int]
@@ -122,12 +122,12 @@ class Kernel:
         self.occ.rotate([solid], *about, 0, 0, 0, 1, turn)
         return solid
 
-    def slab(self, outline: Hull, height: float) -> Entity:
+    def slab(self, outline: Outline, height: float) -> Entity:
         """Extrude an outline along z.
 
         Parameters
         ----------
-        outline : Hull
+        outline : Outline
             Arcs and the straight lines between them.
         height : float
             Half of it lies on either side of the mid-plane.
@@ -141,17 +141,17 @@ class Kernel:
         if len(outline.arcs) == 1:
             (circle,) = outline.arcs
             return self.cylinder((circle.x, circle.y, low), (0, 0, height), circle.radius)
-        middles, border, ends = [], [], []
-        for arc in outline.arcs:
-            angles = arc.start, (arc.start + arc.end) / 2.0, arc.end
-            first, middle, last = (self.occ.addPoint(*arc.point(angle), low) for angle in angles)
+        starts = [self.occ.addPoint(*arc.point(arc.start), low) for arc in outline.arcs]
+        middles, border = [], []
+        following = zip(outline.arcs, starts, starts[1:] + starts[:1], outline.straight, strict=True)
+        for arc, first, then, line in following:
+            middle = self.occ.addPoint(*arc.point((arc.start + arc.end) / 2.0), low)
+            last = self.occ.addPoint(*arc.point(arc.end), low) if line else then
             border.append(self.occ.addCircleArc(first, middle, last, center=False))
+            border += [self.occ.addLine(last, then)] if line else []
             middles.append((0, middle))
-            ends.append((first, last))
-        starts = [first for first, _ in ends[1:] + ends[:1]]
-        lines = [self.occ.addLine(last, first) for (_, last), first in zip(ends, starts, strict=True)]
         self.occ.remove(middles)
-        loop = self.occ.addCurveLoop([curve for pair in zip(border, lines, strict=True) for curve in pair])
+        loop = self.occ.addCurveLoop(border)
         solids = self.occ.extrude([(2, self.occ.addPlaneSurface([loop]))], 0, 0, height)
         return self.only([entity for entity in solids if entity[0] == 3])
 

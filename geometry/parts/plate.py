@@ -7,9 +7,9 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field
 
 from geometry.base.errors import CaseError
-from geometry.base.hull import Hull, hull
 from geometry.base.model import CaseModel, Name
-from geometry.base.units import POSITIVE, Length
+from geometry.base.outline import STRAIGHT, BallError, Outline, outline
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
 from geometry.bodies.eyes import check_flat_eyes
 from geometry.bodies.features import Pin, PlainEnd
@@ -17,7 +17,10 @@ from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
 
 LEAST_WALL = 0.05
-"""Least wall beside a lightening hole over its diameter. Assumed: a thinner one is hardly made."""
+"""Least wall beside a lightening hole over its diameter, and least neck over eye_diameter. Assumed: a thinner one is
+hardly made."""
+_WIDEST = 1e6
+"""Fillet radius over the plate's extent beyond which its outline is the hull to any reader: bound of a search."""
 _CHORDS = 200
 
 
@@ -48,11 +51,12 @@ class RoundHole(CaseModel):
 class Plate(PartKind):
     """A flat plate about two or more pins anywhere: the outline is the convex hull of the circles of its eyes.
 
+    With a fillet_radius it is drawn in between them: a concave arc of that radius touches every two neighbouring eyes.
     A load point without a pin has such a circle of eye_diameter as well; the load enters within end_patch about it, on
     both faces.
 
-    In a frame of beams it is a strip as wide as eye_diameter, which is no wider than the plate anywhere between two
-    eyes of that size: a cautious stiffness. Hand calculation does not decide on it.
+    In a frame of beams it is a strip as wide as eye_diameter, or as its narrowest place if that is less: a cautious
+    stiffness. Hand calculation does not decide on it.
     """
 
     takes: ClassVar[frozenset[Feature]] = frozenset(("load points without a pin", "eyes of their own"))
@@ -68,6 +72,8 @@ class Plate(PartKind):
     thickness: Annotated[Length, POSITIVE]
     eye_diameter: Annotated[Length, POSITIVE]
     """Diameter of the eyes about whose circles the outline runs; a link may state others for its points (eyes)."""
+    fillet_radius: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Radius of the concave arcs between neighbouring eyes; 0 for straight lines."""
     holes: Annotated[tuple[RoundHole, ...], Field(max_length=100)] = ()
     """Holes that make the plate lighter, in the frame of the link."""
 
@@ -75,11 +81,6 @@ class Plate(PartKind):
     def eye_thickness(self) -> float:
         """Length of the holes: the plate's thickness [mm]."""
         return self.thickness
-
-    @property
-    def fillet_radius(self) -> float:
-        """0: the outline has no corners [mm]."""
-        return 0.0
 
     @property
     def size(self) -> float:
@@ -95,7 +96,7 @@ class Plate(PartKind):
         """Section of a strip as wide as an eye."""
         return rectangle(self.eye_diameter, self.thickness)
 
-    def outline(self, body: Body) -> Hull:
+    def outline(self, body: Body) -> Outline:
         """Return the outline.
 
         Parameters
@@ -105,11 +106,23 @@ class Plate(PartKind):
 
         Returns
         -------
-        Hull
-            Of the eyes' circles.
+        Outline
+            About the eyes' circles.
+
+        Raises
+        ------
+        BallError
+            Where the fillets do not fit between the eyes.
         """
+        return self._outline(body, self.fillet_radius or STRAIGHT)
+
+    def _outline(self, body: Body, radius: float) -> Outline:
+        """Return the outline with fillets of a radius, whose necks are wide enough."""
         circles = [(pin.x, pin.y, body.ring(pin).diameter / 2.0) for pin in body.pins]
-        return hull(circles + [(end.x, end.y, self.eye_diameter / 2.0) for end in body.ends])
+        found = outline(circles + [(end.x, end.y, self.eye_diameter / 2.0) for end in body.ends], radius)
+        if any(width < LEAST_WALL * self.eye_diameter for width, *_ in found.webs):
+            raise BallError
+        return found
 
     @property
     def patch_height(self) -> float:
@@ -121,14 +134,22 @@ class Plate(PartKind):
 
         That is the chord of the outline less what all holes cut out of it: an estimate, as of a disc.
         """
-        outline, (first, last) = self.outline(body), extent(body)
         holes = [(pin.x, pin.diameter) for pin in body.pins] + [(hole.x, hole.diameter) for hole in self.holes]
 
-        def net(x: float) -> float:
-            low, high = outline.chord(x)
-            return high - low - sum(2.0 * math.sqrt(max((d / 2.0) ** 2 - (x - at) ** 2, 0.0)) for at, d in holes)
+        def cut(x: float) -> float:
+            return sum(2.0 * math.sqrt(max((d / 2.0) ** 2 - (x - at) ** 2, 0.0)) for at, d in holes)
 
-        return rectangle(min(net(first + (last - first) * i / _CHORDS) for i in range(_CHORDS + 1)), self.thickness)
+        return rectangle(min(width - cut(x) for x, width in self._widths(body)), self.thickness)
+
+    def frame_section(self, body: Body) -> Section:
+        """As ``PartKind.frame_section``: as wide as an eye, or as the outline where that is narrowest."""
+        return rectangle(min([self.eye_diameter, *(width for _, width in self._widths(body))]), self.thickness)
+
+    def _widths(self, body: Body) -> list[tuple[float, float]]:
+        """Return stations from the first to the last pin, and how wide the outline is there [mm]."""
+        around, (first, last) = self.outline(body), extent(body)
+        stations = [first + (last - first) * i / _CHORDS for i in range(_CHORDS + 1)]
+        return [(x, around.across(x)) for x in stations]
 
     def has_centre_line(self, body: Body) -> bool:
         """As ``PartKind.has_centre_line``: no, since it is wider than the strip for which a frame takes it."""
@@ -151,6 +172,7 @@ class Plate(PartKind):
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: eyes are as thick as the plate, and walls are left beside the holes."""
         check_flat_eyes(body)
+        self._check_fillets(body)
         for number, end in enumerate(body.ends):
             self._check_patch(body, number, end)
         for number, hole in enumerate(self.holes, start=1):
@@ -161,6 +183,34 @@ class Plate(PartKind):
                     f"{LEAST_WALL * hole.diameter:.4g} mm ({LEAST_WALL:g} of its diameter): reduce its diameter "
                     f"{hole.diameter:.4g} mm or move it"
                 )
+
+    def _check_fillets(self, body: Body) -> None:
+        """Refuse fillets that do not fit between the eyes, with the least radius that does."""
+        try:
+            self.outline(body)
+        except BallError:
+            pass
+        else:
+            return
+        first, last = extent(body)
+        low, high = self.fillet_radius, max(self.fillet_radius, last - first)
+        while high < _WIDEST * (last - first) and not self._fits(body, high):
+            low, high = high, 2.0 * high
+        for _ in range(40):
+            middle = (low + high) / 2.0
+            low, high = (low, middle) if self._fits(body, middle) else (middle, high)
+        raise CaseError(
+            f"fillet_radius {self.fillet_radius:.4g} mm is too small for the distance of the eyes: an arc of it "
+            f"between two of them cuts the plate through, or leaves less than {LEAST_WALL:g} eye_diameter; set it to "
+            f"{math.ceil(1e3 * high) / 1e3:.6g} mm or more, or leave it out for straight edges"
+        )
+
+    def _fits(self, body: Body, radius: float) -> bool:
+        try:
+            self._outline(body, radius)
+        except BallError:
+            return False
+        return True
 
     def _check_patch(self, body: Body, number: int, end: PlainEnd) -> None:
         """Refuse a loaded patch that leaves its circle, or runs into the ring about a hole or another patch."""
@@ -180,7 +230,8 @@ class Plate(PartKind):
     def _wall(self, body: Body, number: int, hole: RoundHole) -> tuple[str, float]:
         """Return what is closest to a lightening hole, and the wall between them [mm]."""
         radius = hole.diameter / 2.0
-        found = [("the edge of the plate", self.outline(body).depth(hole.x, hole.y) - radius)]
+        around = self.outline(body)
+        found = [("the edge of the plate", around.depth(hole.x, hole.y) - radius)]
         for pin in body.pins:
             flat = self.flat_diameter(body, pin) / 2.0
             found.append((f"the eye at {pin.name}", hole.distance(pin.x, pin.y) - flat - radius))
@@ -210,6 +261,9 @@ class Plate(PartKind):
         for end in body.ends:
             circle = Pin(name="", x=end.x, y=end.y, diameter=end.patch)
             places.append((min(end.patch / 4.0, size), f"Fabs({circle.distance_formula}-{end.patch / 2.0:.12g})"))
+        for width, one, other in self.outline(body).webs:
+            neck = Pin(name="", x=(one.x + other.x) / 2.0, y=(one.y + other.y) / 2.0, diameter=width)
+            places.append((min(width / 2.0, size), f"Max({neck.distance_formula}-{width / 2.0:.12g},0)"))
         for number, hole in enumerate(self.holes, start=1):
             rim = Pin(name="", x=hole.x, y=hole.y, diameter=hole.diameter)
             edge = min(self._wall(body, number, hole)[1], hole.diameter / 3.0, size)

@@ -1,6 +1,7 @@
 """Plates and strips against closed forms: what the geometry kernel builds, and what its meshes carry."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -25,8 +26,9 @@ def pin(name, x, y, hole, eye=None):
     return Pin(name=name, x=x, y=y, diameter=hole, ring=ring)
 
 
-def plate(*pins, holes=(), eye=10.0):
+def plate(*pins, holes=(), eye=10.0, fillet=0.0):
     sizes = {"shape": "plate", "material": "resin", "thickness": f"{T} mm", "eye_diameter": f"{eye} mm"}
+    sizes["fillet_radius"] = f"{fillet} mm"
     sizes["holes"] = [{"x": f"{x} mm", "y": f"{y} mm", "diameter": f"{d} mm"} for x, y, d in holes]
     return Body(part=Plate.model_validate(sizes), pins=pins, ends=(), holes=())
 
@@ -67,6 +69,35 @@ def test_mass_properties_are_those_of_the_hull_less_the_holes(pins, holes):
     assert found.volume == pytest.approx(area * T, rel=1e-7)
     assert found.centroid == pytest.approx([*centroid, 0.0], abs=1e-5)
     assert found.inertia[2, 2] == pytest.approx(T * (polar - area * (centroid**2).sum()), rel=1e-6)
+
+
+def test_a_waist_takes_circular_segments_off_a_plate():
+    """Two eyes of 16 mm, 30 mm apart, and arcs of 20 mm whose centres lie 28 mm from both eyes'."""
+    body = plate(pin("A", 0.0, 0.0, 5.0), pin("B", 30.0, 0.0, 5.0), eye=16.0, fillet=20.0)
+    check_body(body)
+    height = math.sqrt(28.0**2 - 15.0**2)
+    angle = math.atan2(height, 15.0)
+    # Two circles, and the triangles of the centres less the arcs' sectors and those of the circles.
+    area = 2.0 * 64.0 * (math.pi - angle) + 30.0 * height - 400.0 * (math.pi - 2.0 * angle) - 2.0 * math.pi * 2.5**2
+    found = mass_properties(body)
+    assert found.volume == pytest.approx(area * T, rel=1e-7)
+    assert found.centroid == pytest.approx([15.0, 0.0, 0.0], abs=1e-6)
+    neck = 2.0 * (height - 20.0)
+    assert body.part.frame_section(body).width == pytest.approx(neck)
+    mesh = mesh_body(body, COARSE)
+    middle = np.abs(mesh.points[:, 0] - 15.0) < 1.0
+    assert np.ptp(mesh.points[middle, 1]) == pytest.approx(neck, rel=0.02)
+
+
+@pytest.mark.parametrize("fillet", [14.4, 5.0])
+def test_the_least_fillet_that_is_named_fits(fillet):
+    pins = pin("A", 0.0, 0.0, 5.0), pin("B", 40.0, 0.0, 5.0), pin("C", 20.0, 20.0, 5.0)
+    with pytest.raises(CaseError, match=r"fillet_radius .* is too small for the distance of the eyes") as error:
+        check_body(plate(*pins, fillet=fillet))
+    least = float(re.search(r"to ([\d.]+) mm or more", str(error.value)).group(1))
+    check_body(plate(*pins, fillet=least))
+    with pytest.raises(CaseError):
+        check_body(plate(*pins, fillet=0.999 * least))
 
 
 @pytest.mark.parametrize("pins", [TERNARY, BETWEEN, INSIDE])

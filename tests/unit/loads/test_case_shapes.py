@@ -98,6 +98,7 @@ def test_an_eye_of_its_own_keeps_what_it_does_not_state() -> None:
         ('points.C = ["22', 'points.W = ["6 mm", "0 mm"]\npoints.C = ["22', "W is 5 mm wide, but the eye at A"),
         ('points.C = ["22', 'points.W = ["9 mm", "3 mm"]\nend_patch = "9 mm"\npoints.C = ["22', "W is 9 mm wide"),
         ('points.C = ["22', 'points.W = ["25 mm", "4 mm"]\npoints.C = ["22', r"a wall of 0 mm to the patch of W"),
+        ('eye_diameter = "12', 'fillet_radius = "9 mm"\neye_diameter = "12', "coupler: fillet_radius 9 mm is too"),
         ('fillet_radius = "1 mm"', 'fillet_radius = "0 mm"\nends = "square"', "parts.bar.*overhang is missing"),
         ('fillet_radius = "1 mm"', 'fillet_radius = "1 mm"\noverhang = "9 mm"', 'parts.bar.*belongs to ends'),
         (
