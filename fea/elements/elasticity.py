@@ -198,16 +198,11 @@ def assemble_stiffness(
 
 
 def _add_at(blocks: NDArray[np.float64], where: NDArray[np.intp], values: NDArray[np.float64]) -> None:
-    """Add values to the blocks whose numbers are given, which may repeat: the product with a matrix of ones, in place.
+    """Add values to the blocks whose numbers are given, which may repeat.
 
-    scipy's kernel for that product, which it names for no public use, takes half of the time of ``np.add.at``.
+    Entry by entry, since numpy is fast on flat arrays alone: by blocks it takes twice the time.
     """
-    from scipy.sparse import _sparsetools
-
-    count = len(where)
-    columns = np.arange(count + 1, dtype=where.dtype)
-    out = blocks.reshape(-1)
-    _sparsetools.csc_matvecs(len(blocks), count, 9, columns, where, np.ones(count), values.ravel(), out)
+    np.add.at(blocks.reshape(-1), (9 * where[:, None] + np.arange(9)).ravel(), values.ravel())
 
 
 def _pattern(cells: NDArray[np.int64], count: int) -> Any:
