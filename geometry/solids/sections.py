@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.bodies.body import FLAT_WALL, apart
 from geometry.bodies.kernel import ON_SURFACE
 from geometry.solids.solid_model import Solid
 
-WIDEST, WALL = 4.0, 0.75
-"""Of the ring about a hole on a larger face: its diameter over that of the hole at most, and its share of the wall."""
+WIDEST = 4.0
+"""Diameter of the ring about a hole on a larger face, over that of the hole, at most."""
 _POINTS = 65
 
 
@@ -130,7 +131,8 @@ def ring_diameters(gmsh: Any, solid: Solid) -> list[float]:
     """Return the outer diameter of the flat ring about each hole, on which a torque or a thrust enters.
 
     A face that is itself a ring, such as that of an eye or a boss, counts whole. Of a larger one the ring takes three
-    quarters of the wall between the hole and the nearest border, and is at most ``WIDEST`` times as wide as the hole.
+    quarters of the wall between the hole and the nearest border (between two pins, of half of it), and is at most
+    ``WIDEST`` times as wide as the hole.
 
     Parameters
     ----------
@@ -149,15 +151,18 @@ def ring_diameters(gmsh: Any, solid: Solid) -> list[float]:
     found = []
     for pin in solid.body.pins:
         ring = solid.body.ring(pin)
+        others = [other for other in solid.body.pins if other is not pin]
+        walls = [apart(pin, other) - (pin.diameter + other.diameter) / 2.0 for other in others]
+        widest = min([WIDEST * pin.diameter, *(pin.diameter + wall for wall in walls)])
         sides = [
-            max((_ring_on(gmsh, face, (pin.x, pin.y, z), pin.diameter) for face in planes), default=0.0)
+            max((_ring_on(gmsh, face, (pin.x, pin.y, z), pin.diameter, widest) for face in planes), default=0.0)
             for z in (ring.low, ring.high)
         ]
         found.append(0.0 if pin.slot > 0.0 else min(sides) * solid.unit)
     return found
 
 
-def _ring_on(gmsh: Any, face: int, centre: tuple[float, float, float], diameter: float) -> float:
+def _ring_on(gmsh: Any, face: int, centre: tuple[float, float, float], diameter: float, widest: float) -> float:
     """Return the outer diameter of the ring about a hole on a flat face; 0 where the hole's rim is no border of it."""
     rim, border = False, []
     for _, curve in gmsh.model.getBoundary([(2, face)], oriented=False):
@@ -176,4 +181,4 @@ def _ring_on(gmsh: Any, face: int, centre: tuple[float, float, float], diameter:
     nearest = float(every.min())
     if np.ptp(every) < 2.0 * ON_SURFACE:
         return nearest
-    return diameter + WALL * (min(nearest, WIDEST * diameter) - diameter)
+    return diameter + FLAT_WALL * (min(nearest, widest) - diameter)
