@@ -45,7 +45,6 @@ class LayerStress:
     def place(self) -> str:
         """Where the peak is and what acts there, for people."""
         x, y, z = (f"{value:.1f}".replace("-0.0", "0.0") for value in self.location)
-        return (
-            f"largest at x = {x}, y = {y}, z = {z} mm: {self.tension:.3g} MPa across the layers, {self.shear:.3g} MPa "
-            "of shear along them"
-        )
+        kind = "compression" if self.tension < 0.0 else "tension"
+        across = f"{abs(self.tension):.3g} MPa of {kind} across the layers"
+        return f"largest at x = {x}, y = {y}, z = {z} mm: {across}, {self.shear:.3g} MPa of shear along them"

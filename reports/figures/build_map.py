@@ -10,10 +10,10 @@ from reports.tables.layers import BuildDirections, direction
 from reports.words.wording import number
 
 Real = NDArray[np.float64]
-_WIDTH, _HEIGHT = 380.0, 252.0
-_CENTRE, _RADIUS = np.array([132.0, 128.0]), 100.0
-_BAR = (268.0, 40.0, 282.0, 200.0)
-"""Left, top, right and bottom of the scale of colours [points]."""
+_WIDTH, _HEIGHT = 262.0, 330.0
+_CENTRE, _RADIUS = np.array([131.0, 122.0]), 100.0
+_BAR = (31.0, 257.0, 231.0, 268.0)
+"""Left, top, right and bottom of the scale of colours [points]. All is narrow enough for a telephone."""
 _COLOURS = np.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]])
 """Of the map viridis, from the least to the largest."""
 _MOST = 20.0
@@ -50,41 +50,53 @@ def _sheet(found: BuildDirections) -> Canvas:
     corners, middle = _cells(found.scan)
     for points, value in zip(corners, middle, strict=True):
         sheet.area(points, _colour(_share(value, low, high)))
-    sheet.ring(_CENTRE, _RADIUS, GROUND, 0.8)
-    for name, at, anchor in (
-        ("x", (_RADIUS + 7.0, 0.0), "left middle"),
-        ("y", (0.0, -_RADIUS - 7.0), "center bottom"),
-        ("z (pins)", (6.0, 5.0), "left top"),
-    ):
-        sheet.write(name, _CENTRE + at, anchor=anchor, halo=2.5, size=8.5)
+    _graticule(sheet)
     way, factor = found.best
     for vector, colour, text, row in (
-        (found.layers.normal, "#c8460b", f"as built: n = {number(found.safety_factor.value, 3)}", 0),
-        (way, "#ffffff", f"best: n = {number(factor, 3)}", 1),
+        (found.layers.normal, "#c8460b", f"as built, {_told(found.layers.normal, found.safety_factor.value)}", 0),
+        (way, "#ffffff", f"best, {_told(way, factor)}", 1),
     ):
         place = _project(np.asarray(vector, dtype=np.float64))
         sheet.disc(place, 4.2 if row == 0 else 3.4, colour, INK, 1.0)
-        left = _BAR[0] + 4.0, 216.0 + 18.0 * row
+        left = 12.0, 303.0 + 16.0 * row
         sheet.disc(left, 3.4, colour, INK, 1.0)
         sheet.write(text, (left[0] + 9.0, left[1]), anchor="left middle", size=8.5)
     _scale(sheet, low, high, capped=bool(found.scan.max() > 1.001 * high))
-    sheet.write(f"as built: {direction(found.layers.normal)}", (16.0, 8.0), anchor="left top", size=8.5)
-    sheet.write(f"best: {direction(way)}", (_WIDTH / 2.0 + 10.0, 8.0), anchor="left top", size=8.5)
     return sheet
+
+
+def _told(vector: tuple[float, float, float], factor: float) -> str:
+    return f"along {direction(vector)}: n = {number(factor, 3)}"
+
+
+def _graticule(sheet: Canvas) -> None:
+    """Draw the rim, circles at 30 and 60° to the pins, and the names of the axes."""
+    sheet.ring(_CENTRE, _RADIUS, GROUND, 0.8)
+    for degrees in (30.0, 60.0):
+        radius = _RADIUS * np.sqrt(2.0) * np.sin(np.radians(degrees) / 2.0)
+        sheet.ring(_CENTRE, radius, "#ffffff", 0.6)
+        beside = _CENTRE + radius * np.array([-1.0, 1.0]) / np.sqrt(2.0)
+        sheet.write(f"{degrees:.0f}°", beside, anchor="center middle", halo=2.0, size=7.5)
+    for name, at, anchor in (
+        ("x", (_RADIUS + 7.0, 0.0), "left middle"),
+        ("y", (0.0, -_RADIUS - 5.0), "center bottom"),
+        ("z (pins)", (0.0, 6.0), "center top"),
+    ):
+        sheet.write(name, _CENTRE + np.array(at), anchor=anchor, halo=2.5, size=8.5)
 
 
 def _scale(sheet: Canvas, low: float, high: float, *, capped: bool) -> None:
     """Draw the colours with numbers, evenly spaced in the logarithm."""
     left, top, right, bottom = _BAR
     for i in range(_STEPS):
-        upper, lower = (bottom - (bottom - top) * (i + k) / _STEPS for k in (1, 0))
-        sheet.area([(left, upper), (right, upper), (right, lower), (left, lower)], _colour((i + 0.5) / _STEPS))
+        start, end = (left + (right - left) * (i + k) / _STEPS for k in (0, 1))
+        sheet.area([(start, top), (end, top), (end, bottom), (start, bottom)], _colour((i + 0.5) / _STEPS))
     for share in np.linspace(0.0, 1.0, 5):
-        value, y = low * (high / low) ** share, bottom - (bottom - top) * share
-        sheet.line([(right, y), (right + 3.0, y)], INK, 0.8)
+        value, x = low * (high / low) ** share, left + (right - left) * share
+        sheet.line([(x, bottom), (x, bottom + 3.0)], INK, 0.8)
         more = "≥ " if capped and share == 1.0 else ""
-        sheet.write(f"{more}{number(value, 2)}", (right + 6.0, y), anchor="left middle", size=8.5)
-    sheet.write("safety factor n", (left, top - 6.0), anchor="left bottom", size=8.5)
+        sheet.write(f"{more}{number(value, 2)}", (x, bottom + 5.0), anchor="center top", size=8.5)
+    sheet.write("safety factor n of the layers", (left, top - 4.0), anchor="left bottom", size=8.5)
 
 
 def _share(value: float, low: float, high: float) -> float:

@@ -140,7 +140,7 @@ def band(low, high):
 def test_the_band_decides(ends, verdict):
     found = outcome_of(printed(), band(*ends))
     assert found.verdict is verdict
-    assert "x = 1.0, y = 2.0, z = 0.0 mm: 3 MPa across the layers, 4 MPa of shear along them" in found.reason
+    assert "x = 1.0, y = 2.0, z = 0.0 mm: 3 MPa of tension across the layers, 4 MPa of shear along them" in found.reason
 
 
 @pytest.mark.parametrize(
