@@ -107,6 +107,11 @@ def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
         said.append("as a solid a pin pushes on half, and for the band on a quarter of its diameter, of a slot's flank")
     if body.part.by_hand:
         said.append(body.part.by_hand)
+    open_ones = [f"{pin.name} has {body.ring(pin).share:.0%}" for pin in body.pins if body.ring(pin).share < 1.0]
+    if open_ones:
+        said.append(
+            f"bores are not round all the way ({', '.join(open_ones)} of its circle): pressure acts on the rest"
+        )
     off = [pin for pin in body.pins if body.ring(pin).off_plane]
     if off:
         places = ", ".join(f"{pin.name} at z = {body.ring(pin).middle:.4g} mm" for pin in off)

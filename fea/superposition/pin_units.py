@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.tractions.traction import LARGEST_CORRECTION
+from fea.tractions.traction import LARGEST_CORRECTION, into_opening, is_opening
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Pin
 from loads.records.bearing import PressureLaw
@@ -65,6 +65,8 @@ class PinUnits:
         Numbers of the tractions that deliver a unit force along x and y.
     wrench : ndarray, shape (6, 2 orders − 1)
         Resultants of the pressure fields about the pin, before these were taken off [N, N mm].
+    wall : ndarray, shape (k,)
+        Angles at which there is some wall [rad].
     """
 
     pin: Pin
@@ -72,6 +74,7 @@ class PinUnits:
     sine: slice
     force: slice
     wrench: Real
+    wall: Real
 
     def coefficients(self, force: Real, law: PressureLaw) -> tuple[Real, Real]:
         """Return the coefficients of the pressure fields and of the tractions.
@@ -93,7 +96,7 @@ class PinUnits:
         Raises
         ------
         CannotRunError
-            For a hole meshed too coarsely.
+            For a hole meshed too coarsely, or open where the pin pushes.
         """
         size = np.hypot(force[:, 0], force[:, 1])
         loaded = size > 0.0
@@ -112,6 +115,9 @@ class PinUnits:
             raise CannotRunError(
                 f"the hole at pin {self.pin.name} is meshed too coarsely to carry the pin's pressure; refine it"
             )
+        for at in direction:
+            if is_opening(self.wall, float(at)):
+                raise CannotRunError(into_opening(self.pin.name, float(at)))
         got *= size[loaded] / np.hypot(got[0], got[1])
         missing = np.vstack([got[:2] - force[loaded].T, got[2:]])
         gap = np.linalg.norm(missing[:3], axis=0) + np.linalg.norm(missing[3:], axis=0) / self.pin.diameter

@@ -278,6 +278,7 @@ class _Builder:
             sine=self._add(*freed[highest + 1 :], local=True),
             force=self._add(*(rigid @ shifted(unit, axis - centre) for unit in np.eye(6)[:2])),
             wrench=wrench,
+            wall=angle.ravel(),
         )
 
     def slot(self, pin: Pin, loads: Sequence[PinLoad]) -> SlotUnits:

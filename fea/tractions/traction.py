@@ -24,6 +24,11 @@ LARGEST_CORRECTION = 0.1
 """A meshed surface may miss the wrench by this part of the load before its mesh is refused."""
 
 
+OPENING = math.radians(15.0)
+"""Angle on both sides of a pressure's peak within which a hole must have some wall: half of what the key of a bore of
+5 to 50 mm takes of its circle at most (DIN 6885: its width is a third of the diameter or less, mostly a quarter)."""
+
+
 def wrench_density(
     quadrature: Quadrature, point: NDArray[np.float64], wrench: NDArray[np.float64], weight: Density | None = None
 ) -> Density:
@@ -95,7 +100,7 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
     Raises
     ------
     CannotRunError
-        If the surface is not that hole, or meshed too coarsely.
+        If the surface is not that hole, meshed too coarsely, or open where the pin pushes.
     """
     middle = bore_middle(bore, pin.centre)
     arm = bore.x - middle
@@ -123,8 +128,8 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
 
     pushes = np.array([pin.wrench[0], pin.wrench[1], 0.0, pin.wrench[3], pin.wrench[4], 0.0])
     target = shifted(pushes, pin.centre - middle)
-    density = _directed(pushed, force, target[:2], pin.name)
-    density = density + _directed(tilted, moment, np.array([target[4], -target[3]]), pin.name)
+    density = _directed(pushed, force, angle, target[:2], pin.name)
+    density = density + _directed(tilted, moment, angle, np.array([target[4], -target[3]]), pin.name)
     missing = target - bore.wrench(density, middle)
     _limit(missing, target, pin.diameter, f"the hole at pin {pin.name}")
     return density + wrench_density(bore, middle, missing)
@@ -254,16 +259,19 @@ def line_density(volume: Quadrature, load: LineLoad) -> Density:
 def _directed(
     pressure: Callable[[float], Density],
     measure: Callable[[Density], NDArray[np.float64]],
+    wall: NDArray[np.float64],
     target: NDArray[np.float64],
     pin: str,
 ) -> Density:
-    """Turn and scale a pressure until its measured plane vector (2,) is the target."""
+    """Turn and scale a pressure until its measured plane vector (2,) is the target; refuse to push into an opening."""
     size = float(np.hypot(*target))
     if size == 0.0:
         return np.zeros_like(pressure(0.0))
     wanted = math.atan2(target[1], target[0])
     direction = wanted
     for _ in range(100):
+        if is_opening(wall, direction):
+            raise CannotRunError(into_opening(pin, direction))
         density = pressure(direction)
         got = measure(density)
         if np.hypot(*got) == 0.0:
@@ -273,6 +281,45 @@ def _directed(
             return np.asarray(density * (size / np.hypot(*got)))
         direction += error
     raise CannotRunError(f"the hole at pin {pin} is meshed too coarsely to carry the pin's pressure; refine it")
+
+
+def is_opening(wall: NDArray[np.float64], direction: float) -> bool:
+    """Return True where a hole has no wall within ``OPENING`` of a direction.
+
+    Parameters
+    ----------
+    wall : ndarray
+        Angles at which there is some [rad].
+    direction : float
+        Angle [rad].
+
+    Returns
+    -------
+    bool
+    """
+    return bool(np.cos(wall - direction).max() < math.cos(OPENING))
+
+
+def into_opening(pin: str, direction: float) -> str:
+    """Say that a pin pushes into the opening of its bore.
+
+    Parameters
+    ----------
+    pin : str
+        Its name.
+    direction : float
+        Angle of the pressure's peak in the link's frame [rad].
+
+    Returns
+    -------
+    str
+        For a message.
+    """
+    at = round(math.degrees(direction)) % 360
+    return (
+        f"the pin at {pin} pushes at {at} degrees into the opening of its bore, where "
+        "no wall bears it; turn the part in its link, or close the bore in the CAD program"
+    )
 
 
 def _limit(missing: NDArray[np.float64], target: NDArray[np.float64], diameter: float, what: str) -> None:

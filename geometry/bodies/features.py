@@ -77,6 +77,8 @@ class Ring:
         Its outer diameter [mm]; 0 where no flat ring is about the hole.
     low, high : float
         z of the hole's two rims [mm].
+    share : float
+        Share of the circle that the hole's wall takes; less than 1 where it is not round all the way.
     gaps : tuple of tuple of float
         z between which the hole has no wall, from low to high, such as in the bore of a tube [mm].
     """
@@ -84,6 +86,7 @@ class Ring:
     diameter: float
     low: float
     high: float
+    share: float = 1.0
     gaps: tuple[tuple[float, float], ...] = ()
 
     @property
@@ -131,7 +134,7 @@ class Ring:
             The ring.
         """
         gaps = tuple((s(low), s(high)) for low, high in self.gaps)
-        return Ring(diameter=s(self.diameter), low=s(self.low), high=s(self.high), gaps=gaps)
+        return Ring(diameter=s(self.diameter), low=s(self.low), high=s(self.high), share=self.share, gaps=gaps)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -140,8 +140,8 @@ def link_frame(bores: Sequence[Bore]) -> LinkFrame | None:
     """Return the frame of the link that a part may be.
 
     Its points are the bores of the largest group of parallel ones; of several on one axis that with the longest wall,
-    and only those that go through if at least two do. Slots come after the round bores, and x runs along the longest of
-    them; one that stands otherwise is no point.
+    only those that go through if at least two do, and only those that are round all the way likewise. Slots come after
+    the round bores, and x runs along the longest of them; one that stands otherwise is no point.
 
     Parameters
     ----------
@@ -160,6 +160,8 @@ def link_frame(bores: Sequence[Bore]) -> LinkFrame | None:
     slots = sorted((bore for bore in chosen if bore.slot), key=lambda bore: -round(bore.slot, 6))
     slots = [slot for slot in slots if abs(np.dot(slot.slot_axis, slots[0].slot_axis)) > math.cos(PARALLEL)]
     rounds = [bore for bore in chosen if not bore.slot]
+    whole = [bore for bore in rounds if bore.share == 1.0]
+    rounds = whole if len(whole) > 1 else rounds
     chosen = [*rounds, *slots]
     if len(chosen) < 2:
         return None

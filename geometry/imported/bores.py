@@ -12,10 +12,8 @@ import numpy as np
 
 from geometry.imported.columns import Columns
 from geometry.imported.facts import Bore, PartSurface, Vector
-from geometry.imported.walls import NEAR, Line, Real, Span, Wall, upwards
+from geometry.imported.walls import HALF_TURN, NEAR, Line, Real, Span, Wall, upwards
 
-_HALF_TURN = 0.02
-"""How much a slot's round end may differ from half a turn [rad]."""
 _BEYOND = 0.02
 """Share of the radius beyond a wall or its end at which material is looked for; chords of the wall are 0.005 off."""
 _AXIS = 0.05
@@ -25,9 +23,9 @@ _AXIS = 0.05
 def find_bores(walls: list[Wall], surface: PartSurface, box: Real) -> tuple[Bore, ...]:
     """Return the bores of a solid.
 
-    A bore is a cylindrical wall around empty space that is open, and not narrower at both ends as a groove is. Walls of
-    one cylinder with nothing but space between them are one bore, as in a fork. Two halves of equal cylinders, open
-    towards each other, are a slot.
+    A bore is a cylindrical wall, more than half way round empty space that is open, and not narrower at both ends as a
+    groove or the bottom of a thread is. Walls of one cylinder with nothing but space between them are one bore, as in a
+    fork. Two halves of equal cylinders, open towards each other, are a slot.
 
     Parameters
     ----------
@@ -50,8 +48,8 @@ def find_bores(walls: list[Wall], surface: PartSurface, box: Real) -> tuple[Bore
 
 
 def _round_bores(surface: PartSurface, hollow: list[Wall]) -> Iterator[Bore]:
-    """Yield bores with round walls."""
-    walls = sorted((wall for wall in hollow if wall.round), key=lambda wall: wall.span)
+    """Yield bores whose walls are round, or more than half way round."""
+    walls = sorted((wall for wall in hollow if wall.holds), key=lambda wall: wall.span)
     while walls:
         together = [walls.pop(0)]
         line, radius = together[0].line, together[0].radius
@@ -63,8 +61,9 @@ def _round_bores(surface: PartSurface, hollow: list[Wall]) -> Iterator[Bore]:
                 walls.remove(wall)
         spans = [wall.span for wall in together]
         ends = _is_open(columns, radius, spans[0][0], -1.0), _is_open(columns, radius, spans[-1][1], 1.0)
-        if any(ends) and not _is_groove(columns, radius, spans):
-            yield _bore(line, radius, spans, through=all(ends))
+        if any(ends) and not _is_groove(columns, radius, spans) and all(_free(columns, radius, s) for s in spans):
+            share = min(1.0 if wall.round else wall.turn / math.tau for wall in together)
+            yield replace(_bore(line, radius, spans, through=all(ends)), share=share)
 
 
 def _bore(line: Line, radius: float, spans: list[Span], *, through: bool) -> Bore:
@@ -112,7 +111,7 @@ def _is_groove(columns: Columns, radius: float, spans: list[Span]) -> bool:
 
 def _slots(surface: PartSurface, hollow: list[Wall]) -> Iterator[Bore]:
     """Yield the slots between half-cylinders."""
-    halves = [wall for wall in hollow if len(wall.arcs) == 1 and abs(wall.turn - math.pi) < _HALF_TURN]
+    halves = [wall for wall in hollow if len(wall.arcs) == 1 and abs(wall.turn - math.pi) < HALF_TURN]
     for one, other in combinations(halves, 2):
         line, radius = one.line, one.radius
         shift = float(line.along(other.line.point))

@@ -34,6 +34,9 @@ class Bore:
         Distance of the centres of a slot's round ends; 0.0 for a round hole [mm].
     slot_axis : tuple of 3 float
         Unit vector along a slot; zeros for a round hole.
+    share : float
+        Share of the circle that the wall takes: 1.0 for a hole that is round all the way, less for one with a keyway,
+        with a slit, or open at a side.
     around : bool
         True where the part's outside is round about the same axis, as of a tube.
     """
@@ -47,7 +50,14 @@ class Bore:
     spans: tuple[tuple[float, float], ...]
     slot: float
     slot_axis: Vector
+    share: float = 1.0
     around: bool = False
+
+    @property
+    def told(self) -> str:
+        """What kind of hole it is, in a few words, with its diameter."""
+        kind = "slot of " if self.slot else "" if self.share == 1.0 else f"{self.share:.0%} of a circle of "
+        return f"{self.name} ({kind}{self.diameter:.4g} mm)"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

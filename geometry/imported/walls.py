@@ -22,6 +22,9 @@ NEAR = 1e-3
 FULL_TURN = math.tau - 0.01
 """Angle [rad] from which on a wall is round."""
 
+HALF_TURN = 0.02
+"""How much a slot's round end may differ from half a turn [rad]."""
+
 _OTHER_SHAPES = ("Plane", "Cone", "Sphere", "Torus")
 """Shapes of faces that gmsh names, and that are no cylinders."""
 _ALONG, _GRID = 65, 9
@@ -143,6 +146,11 @@ class Wall:
     def round(self) -> bool:
         """True where the wall goes all the way round."""
         return self.turn > FULL_TURN
+
+    @property
+    def holds(self) -> bool:
+        """True where the wall goes more than half way round, so that a pin does not leave it sideways."""
+        return self.turn > math.pi + HALF_TURN
 
 
 def walls_of(gmsh: Any, solid: int, surface: PartSurface) -> list[Wall]:

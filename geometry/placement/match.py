@@ -216,8 +216,8 @@ def listed(bores: Sequence[Bore]) -> str:
     """
     if not bores:
         return "the part has no bores"
-    shown = ", ".join(f"{bore.name} ({'slot of ' if bore.slot else ''}{bore.diameter:.4g} mm)" for bore in bores[:12])
-    return f"its bores are {shown}{', ...' if len(bores) > 12 else ''}"
+    shown = ", ".join(bore.told for bore in bores[:12]) + (", ..." if len(bores) > 12 else "")
+    return f"its bores are {shown}"
 
 
 def _check_named_parallel(part: FilePart, wanted: Sequence[Wanted], candidates: Sequence[Sequence[Bore]]) -> None:

@@ -152,6 +152,7 @@ def _pin(placement: Fit, one: Wanted) -> Pin:
             diameter=0.0,
             low=walls[0][0],
             high=walls[-1][1],
+            share=bore.share,
             gaps=tuple((below[1], above[0]) for below, above in itertools.pairwise(walls)),
         ),
     )

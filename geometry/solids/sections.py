@@ -179,6 +179,8 @@ def _ring_on(gmsh: Any, face: int, centre: tuple[float, float, float], diameter:
         return 0.0
     every = np.concatenate(border)
     nearest = float(every.min())
+    if nearest < diameter + 2.0 * ON_SURFACE:  # the hole is open at a side, or has a keyway
+        return 0.0
     if np.ptp(every) < 2.0 * ON_SURFACE:
         return nearest
     return diameter + FLAT_WALL * (min(nearest, widest) - diameter)

@@ -121,7 +121,7 @@ def record(found: Inspection) -> dict[str, Any]:
         "mass": None if mass is None else mass * GRAMS,
         "bores": [
             {
-                **entries(bore, "name axis centre diameter length through spans slot slot_axis"),
+                **entries(bore, "name axis centre diameter length through spans share slot slot_axis"),
                 "coaxial_with_outside": bore.around,
                 "coaxial_with": [other.name for other in _coaxial_with(bore, facts)],
             }
@@ -283,6 +283,8 @@ def _kind(bore: Bore, facts: PartFacts) -> str:
     words = ["through" if bore.through else "blind"]
     if bore.slot:
         words = [f"slot, {_short(bore.slot)} mm between the centres of its ends", *words]
+    if bore.share < 1.0:
+        words.append(f"{bore.share:.0%} of the circle is there")
     if len(bore.spans) > 1:
         words.append(f"{len(bore.spans)} walls (fork)" if len(bore.spans) == 2 else f"{len(bore.spans)} walls")
     if bore.around:

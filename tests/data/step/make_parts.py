@@ -80,6 +80,30 @@ def lever() -> cq.Shape:
     return body.cut(cq.Workplane("XY", origin=(41, 0, -1)).slot2D(18.0, 4.0).extrude(9.0)).val().moved(STAND)
 
 
+def open_bores() -> cq.Shape:
+    """Strip of 120 by 20 by 6 mm with bores of 6 mm that are not round all the way.
+
+    At -50 with a keyway of 2 mm, at -30 with a slit of 1 mm to the edge, at -5 with a hole of 2 mm across, at 35 with a
+    keyway 2 mm deep from above, at 58 cut by the end.
+    """
+    body = cq.Workplane("XY").box(120.0, 20.0, 6.0)
+    for x in (-50.0, -30.0, -5.0, 35.0, 58.0):
+        body = body.cut(hole(x, 0.0, 6.0, -9.0, 9.0))
+    body = body.cut(cq.Workplane("XY", origin=(-50.0, 2.0, -9.0)).rect(2.0, 4.0).extrude(18.0))
+    body = body.cut(cq.Workplane("XY", origin=(-30.0, 6.0, -9.0)).rect(1.0, 12.0).extrude(18.0))
+    body = body.cut(cq.Workplane("XZ", origin=(-5.0, 12.0, 0.0)).circle(1.0).extrude(24.0))
+    return body.cut(cq.Workplane("XY", origin=(35.0, 2.0, 1.0)).rect(2.0, 4.0).extrude(18.0)).val()
+
+
+def threaded() -> cq.Shape:
+    """Strip of 44 by 12 by 4 mm, bore of 5 mm at 30; one of 6 mm at 0 with one turn of a thread, 5 mm inside."""
+    body = cq.Workplane("XY").center(15.0, 0.0).rect(44.0, 12.0).extrude(4.0)
+    body = body.cut(hole(0.0, 0.0, 6.0, -1.0, 9.0)).cut(hole(30.0, 0.0, 5.0, -1.0, 9.0))
+    profile = cq.Workplane("XZ").polyline([(3.1, 1.05), (2.5, 1.44), (2.5, 1.56), (3.1, 1.95)]).close()
+    helix = cq.Wire.makeHelix(1.0, 1.1, 3.1).translate(cq.Vector(0.0, 0.0, 1.5))
+    return body.union(profile.sweep(cq.Workplane(obj=helix), isFrenet=True)).val()
+
+
 def halves() -> cq.Shape:
     """Strip of 40 by 12 by 4 mm glued of two along its middle and not unified, so that its bores are half-cylinders."""
     upper = cq.Workplane("XY").center(0.0, 3.0).rect(40.0, 6.0).extrude(4.0)
@@ -131,7 +155,23 @@ def shell() -> cq.Shape:
 
 def main() -> None:
     """Write the files."""
-    for make in (plate, bell_crank, fork, slotted, lever, halves, cross_tube, sleeve, splines, inch, two_solids, shell):
+    makers = (
+        plate,
+        bell_crank,
+        fork,
+        slotted,
+        lever,
+        open_bores,
+        halves,
+        cross_tube,
+        sleeve,
+        splines,
+        inch,
+        two_solids,
+        shell,
+        threaded,
+    )
+    for make in makers:
         shape = make()
         if isinstance(shape, cq.Compound) and len(shape.Solids()) == 1:
             shape = shape.Solids()[0]

@@ -178,6 +178,23 @@ def test_the_volume_of_a_sleeve_with_a_hole_across_is_the_integral_over_the_hole
     assert part_facts(FILES / "sleeve.step").volume == pytest.approx(ring - quad(across, -1.5, 1.5)[0], rel=1e-6)
 
 
+def test_of_a_bore_that_is_open_the_share_of_its_circle_is_told():
+    """Bores of 6 mm with a keyway of 2 mm, a slit of 1 mm, a hole across, a blind keyway, and 2 mm from an end."""
+    found = {round(bore.centre[0]): bore.share for bore in bores("open_bores") if bore.diameter > 5.0}
+    keyway, slit, end = np.arcsin(1.0 / 3.0), np.arcsin(0.5 / 3.0), np.arccos(2.0 / 3.0)
+    assert found == pytest.approx(
+        {-50: 1.0 - keyway / np.pi, -30: 1.0 - slit / np.pi, -5: 1.0, 35: 1.0, 58: 1.0 - end / np.pi}, abs=1e-6
+    )
+
+
+def test_the_bore_of_a_thread_is_that_inside_it():
+    """Of 5 mm and as long as its crest, 1.1 turns of 1 mm and 0.12 mm; not the hole of 6 mm in which the thread is."""
+    assert [(bore.diameter, bore.length) for bore in bores("threaded")] == [
+        (pytest.approx(5.0), pytest.approx(1.22, abs=1e-3)),
+        (pytest.approx(5.0), pytest.approx(4.0)),
+    ]
+
+
 def test_an_elongated_hole_is_a_slot():
     [slot] = [bore for bore in bores("slotted") if bore.slot]
     assert (slot.slot, slot.diameter) == pytest.approx((10.0, 4.0))

@@ -155,6 +155,17 @@ def test_the_gap_of_a_fork_is_no_wall(tmp_path):
     assert mesh.mirror is not None
 
 
+def test_of_a_bore_that_is_not_round_all_the_way_the_mesh_has_what_is_there(tmp_path):
+    """One with a keyway of 2 mm, and one that the end of the part cuts 2 mm from its middle; both of 6 mm."""
+    named = 'bores = { O4 = "bore 1", B = "bore 6" }'
+    path = imported_case(tmp_path, file="open_bores.step", points=FROM_PART, entries=named)
+    path.write_text(path.read_text().replace('pin_diameter = "5 mm"', 'pin_diameter = "6 mm"'), encoding="utf-8")
+    mesh = mesh_body(read_case(str(path)).body("rocker"), COARSE)
+    shares = {"bore:O4": 1.0 - np.arcsin(1.0 / 3.0) / np.pi, "bore:B": 1.0 - np.arccos(2.0 / 3.0) / np.pi}
+    # There are no flat rings.
+    assert mesh.areas == pytest.approx({name: share * np.pi * 6.0 * 6.0 for name, share in shares.items()}, rel=1e-4)
+
+
 def test_a_shape_that_is_a_table_is_refused_like_any_other(tmp_path):
     path = imported_case(tmp_path)
     path.write_text(path.read_text().replace('shape = "step"', "shape = { step = 1 }"))
