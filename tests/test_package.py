@@ -104,7 +104,8 @@ def test_what_is_installed_is_what_the_metadata_says(installed, tmp_path):
     script = "from importlib.metadata import distribution\nprint(*distribution('alula').requires, sep='\\n')"
     stated = run(python, "-c", script, cwd=tmp_path).splitlines()
     declared = {canonical(re.split(r"[^\w.-]", line)[0]) for line in stated if "extra ==" not in line}
-    optional = {canonical(re.split(r"[^\w.-]", line)[0]) for line in stated if 'extra == "pardiso"' in line}
+    extras = [line for line in stated if re.search(r'extra == "(pardiso|cluster)"', line)]
+    optional = {canonical(re.split(r"[^\w.-]", line)[0]) for line in extras}
     owners = packages_distributions()
     modules = {
         name.partition(".")[0]

@@ -18,6 +18,8 @@ from geometry.base import child
 from geometry.base.child_server import ChildEndedError, ChildServer
 from geometry.base.errors import CannotRunError
 
+IN_FLIGHT = 3
+"""Tasks a worker that are handed out at once: one computed, two waiting."""
 TIME_LIMIT = 3600.0
 """Seconds for one variant unless stated otherwise."""
 _WORK = ".alula-work-"
@@ -35,12 +37,12 @@ class Engine:
     ----------
     submit : callable
         Task -> future of its answer, which raises ``CrashError``, or ``CannotRunError`` where the engine is gone.
-    workers : int
-        How many are computed at once.
+    capacity : callable
+        Returns how many tasks may be handed out at once.
     """
 
     submit: Callable[[Task], "Future[VariantResult]"]
-    workers: int
+    capacity: Callable[[], int]
 
 
 @contextmanager
@@ -82,7 +84,7 @@ def local_engine(
     def compute(task: Task) -> VariantResult:
         try:
             server = take()
-            told = pickle.loads(server.ask(pickle.dumps(task), time_limit))
+            answer = server.ask(pickle.dumps(task), time_limit)
         except ChildEndedError as ended:
             raise CrashError(_why(ended)) from None
         except subprocess.TimeoutExpired:
@@ -90,13 +92,12 @@ def local_engine(
         except OSError as error:
             raise CannotRunError(f"a worker cannot be started ({error.strerror}); close other programs") from None
         idle.put(server)
-        if isinstance(told, VariantResult):
-            return told
-        raise CrashError(told)
+        found: VariantResult = pickle.loads(answer)
+        return found
 
     pool = ThreadPoolExecutor(workers)
     try:
-        yield Engine(submit=lambda task: pool.submit(compute, task), workers=workers)
+        yield Engine(submit=lambda task: pool.submit(compute, task), capacity=lambda: IN_FLIGHT * workers)
     finally:
         pool.shutdown(wait=not child.stopped(), cancel_futures=True)
         while not idle.empty():

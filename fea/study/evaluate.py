@@ -79,18 +79,15 @@ def evaluate(task: Task, contents: Mapping[str, bytes]) -> VariantResult:
     Returns
     -------
     VariantResult
-        Done, or refused with the case's own sentence. Whatever else goes wrong is raised.
-
-    Raises
-    ------
-    CannotRunError
-        Where a stage fails, such as the mesher.
+        Done, refused with the case's own sentence, or crashed where a stage fails, such as the mesher.
     """
     wall, processor = time.perf_counter(), time.process_time()
     try:
         verdict, numbers = _numbers(task, contents)
     except CaseError as error:
         answer = VariantResult(state="refused", sentence=str(error))
+    except (CannotRunError, MemoryError) as error:
+        answer = VariantResult(state="crashed", sentence=str(error) or "the worker's memory does not suffice")
     else:
         answer = VariantResult(state="done", verdict=verdict, numbers=numbers)
     times = {"seconds": time.perf_counter() - wall, "processor": time.process_time() - processor}

@@ -14,8 +14,6 @@ from loads.plans.plan import StudyPlan
 from loads.plans.points import Point
 from loads.plans.variants import Variants
 
-IN_FLIGHT = 3
-"""Tasks a worker that are handed out at once: one computed, two waiting."""
 AT_ONCE = 500
 """Points that are assigned in one transaction where their results stand."""
 
@@ -157,11 +155,12 @@ class Study:
     def _compute(self, engine: Engine, missing: Iterator[_Open], progress: Progress) -> None:
         handed: dict[Future[VariantResult], _Open] = {}
         while True:
-            while len(handed) < IN_FLIGHT * engine.workers and (one := next(missing, None)) is not None:
+            while len(handed) < engine.capacity() and (one := next(missing, None)) is not None:
                 handed[engine.submit(one.task)] = one
             if not handed:
                 break
-            for future in wait(handed, return_when=FIRST_COMPLETED).done:
+            done = wait(handed, return_when=FIRST_COMPLETED).done
+            for future in sorted(done, key=lambda future: handed[future].position):
                 one = handed.pop(future)
                 answer = _answer(future)
                 self.store.add(one.position, one.key, one.point, answer)
@@ -207,6 +206,10 @@ def _answer(future: "Future[VariantResult]") -> VariantResult:
         return VariantResult(state="crashed", sentence=str(crash))
     except CancelledError:
         raise CannotRunError("the workers are gone; start the same command again to go on with the study") from None
+    except CannotRunError:
+        raise
+    except Exception as error:  # of a worker on another machine, or of the library that reached for it
+        return VariantResult(state="crashed", sentence=" ".join(f"{type(error).__name__}: {error}".split()))
 
 
 def _differs(before: Mapping[str, object], plan: StudyPlan) -> str:

@@ -1,7 +1,7 @@
 """The process that computes variants one after another: ``python -m fea.study.worker``.
 
 The first request is pickled: the files of the case's parts. Each later one is a pickled ``Task``; its answer is the
-pickled ``VariantResult``, or the sentence of what cannot run.
+pickled ``VariantResult``.
 """
 
 import pickle
@@ -9,11 +9,10 @@ from collections.abc import Mapping
 
 from fea.study.evaluate import Task, evaluate
 from geometry.base.child_server import ChildService
-from geometry.base.errors import CannotRunError
 
 
 def main() -> None:
-    """VariantResult requests until the parent ends."""
+    """Answer requests until the parent ends."""
     service = ChildService()
     contents: Mapping[str, bytes] = {}
 
@@ -24,13 +23,7 @@ def main() -> None:
             contents = asked
             service.reply(b"")
             return
-        try:
-            told: object = evaluate(asked, contents)
-        except CannotRunError as error:
-            told = str(error)
-        except MemoryError:
-            told = "the memory of the worker does not suffice"
-        service.reply(pickle.dumps(told))
+        service.reply(pickle.dumps(evaluate(asked, contents)))
 
     service.run(answer)
 

@@ -82,6 +82,10 @@ def run(
     workers: Annotated[
         int | None, typer.Option(min=1, max=256, help="Processes; default: one a core.", show_default=False)
     ] = None,
+    scheduler: Annotated[
+        str,
+        typer.Option("--scheduler", help="Dask scheduler whose workers compute, tcp://host:8786.", show_default=False),
+    ] = "",
     retry: Annotated[bool, typer.Option("--retry", help="Try crashed points again that had three attempts.")] = False,
     yes: Annotated[bool, typer.Option("--yes", help=f"Run more than {MANY} points.")] = False,
 ) -> None:
@@ -98,7 +102,7 @@ def run(
         _refuse_many(variants, workers)
     with Store.writing(output) as store:
         study = Study(variants=variants, store=store, retry=retry, tell=_teller())
-        done = study.run(lambda: _engine(variants, workers, output))
+        done = study.run(lambda: _engine(variants, workers, scheduler, output))
         counts = store.counts()
     print(summary(done, counts))
     print(f"Show them: alula study show {output}")
@@ -149,10 +153,16 @@ def _plan(
     return plan_of(data), Path()
 
 
-def _engine(variants: "Variants", workers: int | None, output: Path) -> "AbstractContextManager[Engine]":
+def _engine(
+    variants: "Variants", workers: int | None, scheduler: str, output: Path
+) -> "AbstractContextManager[Engine]":
     from fea.study.engine import local_engine, usable_cores
 
     contents = {name: path.read_bytes() for name, path in variants.files.items()}
+    if scheduler:
+        from fea.study.cluster import cluster_engine
+
+        return cluster_engine(scheduler, contents)
     return local_engine(workers or usable_cores(), contents, folder=output)
 
 

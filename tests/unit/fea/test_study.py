@@ -43,7 +43,7 @@ class Desk:
         return future
 
     def __call__(self):
-        return nullcontext(Engine(submit=self.submit, workers=2))
+        return nullcontext(Engine(submit=self.submit, capacity=lambda: 6))
 
 
 def variants(values="4 mm, 5 mm, 6 mm", **more):
