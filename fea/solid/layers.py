@@ -124,7 +124,7 @@ def on_plane(sigma: Real, normal: ArrayLike) -> tuple[Real, Real]:
 
 POLAR, AZIMUTH = 19, 72
 """Steps of 5° from the axis of the pins to the linkage's plane, and about it."""
-_NODES = 500
+_NODES = 100
 
 
 def build_directions() -> Real:
@@ -160,10 +160,8 @@ def best_directions(fields: Iterable[Real], layers: Layers) -> Real:
     assert layers.between is not None
     share = layers.across / layers.between
     x, y, z = build_directions().reshape(-1, 3).T
-    zero = np.zeros_like(x)
-    rows = np.array([[x, zero, zero, y, zero, z], [zero, y, zero, x, z, zero], [zero, zero, z, zero, y, x]])
-    normal = x * rows[0] + y * rows[1] + z * rows[2]
-    worst = zero.copy()
+    normal = np.array([x * x, y * y, z * z, 2.0 * x * y, 2.0 * y * z, 2.0 * x * z])
+    worst = np.zeros_like(x)
     for sigma in fields:
         bound = max(1.0, share) * np.sqrt((sigma**2 * (1.0, 1.0, 1.0, 2.0, 2.0, 2.0)).sum(axis=1))
         order = np.argsort(-bound)
@@ -172,9 +170,18 @@ def best_directions(fields: Iterable[Real], layers: Layers) -> Real:
             left = np.flatnonzero(worst < bound[part[0]])
             if not left.size:
                 break
-            along = sigma[part] @ normal[:, left]
-            square = sum((sigma[part] @ row[:, left]) ** 2 for row in rows)
-            found = np.maximum(along, 0.0) ** 2 + share**2 * np.maximum(square - along**2, 0.0)
+            along, square = sigma[part] @ normal[:, left], _product(sigma[part]) @ normal[:, left]
+            square -= along**2
+            found = np.maximum(along, 0.0, out=along) ** 2 + share**2 * np.maximum(square, 0.0, out=square)
             worst[left] = np.maximum(worst[left], np.sqrt(found.max(axis=0)))
     with np.errstate(divide="ignore"):
         return np.asarray(layers.across / worst).reshape(POLAR, AZIMUTH)
+
+
+def _product(sigma: Real) -> Real:
+    """Components (n, 6) of the tensors' squares: n·σ²n is the squared traction on a plane of normal n."""
+    xx, yy, zz, xy, yz, xz = sigma.T
+    return np.column_stack(
+        [xx**2 + xy**2 + xz**2, xy**2 + yy**2 + yz**2, xz**2 + yz**2 + zz**2,
+         xx * xy + xy * yy + xz * yz, xy * xz + yy * yz + yz * zz, xx * xz + xy * yz + xz * zz]
+    )  # fmt: skip
