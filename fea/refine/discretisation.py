@@ -67,7 +67,7 @@ class Discretisation:
             return (
                 f"a sharp inner edge bears at least {_percent(LOADED)} of the peak stress. Showing whether that "
                 f"stress has a limit takes {SERIES} meshes, this run made {count}. No safety factor is reported; state "
-                f"the real fillet_radius; {self._remedy}"
+                f"the real fillet_radius (of a pocket: floor_radius); {self._remedy}"
             )
         if self.status == "growing":
             return (

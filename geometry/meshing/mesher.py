@@ -250,7 +250,7 @@ def _sizes_at(target: MeshTarget, settings: MeshSettings) -> Sizes:
         nearest = cKDTree(places)
         return lambda points: np.asarray(values[nearest.query(points)[1]])
     texts = [text.replace("^", "**") for text in size_formulas(target.solid.body, settings)]
-    functions = {"Sqrt": np.sqrt, "Max": np.maximum, "Fabs": np.abs}
+    functions = {"Sqrt": np.sqrt, "Max": np.maximum, "Min": np.minimum, "Fabs": np.abs}
 
     def sizes(points: NDArray[np.float64]) -> NDArray[np.float64]:
         names = functions | dict(zip("xyz", points.T, strict=True))

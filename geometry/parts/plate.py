@@ -7,45 +7,22 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field
 
 from geometry.base.errors import CaseError
-from geometry.base.model import CaseModel, Name
-from geometry.base.outline import STRAIGHT, BallError, Outline, outline
+from geometry.base.model import Name
+from geometry.base.outline import STRAIGHT, BallError, Outline, gap, outline
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
 from geometry.bodies.eyes import check_flat_eyes
 from geometry.bodies.features import Pin, PlainEnd
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
+from geometry.parts.pockets import Pocket, RoundHole
 
 LEAST_WALL = 0.05
-"""Least wall beside a lightening hole over its diameter, and least neck over eye_diameter. Assumed: a thinner one is
-hardly made."""
+"""Least wall beside a hole or pocket over its diameter, or that of its corners, and least neck over eye_diameter.
+Assumed: a thinner one is hardly made."""
 _WIDEST = 1e6
 """Fillet radius over the plate's extent beyond which its outline is the hull to any reader: bound of a search."""
 _CHORDS = 200
-
-
-class RoundHole(CaseModel):
-    """A round hole through a plate that no pin stands in."""
-
-    x: Length
-    """Of its centre, in the link's frame."""
-    y: Length
-    diameter: Annotated[Length, POSITIVE]
-
-    def distance(self, x: float, y: float) -> float:
-        """Return the distance of a place from the hole's centre.
-
-        Parameters
-        ----------
-        x, y : float
-            The place [mm].
-
-        Returns
-        -------
-        float
-            Distance [mm].
-        """
-        return math.hypot(x - self.x, y - self.y)
 
 
 class Plate(PartKind):
@@ -76,11 +53,18 @@ class Plate(PartKind):
     """Radius of the concave arcs between neighbouring eyes; 0 for straight lines."""
     holes: Annotated[tuple[RoundHole, ...], Field(max_length=100)] = ()
     """Holes that make the plate lighter, in the frame of the link."""
+    pockets: Annotated[tuple[Pocket, ...], Field(max_length=50)] = ()
+    """Recesses with a floor that make it lighter."""
 
     @property
     def eye_thickness(self) -> float:
         """Length of the holes: the plate's thickness [mm]."""
         return self.thickness
+
+    @property
+    def may_be_sharp(self) -> bool:
+        """As ``PartKind.may_be_sharp``: at the floor of a pocket."""
+        return any(pocket.floor_radius == 0.0 for pocket in self.pockets)
 
     @property
     def size(self) -> float:
@@ -134,22 +118,28 @@ class Plate(PartKind):
 
         That is the chord of the outline less what all holes cut out of it: an estimate, as of a disc.
         """
-        holes = [(pin.x, pin.diameter) for pin in body.pins] + [(hole.x, hole.diameter) for hole in self.holes]
-
-        def cut(x: float) -> float:
-            return sum(2.0 * math.sqrt(max((d / 2.0) ** 2 - (x - at) ** 2, 0.0)) for at, d in holes)
-
-        return rectangle(min(width - cut(x) for x, width in self._widths(body)), self.thickness)
+        return rectangle(
+            min(
+                width - sum(2.0 * math.sqrt(max((p.diameter / 2.0) ** 2 - (x - p.x) ** 2, 0.0)) for p in body.pins)
+                for x, width in self._widths(body)
+            ),
+            self.thickness,
+        )
 
     def frame_section(self, body: Body) -> Section:
-        """As ``PartKind.frame_section``: as wide as an eye, or as the outline where that is narrowest."""
+        """As ``PartKind.frame_section``: as wide as an eye, or as the plate where that is narrowest."""
         return rectangle(min([self.eye_diameter, *(width for _, width in self._widths(body))]), self.thickness)
 
     def _widths(self, body: Body) -> list[tuple[float, float]]:
-        """Return stations from the first to the last pin, and how wide the outline is there [mm]."""
+        """Return stations from the first to the last pin, and the width there of a full section as large [mm].
+
+        That is the width of the outline less that of lightening holes, and of pockets by their share of the thickness.
+        """
         around, (first, last) = self.outline(body), extent(body)
+        cuts = [(hole.outline, 1.0) for hole in self.holes]
+        cuts += [(pocket.outline, pocket.cut / self.thickness) for pocket in self.pockets]
         stations = [first + (last - first) * i / _CHORDS for i in range(_CHORDS + 1)]
-        return [(x, around.across(x)) for x in stations]
+        return [(x, around.across(x) - sum(share * cut.across(x) for cut, share in cuts)) for x in stations]
 
     def has_centre_line(self, body: Body) -> bool:
         """As ``PartKind.has_centre_line``: no, since it is wider than the strip for which a frame takes it."""
@@ -165,9 +155,9 @@ class Plate(PartKind):
         return pin.diameter + FLAT_WALL * min([body.ring(pin).diameter - pin.diameter, *(wall / 2.0 for wall in walls)])
 
     def scaled(self, s: Callable[[float], float]) -> Self:
-        """As ``PartKind.scaled``: holes as well."""
-        holes = tuple(RoundHole.model_construct(x=s(h.x), y=s(h.y), diameter=s(h.diameter)) for h in self.holes)
-        return super().scaled(s).model_copy(update={"holes": holes})
+        """As ``PartKind.scaled``: holes and pockets as well."""
+        cuts = {"holes": tuple(h.scaled(s) for h in self.holes), "pockets": tuple(p.scaled(s) for p in self.pockets)}
+        return super().scaled(s).model_copy(update=cuts)
 
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: eyes are as thick as the plate, and walls are left beside the holes."""
@@ -175,13 +165,16 @@ class Plate(PartKind):
         self._check_fillets(body)
         for number, end in enumerate(body.ends):
             self._check_patch(body, number, end)
-        for number, hole in enumerate(self.holes, start=1):
-            what, wall = self._wall(body, number, hole)
-            if wall < LEAST_WALL * hole.diameter:
+        for number, pocket in enumerate(self.pockets, start=1):
+            pocket.check(f"pockets[{number}]", self.thickness)
+        for name, cut in self._cuts.items():
+            what, wall = self._wall(body, name)
+            across = 2.0 * cut.arcs[0].radius
+            if wall < LEAST_WALL * across:
                 raise CaseError(
-                    f"holes[{number}] of the plate leaves a wall of {max(wall, 0.0):.4g} mm to {what}, but must leave "
-                    f"{LEAST_WALL * hole.diameter:.4g} mm ({LEAST_WALL:g} of its diameter): reduce its diameter "
-                    f"{hole.diameter:.4g} mm or move it"
+                    f"{name} of the plate leaves a wall of {max(wall, 0.0):.4g} mm to {what}, but must leave "
+                    f"{LEAST_WALL * across:.4g} mm ({LEAST_WALL:g} of its diameter): reduce its diameter "
+                    f"{across:.4g} mm or move it"
                 )
 
     def _check_fillets(self, body: Body) -> None:
@@ -227,30 +220,35 @@ class Plate(PartKind):
                 f"{max(most, 0.0):.4g} mm: reduce end_patch, or move {end.name}"
             )
 
-    def _wall(self, body: Body, number: int, hole: RoundHole) -> tuple[str, float]:
-        """Return what is closest to a lightening hole, and the wall between them [mm]."""
-        radius = hole.diameter / 2.0
-        around = self.outline(body)
-        found = [("the edge of the plate", around.depth(hole.x, hole.y) - radius)]
-        for pin in body.pins:
-            flat = self.flat_diameter(body, pin) / 2.0
-            found.append((f"the eye at {pin.name}", hole.distance(pin.x, pin.y) - flat - radius))
-        patches = ((f"the patch of {e.name}", hole.distance(e.x, e.y) - e.patch / 2.0 - radius) for e in body.ends)
-        found.extend(patches)
-        for second, other in enumerate(self.holes, start=1):
-            if second != number:
-                clear = hole.distance(other.x, other.y) - other.diameter / 2.0 - radius
-                found.append((f"holes[{second}]", clear))
-        return min(found, key=lambda entry: entry[1])
+    @property
+    def _cuts(self) -> dict[str, Outline]:
+        """The outlines of holes and pockets, by their entries."""
+        cuts = {f"holes[{number}]": hole.outline for number, hole in enumerate(self.holes, start=1)}
+        return cuts | {f"pockets[{number}]": pocket.outline for number, pocket in enumerate(self.pockets, start=1)}
+
+    def _wall(self, body: Body, name: str) -> tuple[str, float]:
+        """Return what is closest to a hole or pocket, and the wall between them [mm].
+
+        The edge of the plate is closest to a corner, or to where a ball that has rounded the edge is.
+        """
+        cuts, around = self._cuts, self.outline(body)
+        cut = cuts.pop(name)
+        found = [("the edge of the plate", around.depth(arc.x, arc.y) - arc.radius) for arc in cut.arcs]
+        beside = [("the edge of the plate", (a.x, a.y, -a.radius)) for a in around.arcs if a.radius < 0.0]
+        beside += [(f"the eye at {p.name}", (p.x, p.y, self.flat_diameter(body, p) / 2.0)) for p in body.pins]
+        beside += [(f"the patch of {e.name}", (e.x, e.y, e.patch / 2.0)) for e in body.ends]
+        others = [(what, outline([circle])) for what, circle in beside] + list(cuts.items())
+        return min([*found, *((what, gap(cut, other)) for what, other in others)], key=lambda entry: entry[1])
 
     def solid(self, kernel: Kernel, body: Body) -> Entity:
         """As ``PartKind.solid``: the outline, extruded."""
         return kernel.slab(self.outline(body), self.thickness)
 
     def cavities(self, kernel: Kernel, body: Body) -> list[Entity]:
-        """As ``PartKind.cavities``: the lightening holes."""
+        """As ``PartKind.cavities``: the lightening holes, and the pockets."""
         high = self.thickness
-        return [kernel.cylinder((h.x, h.y, -high), (0, 0, 2.0 * high), h.diameter / 2.0) for h in self.holes]
+        holes = [kernel.cylinder((h.x, h.y, -high), (0, 0, 2.0 * high), h.diameter / 2.0) for h in self.holes]
+        return holes + [solid for pocket in self.pockets for solid in pocket.solids(kernel, high)]
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
         """As ``PartKind.fine_places``: narrow rings and walls take elements as small as they are wide."""
@@ -266,6 +264,10 @@ class Plate(PartKind):
             places.append((min(width / 2.0, size), f"Max({neck.distance_formula}-{width / 2.0:.12g},0)"))
         for number, hole in enumerate(self.holes, start=1):
             rim = Pin(name="", x=hole.x, y=hole.y, diameter=hole.diameter)
-            edge = min(self._wall(body, number, hole)[1], hole.diameter / 3.0, size)
+            edge = min(self._wall(body, f"holes[{number}]")[1], hole.diameter / 3.0, size)
             places.append((edge, f"Fabs({rim.distance_formula}-{hole.diameter / 2.0:.12g})"))
+        for number, pocket in enumerate(self.pockets, start=1):
+            narrow = min(self._wall(body, f"pockets[{number}]")[1], pocket.radius)
+            edge = min((pocket.floor_radius or size) * share, narrow, size)
+            places.append((edge, pocket.distance_formula(self.thickness)))
         return places

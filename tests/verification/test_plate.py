@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mesh_measures import volumes_and_moments
 
 from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
 from fea.elements.space import displacement_space
@@ -13,7 +14,7 @@ from fea.tractions.load_vectors import LoadVectors
 from geometry.base.errors import CaseError
 from geometry.bodies.body import Body
 from geometry.bodies.body_rules import check_body
-from geometry.meshing.mesh import mass_properties, mesh_body
+from geometry.meshing.mesh import mass_properties, mesh_body, reentrant_edges
 from geometry.meshing.mesh_settings import COARSE
 from geometry.parts.part import Bar, Pin, PlainEnd, Plate, Ring
 from loads.records.bearing import WIDE
@@ -26,10 +27,11 @@ def pin(name, x, y, hole, eye=None):
     return Pin(name=name, x=x, y=y, diameter=hole, ring=ring)
 
 
-def plate(*pins, holes=(), eye=10.0, fillet=0.0):
+def plate(*pins, holes=(), pockets=(), eye=10.0, fillet=0.0):
     sizes = {"shape": "plate", "material": "resin", "thickness": f"{T} mm", "eye_diameter": f"{eye} mm"}
     sizes["fillet_radius"] = f"{fillet} mm"
     sizes["holes"] = [{"x": f"{x} mm", "y": f"{y} mm", "diameter": f"{d} mm"} for x, y, d in holes]
+    sizes["pockets"] = pockets
     return Body(part=Plate.model_validate(sizes), pins=pins, ends=(), holes=())
 
 
@@ -87,6 +89,70 @@ def test_a_waist_takes_circular_segments_off_a_plate():
     mesh = mesh_body(body, COARSE)
     middle = np.abs(mesh.points[:, 0] - 15.0) < 1.0
     assert np.ptp(mesh.points[middle, 1]) == pytest.approx(neck, rel=0.02)
+
+
+def pocket(*centres, radius, depth, **changes):
+    sizes = {"centres": [[f"{x} mm", f"{y} mm"] for x, y in centres], "radius": f"{radius} mm", "depth": f"{depth} mm"}
+    return sizes | changes
+
+
+@pytest.mark.parametrize("side", ["top", "bottom", "both"])
+def test_pockets_take_their_volume_where_they_are(side):
+    """A round pocket with a fillet at its floor, and a rounded rectangle with a sharp one."""
+    pins, r, d, f = (pin("A", 0.0, 0.0, 4.0), pin("B", 40.0, 0.0, 4.0), pin("C", 20.0, 30.0, 4.0)), 5.0, 1.2, 0.8
+    corners = [(10.0, -1.0), (16.0, -1.0), (16.0, 1.5), (10.0, 1.5)]
+    cut = [
+        pocket((20.0, 14.0), radius=r, depth=d, side=side, floor_radius=f"{f} mm"),
+        pocket(*corners, radius=2.0, depth=0.5, side=side),
+    ]
+    body = plate(*pins, pockets=cut)
+    check_body(body)
+    assert body.part.may_be_sharp
+    # The fillet leaves (1 - π/4) f² of the corner, whose centroid is (10 - 3π)/(12 - 3π) f from either side (Pappus).
+    left, off = (1.0 - math.pi / 4.0) * f**2, (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi) * f
+    ring = left * 2.0 * math.pi * (r - off)
+    round_one, flat = math.pi * r**2 * d, (6.0 * 2.5 + 2.0 * 2.0 * (6.0 + 2.5) + math.pi * 4.0) * 0.5
+    number = 2.0 if side == "both" else 1.0
+    area, *_ = properties([(p.x, p.y, 5.0) for p in pins], [(p.x, p.y, 4.0) for p in pins])
+    volume = area * T - number * (round_one - ring + flat)
+    found = mass_properties(body)
+    assert found.volume == pytest.approx(volume, rel=1e-6)
+    moment = round_one * (T - d) / 2.0 - ring * (T / 2.0 - d + off) + flat * (T - 0.5) / 2.0
+    sense = {"top": -1.0, "bottom": 1.0, "both": 0.0}[side]
+    assert found.centroid[2] == pytest.approx(sense * moment / volume, abs=1e-5)
+
+
+def test_a_mesh_has_its_pockets_and_their_sharp_edges():
+    cut = [pocket((12.0, 0.0), (22.0, 0.0), radius=2.5, depth=1.0, side="both")]
+    body = plate(pin("A", 0.0, 0.0, 4.0), pin("B", 40.0, 0.0, 4.0), pockets=cut)
+    mesh = mesh_body(body, COARSE)
+    assert volumes_and_moments(mesh.points, mesh.cells)[0].sum() == pytest.approx(
+        mass_properties(body).volume, rel=2e-3
+    )
+    edges = reentrant_edges(body)
+    assert len(edges) == 8  # a round end and a side are two edges each, above and below
+    assert {round(abs(float(edge.points[:, 2].mean())), 6) for edge in edges} == {0.5}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"depth": "2.9 mm"},
+            r"pockets\[1\].depth 2.9 mm leaves a floor of 0.1 mm.* to 2.85 mm or less, or state a hole",
+        ),
+        ({"depth": "1.6 mm", "side": "both"}, r"a floor of 0 mm.* to 1.425 mm or less"),
+        ({"floor_radius": "1.1 mm"}, r"floor_radius 1.1 mm does not fit.*at most the depth 1 mm"),
+        ({"radius": "4.9 mm"}, r"pockets\[1\] of the plate leaves a wall of 0.1 mm to the edge"),
+        ({"centres": [["6 mm", "0 mm"], ["20 mm", "0 mm"]]}, r"pockets\[1\].* a wall of 0 mm to the eye at A"),
+        ({"centres": [["24 mm", "0 mm"], ["30 mm", "0 mm"]]}, r"holes\[1\] of the plate leaves a wall of 0 mm to pock"),
+    ],
+)
+def test_pockets_that_do_not_fit_are_refused(change, message):
+    cut = pocket((15.0, 0.0), (22.0, 0.0), radius=3.0, depth=1.0) | change
+    body = plate(pin("A", 0.0, 0.0, 4.0), pin("B", 40.0, 0.0, 4.0), holes=((30.0, 0.0, 3.0),), pockets=[cut])
+    with pytest.raises(CaseError, match=message):
+        check_body(body)
 
 
 @pytest.mark.parametrize("fillet", [14.4, 5.0])
