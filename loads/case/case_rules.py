@@ -8,8 +8,9 @@ from geometry.bodies.body_rules import check_body
 from geometry.materials.laminate import ANISOTROPIC, is_laminate
 from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
-from loads.case.core import CoreCase, check_moving, check_point
+from loads.case.core import CoreCase
 from loads.case.load_rules import check_loads, check_masses, check_place
+from loads.case.places import check_moving, check_point
 from loads.records.check_spec import (
     BearingCheck,
     Check,
@@ -148,9 +149,9 @@ def _check_pose(case: CoreCase) -> None:
         if "angle" in pose.model_fields_set:
             raise CaseError("pose.angle: the travel fixes the pose already; remove one of the two")
     elif pose.coordinate is not None:
-        check_moving(case, "pose.coordinate", pose.coordinate)
+        check_moving(case.linkage, "pose.coordinate", pose.coordinate)
     for name in pose.near:
-        check_moving(case, "pose.near", name)
+        check_moving(case.linkage, "pose.near", name)
     if linkage.mobility == 1 and pose.coordinate is None:
         raise CaseError("pose.coordinate: the linkage can move, but no link fixes its pose; name one and its angle")
     if case.drive is None and linkage.mobility == 0 and pose.coordinate is not None:
@@ -174,7 +175,7 @@ def _check_motion(case: CoreCase, spec: MotionSpec) -> None:
             'travel = ["0 mm", "10 mm"], or a coordinate of its own'
         )
     else:
-        check_moving(case, "motion.coordinate", name)
+        check_moving(case.linkage, "motion.coordinate", name)
 
 
 def _check_body(entry: str, body: Body) -> None:
@@ -227,7 +228,7 @@ def _check_pins(case: CoreCase, name: str, check: PinCheck | BearingCheck) -> No
 
 def _check_ways_to_hold(case: CoreCase, asked: WaysToHold) -> None:
     """A published displacement stands beside that of the loads that it was published for, and of no others."""
-    check_point(case, "ways_to_hold", asked.link, asked.at)
+    check_point(case.linkage, "ways_to_hold", asked.link, asked.at)
     if asked.load_case is not None:
         require("ways_to_hold.load_case", asked.load_case, case.load_cases, "does not exist")
     elif asked.published is not None and len(case.load_cases) > 1:

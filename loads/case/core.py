@@ -15,6 +15,7 @@ from geometry.materials.material import Material, library
 from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd, Ring
 from geometry.placement.fit import Wanted
 from geometry.placement.placed_body import placed_body
+from loads.case.places import check_point
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
 from loads.records.carried import Carried
@@ -29,7 +30,6 @@ from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
 from loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
 from loads.statics.statics import Drive
-from loads.text.explain import require
 
 
 class CoreCase(Revisable):
@@ -151,7 +151,7 @@ class CoreCase(Revisable):
         """
         point = check.at or ""
         if check.link is not None:
-            check_point(self, f"checks.{name}", check.link, point)
+            check_point(self.linkage, f"checks.{name}", check.link, point)
             return check.link, point
         owners = [link for link in self.linkage.moving if point in self.links[link].points]
         if not owners:
@@ -378,46 +378,3 @@ def _ring(case: CoreCase, link: str, name: str) -> Ring | None:
         return None
     half = (eye.thickness or part.eye_thickness) / 2.0
     return Ring(diameter=eye.diameter or part.eye_diameter, low=-half, high=half)
-
-
-def check_moving(case: CoreCase, entry: str, link: str) -> None:
-    """Check that a link moves.
-
-    Parameters
-    ----------
-    case : CoreCase
-        The case.
-    entry : str
-        Entry of the case file that names the link, for the message.
-    link : str
-        Name of the link.
-
-    Raises
-    ------
-    CaseError
-        Where it is the ground or unknown.
-    """
-    require(entry, link, case.linkage.moving, "is not a moving link")
-
-
-def check_point(case: CoreCase, entry: str, link: str, point: str) -> None:
-    """Check that a link moves and has a point.
-
-    Parameters
-    ----------
-    case : CoreCase
-        The case.
-    entry : str
-        Table of the case file that names both, for the message.
-    link, point : str
-        Their names.
-
-    Raises
-    ------
-    CaseError
-        Where it is the ground or unknown, or has no such point.
-    """
-    check_moving(case, f"{entry}.link", link)
-    points = case.links[link].points
-    if point not in points:
-        raise CaseError(f"{entry}: link '{link}' has no point '{point}'; its points are {', '.join(points)}")

@@ -3,7 +3,8 @@
 import numpy as np
 
 from geometry.base.errors import CaseError
-from loads.case.core import CoreCase, check_moving, check_point
+from loads.case.core import CoreCase
+from loads.case.places import check_moving, check_point
 from loads.records.aero import AirPatch, check_air
 from loads.records.carried import CarriedBody, CarriedSpread
 from loads.records.load_case import LoadCase, PointForce, PointMoment, SpreadForce
@@ -66,7 +67,7 @@ def check_place(case: CoreCase, entry: str, place: Place) -> None:
     at, start, end = (getattr(place, name, None) for name in ("at", "start", "end"))
     for point in (at, start, end):
         if point is not None:
-            check_point(case, entry, place.link, point)
+            check_point(case.linkage, entry, place.link, point)
     if at in case.links[place.link].slots:
         raise CaseError(
             f"{entry}: point '{at}' of link '{place.link}' is a slot, where the pin alone can push; name another point"
@@ -105,7 +106,7 @@ def check_masses(case: CoreCase) -> None:
     """
     carrying = {mass.link for mass in case.carried}
     for link in case.massless:
-        check_moving(case, "massless", link)
+        check_moving(case.linkage, "massless", link)
         if link in case.checked_links or link in carrying:
             what = "has a part" if link in case.checked_links else "carries a mass"
             raise CaseError(f"massless: link '{link}' {what}, so it weighs something; remove one of the two statements")

@@ -11,6 +11,7 @@ import typer
 
 from reports.commands.ending import end_if_stopped, run
 from reports.commands.materials import app as materials
+from reports.commands.starters import app as starters
 from reports.commands.study import app as study
 
 if TYPE_CHECKING:
@@ -33,16 +34,10 @@ SetOption = Annotated[
     typer.Option("--set", help='Override an entry of the case, such as --set parts.tube.outer_diameter="6 mm".'),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")]
-ThreadsOption = Annotated[
-    int,
-    typer.Option(min=1, max=256, help="Threads per library, and child processes at a time."),
-]
+ThreadsOption = Annotated[int, typer.Option(min=1, max=256, help="Threads per library, and child processes at a time.")]
 MemoryOption = Annotated[
     str | None,
-    typer.Option(
-        help='Memory limit, such as "4 GB"; default: the free memory of the system.',
-        show_default=False,
-    ),
+    typer.Option(help='Memory limit, such as "4 GB"; default: the free memory of the system.', show_default=False),
 ]
 AccuracyOption = Annotated[
     str | None,
@@ -309,16 +304,7 @@ def synth(
         _tell(f"\nRecord and drawing: {output / 'synth'}", json)
 
 
-@app.command()
-def cases() -> None:
-    """List the built-in cases."""
-    from loads.case.case_file import built_in_cases, read_case
-
-    width = max(map(len, built_in_cases()))
-    for name in built_in_cases():
-        print(f"{name:<{width}}  {read_case(name).title}")
-
-
+app.add_typer(starters)
 app.add_typer(materials)
 app.add_typer(study)
 
@@ -356,44 +342,6 @@ def inspect(
         _progress("Drawing the part ...")
         write_folder(output, "inspect", lambda folder: write_inspection(found, folder, _progress))
         _tell(f"\nEntries, record and picture: {output / 'inspect'}", json)
-
-
-@app.command()
-def schema(
-    study: Annotated[bool, typer.Option("--study", help="Of the plan of a study instead.")] = False,
-) -> None:
-    """Print the JSON Schema of the case file."""
-    import json
-
-    from loads.case.case import Case
-    from loads.plans.plan import StudyPlan
-
-    print(json.dumps((StudyPlan if study else Case).model_json_schema(), indent=2))
-
-
-@app.command()
-def new(
-    path: Annotated[Path, typer.Argument(help="The file to write.", show_default=False)],
-    study: Annotated[bool, typer.Option("--study", help="Write the plan of a study instead.")] = False,
-) -> None:
-    """Write a commented starter case: a four-bar linkage."""
-    from importlib.resources import files
-
-    from geometry.base.errors import CannotRunError, CaseError
-
-    source = files("loads.plans" if study else "loads.cases")
-    text = source.joinpath("starter-study.toml.txt" if study else "starter.toml.txt").read_text(encoding="utf-8")
-    try:
-        with path.open("x", encoding="utf-8") as stream:
-            stream.write(text)
-    except FileExistsError:
-        raise CaseError(f"'{path}' exists, and existing files are not overwritten; choose another name") from None
-    except OSError as error:
-        if path.is_file():
-            path.unlink()  # half of it
-        raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
-    command = "study" if study else "check"
-    print(f"Wrote {path}. {command.capitalize()} it with: alula {command} {path} -o out")
 
 
 @app.command()
