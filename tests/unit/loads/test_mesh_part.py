@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from fea.check.run import check_case
 from fea.refine.refinement import START, Effort
-from geometry.base.errors import CaseError
+from geometry.base.errors import CannotRunError, CaseError
 from geometry.imported.read import part_facts
 from geometry.meshing.element_geometry import jacobian_coefficients
 from geometry.meshing.file_mesh import read_mesh
@@ -210,6 +210,15 @@ def test_a_file_that_is_no_mesh_is_refused_in_a_sentence(tmp_path, name, content
     path.write_bytes(content)
     with pytest.raises(CaseError, match=said):
         part_facts(path, 1.0)
+
+
+def test_a_mesh_that_changes_meanwhile_is_noticed(tmp_path):
+    path = write(tmp_path / "own.msh", *curved())
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    with path.open("a", encoding="ascii") as stream:
+        stream.write("\n")
+    with pytest.raises(CannotRunError, match=r"own.msh.* changed while it was used"):
+        read_mesh(str(path), digest, 1.0)
 
 
 def test_faces_of_the_boundary_look_outwards(tmp_path, mesh):
