@@ -164,6 +164,8 @@ def reentrant_edges(body: Body) -> list[ReentrantEdge]:
 def sections_and_rings(body: Body, stations: tuple[float, ...]) -> tuple[list[StationSection], list[float]]:
     """Return sections of a body, and the flat rings about its holes; errors are those of ``mesh_body``.
 
+    The body may lack its load points, so that its rules are not checked here.
+
     Parameters
     ----------
     body : Body
@@ -178,7 +180,6 @@ def sections_and_rings(body: Body, stations: tuple[float, ...]) -> tuple[list[St
     rings : list of float
         Outer diameter of the flat ring about each pin's hole; 0 where there is none [mm].
     """
-    check_body(body)
     sections, rings = _run("sections", body, stations)
     return sections, rings
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import AfterValidator, Field, ValidationInfo
 
 from geometry.base.errors import CannotRunError
-from geometry.base.model import Name, Text, refusal
+from geometry.base.model import Direction, Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import Body, Feature, PartKind
 from geometry.bodies.kernel import Entity, Kernel
@@ -48,6 +48,9 @@ class FilePart(Printable):
     """How far the centre of a bore may lie from the point that the link states for it."""
     diameter_tolerance: Annotated[Length, NOT_NEGATIVE] = 0.3
     """How much the diameter of a bore may differ from that of its pin."""
+    along: Direction | None = None
+    """Direction of the link's x axis in the frame of the file; needed where the link has a single pin, and allowed only
+    there. What it has along the pin is left out."""
     flip: bool = False
     """Whether the part lies the other way up, where its bores alone do not tell."""
     plane: Length | None = None

@@ -19,6 +19,9 @@ from geometry.placement.fit import Fit, SlotEnd, Wanted, ends_of
 
 Real = NDArray[np.float64]
 
+STEEPEST = math.radians(1.0)
+"""Least angle between the bore of a single pin and a stated direction; the direction's part across the bore counts."""
+
 
 def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fit:
     """Find how a part lies in its link.
@@ -43,10 +46,12 @@ def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
         Where none fits, or several do.
     """
     candidates = [_candidates(part, bores, one) for one in wanted]
-    if len(wanted) < 2:
-        raise CaseError(
-            f"an imported part needs two pins or more to tell how it lies, but the link has {len(wanted)}; add a joint"
-        )
+    if not wanted:
+        raise CaseError("an imported part is placed by the bores of its pins, but the link has no joint; add one")
+    if len(wanted) == 1:
+        return _placed_along(part, candidates[0], wanted[0])
+    if part.along is not None:
+        raise CaseError("along: the pins of the link tell how the part lies; leave it out")
     _check_named_parallel(part, wanted, candidates)
     spots = [end for one in wanted for end in one.ends]
     rounds = [
@@ -70,6 +75,34 @@ def place(part: FilePart, bores: Sequence[Bore], wanted: Sequence[Wanted]) -> Fi
         )
     [either_way_up] = found.values()
     return either_way_up[-1 if part.flip else 0]
+
+
+def _placed_along(part: FilePart, bores: Sequence[Bore], one: Wanted) -> Fit:
+    """Return how a part lies in a link with a single pin, by the direction that the part states."""
+    if len(bores) > 1:
+        raise CaseError(
+            f"the pin at {one.name} fits {', '.join(bore.told for bore in bores[:12])}; state which it is, in the "
+            "part's bores"
+        )
+    if one.slot is not None:
+        raise CaseError(f"the link has no joint but one in a slot, {one.name}, which does not hold it; add a joint")
+    if part.along is None:
+        raise CaseError(
+            f"the link has a single pin, {one.name}, which does not tell how the part lies; state along = [x, y, z], "
+            "the direction of the link's x axis in the frame of the file"
+        )
+    [bore] = bores
+    z = _senses(bore)[-1 if part.flip else 0]
+    across = _across(np.asarray(part.along, dtype=float), z)
+    size = float(np.linalg.norm(across) / np.linalg.norm(part.along))
+    if size < math.sin(STEEPEST):
+        raise CaseError(
+            f"along = {list(part.along)} is the direction of {bore.name}, but the link's x axis lies across its pins; "
+            "state one across the bore"
+        )
+    turn = _turned(across, np.array([1.0, 0.0]), z)
+    shift = np.append(one.place, -(part.plane or 0.0)) - turn @ np.asarray(bore.centre)
+    return Fit(turn=turn, shift=shift, bores={one.name: bore})
 
 
 def with_loaded_bores(

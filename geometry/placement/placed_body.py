@@ -113,7 +113,10 @@ def _placed(
     body = Body(
         part=solid, pins=tuple(_pin(placement, one) for one in (wanted[0], *loaded, *wanted[1:])), ends=(), holes=()
     )
-    first, last = min(pin.span[0] for pin in body.pins), max(pin.span[1] for pin in body.pins)
+    reach = [x for pin in body.pins for x in pin.span]
+    if max(reach) == min(reach):  # a single pin: as far as loads reach
+        reach += [x for x, _ in others.values()]
+    first, last = min(reach), max(reach)
     stations = tuple(first + (last - first) * (i + 0.5) / STATIONS for i in range(STATIONS))
     sections, rings = sections_and_rings(body, stations)
     found = [(s.area, *s.principal, s.i_z, s.high[0] - s.low[0], s.high[1] - s.low[1]) for s in sections]

@@ -307,7 +307,7 @@ def _remarks(found: Inspection) -> list[str]:
         angle = math.degrees(angle_between(groups[0][0], one[0]))
         told.append(f"{one[0].name} stands at {fixed(angle, 2)}° to {groups[0][0].name}.")
     if bores and frame is None:
-        told.append("There are not two bores with parallel axes, so that the part is no link yet.")
+        told.append("No two bores are parallel: a link of this part has a single pin, and needs `along`.")
     if frame is not None:
         middles = {point: float(frame.place(_array(bore.centre))[2]) for point, bore in frame.bores.items()}
         if max(middles.values()) - min(middles.values()) > 1e-3 * min(bore.diameter for bore in frame.bores.values()):

@@ -112,3 +112,33 @@ def test_a_place_off_by_less_than_the_tolerance_is_the_nearest():
     off = {"A": (0.0, 0.0), "B": (60.06, 0.0), "C": (22.0, 34.0)}
     found = place(part(), moved(np.eye(3), np.zeros(3)), wanted(off))
     assert max(np.linalg.norm(found.middle(name)[:2] - at) for name, at in off.items()) < 0.05
+
+
+ONE = {"A": (7.0, -2.0)}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_single_pin_needs_a_direction_of_which_the_part_across_the_bore_counts(seed):
+    turn = rotation(seed)
+    z = turn[:, 2] * np.sign(turn[np.argmax(np.abs(turn[:, 2])), 2])
+    bores = moved(turn, np.array([3.0, -40.0, 12.0]), ONE)
+    found = place(part(along=tuple(turn[:, 0] + 0.7 * z)), bores, wanted(ONE))
+    assert found.turn == pytest.approx(np.array([turn[:, 0], np.cross(z, turn[:, 0]), z]))
+    assert found.middle("A") == pytest.approx([7.0, -2.0, 0.0])
+    over = place(part(along=tuple(turn[:, 0]), flip=True, plane="2 mm"), bores, wanted(ONE))
+    assert over.turn == pytest.approx(np.array([turn[:, 0], np.cross(-z, turn[:, 0]), -z]))
+    assert over.middle("A") == pytest.approx([7.0, -2.0, -2.0])
+
+
+@pytest.mark.parametrize(
+    ("entries", "points", "said"),
+    [
+        ({}, ONE, r"single pin, A, which does not tell how the part lies; state along = \[x, y, z\]"),
+        ({"along": (0.0, 0.01, 1.0)}, ONE, "is the direction of bore 1, but the link's x axis lies across its pins"),
+        ({"along": (1.0, 0.0, 0.0)}, POINTS, "along: the pins of the link tell how the part lies; leave it out"),
+        ({"along": (1.0, 0.0, 0.0)}, {}, "the link has no joint; add one"),
+    ],
+)
+def test_a_direction_is_stated_where_it_is_needed_and_only_there(entries, points, said):
+    with pytest.raises(CaseError, match=said):
+        place(part(**entries), moved(np.eye(3), np.zeros(3)), wanted(points))

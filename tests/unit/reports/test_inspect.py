@@ -57,7 +57,7 @@ def test_it_lists_the_solid_its_mass_and_every_bore():
         ("slotted", ["slot, 10 mm between the centres of its ends, through", "blind, coaxial with bore 8"]),
         ("open_bores", ["through, 89% of the circle is there"]),
         ("cross_tube", ["bore 2 stands at 90.00° to bore 1.", "No point of the link: bore 2."]),
-        ("sleeve", ["There are not two bores with parallel axes, so that the part is no link yet."]),
+        ("sleeve", ["No two bores are parallel: a link of this part has a single pin, and needs `along`."]),
     ],
 )
 def test_it_says_what_kinds_of_holes_there_are(name, sentences):
