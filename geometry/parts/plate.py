@@ -33,10 +33,10 @@ class Plate(PartKind):
     both faces.
 
     In a frame of beams it is a strip as wide as eye_diameter, or as its narrowest place if that is less: a cautious
-    stiffness. Hand calculation does not decide on it.
+    stiffness, but for the flanks of a slot. Hand calculation does not decide on it.
     """
 
-    takes: ClassVar[frozenset[Feature]] = frozenset(("load points without a pin", "eyes of their own"))
+    takes: ClassVar[frozenset[Feature]] = frozenset(("slots", "load points without a pin", "eyes of their own"))
     is_beam: ClassVar[bool] = False
     patches_anywhere: ClassVar[bool] = True
     by_hand: ClassVar[str] = (
@@ -102,7 +102,7 @@ class Plate(PartKind):
 
     def _outline(self, body: Body, radius: float) -> Outline:
         """Return the outline with fillets of a radius, whose necks are wide enough."""
-        circles = [(pin.x, pin.y, body.ring(pin).diameter / 2.0) for pin in body.pins]
+        circles = [(x, pin.y, body.ring(pin).diameter / 2.0) for pin in body.pins for x in pin.span]
         found = outline(circles + [(end.x, end.y, self.eye_diameter / 2.0) for end in body.ends], radius)
         if any(width < LEAST_WALL * self.eye_diameter for width, *_ in found.webs):
             raise BallError
@@ -120,8 +120,7 @@ class Plate(PartKind):
         """
         return rectangle(
             min(
-                width - sum(2.0 * math.sqrt(max((p.diameter / 2.0) ** 2 - (x - p.x) ** 2, 0.0)) for p in body.pins)
-                for x, width in self._widths(body)
+                width - sum(_about(pin, pin.diameter).across(x) for pin in body.pins) for x, width in self._widths(body)
             ),
             self.thickness,
         )
@@ -178,7 +177,13 @@ class Plate(PartKind):
                 )
 
     def _check_fillets(self, body: Body) -> None:
-        """Refuse fillets that do not fit between the eyes, with the least radius that does."""
+        """Refuse fillets beside slots, and such as do not fit between the eyes, with the least radius that does."""
+        sliding = next((pin.name for pin in body.pins if pin.slot > 0.0), None)
+        if sliding is not None and self.fillet_radius > 0.0:
+            raise CaseError(
+                f"fillet_radius {self.fillet_radius:.4g} mm of a plate with a slot would draw the outline in between "
+                f"the ends of the slot at {sliding} as well; leave it out"
+            )
         try:
             self.outline(body)
         except BallError:
@@ -209,7 +214,7 @@ class Plate(PartKind):
         """Refuse a loaded patch that leaves its circle, or runs into the ring about a hole or another patch."""
         room = [(FLAT_WALL * self.eye_diameter, f"{FLAT_WALL:g} eye_diameter")]
         for pin in body.pins:
-            gap = math.dist((pin.x, pin.y), (end.x, end.y)) - self.flat_diameter(body, pin) / 2.0
+            gap = float(pin.distance(end.x, end.y)) - self.flat_diameter(body, pin) / 2.0
             room.append((2.0 * gap, f"the eye at {pin.name}"))
         later = body.ends[number + 1 :]
         room += [(math.dist((o.x, o.y), (end.x, end.y)), f"the patch of {o.name}") for o in later]
@@ -235,9 +240,9 @@ class Plate(PartKind):
         cut = cuts.pop(name)
         found = [("the edge of the plate", around.depth(arc.x, arc.y) - arc.radius) for arc in cut.arcs]
         beside = [("the edge of the plate", (a.x, a.y, -a.radius)) for a in around.arcs if a.radius < 0.0]
-        beside += [(f"the eye at {p.name}", (p.x, p.y, self.flat_diameter(body, p) / 2.0)) for p in body.pins]
         beside += [(f"the patch of {e.name}", (e.x, e.y, e.patch / 2.0)) for e in body.ends]
         others = [(what, outline([circle])) for what, circle in beside] + list(cuts.items())
+        others += [(f"the eye at {p.name}", _about(p, self.flat_diameter(body, p))) for p in body.pins]
         return min([*found, *((what, gap(cut, other)) for what, other in others)], key=lambda entry: entry[1])
 
     def solid(self, kernel: Kernel, body: Body) -> Entity:
@@ -271,3 +276,8 @@ class Plate(PartKind):
             edge = min((pocket.floor_radius or size) * share, narrow, size)
             places.append((edge, pocket.distance_formula(self.thickness)))
         return places
+
+
+def _about(pin: Pin, diameter: float) -> Outline:
+    """Return the circle about a pin hole, or the long one about a slot."""
+    return outline([(x, pin.y, diameter / 2.0) for x in pin.span])

@@ -91,6 +91,23 @@ def test_a_waist_takes_circular_segments_off_a_plate():
     assert np.ptp(mesh.points[middle, 1]) == pytest.approx(neck, rel=0.02)
 
 
+def test_a_slot_in_a_plate_has_an_eye_as_long_as_it_is():
+    sliding = Pin(name="S", x=30.0, y=0.0, diameter=4.0, slot=12.0)
+    body = plate(pin("A", 0.0, 0.0, 4.0), pin("C", 10.0, 20.0, 4.0), sliding)
+    check_body(body)
+    area, *_ = properties([(0.0, 0.0, 5.0), (10.0, 20.0, 5.0), (24.0, 0.0, 5.0), (36.0, 0.0, 5.0)], [])
+    holes = 3.0 * math.pi * 4.0 + 12.0 * 4.0
+    assert mass_properties(body).volume == pytest.approx((area - holes) * T, rel=1e-7)
+    mesh = mesh_body(body, COARSE)
+    assert mesh.areas["bore:S"] == pytest.approx((math.pi * 4.0 + 24.0) * T, rel=1e-6)
+    flat = 4.0 + 0.75 * 6.0
+    assert mesh.areas["top:S"] == pytest.approx(math.pi / 4.0 * (flat**2 - 16.0) + 12.0 * (flat - 4.0), rel=1e-6)
+    with pytest.raises(CaseError, match=r"holes\[1\] .* a wall of 0 mm to the eye at S"):
+        check_body(plate(*body.pins, holes=((30.0, 5.0, 2.0),)))
+    with pytest.raises(CaseError, match=r"fillet_radius 60 mm of a plate with a slot .* at S as well; leave it out"):
+        check_body(plate(*body.pins, fillet=60.0))
+
+
 def pocket(*centres, radius, depth, **changes):
     sizes = {"centres": [[f"{x} mm", f"{y} mm"] for x, y in centres], "radius": f"{radius} mm", "depth": f"{depth} mm"}
     return sizes | changes
