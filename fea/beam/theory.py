@@ -121,6 +121,8 @@ class BeamCheck:
         The stress that the safety factor counts from [MPa].
     safety_factor : float
         Strength over the largest equivalent stress; infinite where nothing acts.
+    without : str
+        Why no beam stands for the link, so that all forces and stresses here are zero; "" where one does.
     """
 
     forces: Piecewise
@@ -140,6 +142,12 @@ class BeamCheck:
     worst: SectionStress
     strength: float
     safety_factor: float
+    without: str = ""
+
+    @property
+    def idle(self) -> bool:
+        """True where nothing acts on the link."""
+        return not self.without and self.worst.equivalent == 0.0
 
     def stress_at(self, x: float, side: Side = "after") -> SectionStress:
         """Return the stresses at a station.

@@ -1,19 +1,22 @@
 """What acts on one link cut free, with the growth of its bending, and its hand calculation."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from fea.beam.cut_free import beam_loads, link_loads
 from fea.beam.deflection import deflection
 from fea.beam.details import Detail, details, remarks
 from fea.beam.flanks import flanks_of
+from fea.beam.loads import BeamLoads, PointLoad
 from fea.beam.section_stress import SectionStress
 from fea.beam.theory import BeamCheck, check_beam
 from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.unloaded import load_size, without_rounding
-from geometry.bodies.body import hand_section, reference_line
+from geometry.bodies.body import hand_section, no_beam, reference_line
 from loads.case.case import Case
 from loads.records.applied import Load
 from loads.statics.statics import Reactions
@@ -100,6 +103,10 @@ def link_by_hand(case: Case, link: str, loads: LinkLoads) -> LinkByHand:
     """
     material, body = case.material_of(link), case.body(link)
     section = hand_section(body)
+    if without := no_beam(body):
+        ends = [PointLoad(point=np.array([x, 0.0, 0.0]), wrench=np.zeros(6)) for x in (0.0, 1.0)]
+        nothing = check_beam(BeamLoads(points=tuple(ends)), section, material.allowable, material.poissons_ratio)
+        return LinkByHand(check=replace(nothing, without=without), displacement=0.0, details=(), remarks=(without,))
     acting = beam_loads(loads, body, material.density)
     check = check_beam(acting, section, material.allowable, material.poissons_ratio)
     bent = deflection(

@@ -16,6 +16,7 @@ from geometry.materials.material import Material
 from loads.case.case import Case
 
 BEAM_ALONE = "beam theory without stress concentration"
+NO_BEAM = "no beam stands for this link"
 IDLE = DecidedLink(decision=Decision(model="beam", why="nothing acts on it", next_cost=""))
 
 
@@ -74,6 +75,9 @@ def _hand_result(
         rows = sorted(bands.locations, key=lambda row: row.location.x)
         x = rows[first_largest([(r.principal if material.brittle else r.von_mises).high for r in rows])].location.x
         notes: tuple[str, ...] = ()
+    elif hand.check.without:
+        von_mises = principal = moved = Band.unknown(NO_BEAM)
+        notes = hand.remarks
     else:
         tension = max(worst.axial + worst.bending, worst.bending - worst.axial, 0.0)
         von_mises, principal, moved = (

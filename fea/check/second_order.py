@@ -26,7 +26,7 @@ from fea.beam.piecewise import Piecewise, Side
 from fea.beam.theory import internal_forces
 from fea.buckling.buckling import columns, holding
 from fea.common.link_loads import LinkLoads
-from geometry.bodies.body import hand_section
+from geometry.bodies.body import hand_section, no_beam
 from loads.case.case import Case
 from loads.records.applied import LineLoad
 
@@ -72,6 +72,8 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
     LinkLoads
     """
     body, material = case.body(link), case.material_of(link)
+    if no_beam(body):
+        return loads
     forces = internal_forces(beam_loads(loads, body, material.density))
     section, young = hand_section(body), material.youngs_modulus
     planes = [Bend(stiffness=young * inertia, stretches=soft) for inertia, soft in columns(section, flanks_of(body))]

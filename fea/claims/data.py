@@ -246,13 +246,17 @@ def _load_case(result: CheckResult, load_case: LoadCaseResult) -> Mapping[str, A
     }
 
 
+def _by_beam(link: LinkResult) -> bool:
+    return not isinstance(link, SolidResult) and not link.beam.without
+
+
 def _von_mises(link: LinkResult) -> float:
     """Largest stress [MPa] of the solid, else by beam theory alone, as the hand calculations of sources are."""
-    return link.von_mises_max.value if isinstance(link, SolidResult) else float(link.beam.equivalent.max())
+    return float(link.beam.equivalent.max()) if _by_beam(link) else link.von_mises_max.value
 
 
 def _safety_factor(link: LinkResult) -> float:
-    return link.safety_factor.value if isinstance(link, SolidResult) else link.beam.safety_factor
+    return link.beam.safety_factor if _by_beam(link) else link.safety_factor.value
 
 
 def _material(case: Case, link: str) -> Mapping[str, Any]:

@@ -13,7 +13,7 @@ from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
 from fea.nonlinear.large_displacement import LEAST_FACTOR
 from fea.superposition.unit_loads import unit_forces
-from geometry.bodies.body import hand_section
+from geometry.bodies.body import hand_section, no_beam
 from loads.case.case import Case
 from loads.records.applied import LineLoad
 
@@ -105,8 +105,11 @@ def axial_compression(case: Case, link: str, history: LinkLoads) -> tuple[Real, 
     Returns
     -------
     tuple of (ndarray, shape (P,), AxialForce)
-        The largest [N], and all of it.
+        The largest [N], and all of it; none where no beam stands for the link.
     """
+    if no_beam(case.body(link)):
+        none = np.zeros(history.poses)
+        return none, AxialForce(breaks=np.array([0.0, 1.0]), values=np.zeros((1, 3, history.poses)))
     points, lines = _axial_loads(case, link, history)
     breaks = sorted({x for x, _ in points} | {x for line in lines for x in line[:2]})
     poses = history.poses

@@ -96,7 +96,7 @@ def _link(
             limit = check.maximum
         outcome = CheckOutcome.of(name, Subject.link(result.link), load_case, quantity, value, limit)
         outcome = _with_meshes(outcome, meshes)
-    if not result.decided_by and outcome.verdict is not Verdict.UNDECIDED and result.beam.worst.equivalent > 0.0:
+    if not result.decided_by and outcome.verdict is not Verdict.UNDECIDED and not result.beam.idle:
         return outcome.left_open(result.why)
     return outcome
 

@@ -40,7 +40,7 @@ def layer_outcomes(case: Case, load_case: str, links: Mapping[str, LinkResult]) 
         material, found = case.material_of(link), result.layers
         if found is not None:
             yield _judged(outcome(found.safety_factor), found, material.title)
-        elif result.beam.worst.equivalent == 0.0:
+        elif result.beam.idle:
             yield outcome(Band.exact(np.inf)).because("nothing acts on this link")
         elif material.strength_across_layers is None:
             yield outcome(Band.unknown()).because(no_strength(material.title))

@@ -422,6 +422,29 @@ def hand_section(body: Body) -> Section:
     return body.part.hand_section(body)
 
 
+def no_beam(body: Body) -> str:
+    """Say why no beam along the x axis stands for a body.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+
+    Returns
+    -------
+    str
+        For people; "" where one does: for tubes and bars, and for others that reach at least as far along x as across.
+    """
+    places = [(pin.x, pin.y) for pin in body.pins] + [(end.x, end.y) for end in body.ends]
+    along, across = (max(sizes) - min(sizes) for sizes in zip(*places, strict=True))
+    if body.part.is_beam or across <= along:
+        return ""
+    return (
+        f"no beam along the x axis stands for it, since its points lie {across:.4g} mm apart across that axis and "
+        f"{along:.4g} mm along it: it has no hand calculation, and is not checked as a column"
+    )
+
+
 def reference_line(body: Body) -> tuple[float, float]:
     """Return the two stations through which the line runs that hand calculation's displacements refer to.
 

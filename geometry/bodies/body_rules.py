@@ -37,18 +37,35 @@ def check_body(body: Body) -> None:
         raise CaseError("the link has no pin on its axis, but a part needs at least 1; add a joint there")
     _check_features(body)
     _check_range(body)
-    first, last = extent(body)
-    if not last > first:
-        raise CaseError(
-            f"all pins and load points lie at x = {first:g} mm, so the link has no length along its x axis; move them "
-            "apart, or turn the link's frame"
-        )
+    if body.part.is_beam:
+        check_length(body)
     _check_pins(body)
     body.part.check(body)
     for end in () if body.part.patches_anywhere else body.ends:
         _check_end(body, end)
     for number, row in enumerate(body.holes, start=1):
         _check_row(body, number, row)
+
+
+def check_length(body: Body) -> None:
+    """Refuse a body without length along the x axis, as a beam and any link that moves in a frame must have.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+
+    Raises
+    ------
+    CaseError
+        Where all of its points lie at one x.
+    """
+    first, last = extent(body)
+    if not last > first:
+        raise CaseError(
+            f"all pins and load points lie at x = {first:g} mm, so the link has no length along its x axis; move them "
+            "apart, or turn the link's frame"
+        )
 
 
 def _check_features(body: Body) -> None:

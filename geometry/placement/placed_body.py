@@ -117,7 +117,7 @@ def _placed(
     if max(reach) == min(reach):  # a single pin: as far as loads reach
         reach += [x for x, _ in others.values()]
     first, last = min(reach), max(reach)
-    stations = tuple(first + (last - first) * (i + 0.5) / STATIONS for i in range(STATIONS))
+    stations = tuple(first + (last - first) * (i + 0.5) / STATIONS for i in range(STATIONS if last > first else 0))
     sections, rings = sections_and_rings(body, stations)
     found = [(s.area, *s.principal, s.i_z, s.high[0] - s.low[0], s.high[1] - s.low[1]) for s in sections]
     return Body(

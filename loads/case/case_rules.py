@@ -4,7 +4,7 @@ import math
 
 from geometry.base.errors import CaseError
 from geometry.base.model import check_file_names
-from geometry.bodies.body_rules import check_body
+from geometry.bodies.body_rules import check_body, check_length
 from geometry.materials.laminate import ANISOTROPIC, is_laminate
 from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
@@ -59,7 +59,7 @@ def check_rules(case: CoreCase) -> None:
             require(f"links.{name}.part", link.part, case.parts, "is unknown")
             _check_slots(case, name)
             _check_eyes(case, name)
-            _check_body(f"links.{name}", case.body(name))
+            _check_body(f"links.{name}", case.body(name), moves=not link.ground)
         elif link.slots or link.arms or link.eyes:
             raise CaseError(
                 f"links.{name}.part: it is missing, but slots, arms and eyes are shapes of a part; name one"
@@ -178,9 +178,11 @@ def _check_motion(case: CoreCase, spec: MotionSpec) -> None:
         check_moving(case.linkage, "motion.coordinate", name)
 
 
-def _check_body(entry: str, body: Body) -> None:
+def _check_body(entry: str, body: Body, *, moves: bool) -> None:
     try:
         check_body(body)
+        if moves:
+            check_length(body)
     except CaseError as error:
         raise CaseError(f"{entry}: {error}") from None
 

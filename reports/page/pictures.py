@@ -116,7 +116,9 @@ def draw_pictures(
         rendered = beside.submit(stress_plots, worst, points)
         pictures = {linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)}
         pictures |= {
-            diagram_name(link): internal_force_diagram(found.beam, stations[link]) for link, found in worst.items()
+            diagram_name(link): internal_force_diagram(found.beam, stations[link])
+            for link, found in worst.items()
+            if not found.beam.without
         }
         pictures |= {
             layers_name(link): build_map(layers)

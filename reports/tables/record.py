@@ -164,7 +164,9 @@ def _link(result: LinkResult) -> dict[str, Any]:
         "decided_by": result.decided_by or None,
         "why": result.why or None,
         "layers": layer_record(result.layers),
-        "beam": {
+        "beam": None
+        if result.beam.without
+        else {
             "equivalent_max": result.beam.worst.equivalent,
             "x": result.beam.worst_x,
             "safety_factor": result.beam.safety_factor,

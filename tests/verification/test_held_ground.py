@@ -14,6 +14,7 @@ from fea.check.run import check_case
 from fea.common.verdict import Quantity, Subject
 from fea.motion.envelope import envelope_case
 from fea.motion.link_history import link_histories
+from fea.outcomes.unchecked import unchecked
 from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 from loads.states.case_motion import solve_case_motion
@@ -102,6 +103,36 @@ def test_a_point_of_the_linkage_moves_with_the_ground_where_solids_tell():
         moved.append(np.trapezoid(ACROSS * x * m / (E * inertia) + ACROSS * v / stiff, x))
     assert by_solid.value.value == pytest.approx(math.hypot(*moved), rel=0.05)
     assert by_solid.value.low < by_solid.value.value < by_solid.value.high < 2.0 * by_solid.value.value
+
+
+PLATE = {"shape": "plate", "material": "pvc-u", "thickness": "4 mm", "eye_diameter": "12 mm"}
+TURNED = {
+    "links__bracket__points": {"A": ["0 mm", "0 mm"], "O": ["0 mm", "40 mm"], "base": ["0 mm", "80 mm"]},
+    "pose__near": {"strut": "323.13 deg", "idle": "299.74 deg"},
+    "load_cases__push__forces": [{"link": "strut", "at": "B", "force": ["-1.6 N", "1.2 N"]}],
+}
+"""The same linkage, turned by 90 degrees."""
+
+
+def test_a_plate_across_the_x_axis_is_judged_by_its_solid_and_has_no_beam():
+    coarse = {"parts__bar": PLATE, "solid__mesh_size": 2.0}
+    results = [check_case(bracket(**coarse, **turned), threads=1) for turned in ({}, TURNED)]
+    along, across = (result.load_cases["push"].links["bracket"] for result in results)
+    assert across.von_mises_max.value == pytest.approx(along.von_mises_max.value, rel=0.05)
+    assert across.displacement_max.value == pytest.approx(along.displacement_max.value, rel=0.02)
+    assert along.beam.worst.equivalent > 0.0
+    assert (along.beam.without, across.beam.worst.equivalent) == ("", 0.0)
+    assert any("80 mm apart across that axis and 0 mm along it" in note for note in across.notes)
+    columns = [
+        {c.link for c in result.load_cases["push"].checks if c.quantity is Quantity.BUCKLING_FACTOR}
+        for result in results
+    ]
+    assert "bracket" in columns[0]
+    assert "bracket" not in columns[1]
+    assert "buckling of bracket by itself (no beam)" in unchecked(results[1].case)
+    by_hand = check_case(bracket(**coarse, **TURNED), fidelity="beam")
+    assert by_hand.load_cases["push"].links["bracket"].von_mises_max.unknowable
+    assert by_hand.verdict == "undecided"
 
 
 def test_over_a_motion_it_bears_what_it_bears_at_every_pose():
