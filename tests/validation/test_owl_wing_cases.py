@@ -9,7 +9,11 @@ import solved
 from fea.check.anchor import wrenches_on_ground
 from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
+from fea.elements.quadrature import surface_quadrature
+from fea.elements.space import displacement_space
+from fea.refine.refinement import START
 from geometry.base.errors import CaseError
+from geometry.meshing.mesh import mesh_body
 from loads.case.case_file import read_case
 from loads.records.aero import air_loads
 from loads.states.masses import part_mass
@@ -217,6 +221,21 @@ def test_the_anchor_holds_all_that_acts(name, statics):
         np.testing.assert_allclose(ground["A"][:3] + ground["G"][:3], total, atol=1e-8 * size)
         about_a = ground["A"][3:] + ground["G"][3:] + np.cross([0.0, 125.0, 0.0], ground["G"][:3])
         np.testing.assert_allclose(about_a, moment, atol=1e-5 * size)
+
+
+def test_the_anchor_weighs_about_what_the_source_states():
+    case = read_case("owl-wing-anchor")
+    assert part_mass(case, "AG").mass == pytest.approx(2.2e-6, rel=0.02)
+    assert set(case.load_cases) == {"weight", "flight", "braking"}
+
+
+def test_the_support_acts_all_over_the_ball_of_the_stud():
+    """A sphere of 7 mm about (12, 62.5, 0), but for the neck."""
+    space = displacement_space(mesh_body(read_case("owl-wing-anchor").body("AG"), START.scaled(3.0)))
+    ball = surface_quadrature(space, "end:stud")
+    away = np.linalg.norm(ball.x - np.array([12.0, 62.5, 0.0]), axis=-1)
+    np.testing.assert_allclose(away, 3.5, rtol=0.02)
+    assert 0.7 < ball.w.sum() / (4.0 * np.pi * 3.5**2) < 0.95
 
 
 # ---- sections ------------------------------------------------------------------------------------------------------
