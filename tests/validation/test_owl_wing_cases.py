@@ -230,12 +230,12 @@ def test_the_anchor_weighs_about_what_the_source_states():
 
 
 def test_the_support_acts_all_over_the_ball_of_the_stud():
-    """A sphere of 7 mm about (12, 62.5, 0), but for the neck."""
+    """A sphere of 7 mm about (12, 62.5, 0), but for the neck, and the fillet of 0.8 mm, which is as near."""
     space = displacement_space(mesh_body(read_case("owl-wing-anchor").body("AG"), START.scaled(3.0)))
     ball = surface_quadrature(space, "end:stud")
     away = np.linalg.norm(ball.x - np.array([12.0, 62.5, 0.0]), axis=-1)
-    np.testing.assert_allclose(away, 3.5, rtol=0.02)
-    assert 0.7 < ball.w.sum() / (4.0 * np.pi * 3.5**2) < 0.95
+    assert 3.4 < away.min() < away.max() < 4.1
+    assert 0.7 < ball.w[np.abs(away - 3.5) < 0.05].sum() / (4.0 * np.pi * 3.5**2) < 0.95
 
 
 # ---- sections ------------------------------------------------------------------------------------------------------
