@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import rocker_case
 from held_ground import POISSON, THICKNESS, WIDTH, E, L, bracket
+from scipy.optimize import brentq
 
 from fea.beam.cut_free import link_loads
 from fea.check.case_statics import solve_case_statics
@@ -59,8 +60,8 @@ def test_the_support_balances_joints_and_weight(weighs):
     assert np.abs(loads.resultant()).max() < 1e-9
 
 
-def buckling(times):
-    found = checked(load_cases__push__forces=pushed(times))
+def buckling(times, **changes):
+    found = checked(load_cases__push__forces=pushed(times), **changes)
     [outcome] = [o for o in found.checks if o.quantity is Quantity.BUCKLING_FACTOR and o.subject.name == "bracket"]
     return outcome
 
@@ -70,6 +71,26 @@ def test_it_buckles_as_a_column_clamped_at_one_end_and_free_at_the_other():
     outcome = buckling(1.0)
     assert outcome.value.value == pytest.approx(euler / ALONG, rel=1e-3)
     assert "built in at 80 mm" in outcome.reason
+
+
+def test_its_joints_hold_it_at_the_most():
+    """Pins at 0 and 40 mm, built in at 80, of the stiffest material: the upper end of the band."""
+    stiffest = 3200.0  # the card's range of moduli is 2400 to 3200 MPa
+    outcome = buckling(1.0)
+    # Across, pins keep its angle as well: two columns of 40 mm with both ends built in.
+    assert outcome.value.high == pytest.approx(4.0 * math.pi**2 * stiffest * I_Y / 40.0**2 / ALONG, rel=3e-3)
+    thick = {"parts__bar__thickness": "16 mm", "parts__bar__eye_thickness": "16 mm"}
+    outcome = buckling(1.0, **thick)
+
+    def stiffness(u):
+        """Of the joint at 40 mm against turning, over EI/L (Livesley & Chandler, Stability functions)."""
+        s = u * (math.sin(u) - u * math.cos(u)) / (2.0 - 2.0 * math.cos(u) - u * math.sin(u))
+        c = (u - math.sin(u)) / (math.sin(u) - u * math.cos(u))
+        return s * (1.0 - c**2) + s
+
+    u = brentq(stiffness, 3.2, 4.4)
+    inertia = 16.0 * WIDTH**3 / 12.0
+    assert outcome.value.high == pytest.approx(u**2 * stiffest * inertia / 40.0**2 / ALONG, rel=3e-3)
 
 
 def test_compression_adds_to_its_bending_though_the_frame_takes_it_for_rigid():

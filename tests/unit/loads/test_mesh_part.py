@@ -172,6 +172,16 @@ def torn():
     return np.vstack([points, other]), both
 
 
+def fanned():
+    """Three tetrahedra on one face, two of them on the same side of it."""
+    points, cells = torn()
+    third = points[:10] * (1.0, 1.0, 2.0)
+    of_third = np.where(np.isin(np.arange(10), [0, 1, 2, 4, 5, 6]), np.arange(10), np.arange(20, 30))
+    cells = np.vstack([cells, [of_third]])
+    cells[1, np.isin(cells[1], [14, 15, 16])] -= 10
+    return np.vstack([points, third]), cells
+
+
 @pytest.mark.parametrize(
     ("made", "kind", "said"),
     [
@@ -186,6 +196,8 @@ def torn():
         (lambda: (curved()[0] * np.nan, curved()[1]), "tetra10", "no finite numbers"),
         (two_bodies, "tetra10", "holds 2 bodies"),
         (torn, "tetra10", "have different mid-nodes on the edge that they share"),
+        (fanned, "tetra10", "has faces that belong to more than two elements"),
+        (lambda: (curved()[0][:9], curved()[1]), "tetra10", "elements with nodes that it does not state"),
         (lambda: (np.vstack([UNIT_TETRA, UNIT_TETRA[EDGES].mean(axis=1)]), [range(10)]), "tetra10", "are straight"),
     ],
 )

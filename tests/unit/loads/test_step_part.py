@@ -106,16 +106,16 @@ def test_a_file_that_changes_meanwhile_is_noticed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("place", "faces"),
-    [(("50 mm", "0 mm"), 1), (("10 mm", "-6.5 mm"), 2)],
-    ids=["on the end face", "between top and bottom"],
+    ("place", "size", "faces"),
+    [(("50 mm", "0 mm"), 5.0, 1), (("10 mm", "-6.5 mm"), 5.0, 2), (("10 mm", "-6.5 mm"), 2.0, 2)],
+    ids=["on the end face", "between top and bottom", "deeper below them than half the circle"],
 )
-def test_a_load_point_has_a_patch_on_the_nearest_faces(tmp_path, place, faces):
-    """Circles of 5 mm: one on the face at x = 50, or one each on top and bottom, which are equally near."""
+def test_a_load_point_has_a_patch_on_the_nearest_faces(tmp_path, place, size, faces):
+    """One circle on the face at x = 50, or one each on top and bottom, 2.5 mm away, which are equally near."""
     points = f'{{ O4 = ["0 mm", "0 mm"], B = ["40 mm", "0 mm"], P = ["{place[0]}", "{place[1]}"] }}'
-    case = read_case(str(imported_case(tmp_path, points=points)))
+    case = read_case(str(imported_case(tmp_path, points=f'{points}, end_patch = "{size} mm"')))
     mesh = mesh_body(case.body("rocker"), COARSE)
-    assert mesh.areas["end:P"] == pytest.approx(faces * np.pi / 4.0 * 5.0**2, rel=1e-5)
+    assert mesh.areas["end:P"] == pytest.approx(faces * np.pi / 4.0 * size**2, rel=1e-5)
 
 
 def test_a_load_point_beside_the_part_is_refused(tmp_path):
