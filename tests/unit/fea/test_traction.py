@@ -18,6 +18,8 @@ from fea.tractions.traction import (
     wrench_density,
 )
 from geometry.base.errors import CannotRunError
+from geometry.meshing.mesh import COARSE, mesh_body
+from geometry.parts.part import Body, Pin, Tube
 from loads.records.applied import BodyForce, LineLoad, PartMass
 from loads.records.bearing import NARROW, WIDE
 
@@ -108,6 +110,21 @@ def test_tilted_pin_pushes_on_opposite_sides_above_and_below(bore):
     loaded = pressure > 0.05 * pressure.max()
     assert (x[loaded] * z[loaded] > -1e-6).all()
     assert pressure.min() > -0.02 * pressure.max()
+
+
+def test_a_pin_off_the_axis_of_a_tube_tilts_by_pressure_alone():
+    """Its wall is longer on one side, where a tilted pin pushes more above than it pulls below."""
+    part = Tube.model_validate({"shape": "tube", "material": "any", "outer_diameter": "8 mm", "inner_diameter": "0 mm",
+                                "eyes": "none"})  # fmt: skip
+    pins = tuple(Pin(name=name, x=x, y=1.4, diameter=2.4) for name, x in (("A", 0.0), ("B", 12.0)))
+    body = Body(part=part, pins=pins, ends=(), holes=())
+    load = PinLoad(name="A", centre=np.array([0.0, 1.4, 0.0]), diameter=2.4,
+                   wrench=np.array([0.0, 5.0, 0.0, 40.0, 0.0, 0.0]))  # fmt: skip
+    off_axis = surface_quadrature(displacement_space(mesh_body(body, COARSE)), "bore:A")
+    density = pin_traction(off_axis, load, WIDE)
+    assert off_axis.wrench(density, load.centre) == pytest.approx(load.wrench, abs=1e-9)
+    across = density - (density * off_axis.normals).sum(axis=-1, keepdims=True) * off_axis.normals
+    assert np.abs(across).max() < 0.01 * np.abs(density).max()
 
 
 def test_hole_of_another_diameter_is_refused(bore):
