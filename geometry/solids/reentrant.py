@@ -4,7 +4,6 @@ At an edge whose material spans an angle β > π, stress grows as r^(λ-1) with 
 Mech. 19 (1952) 526-528; Barber, Elasticity, 3rd ed., section 11.2).
 """
 
-import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -76,36 +75,24 @@ def find_reentrant_edges(gmsh: Any, solid: "Solid") -> list[ReentrantEdge]:
 def _material_angle(gmsh: Any, volume: int, curve: int, faces: NDArray[np.int32], at: float) -> float:
     """Return the angle [rad] that the solid spans at a point of an edge between two faces.
 
-    The faces' tangent planes cut the plane normal to the edge into four sectors, of which one is material
-    at a convex edge and all but one at a re-entrant edge.
+    Behind one face and in front of the other there is material at a re-entrant edge alone, whichever of the two it is.
+    Where one of both places has material and the other none, the normal of a face points inwards, as that of one which
+    was imprinted may.
     """
     place = np.asarray(gmsh.model.getValue(1, curve, [at]))
-    axis = np.asarray(gmsh.model.getDerivative(1, curve, [at]))
-    axis /= np.linalg.norm(axis)
-    rays = []
-    for face in faces:
-        uv = gmsh.model.getParametrization(2, face, place)
-        ray = np.cross(axis, np.asarray(gmsh.model.getNormal(face, uv)))
-        rays += [ray / np.linalg.norm(ray), -ray / np.linalg.norm(ray)]
-    if np.linalg.norm(np.cross(rays[0], rays[2])) < math.sin(SHARP):
+    normals = [gmsh.model.getNormal(face, gmsh.model.getParametrization(2, face, place)) for face in faces]
+    one, other = (np.asarray(normal) / np.linalg.norm(normal) for normal in normals)
+    sine = float(np.linalg.norm(np.cross(one, other)))
+    if sine < math.sin(SHARP):
         return math.pi  # the faces run into each other smoothly
-    across = rays[0]
-    other = np.cross(axis, across)
-    turns = sorted(math.atan2(ray @ other, ray @ across) % (2.0 * math.pi) for ray in rays)
-    sectors = list(itertools.pairwise([*turns, turns[0] + 2.0 * math.pi]))
 
-    def material(sector: tuple[float, float]) -> bool:
-        middle = (sector[0] + sector[1]) / 2.0
-        point = place + _RADIUS * (math.cos(middle) * across + math.sin(middle) * other)
+    def material(direction: NDArray[np.float64]) -> bool:
+        point = place + _RADIUS * direction / np.linalg.norm(direction)
         return bool(gmsh.model.isInside(3, volume, point))
 
-    found = [material(sectors[0]), material(sectors[2])]
-    if found[0] == found[1]:
-        # Opposite sectors: the lone material (or lone void) is one of the other two.
-        lone = sectors[1] if material(sectors[1]) != found[0] else sectors[3]
-        reentrant = found[0]
-    else:
-        reentrant = material(sectors[1])
-        lone = sectors[0] if found[0] != reentrant else sectors[2]
-    span = lone[1] - lone[0]
-    return 2.0 * math.pi - span if reentrant else span
+    reentrant = material(one - other)
+    if material(other - one) != reentrant:
+        other = -other
+        reentrant = material(one - other)
+    turn = math.atan2(sine, float(one @ other))
+    return math.pi + (turn if reentrant else -turn)
