@@ -20,6 +20,7 @@ from geometry.base.errors import CannotRunError
 from geometry.bodies.body import extent, reference_line
 from geometry.bodies.eyes import eye_reach
 from geometry.meshing.mesh import MeshSettings
+from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.part import Body
 from loads.records.bearing import CONTACT_SHORTFALL
 
@@ -123,6 +124,7 @@ def decide(
     effort: Effort,
     *,
     fidelity: str,
+    first: Mapping[str, TaggedMesh] | None = None,
     threads: int | None = None,
     progress: Progress = lambda message: None,
 ) -> dict[str, DecidedLink]:
@@ -140,6 +142,8 @@ def decide(
         Accuracy of the solids and what it may cost; where it is stated, solids are taken at once.
     fidelity : {"auto", "solid"}
         "solid" takes solids at once.
+    first : mapping of str to TaggedMesh, optional
+        First meshes that are there already.
     threads : int, optional
     progress : callable
 
@@ -165,7 +169,7 @@ def decide(
         if decision is not None:
             found[link] = DecidedLink(decision=decision, hands=hands[link])
     rest = {link: task for link, task in tasks.items() if link not in found}
-    solids = refine_links(rest, start, effort, threads=threads, progress=progress)
+    solids = refine_links(rest, start, effort, first=first, threads=threads, progress=progress)
     for link, solid in solids.items():
         decision = Decision(model="solid", why=reasons[link], next_cost="")
         found[link] = DecidedLink(decision=decision, hands=hands.get(link, {}), solid=solid)

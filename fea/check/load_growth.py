@@ -45,6 +45,24 @@ class Growths:
     displacement: Mapping[str, Scatter] = field(default_factory=dict)
     joints: Mapping[str, Scatter] = field(default_factory=dict)
 
+    def times(self, other: "Growths") -> "Growths":
+        """Return what both make together.
+
+        Parameters
+        ----------
+        other : Growths
+
+        Returns
+        -------
+        Growths
+        """
+        pairs = ((self.stress, other.stress), (self.displacement, other.displacement), (self.joints, other.joints))
+        stress, displacement, joints = (
+            {name: one.get(name, Scatter()).times(two.get(name, Scatter())) for name in {**one, **two}}
+            for one, two in pairs
+        )
+        return Growths(stress=stress, displacement=displacement, joints=joints)
+
 
 _Numbers = tuple[dict[str, float], dict[str, float], dict[str, float]]
 
@@ -85,7 +103,7 @@ def growths(
     if low == high or moved.state not in ("deformed", "off", "unknown"):
         return Growths()
     plain = _numbers(hands, moved.reactions or reactions)
-    least, most = (_at(case, load_case, pose, loads, factor) for factor in (low, high))
+    least, most = (_at(case, load_case, pose, loads, reactions, factor) for factor in (low, high))
     found = []
     for i, kind in enumerate(plain):
         # Displacement is in proportion to load over modulus, which its own scatter holds.
@@ -112,20 +130,24 @@ def _at(
     load_case: str,
     pose: Pose,
     loads: Sequence[Load],
+    reactions: Reactions,
     factor: float,
 ) -> _Numbers | None:
-    """Numbers of the load case where load over modulus is ``factor`` times its own; None where nothing holds it."""
+    """Numbers of the load case where load over modulus is ``factor`` times its own; None where nothing holds it.
+
+    In the undeformed pose the joint forces are the same.
+    """
     soft = _softened(case, load_case, factor)
     try:
         forces = joint_forces(soft, pose, loads)
         moved = examine(soft, load_case, forces, loads)
         if moved.gives_way:
             return None
-        cut = {link: cut_link(soft, link, load_case, moved, forces.reactions, loads) for link in soft.checked_links}
+        cut = {link: cut_link(soft, link, load_case, moved, reactions, loads) for link in soft.checked_links}
         hands = {link: link_by_hand(soft, link, what) for link, what in cut.items()}
     except (CaseError, CannotRunError):
         return None
-    return _numbers(hands, moved.reactions or forces.reactions)
+    return _numbers(hands, moved.reactions or reactions)
 
 
 def _numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> _Numbers:

@@ -13,16 +13,18 @@ from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.case_statics import CaseStatics, solve_case_statics
 from fea.check.fidelity import DecidedLink, by_hand, decide
+from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.link_result import link_result
 from fea.check.load_growth import Growths, growths
 from fea.check.point_solids import decide_point
+from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
-from fea.frame.joint_forces import PINNED_STATICS, ways_to_hold
+from fea.frame.joint_forces import PINNED_STATICS, JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
@@ -37,6 +39,8 @@ from fea.solid.solution import require_compressible
 from geometry.base.errors import CaseError
 from geometry.bodies.body import PartKind
 from geometry.linkage.pose import NEAR_DEAD_POINT
+from geometry.meshing.mesh import MeshSettings
+from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.case.case import Case
 from loads.records.check_spec import BearingCheck, DisplacementCheck, MotorCheck, PinCheck
 from loads.statics.statics import Reactions
@@ -109,7 +113,9 @@ class _LoadCase:
             moved=moved,
             cut=cut,
             hands=hands,
-            uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands),
+            uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands).times(
+                force_doubt(case, load_case, statics.forces[load_case], loads)
+            ),
             size=load_size(loads, case.linkage.longest),
         )
 
@@ -125,7 +131,12 @@ class _LoadCase:
     @property
     def free(self) -> Mapping[str, LinkLoads]:
         """Loads of every link cut free; empty where equilibrium alone does not give the joint forces."""
-        return self.cut if self.statics.forces[self.load_case].frame is None else {}
+        return self.cut if self.forces.frame is None else {}
+
+    @property
+    def forces(self) -> JointForces:
+        """Joint forces."""
+        return self.statics.forces[self.load_case]
 
     def links(self, decided: Mapping[str, DecidedLink]) -> dict[str, LinkResult]:
         """Return the results of links."""
@@ -141,7 +152,7 @@ class _LoadCase:
         reactions = moved.reactions or self.statics.reactions[load_case]
         links, pins = self.links(decided), _pins(case, reactions)
         found = (
-            *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints),
+            *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
             *_bearing(case, load_case, reactions, self.uneven),
             *buckling_outcomes(case, load_case, {link: hand.check for link, hand in self.hands.items()}, moved),
             *motors,
@@ -152,7 +163,7 @@ class _LoadCase:
             checks = undecided(checks, load_case, self.size, joints)
         return LoadCaseResult(
             name=load_case,
-            forces=self.statics.forces[load_case],
+            forces=self.forces,
             large_displacement=moved,
             links=links,
             pins=pins,
@@ -212,9 +223,14 @@ def check_case(
         for load_case, forces in statics.forces.items()
     }
     clock("frames")
+    start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
+    first: Mapping[str, TaggedMesh] = {}
+    if fidelity not in BY_HAND:
+        statics, first = with_solids(statics, moved, start, always=fidelity == "solid", threads=threads)
+        clock("frames of solids")
     by_load_case = {load_case: _LoadCase.of(statics, load_case, what) for load_case, what in moved.items()}
     clock("hand calculations")
-    decided = _decided(case, list(by_load_case.values()), fidelity, effort, threads, progress)
+    decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, threads, progress)
     if fidelity not in BY_HAND:
         clock("solid models")
     motors: dict[str, list[CheckOutcome]] = {load_case: [] for load_case in by_load_case}
@@ -245,6 +261,8 @@ def _decided(
     load_cases: Sequence[_LoadCase],
     fidelity: str,
     effort: Effort | None,
+    start: MeshSettings,
+    first: Mapping[str, TaggedMesh],
     threads: int,
     progress: Progress,
 ) -> dict[str, DecidedLink]:
@@ -257,9 +275,8 @@ def _decided(
     if fidelity == "solid":
         for task in tasks.values():
             require_compressible(task.nu)  # before the first mesh
-    start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
     effort, begun = effort or effort_of(case), time.perf_counter()
-    decided = decide(tasks, beams, start, effort, fidelity=fidelity, threads=threads, progress=progress)
+    decided = decide(tasks, beams, start, effort, fidelity=fidelity, first=first, threads=threads, progress=progress)
     for _ in range(POINT_ROUNDS):
         wanted = _wanted(load_cases, decided)
         left = max(effort.time_limit - (time.perf_counter() - begun), 0.0)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.flanks import Flanks, flanks_of
+from fea.frame.condensed import CondensedLink, LinkFlexibility
 from fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
 from fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from geometry.base.errors import CaseError
@@ -28,7 +29,13 @@ _SAME_PLACE = 1e-9
 
 
 def build_frame(
-    case: Case, pose: Pose, loads: Sequence[Load], *, held: Drive | None, bonded: bool = False
+    case: Case,
+    pose: Pose,
+    loads: Sequence[Load],
+    *,
+    held: Drive | None,
+    bonded: bool = False,
+    solids: Mapping[str, LinkFlexibility] | None = None,
 ) -> LinkageFrame:
     """Build the frame of a case in a pose under loads.
 
@@ -44,6 +51,8 @@ def build_frame(
         The drive that holds a link; None where nothing is driven.
     bonded : bool, optional
         True where pins of revolute joints carry moments about their own axis as well.
+    solids : mapping of str to LinkFlexibility, optional
+        Links whose solids tell how they give between their points; these are no beams.
 
     Returns
     -------
@@ -61,7 +70,7 @@ def build_frame(
             "loads out of the plane need; give the links parts"
         )
     loads = tuple(in_axes(load, "global", pose.placement) for load in loads)
-    builder = _Builder(case, pose, loads)
+    builder = _Builder(case, pose, loads, solids or {})
     supports, ties, guides = [], [], []
     places = np.array(builder.places)
     for name, joint in case.joints.items():
@@ -95,6 +104,7 @@ def build_frame(
             guides=tuple(guides),
             loads=tuple(builder.node_loads),
             names=tuple(builder.names),
+            condensed=tuple(builder.condensed),
         ),
         points=builder.points,
         pins=builder.pins,
@@ -108,8 +118,9 @@ def build_frame(
 class _Builder:
     """Nodes, beams and loads of all moving links."""
 
-    def __init__(self, case: Case, pose: Pose, loads: Sequence[Load]) -> None:
+    def __init__(self, case: Case, pose: Pose, loads: Sequence[Load], solids: Mapping[str, LinkFlexibility]) -> None:
         self.case, self.pose = case, pose
+        self.condensed: list[CondensedLink] = []
         self.places: list[Real] = []
         self.names: list[str] = []
         self.elements: list[FrameElement] = []
@@ -123,10 +134,15 @@ class _Builder:
         self.slack = _SAME_PLACE * case.linkage.longest
         for link in case.linkage.moving:
             own = [load for load in loads if load.link == link]
-            if link in case.bending_links:
+            if link in solids:
+                self._solid(link, own, solids[link])
+            elif link in case.bending_links:
                 self._beam(link, own)
             else:
-                self._rigid(link, own)
+                if solids and not self._contacts(link):
+                    self._solid(link, own, LinkFlexibility.rigid(tuple(case.links[link].points)))
+                else:
+                    self._rigid(link, own)
                 self.notes.append(f"link {link} has no part and is rigid in the frame")
             for load in own:
                 if isinstance(load, PointLoad):
@@ -157,6 +173,25 @@ class _Builder:
         self.places.append(self._place(link, x, y))
         self.names.append(f"{name} of {link}")
         return len(self.places) - 1
+
+    def _solid(self, link: str, loads: Sequence[Load], solid: LinkFlexibility) -> None:
+        """Add a link that is condensed to its points; spread loads enter by their resultant at the first."""
+        points = self.case.links[link].points
+        nodes = [self._node(link, *points[name], name) for name in solid.places]
+        self.points |= {(link, name): node for name, node in zip(solid.places, nodes, strict=True)}
+        places = np.array([self.places[node] for node in nodes])
+        arm = np.array([*self.pose.origins[link], 0.0]) - places[0]
+        resultants = [
+            shifted(load.resultant(self.pose.placement), arm) for load in loads if not isinstance(load, PointLoad)
+        ]
+        turn = np.kron(np.eye(2 * len(nodes)), self.pose.placement.axes(link))
+        flexibility, moved = turn @ solid.flexibility @ turn.T, turn @ solid.moved
+        if resultants:
+            whole = np.sum(resultants, axis=0)
+            self.node_loads.append(NodeLoad(node=nodes[0], wrench=whole))
+            moved = moved - flexibility[:, :6] @ whole
+        link_between = CondensedLink(nodes=tuple(nodes), places=places, flexibility=flexibility, moved=moved)
+        self.condensed.append(link_between)
 
     def _beam(self, link: str, loads: Sequence[Load]) -> None:
         record, contacts = self.case.links[link], self._contacts(link)

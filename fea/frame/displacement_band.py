@@ -52,6 +52,8 @@ HOLE = 2.0
 """Length of the net section that stands for a cross hole, over its diameter."""
 FLANKS = 0.15
 """Share by which the flanks of a slot may be softer, or stiffer, than beams."""
+STIFFEST = 0.01
+"""Least flexibility of a link over its beam's: eyes may leave nothing of it."""
 _POINTS = 6
 
 
@@ -258,6 +260,36 @@ def point_bounds(
         largest[axis] = max(abs(low), abs(high))
     value, low, high = (float(np.linalg.norm(ends)) for ends in (moved, least, largest))
     return Band(value=value, low=low, high=high)
+
+
+def flexibility_ranges(case: Case, frame: LinkageFrame, solution: FrameSolution) -> dict[str, tuple[float, float]]:
+    """Return how flexible each link may be under what acts on it, over its beam.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    frame : LinkageFrame
+        Of the linkage.
+    solution : FrameSolution
+        In small displacements.
+
+    Returns
+    -------
+    dict of str to tuple of 2 float
+        Link that is a beam in the frame, and the least and largest ratio of its strain energy; those that bear nothing
+        are left out.
+    """
+    beams, bores = _links(case, frame, ())
+    found = {}
+    for link in dict.fromkeys(beam.link for beam in frame.beams.values()):
+        others = {i for i in range(len(frame.model.elements)) if i not in frame.beams or frame.beams[i].link != link}
+        nodes = {node for (name, _), node in frame.points.items() if name == link}
+        own = [(node, give) for node, give in bores if node in nodes]
+        band = bounds(solution, solution, beams, own, without=others)
+        if band.value > 0.0:
+            found[link] = (max(band.low / band.value, STIFFEST), band.high / band.value)
+    return found
 
 
 def _links(

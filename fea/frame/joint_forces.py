@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.common.band import Band
+from fea.common.source import Source, distinct
 from fea.frame.linkage_frame import out_of_plane
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
@@ -14,6 +16,7 @@ from loads.records.applied import Load
 from loads.statics.statics import Drive, Reactions, assemble, refuse_dead_point, solve_statics
 
 if TYPE_CHECKING:
+    from fea.frame.condensed import LinkFlexibility
     from fea.frame.linear import FrameSolution
     from fea.frame.linkage_frame import LinkageFrame
 
@@ -22,6 +25,30 @@ Real = NDArray[np.float64]
 PINNED_STATICS = "equilibrium of pinned links"
 PINNED_FRAME = "spatial frame with pins free about their own axis"
 BONDED_FRAME = "spatial frame with bonded joints"
+OF_SOLIDS = {
+    PINNED_FRAME: "spatial frame of the links' solids with pins free about their own axis",
+    BONDED_FRAME: "spatial frame of the links' solids with bonded joints",
+}
+"""The same where links are no beams but condensed solids."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Deviation:
+    """The answer with one cause of doubt about the links' stiffness at its end.
+
+    Attributes
+    ----------
+    source : Source or None
+        The cause; None for a pin that sinks into its bore, which no band holds.
+    reactions : Reactions
+        Joint forces and drive torque.
+    points : mapping of tuple of 2 str to ndarray
+        (link, point) -> its displacement (3,) [mm].
+    """
+
+    source: Source | None
+    reactions: Reactions
+    points: Mapping[tuple[str, str], Real]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,6 +67,10 @@ class JointForces:
         Of the linkage where the model is a frame; None for equilibrium alone.
     solution : FrameSolution or None
         Of that frame; None for equilibrium alone.
+    solids : tuple of str
+        Links that are condensed solids in the frame.
+    deviations : tuple of Deviation
+        What the stiffness of condensed solids leaves open; empty where no link is one.
     """
 
     reactions: Reactions
@@ -47,6 +78,45 @@ class JointForces:
     reason: str
     frame: "LinkageFrame | None" = None
     solution: "FrameSolution | None" = None
+    solids: tuple[str, ...] = ()
+    deviations: tuple[Deviation, ...] = ()
+
+    @property
+    def open_by(self) -> tuple[Deviation, ...]:
+        """The deviations that bands hold: all but the sinking of pins."""
+        return tuple(one for one in self.deviations if one.source is not None)
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """What makes joint forces uncertain that depend on the links' stiffness."""
+        return distinct(tuple(one.source for one in self.deviations if one.source is not None))
+
+    def displaced(self, link: str, point: str, *, sunk: bool = False) -> Band:
+        """Return how far a point moves by a frame of solids, with all that their stiffness leaves open at its worst.
+
+        Parameters
+        ----------
+        link : str
+            On which the point lies.
+        point : str
+            Its name.
+        sunk : bool, optional
+            Whether pins may sink into their bores.
+
+        Returns
+        -------
+        Band
+            [mm]
+        """
+        assert self.frame is not None
+        assert self.solution is not None
+        moved = self.frame.at_points(self.solution.displacements)[link, point]
+        size = float(np.linalg.norm(moved))
+        along = moved / (size or 1.0)
+        every = self.deviations if sunk else self.open_by
+        steps = np.array([float(along @ one.points[link, point]) - size for one in every])
+        low, high = np.minimum(steps, 0.0).sum(), np.maximum(steps, 0.0).sum()
+        return Band(value=size, low=max(size + float(low), 0.0), high=size + float(high))
 
     @property
     def condition(self) -> float:
@@ -91,7 +161,7 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         )
     if not bonded:
         refuse_dead_point(assemble(pose.placement, case.pinned_drive, ()), case.pinned_drive)
-    frame, solution = _solved(case, pose, loads, case.pinned_drive, bonded=bonded)
+    frame, solution = solved_frame(case, pose, loads, case.pinned_drive, bonded=bonded)
     return JointForces(
         reactions=frame.reactions(solution.joint_wrenches, solution.residual),
         model=model,
@@ -101,14 +171,40 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
     )
 
 
-def _solved(
-    case: Case, pose: Pose, loads: Sequence[Load], held: Drive | None, *, bonded: bool
+def solved_frame(
+    case: Case,
+    pose: Pose,
+    loads: Sequence[Load],
+    held: Drive | None,
+    *,
+    bonded: bool,
+    solids: "Mapping[str, LinkFlexibility] | None" = None,
 ) -> "tuple[LinkageFrame, FrameSolution]":
-    """Return the frame of the linkage and its solution; most linkages need none, and do not import it."""
+    """Return the frame of the linkage and its solution; most linkages need none, and do not import it.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    pose : Pose
+        The linkage's pose.
+    loads : sequence of Load
+        That act on the links, global axes.
+    held : Drive or None
+        The drive that holds a link.
+    bonded : bool
+        True where pins carry moments about their own axis as well.
+    solids : mapping of str to LinkFlexibility, optional
+        Links that are condensed solids.
+
+    Returns
+    -------
+    tuple of LinkageFrame and FrameSolution
+    """
     from fea.frame.build import build_frame
     from fea.frame.linear import solve_frame
 
-    frame = build_frame(case, pose, loads, held=held, bonded=bonded)
+    frame = build_frame(case, pose, loads, held=held, bonded=bonded, solids=solids)
     return frame, solve_frame(frame.model)
 
 
@@ -173,7 +269,7 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[WayToHo
     ways = [(f"pinned, held at {link}", drive, False) for link, drive in drives.items()]
     ways.append((f"bonded, {names} built in", next(iter(drives.values())), True))
     for name, drive, bonded in ways:
-        frame, solution = _solved(case, pose, loads, drive, bonded=bonded)
+        frame, solution = solved_frame(case, pose, loads, drive, bonded=bonded)
         moved = frame.at_points(solution.displacements)
         found.append(WayToHold(name=name, displacement=moved[asked.link, asked.at]))
     return tuple(found)

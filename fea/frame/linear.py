@@ -189,6 +189,12 @@ def _collect(system: FrameSystem, q: Floats, u: Floats, condition: float) -> Fra
         _, held = line_load_effect(e.section, e.young, length, *model.line_load(i))
         forces[i] = natural_deformations(length).T @ (system.natural_unit(i) * q[6 * i : 6 * i + 6]) + held
         np.add.at(joints, list(e.nodes), system.to_nodes(i, forces[i]))
+    start = 6 * m + len(model.guides)
+    for link in model.condensed:
+        unit = np.tile(system.condensed_unit, len(link.nodes) - 1)
+        acting = link.wrenches @ (unit * q[start : start + len(unit)])
+        np.add.at(joints, list(link.nodes), acting.reshape(-1, 6))
+        start += len(unit)
     for load in model.loads:
         joints[load.node] -= load.wrench
     held_by: dict[int, int] = {}
@@ -197,7 +203,7 @@ def _collect(system: FrameSystem, q: Floats, u: Floats, condition: float) -> Fra
             place = 6 * support.node + DOFS.index(dof)
             held_by.setdefault(int(system.owner[place]), place)
     guided, grounded = np.zeros((n, 6)), np.zeros((n, 6))
-    guide_forces = q[6 * m :] * system.guide_unit
+    guide_forces = q[6 * m : 6 * m + len(model.guides)] * system.guide_unit
     for guide, force in zip(model.guides, guide_forces, strict=True):
         for node, sign in guide.nodes:
             guided[node] -= sign * force * guide.gradient
@@ -227,11 +233,11 @@ def _residual(model: FrameModel, left_over: Floats, reactions: Floats) -> float:
     if scale == 0.0:
         return 0.0
     # Simpson's rule for the line loads, at both ends and in the middle: exact for the force and its moment.
-    starts, ends = np.array([model.ends(i) for i in range(len(model.elements))]).swapaxes(0, 1)
+    m = len(model.elements)
+    starts, ends = np.array([model.ends(i) for i in range(m)]).reshape(m, 2, 3).swapaxes(0, 1)
     lengths = np.linalg.norm(ends - starts, axis=1)[:, None] / 6.0
-    first, last = (
-        np.array(q) * lengths for q in zip(*((e.load_first, e.load_last) for e in model.elements), strict=True)
-    )
+    lines = np.array([(e.load_first, e.load_last) for e in model.elements]).reshape(m, 2, 3).swapaxes(0, 1)
+    first, last = lines[0] * lengths, lines[1] * lengths
     loaded = [load.node for load in model.loads]
     wrenches = np.array([load.wrench for load in model.loads]).reshape(-1, 6)
     points = np.vstack([model.nodes, model.nodes[loaded], starts, (starts + ends) / 2.0, ends])

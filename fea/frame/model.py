@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fea.frame.condensed import CondensedLink
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Section
 
@@ -191,7 +192,7 @@ class FrameModel:
     nodes : ndarray, shape (n, 3)
         Positions [mm].
     elements : tuple of FrameElement
-        At least one.
+        At least one, or a condensed link.
     supports : tuple of Support
         Of nodes.
     ties : tuple of Tie
@@ -202,6 +203,8 @@ class FrameModel:
         On nodes.
     names : tuple of str
         Of the nodes, for messages; their numbers where empty.
+    condensed : tuple of CondensedLink
+        Links that are no beams.
 
     Raises
     ------
@@ -217,6 +220,7 @@ class FrameModel:
     guides: tuple[Guide, ...] = ()
     loads: tuple[NodeLoad, ...] = ()
     names: tuple[str, ...] = ()
+    condensed: tuple[CondensedLink, ...] = ()
 
     def __post_init__(self) -> None:
         """Copy and check."""
@@ -224,7 +228,7 @@ class FrameModel:
         object.__setattr__(self, "nodes", _array(nodes, "the nodes of a frame", len(nodes), 3))
         if self.names and len(self.names) != len(nodes):
             raise CannotRunError(f"a frame of {len(nodes)} nodes needs as many names, not {len(self.names)}")
-        if not self.elements:
+        if not self.elements and not self.condensed:
             raise CannotRunError("a frame needs at least one element")
         named = [e.nodes for e in self.elements] + [t.nodes for t in self.ties]
         named += [(s.node, s.node) for s in self.supports] + [(p.node, p.node) for p in self.loads]

@@ -143,13 +143,16 @@ class FrameSystem:
         Factor from the scaled unknowns to mm and rad.
     guide_unit : ndarray, shape (g,)
         Factor from the scaled forces of the guides to N or N·mm.
+    condensed_unit : ndarray, shape (6,)
+        Factors from the scaled natural forces at a node of a condensed link to N and N·mm.
     """
 
     def __init__(self, model: FrameModel) -> None:
         self.model = model
         n, m = len(model.nodes), len(model.elements)
         self.lengths = np.array([model.length(i) for i in range(m)])
-        mean = float(self.lengths.mean())
+        mean = float(self.lengths.mean()) if m else model.size
+        self.condensed_unit = np.array([1.0, 1.0, 1.0, mean, mean, mean])
         self.guide_unit = np.array([1.0 if guide.axis is None else mean for guide in model.guides])
         self.owner = self._owners()
         self._matrices = [self._to_ends(i) for i in range(m)]
@@ -195,6 +198,8 @@ class FrameSystem:
         needed[np.arange(len(needed)) % 6 < 3] = True
         for i in range(len(self._matrices)):
             needed[self.owner[self._node_columns(i)]] = True
+        for link in self.model.condensed:
+            needed[self.owner[link.columns]] = True
         acting = [(load.node, load.wrench) for load in self.model.loads]
         acting += [(node, guide.gradient) for guide in self.model.guides for node, _ in guide.nodes]
         for node, wrench in acting:
@@ -250,9 +255,10 @@ class FrameSystem:
         return np.array([1.0, *[self.lengths[i]] * 5])
 
     def equations(self) -> tuple[Any, Any, Floats, Floats]:
-        """Return scaled B (6 m + g, k) and F, sparse, deformations v0 (6 m + g,) and nodal loads p - p0 (k,).
+        """Return scaled B (6 m + g + c, k) and F, sparse, deformations v0 (6 m + g + c,) and nodal loads p - p0 (k,).
 
-        The g guides come after the m elements: rows of unit stiffness in B, without flexibility in F.
+        The g guides come after the m elements: rows of unit stiffness in B, without flexibility in F. The c natural
+        forces of condensed links come last.
         """
         from scipy.sparse import block_diag, coo_matrix
 
@@ -282,6 +288,15 @@ class FrameSystem:
                 columns.append(place[free])
                 values.append(sign * self.guide_unit[row - 6 * m] * guide.gradient[free] * self.unit[place[free]])
             flexibility.append(np.zeros((1, 1)))
+        for link in self.model.condensed:
+            unit, numbers = np.tile(self.condensed_unit, len(link.nodes) - 1), self.number[link.columns]
+            free = numbers >= 0
+            B = unit[:, None] * link.wrenches.T[:, free] * self.unit[numbers[free]]
+            rows.append(len(v0) + np.repeat(np.arange(len(unit)), len(B.T)))
+            columns.append(np.tile(numbers[free], len(unit)))
+            values.append(B.ravel())
+            flexibility.append(unit[:, None] * link.natural_flexibility * unit)
+            v0 = np.concatenate([v0, unit * link.natural_moved])
         shape = (len(v0), len(self.unit))
         B = coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
         return B, block_diag(flexibility, format="csr"), v0, p * self.unit

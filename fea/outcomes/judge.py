@@ -7,6 +7,7 @@ from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.layers import layer_outcomes
 from fea.outcomes.limits import least_safety_factor
@@ -33,6 +34,7 @@ def outcomes(
     moved: LargeDisplacement,
     free: Mapping[str, LinkLoads],
     uneven: Mapping[str, Scatter] | None = None,
+    forces: JointForces | None = None,
 ) -> tuple[CheckOutcome, ...]:
     """Return the outcome of every check of a load case, but for motors, bearing and links' buckling.
 
@@ -51,6 +53,8 @@ def outcomes(
         Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
     uneven : mapping of str to Scatter, optional
         Joint -> how its force grows beside scattered loads (``fea.check.load_growth``).
+    forces : JointForces, optional
+        Where these come from a frame of solids, which tells how far points move as well.
 
     Returns
     -------
@@ -69,7 +73,7 @@ def outcomes(
                 for joint in check.joints or case.pinned_joints
             ]
         elif isinstance(check, DisplacementCheck) and check.at is not None:
-            found.append(point_outcome(case, name, check, load_case, moved, links, free))
+            found.append(point_outcome(case, name, check, load_case, moved, links, free, forces))
         elif not isinstance(check, MotorCheck | BearingCheck):
             found += [_link(case, name, check, load_case, links[link]) for link in check.links or case.checked_links]
     beams = {link: result.beam for link, result in links.items()}

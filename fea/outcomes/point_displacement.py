@@ -17,6 +17,7 @@ from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
+from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LARGE, LargeDisplacement, displaced
 from fea.nonlinear.stability import SNAP, growth
 from fea.outcomes.point_shares import Shares, has_centre_line, shares_of
@@ -64,12 +65,13 @@ class PointDisplacement:
         moved: LargeDisplacement,
         links: Mapping[str, LinkResult],
         free: Mapping[str, LinkLoads],
+        forces: JointForces | None = None,
     ) -> "PointDisplacement":
         """Return how far the point of a check moves.
 
         Parameters
         ----------
-        case, name, check, load_case, moved, links, free
+        case, name, check, load_case, moved, links, free, forces
             As of ``point_outcome``.
 
         Returns
@@ -82,7 +84,9 @@ class PointDisplacement:
         if displacement is not None and moved.state in ("small", "deformed", "off"):
             size, why = float(np.linalg.norm(displacement)), ""
             near = factor is not None and factor < SNAP
-            shares = shares_of(case, moved, links, free, link, point)
+            shares = shares_of(case, moved, links, free, link, point, forces)
+            if shares.framed is not None:
+                size = shares.framed.displaced(link, point).value
             blind = [other for other in shares.beams if not has_centre_line(case, other)]
             if blind:
                 taken = "rigid" if blind[0] == case.linkage.ground else "a beam along its axis"
@@ -103,7 +107,8 @@ class PointDisplacement:
     @cached_property
     def sinking(self) -> float:
         """What pins could add that sink into their bores beyond the mean motion of these [mm]."""
-        return self.band(sunk=True).high - self.value.high if self.shares.solids and not self.why else 0.0
+        solved = self.shares.solids or self.shares.framed is not None
+        return self.band(sunk=True).high - self.value.high if solved and not self.why else 0.0
 
     def band(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
         """Return the band: what solids or beams leave open, the moduli, and the load.
@@ -131,7 +136,10 @@ class PointDisplacement:
         load, frame = load_scatter(case, self.load_case), moved.frame
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
-        found = point_bounds(case, frame, moved.solution, link, point, solids, shares.carried)
+        if shares.framed is None:
+            found = point_bounds(case, frame, moved.solution, link, point, solids, shares.carried)
+        else:
+            found = shares.framed.displaced(link, point, sunk=sunk)
         slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
         moduli = (compliance_scatter(material).sources for material in materials)
         sources = distinct(shares.sources, *moduli, load.sources)
@@ -144,7 +152,7 @@ class PointDisplacement:
         if moved.factor is not None:
             near_by = (framed.high / linear if linear > 0.0 else 1.0) * slack[1] / moved.factor
         grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
-        value = found.value if solids else float(np.linalg.norm(moved.points[link, point]))
+        value = found.value if solids or shares.framed is not None else float(np.linalg.norm(moved.points[link, point]))
         grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
         return Band(
             value=value,
@@ -229,6 +237,7 @@ def point_outcome(
     moved: LargeDisplacement,
     links: Mapping[str, LinkResult],
     free: Mapping[str, LinkLoads],
+    forces: JointForces | None = None,
 ) -> CheckOutcome:
     """Return the outcome of how far a point of the linkage moves: linear, or on the deformed shape where that rules.
 
@@ -246,12 +255,14 @@ def point_outcome(
     links : mapping of str to LinkResult
     free : mapping of str to LinkLoads
         Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
+    forces : JointForces, optional
+        Joint forces, with the frame of solids where these come from one.
 
     Returns
     -------
     CheckOutcome
     """
-    told = PointDisplacement.of(case, name, check, load_case, moved, links, free)
+    told = PointDisplacement.of(case, name, check, load_case, moved, links, free, forces)
     subject = Subject.point(told.point, told.link)
     found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, told.value, check.maximum, told.why)
     if told.why:

@@ -11,6 +11,7 @@ from fea.beam.theory import internal_forces
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, Source, SourceKind, pin_sources
+from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.result import LinkResult, SolidResult
 from fea.solid.virtual_work import Work, virtual_work
@@ -39,6 +40,8 @@ class Shares:
         Those of them whose solid would tell more, if it were solved.
     driven : bool
         Whether a drive torque acts on one of the solids.
+    framed : JointForces or None
+        Where the frame that gives the joint forces has condensed solids, which tells all but what ``beams`` add.
     """
 
     solids: Mapping[str, tuple[Work, ...]] = field(default_factory=dict)
@@ -46,10 +49,13 @@ class Shares:
     beams: tuple[str, ...] = ()
     unsolved: tuple[str, ...] = ()
     driven: bool = False
+    framed: JointForces | None = None
 
     @property
     def model(self) -> str:
         """Which model gives the displacement, for people."""
+        if self.framed is not None:
+            return "the frame of the links' solids"
         if not self.solids:
             return "the frame of the linkage"
         found = f"virtual work of the solid model{'s' if len(self.solids) > 1 else ''} of {', '.join(self.solids)}"
@@ -58,6 +64,8 @@ class Shares:
     @property
     def sources(self) -> tuple[Source, ...]:
         """What makes it uncertain."""
+        if self.framed is not None:
+            return self.framed.sources
         eyes = (Source(kind=SourceKind.EYES),) if self.beams or not self.solids else ()
         if not self.solids:
             return eyes
@@ -95,6 +103,7 @@ def shares_of(
     free: Mapping[str, LinkLoads],
     link: str,
     point: str,
+    forces: JointForces | None = None,
 ) -> Shares:
     """Return the work that unit loads at a point do on every link, by its solid where one was solved.
 
@@ -108,12 +117,16 @@ def shares_of(
     free : mapping of str to LinkLoads
         Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
     link, point : str
+    forces : JointForces, optional
+        Joint forces; a frame of solids that gave them tells how far points move.
 
     Returns
     -------
     Shares
     """
     assert moved.frame is not None
+    if forces is not None and forces.solids:
+        return Shares(beams=tuple(other for other in case.checked_links if other not in forces.solids), framed=forces)
     if not free:
         return Shares(beams=case.checked_links)
     pose, held = moved.frame.pose, moved.frame.held

@@ -85,19 +85,60 @@ def flexibility(space: DisplacementSpace, places: Mapping[str, Real], *, E: floa
     ndarray, shape (6 p, 6 p)
         From wrenches [N, N mm] to motions [mm, rad], in the order of the places; symmetric.
     """
+    return condensed(space, places, np.zeros((space.unknowns, 0)), E=E, nu=nu)[0]
+
+
+def condensed(
+    space: DisplacementSpace,
+    places: Mapping[str, Real],
+    loads: Real,
+    *,
+    E: float,
+    nu: float,
+    threads: int | None = None,
+) -> tuple[Real, Real]:
+    """Return the mutual work of a free link's unit wrenches at its places and of other loads, and their displacements.
+
+    Each load is balanced by wrenches at the places, the part of ``flexibility`` that would move them as a rigid body.
+    Loads and wrenches that balance together so have the sum of their displacements.
+
+    Parameters
+    ----------
+    space : DisplacementSpace
+        Displacement space of the link.
+    places : dict of str to ndarray
+        Surface, and point (3,) about which its wrench and its motion count [mm].
+    loads : ndarray, shape (3n, k)
+        Nodal forces [N].
+    E : float
+        Young's modulus [MPa].
+    nu : float
+        Poisson's ratio.
+    threads : int or None, optional
+        Upper bound on the threads of the solver.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        Work (6 p + k, 6 p + k) of each on the displacements of each, wrenches first; and these displacements
+        (3n, 6 p + k) [mm].
+    """
     size = float(np.linalg.norm(np.ptp(space.nodes, axis=0)))
     unit = np.tile([1.0, 1.0, 1.0, size, size, size], len(places))
-    loads, rigid = [], []
+    dual, rigid = [], []
     for name, point in places.items():
         surface = surface_quadrature(space, name)
-        loads += [surface.load_vector(wrench_density(surface, point, w), len(space.nodes)) for w in np.eye(6)]
+        dual += [surface.load_vector(wrench_density(surface, point, w), len(space.nodes)) for w in np.eye(6)]
         rigid.append(_of_body(point))
     # Wrenches over ``unit`` and motions times it have one measure each; Q is a basis of rigid motions in it.
-    Q, _ = np.linalg.qr(np.vstack(rigid) * unit[:, None])
+    Q, R = np.linalg.qr(np.vstack(rigid) * unit[:, None])
+    wrenches = np.array(dual).T
+    resultants = rigid_motions(space.nodes, np.zeros(3)).reshape(6, -1) @ loads
+    borne = unit[:, None] * (Q @ np.linalg.solve(R.T, resultants))
     balanced = (np.eye(len(unit)) - Q @ Q.T) * unit[:, None] / unit
-    F = np.array(loads).T @ balanced
-    free = solve_free(space, F, E=E, nu=nu)
-    return np.asarray(F.T @ free.displacement)
+    F = np.hstack([wrenches @ balanced, loads - wrenches @ borne])
+    moved = solve_free(space, F, E=E, nu=nu, threads=threads).displacement
+    return np.asarray(F.T @ moved), np.asarray(moved)
 
 
 def _of_body(point: Real) -> Real:

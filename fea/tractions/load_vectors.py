@@ -77,7 +77,7 @@ class LoadVectors:
             One per law and transfer.
         """
         torque = any(torque != 0.0 and self._space.flat_faces(name) for name, torque in self._torques(case))
-        scale, rest = self._scale(case), self._spread(case)
+        scale, rest = self._scale(case), self._ends(case) + self.spread(case)
         turned = {transfer: self._couples(case, transfer) for transfer in (transfers if torque else (None,))}
         found = []
         for law in laws:
@@ -150,13 +150,30 @@ class LoadVectors:
                 load += surface.load_vector(couple_traction(surface, centres.get(name, bore.centroid), torque), count)
         return load
 
-    def _spread(self, case: LinkLoads) -> NDArray[np.float64]:
-        """Load vector (3n,) of what does not come from pins: plain ends, weight and inertia, spread loads."""
+    def _ends(self, case: LinkLoads) -> NDArray[np.float64]:
+        """Load vector (3n,) of the wrenches on plain ends."""
         count = len(self._space.nodes)
         load = np.zeros(3 * count)
         for end in case.ends:
             patch = self._surface(f"end:{end.name}")
             load += patch.load_vector(wrench_density(patch, end.point, end.wrench), count)
+        return load
+
+    def spread(self, case: LinkLoads) -> NDArray[np.float64]:
+        """Return the load vector of weight and inertia and of loads spread along the axis.
+
+        Parameters
+        ----------
+        case : LinkLoads
+            Loads of the link.
+
+        Returns
+        -------
+        ndarray, shape (3n,)
+            Nodal forces [N].
+        """
+        count = len(self._space.nodes)
+        load = np.zeros(3 * count)
         if case.inertia is not None:
             load += self._volume.load_vector(body_density(self._volume, case.inertia, self._density), count)
         for line in case.lines:

@@ -1,9 +1,12 @@
 """Linkages as frames: equilibrium alone in the plane, closed forms of portal frames out of it and bonded."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fea.frame.build import build_frame
+from fea.frame.condensed import LinkFlexibility
 from fea.frame.joint_forces import BONDED_FRAME, PINNED_FRAME, PINNED_STATICS, joint_forces, ways_to_hold
 from fea.frame.linear import solve_frame
 from fea.frame.linkage_frame import out_of_plane
@@ -325,3 +328,63 @@ def test_what_no_frame_can_be_made_of():
     bare = validate(data)
     with pytest.raises(CaseError, match=r"links: no moving link has a part"):
         build_frame(bare, bare.solve_pose(), (), held=bare.pinned_drive)
+
+
+def test_a_condensed_beam_does_in_the_frame_what_the_beam_does():
+    """The left crank as a cantilever's closed form, under a line load across and along: all joint forces are the same.
+
+    Timoshenko's cantilever with end forces, and with even loads p along and q across: p L²/(2EA), q L⁴/(8EI) +
+    q L²/(2κGA), q L³/(6EI).
+    """
+    case = validate(portal() | {"joint_model": "bonded"})
+    pose, material, section = case.solve_pose(), case.material_of("left"), case.part_of("left").section
+    young, shear, L = material.youngs_modulus, material.shear_modulus, HEIGHT
+    stiff = young * section.i_z
+    kga = shear * section.area * section.shear_coefficient(material.poissons_ratio)
+    F = np.diag([L / (young * section.area), 0.0, 0.0, L / (shear * section.torsion), L / stiff, L / stiff])
+    F[1, 1] = F[2, 2] = L**3 / (3.0 * stiff) + L / kga
+    F[1, 5] = F[5, 1] = L**2 / (2.0 * stiff)
+    F[2, 4] = F[4, 2] = -F[1, 5]
+    p, q = 0.03, -0.02
+    moved = np.zeros(12)
+    moved[6:8] = p * L**2 / (2.0 * young * section.area), q * L**4 / (8.0 * stiff) + q * L**2 / (2.0 * kga)
+    moved[11] = q * L**3 / (6.0 * stiff)
+    whole = np.zeros((12, 12))
+    whole[6:, 6:] = F
+    # The crank stands upright: its x is the global y.
+    line = np.array([-q, p, 0.0])
+    loads = (
+        force("top", "M", 0.3, -0.2, 0.6, 4.0, -3.0, 5.0),
+        LineLoad(link="left", start=0.0, end=L, at_start=line, at_end=line),
+    )
+    plain = build_frame(case, pose, loads, held=case.pinned_drive, bonded=True)
+    solids = {"left": LinkFlexibility(places=("A", "B"), flexibility=whole, moved=moved)}
+    frame = build_frame(case, pose, loads, held=case.pinned_drive, bonded=True, solids=solids)
+    assert len(frame.model.elements) == len(plain.model.elements) - 1
+    answers = []
+    for one in (plain, frame):
+        solution = solve_frame(one.model)
+        answers.append(
+            (one.reactions(solution.joint_wrenches, solution.residual), one.at_points(solution.displacements))
+        )
+    (expected, places), (found, condensed) = answers
+    for name, joint in expected.joints.items():
+        assert found.joints[name].wrench == pytest.approx(joint.wrench, abs=1e-8), name
+    assert found.drive_torque == pytest.approx(expected.drive_torque, rel=1e-9)
+    for key, place in places.items():
+        assert condensed[key] == pytest.approx(place, abs=1e-9), key
+
+
+def test_a_frame_may_have_condensed_links_alone():
+    """One rigid link bonded to the ground bears its load there: nothing moves."""
+    case = validate(portal())
+    pose = case.solve_pose()
+    loads = (force("top", "M", 0.3, -0.2, 0.1),)
+    solids = {link: LinkFlexibility.rigid(tuple(case.links[link].points)) for link in ("left", "top", "right")}
+    solids["top"] = replace(solids["top"], flexibility=np.eye(18) * 1e-6)
+    frame = build_frame(case, pose, loads, held=case.pinned_drive, bonded=True, solids=solids)
+    assert frame.model.elements == ()
+    solution = solve_frame(frame.model)
+    reactions = frame.reactions(solution.joint_wrenches, solution.residual)
+    total = sum(reactions.joints[name].force for name in "AD")
+    assert total == pytest.approx([-0.3, 0.2, -0.1], abs=1e-12)
