@@ -34,3 +34,13 @@ def imported_case(folder: Path, *, file: str = "plate.step", points: str = STATE
     path = folder / "case.toml"
     path.write_text(TOML.format(points=points, file=file, entries=entries), encoding="utf-8")
     return path
+
+
+def strut_case(folder: Path, *, file: str, length: float) -> Path:
+    """Write such a case, as large as its rocker, a part with two bores of 4 mm."""
+    points = f'{{ O4 = ["0 mm", "0 mm"], B = ["{length} mm", "0 mm"] }}'
+    path = imported_case(folder, file=file, points=points, entries='bores = { O4 = "bore 1", B = "bore 2" }')
+    text = path.read_text().replace('pin_diameter = "5 mm"', 'pin_diameter = "4 mm"')
+    text = text.replace('pin_diameter = "6 mm"', 'pin_diameter = "4 mm"').replace('["20 mm"', f'["{length / 2} mm"')
+    path.write_text(text.replace('["60 mm"', f'["{1.5 * length} mm"'), encoding="utf-8")
+    return path

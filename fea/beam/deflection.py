@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.beam.cut_beam import cells, cut_flexibility, nearest
 from fea.beam.flanks import Flanks
-from fea.beam.piecewise import Piecewise, integral, values
+from fea.beam.piecewise import Piecewise, divided, integral, values
+from geometry.bodies.cut_section import CutSection
 from geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
@@ -40,6 +42,7 @@ def deflection(
     poisson: float,
     line: tuple[float, float],
     flanks: Sequence[Flanks] = (),
+    cuts: Sequence[CutSection] = (),
 ) -> Deflection:
     """Integrate the internal forces to the deflection relative to the line through two stations.
 
@@ -65,6 +68,8 @@ def deflection(
         single joint holds the link [mm].
     flanks : sequence of Flanks, optional
         That take the section's place along slots.
+    cuts : sequence of CutSection, optional
+        Sections of a part from a file, which take the section's place all along.
 
     Returns
     -------
@@ -76,13 +81,17 @@ def deflection(
     Przemieniecki, Theory of Matrix Structural Analysis, 1968, section 5.6.
     """
     x_a, x_b = line
-    forces = _divided(forces, [x for slot in flanks for x in (slot.first, slot.last)])
+    stretches = [*((slot.first, slot.last) for slot in flanks), *((start, end) for start, end, _ in cells(cuts))]
+    forces = divided(forces, [x for stretch in stretches for x in stretch])
     middles = (forces.breaks[:-1] + forces.breaks[1:]) / 2.0
     out = np.zeros((len(forces.coefficients), 6, 6))
     state = np.zeros(6)
     for i, (c, x, h) in enumerate(zip(forces.coefficients, middles, np.diff(forces.breaks), strict=True)):
         slot = next((slot for slot in flanks if slot.first < x < slot.last), None)
-        strain = c * flexibility(section if slot is None else slot.together, young, poisson)[:, None]
+        if cuts:
+            strain = cut_flexibility(nearest(cuts, x), young, poisson) @ c
+        else:
+            strain = c * flexibility(section if slot is None else slot.together, young, poisson)[:, None]
         if slot is not None:
             own = slot.together.i_z
             mean = _moment_between(forces, slot.first, slot.last) / slot.length
@@ -165,24 +174,6 @@ def flexibility(section: Section, young: float, poisson: float) -> Floats:
             1.0 / (young * section.i_z),
         ]
     )
-
-
-def _divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
-    """Return the same functions with further breaks at stations inside."""
-    first, last = functions.breaks[0], functions.breaks[-1]
-    breaks = np.unique([*functions.breaks, *(x for x in stations if first < x < last)])
-    if len(breaks) == len(functions.breaks):
-        return functions
-    rows = []
-    for x in breaks[:-1]:
-        i = min(int(np.searchsorted(functions.breaks, x, side="right")) - 1, len(functions.coefficients) - 1)
-        c, s = functions.coefficients[i], float(x - functions.breaks[i])
-        taylor, factorial = [], 1.0
-        for k in range(c.shape[-1]):
-            taylor.append(values(c, s) / factorial)
-            c, factorial = np.polynomial.polynomial.polyder(c, axis=-1), factorial * (k + 1)
-        rows.append(np.stack(taylor, axis=-1))
-    return Piecewise(breaks=breaks, coefficients=np.array(rows))
 
 
 def _moment_between(forces: Piecewise, first: float, last: float) -> float:

@@ -23,6 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.beam.cut_beam import cut_remark
 from fea.beam.flanks import flanks_of
 from fea.beam.holed_tube import holed_tube_stress
 from fea.beam.piecewise import Piecewise
@@ -105,8 +106,7 @@ def remarks(body: Body, found: Sequence[Detail]) -> tuple[str, ...]:
     said = [f"by hand {d.name} bears {d.stress.equivalent:.3g} MPa at x = {d.x:.3g} mm ({d.remark})" for d in found]
     if any(pin.slot > 0.0 for pin in body.pins):
         said.append("as a solid a pin pushes on half, and for the band on a quarter of its diameter, of a slot's flank")
-    if body.part.by_hand:
-        said.append(body.part.by_hand)
+    said += [told for told in (body.part.by_hand, cut_remark(body)) if told]
     open_ones = [f"{pin.name} has {body.ring(pin).share:.0%}" for pin in body.pins if body.ring(pin).share < 1.0]
     if open_ones:
         said.append(

@@ -1,6 +1,6 @@
 """Functions along a beam that are polynomials between stations, and their largest values."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -133,6 +133,37 @@ class Piecewise:
                 s, peak = _golden(value, float(grid[i - 1]), float(grid[i + 1]), s, peak)
             peaks.append((float(x1), "before", peak) if i == len(grid) - 1 else (float(x0) + s, "after", peak))
         return peaks[first_largest([peak for _, _, peak in peaks])]
+
+
+def divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
+    """Return the same functions with further breaks.
+
+    Parameters
+    ----------
+    functions : Piecewise
+        The functions.
+    stations : sequence of float
+        Where; those outside are left out [mm].
+
+    Returns
+    -------
+    Piecewise
+        Equal everywhere.
+    """
+    first, last = functions.breaks[0], functions.breaks[-1]
+    breaks = np.unique([*functions.breaks, *(x for x in stations if first < x < last)])
+    if len(breaks) == len(functions.breaks):
+        return functions
+    rows = []
+    for x in breaks[:-1]:
+        i = min(int(np.searchsorted(functions.breaks, x, side="right")) - 1, len(functions.coefficients) - 1)
+        c, s = functions.coefficients[i], float(x - functions.breaks[i])
+        taylor, factorial = [], 1.0
+        for k in range(c.shape[-1]):
+            taylor.append(values(c, s) / factorial)
+            c, factorial = np.polynomial.polynomial.polyder(c, axis=-1), factorial * (k + 1)
+        rows.append(np.stack(taylor, axis=-1))
+    return Piecewise(breaks=breaks, coefficients=np.array(rows))
 
 
 def _golden(value: Callable[[float], float], low: float, high: float, s: float, peak: float) -> tuple[float, float]:

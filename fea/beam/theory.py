@@ -15,15 +15,19 @@ Everything is a piecewise polynomial (N, V of degree 2, M of degree 3 under line
 such and therefore exact at every station.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.beam.cut_beam import about_centre, cut_stress, nearest
 from fea.beam.loads import BeamLoads
-from fea.beam.piecewise import SAMPLES, Piecewise, Side, integral, values
+from fea.beam.piecewise import SAMPLES, Piecewise, Side, divided, integral, values
 from fea.beam.section_stress import SectionStress, bending_stress, equivalent_stress, section_stress
+from fea.common.ties import first_largest
 from geometry.base.errors import CannotRunError
+from geometry.bodies.cut_section import CutSection
 from geometry.parts.part import Section
 
 Floats = NDArray[np.float64]
@@ -88,7 +92,7 @@ class BeamCheck:
     Attributes
     ----------
     forces : Piecewise
-        Along the beam; ``forces.at(x, side)`` gives the values anywhere.
+        Along the beam, on the link's axis; ``forces.at(x, side)`` gives the values anywhere.
     section : Section
         Of the beam.
     poisson : float
@@ -123,6 +127,9 @@ class BeamCheck:
         Strength over the largest equivalent stress; infinite where nothing acts.
     without : str
         Why no beam stands for the link, so that all forces and stresses here are zero; "" where one does.
+    cuts : sequence of CutSection
+        Sections of a part from a file, in place of ``section``; torque and moments then are those about the centroid of
+        the section that is nearest.
     """
 
     forces: Piecewise
@@ -143,6 +150,7 @@ class BeamCheck:
     strength: float
     safety_factor: float
     without: str = ""
+    cuts: Sequence[CutSection] = ()
 
     @property
     def idle(self) -> bool:
@@ -164,13 +172,19 @@ class BeamCheck:
         SectionStress
             Stresses of the section.
         """
-        return section_stress(self.section, self.forces.at(x, side), self.poisson)
+        forces = self.forces.at(x, side)
+        if not self.cuts:
+            return section_stress(self.section, forces, self.poisson)
+        cut = nearest(self.cuts, x)
+        return cut_stress(cut, about_centre(cut) @ forces, self.poisson)
 
 
-def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: float = 0.3) -> BeamCheck:
-    """Calculate a link of constant section by hand.
+def check_beam(
+    loads: BeamLoads, section: Section, strength: float, poisson: float = 0.3, cuts: Sequence[CutSection] = ()
+) -> BeamCheck:
+    """Calculate a link of constant section, or of sections that were cut, by hand.
 
-    Eyes and holes are left out, and stress concentration is not in these numbers.
+    Of a constant section eyes and holes are left out; stress concentration is in no case in these numbers.
 
     Parameters
     ----------
@@ -182,6 +196,8 @@ def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: flo
         That the safety factor counts from [MPa].
     poisson : float, optional
         Poisson's ratio, which tells how the shear stress of V is spread.
+    cuts : sequence of CutSection, optional
+        Sections of a part from a file, which take the section's place, each for what is nearest to it.
 
     Returns
     -------
@@ -193,15 +209,28 @@ def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: flo
     CannotRunError
         For unbalanced loads.
     """
-    forces = internal_forces(loads)
+    forces = divided(internal_forces(loads), [cut.x for cut in cuts])
     stations, rows = [], []
     for c, x0, x1 in zip(forces.coefficients, forces.breaks[:-1], forces.breaks[1:], strict=True):
         for s in np.linspace(0.0, x1 - x0, SAMPLES if np.any(c[:, 2:]) else 2):
             stations.append(x0 + s)
             rows.append(values(c, s))
-    table = np.array(rows)
-    x, side, peak = forces.largest(lambda f: equivalent_stress(section, f, poisson))
-    n, v_y, v_z, t, m_y, m_z = table.T
+    if cuts:
+        own = [nearest(cuts, x) for x in stations]
+        rows = [about_centre(cut) @ row for cut, row in zip(own, rows, strict=True)]
+        found = [cut_stress(cut, row, poisson) for cut, row in zip(own, rows, strict=True)]
+        most = first_largest([stress.equivalent for stress in found])
+        x, worst = float(stations[most]), found[most]
+        axial, bending, equivalent = (
+            np.array([getattr(stress, name) for stress in found]) for name in ("axial", "bending", "equivalent")
+        )
+    else:
+        n, *_, m_y, m_z = np.transpose(rows)
+        axial, bending = n / section.area, bending_stress(section, m_y, m_z)
+        x, side, _ = forces.largest(lambda f: equivalent_stress(section, f, poisson))
+        worst = section_stress(section, forces.at(x, side), poisson)
+        equivalent = np.array([equivalent_stress(section, row, poisson) for row in rows])
+    n, v_y, v_z, t, m_y, m_z = np.transpose(rows)
     return BeamCheck(
         forces=forces,
         section=section,
@@ -213,13 +242,14 @@ def check_beam(loads: BeamLoads, section: Section, strength: float, poisson: flo
         t=t,
         m_y=m_y,
         m_z=m_z,
-        axial=n / section.area,
-        bending=bending_stress(section, m_y, m_z),
-        equivalent=np.array([equivalent_stress(section, row, poisson) for row in rows]),
+        axial=axial,
+        bending=bending,
+        equivalent=equivalent,
         worst_x=x,
-        worst=section_stress(section, forces.at(x, side), poisson),
+        worst=worst,
         strength=strength,
-        safety_factor=strength / peak if peak > 0.0 else np.inf,
+        safety_factor=strength / worst.equivalent if worst.equivalent > 0.0 else np.inf,
+        cuts=cuts,
     )
 
 

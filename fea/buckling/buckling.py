@@ -1,7 +1,8 @@
 """Buckling of links in compression, each by itself.
 
 A link is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks
-take the section's place (``fea.beam.flanks``). How its joints hold it
+take the section's place (``fea.beam.flanks``), along a part from a file the sections that were cut. Where these have no
+symmetry, the value bends about the axis of the least second moment. How its joints hold it
 is known but in part, so that its factor is a band:
 
 value  the outermost pins stay where they are and leave the link free to turn, in the linkage's plane and out of it;
@@ -27,14 +28,15 @@ factor may stand for it (section 5.2.2); below 3, where small faults of shape gr
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.column_factor import AxialForce, Stretch, column_factors
-from fea.beam.flanks import Flanks, flanks_of
+from fea.beam.cut_beam import cells
+from fea.beam.flanks import flanks_of
 from fea.beam.theory import BeamCheck
 from fea.common.band import Band
 from fea.common.scatter import compliance_scatter, load_scatter
@@ -42,10 +44,12 @@ from fea.common.source import Source, SourceKind
 from fea.common.ties import first_largest
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
-from geometry.parts.part import Section
+from geometry.bodies.body import Body, hand_section
+from geometry.bodies.cut_section import CutSection
 from loads.case.case import Case
 
 Real = NDArray[np.float64]
+Plane = tuple[float, Sequence[Stretch]]
 
 NAME = "buckling"
 NO_COMPRESSION = 1e-9
@@ -144,7 +148,7 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
     values = [
         [-at(a, "after")[0], -at((a + b) / 2.0, "after")[0], -at(b, "before")[0]] for a, b in itertools.pairwise(breaks)
     ]
-    factors = link_factors(case, link, beam.section, AxialForce(breaks=breaks, values=np.array(values)[:, :, None]))
+    factors = link_factors(case, link, AxialForce(breaks=breaks, values=np.array(values)[:, :, None]))
     return worst_column(case, link, np.array([compression]), factors, np.array([True]))
 
 
@@ -176,14 +180,13 @@ def worst_column(
     return Column(pose=pose, compression=pressed, outermost=outermost, value=value, least=least, most=most)
 
 
-def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> ColumnFactors:
+def link_factors(case: Case, link: str, force: AxialForce) -> ColumnFactors:
     """Return the factors of a link in every pose, for the modulus of its card.
 
     Parameters
     ----------
     case : Case
     link : str
-    section : Section
     force : AxialForce
         Compression along the link, in P poses.
 
@@ -193,16 +196,17 @@ def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> 
         Each of shape (P,).
     """
     where, young = holding(case, link), case.material_of(link).youngs_modulus
-    in_plane, across = columns(section, flanks_of(case.body(link)))
+    body = case.body(link)
+    in_plane, across = columns(body)
 
-    def factors(
-        column: tuple[float, Sequence[Stretch]], held: Sequence[float] = (), built_in: Sequence[float] = ()
-    ) -> Real:
-        inertia, stretches = column
+    def factors(plane: Plane, held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
+        inertia, stretches = plane
         return column_factors(force, young * inertia, held=held, built_in=built_in, stretches=stretches)
 
     def softer(held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
         planes = (in_plane, across) if in_plane[1] else (min(in_plane, across, key=lambda plane: plane[0]),)
+        if body.part.cuts:
+            planes = (_of_cuts(body, lambda cut: cut.principal[0]),)
         return np.asarray(np.min([factors(plane, held, built_in) for plane in planes], axis=0))
 
     value = softer(held=where.outermost) if len(where.outermost) > 1 else softer(built_in=where.outermost)
@@ -217,22 +221,27 @@ def link_factors(case: Case, link: str, section: Section, force: AxialForce) -> 
     return ColumnFactors(value=value, least=least, most=np.maximum(most, value))
 
 
-def columns(
-    section: Section, slots: Sequence[Flanks]
-) -> tuple[tuple[float, Sequence[Stretch]], tuple[float, Sequence[Stretch]]]:
-    """Return the second moments and softer stretches of a link's column.
+def columns(body: Body, *, free: bool = False) -> tuple[Plane, Plane]:
+    """Return how a link resists bending as a column.
 
     Parameters
     ----------
-    section : Section
-    slots : sequence of Flanks
-        Beside which two flanks take the section's place.
+    body : Body
+        The link's; beside its slots two flanks take the section's place.
+    free : bool, optional
+        Whether a section without symmetry may bend across the plane as well, which makes it softer. Where it may not,
+        no way of holding it makes it stiffer.
 
     Returns
     -------
     tuple of two (float, sequence of Stretch)
-        Second moment [mm⁴] and stretches in the plane, and out of it.
+        In the plane, and out of it: second moment [mm⁴], and stretches of another one.
     """
+    if body.part.cuts and free:
+        return _of_cuts(body, lambda cut: cut.free[1]), _of_cuts(body, lambda cut: cut.free[0])
+    if body.part.cuts:
+        return _of_cuts(body, lambda cut: cut.i_z), _of_cuts(body, lambda cut: cut.i_y)
+    section, slots = hand_section(body), flanks_of(body)
     in_plane = [
         Stretch(
             first=slot.first,
@@ -244,6 +253,13 @@ def columns(
     ]
     across = [Stretch(first=slot.first, last=slot.last, bending=slot.together.i_y / section.i_y) for slot in slots]
     return (section.i_z, in_plane), (section.i_y, across)
+
+
+def _of_cuts(body: Body, second: Callable[[CutSection], float]) -> Plane:
+    """Return the column of sections that were cut; what lies beyond the outermost pins is as the mean of all."""
+    cuts = body.part.cuts
+    mean = sum(map(second, cuts)) / len(cuts)
+    return mean, [Stretch(first=a, last=b, bending=second(cut) / mean) for a, b, cut in cells(cuts)]
 
 
 def holding(case: Case, link: str) -> Holding:

@@ -19,14 +19,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.column_factor import GAUSS, Stretch, slopes, stiffness_matrices
+from fea.beam.column_factor import GAUSS, MERGED, Stretch, slopes, stiffness_matrices
+from fea.beam.cut_beam import curving_forces
 from fea.beam.cut_free import beam_loads
-from fea.beam.flanks import flanks_of
 from fea.beam.piecewise import Piecewise, Side
 from fea.beam.theory import internal_forces
 from fea.buckling.buckling import columns, holding
 from fea.common.link_loads import LinkLoads
-from geometry.bodies.body import hand_section, no_beam
+from geometry.bodies.body import no_beam
 from loads.case.case import Case
 from loads.records.applied import LineLoad
 
@@ -74,9 +74,9 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
     body, material = case.body(link), case.material_of(link)
     if no_beam(body):
         return loads
-    forces = internal_forces(beam_loads(loads, body, material.density))
-    section, young = hand_section(body), material.youngs_modulus
-    planes = [Bend(stiffness=young * inertia, stretches=soft) for inertia, soft in columns(section, flanks_of(body))]
+    forces = curving_forces(internal_forces(beam_loads(loads, body, material.density)), body.part.cuts)
+    young = material.youngs_modulus
+    planes = [Bend(stiffness=young * inertia, stretches=soft) for inertia, soft in columns(body, free=True)]
     on_arms = {pin.name for pin in body.pins if pin.foot is not None}
     if stays:
         return between_stations(loads, forces, planes[0], planes[1], on_arms)
@@ -185,7 +185,8 @@ _MOMENT: dict[int, Callable[[Real], float]] = {1: lambda f: float(f[5]), 2: lamb
 
 def _nodes(marks: Sequence[float], others: Sequence[float]) -> Real:
     first, last = marks[0], marks[-1]
-    breaks = sorted({*marks, *(x for x in others if first < x < last)})
+    breaks = sorted({*marks, *(x for x in others if all(abs(x - mark) > MERGED * (last - first) for mark in marks))})
+    breaks = [x for x in breaks if first <= x <= last]
     found = [first]
     for a, b in itertools.pairwise(breaks):
         found += list(np.linspace(a, b, max(2, math.ceil(ELEMENTS * (b - a) / (last - first))) + 1)[1:])

@@ -13,7 +13,7 @@ from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
 from fea.nonlinear.large_displacement import LEAST_FACTOR
 from fea.superposition.unit_loads import unit_forces
-from geometry.bodies.body import hand_section, no_beam
+from geometry.bodies.body import no_beam
 from loads.case.case import Case
 from loads.records.applied import LineLoad
 
@@ -36,7 +36,7 @@ def factors_over_motion(case: Case, link: str, history: LinkLoads) -> ColumnFact
     """
     largest, force = axial_compression(case, link, history)
     pressed = ~(largest <= 0.0)
-    found = link_factors(case, link, hand_section(case.body(link)), replace(force, values=force.values[..., pressed]))
+    found = link_factors(case, link, replace(force, values=force.values[..., pressed]))
 
     def everywhere(factor: Real) -> Real:
         every = np.full(len(pressed), np.inf)

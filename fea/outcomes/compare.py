@@ -2,9 +2,13 @@
 
 import math
 
+import numpy as np
+
+from fea.beam.cut_beam import beam_sections
 from fea.beam.theory import BeamCheck
 from fea.outcomes.result import SectionComparison
 from fea.solid.stress import StressField
+from geometry.base.errors import CannotRunError
 from geometry.parts.part import Body
 
 BENDS = 0.1
@@ -61,6 +65,8 @@ def compare_sections(body: Body, beam: BeamCheck, stress: StressField) -> tuple[
     -------
     tuple of SectionComparison
     """
+    if beam.cuts:
+        return _compare_cuts(body, beam, stress)
     bends = float(beam.bending.max()) > BENDS * float(abs(beam.axial).max())
     scale = float(beam.bending.max()) if bends else float(abs(beam.axial).max())
     if scale == 0.0:
@@ -83,3 +89,37 @@ def compare_sections(body: Body, beam: BeamCheck, stress: StressField) -> tuple[
             )
         )
     return tuple(rows)
+
+
+def _compare_cuts(body: Body, beam: BeamCheck, stress: StressField) -> tuple[SectionComparison, ...]:
+    """Do the same at the sections of a part from a file where beam theory holds.
+
+    The solid's stress is linear in y and z as fitted: at the centroid, and at the hull's corner that differs most.
+    """
+    found = []
+    for cut in beam_sections(body):
+        try:
+            solid = stress.section(
+                x=cut.x,
+                half_length=max(cut.width, cut.height) / 4,
+                half_y=cut.width / 2,
+                half_z=cut.height / 2,
+            )
+        except CannotRunError:  # a mesh from a file is as coarse as it is
+            continue
+        slopes = np.array([solid.bending_z, solid.bending_y]) / [cut.width / 2, cut.height / 2]
+        bending = float(np.abs((np.array(cut.hull) - cut.centre) @ slopes).max())
+        found.append((cut.x, beam.stress_at(cut.x), solid.axial + float(slopes @ cut.centre), bending))
+    bending, axial = (max((abs(value) for value in values), default=0.0) for values in (
+        [hand.bending for _, hand, _, _ in found], [hand.axial for _, hand, _, _ in found]))  # fmt: skip
+    bends = bending > BENDS * axial
+    scale = bending if bends else axial
+    if scale == 0.0:
+        return ()
+    pairs = [(x, hand.bending, bent) if bends else (x, hand.axial, pulled) for x, hand, pulled, bent in found]
+    return tuple(
+        SectionComparison(
+            x=x, kind="bending" if bends else "axial", hand=ours, solid=theirs, difference=(theirs - ours) / scale
+        )
+        for x, ours, theirs in pairs
+    )

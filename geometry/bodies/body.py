@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
+from geometry.bodies.cut_section import CutSection
 from geometry.bodies.features import HoleRow, Pin, PlainEnd, Ring
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section
@@ -143,6 +144,11 @@ class PartKind(Printable):
         list of tuple
             Element edge, and the distance from the place as a formula of the mesher in x, y and z.
         """
+
+    @property
+    def cuts(self) -> tuple[CutSection, ...]:
+        """Sections across the x axis by rising x, of a part whose shape alula does not know; else none."""
+        return ()
 
     def check(self, body: "Body") -> None:
         """Refuse a body that this kind of part cannot be built for, by closed form.

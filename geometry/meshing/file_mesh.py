@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.bodies.body import Body
+from geometry.bodies.cut_section import CutSection
 from geometry.imported.bores import find_bores
 from geometry.imported.facts import MESH_FORMATS, PartFacts, PartSurface, Vector
 from geometry.meshing.element_geometry import (
@@ -27,10 +28,10 @@ from geometry.meshing.element_geometry import (
 )
 from geometry.meshing.mesh_settings import MeshSettings
 from geometry.meshing.mesh_walls import ON_WALL, bent_edges, cylinder_walls, inner_edges
+from geometry.meshing.surface_section import section_of_surface
 from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.mesh_part import MeshedPart
 from geometry.solids.reentrant import ReentrantEdge
-from geometry.solids.sections import StationSection
 
 Real = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -338,52 +339,11 @@ def _mass(body: Body) -> tuple[float, Real, Real]:
     return _integrals(mesh.points, mesh.boundary)
 
 
-def _sections(body: Body, stations: tuple[float, ...]) -> tuple[list[StationSection], list[float]]:
+def _sections(body: Body, stations: tuple[float, ...]) -> tuple[list[CutSection], list[float]]:
     """Return sections of the surface's flat triangles, and that no hole has a flat ring."""
     surface = _flat(_placed(body))
-    found = (_section(surface.points[surface.triangles], x) for x in stations)
+    found = (section_of_surface(surface.points[surface.triangles], x) for x in stations)
     return [section for section in found if section is not None], [0.0] * len(body.pins)
-
-
-def _section(corners: Real, x: float) -> StationSection | None:
-    """Return what triangles (k, 3, 3) enclose in a plane across x; None where they do not meet it.
-
-    Each triangle that crosses the plane gives a straight piece of the border, with the material on its left as seen
-    from +x; the moments of the triangles between the pieces and the origin add up to those of the section.
-    """
-    above = corners[..., 0] > x
-    corners, above = corners[(s := above.sum(axis=1) % 3 != 0)], above[s]
-    if not len(corners):
-        return None
-    lone = np.argmax(above == (above.sum(axis=1) == 1)[:, None], axis=1)  # the corner on a side of its own
-    rows = np.arange(len(corners))
-    a, b, c = (corners[rows, (lone + k) % 3] for k in range(3))
-    p, q = (a + ((x - a[:, 0]) / (other[:, 0] - a[:, 0]))[:, None] * (other - a) for other in (b, c))
-    up = (a[:, 0] > x)[:, None]
-    # With the lone corner above, the outside is to the right of the way from its second side to its first.
-    start, end = np.where(up, p, q)[:, 1:], np.where(up, q, p)[:, 1:]
-    middle = start.mean(axis=0)
-    start, end = start - middle, end - middle
-    cross = start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]
-    area = float(cross.sum()) / 2.0
-    if not area > 0.0:
-        return None
-    centre = (cross[:, None] * (start + end)).sum(axis=0) / (6.0 * area)
-    both = start + end
-    second = (start * cross[:, None]).T @ start + (end * cross[:, None]).T @ end + (both * cross[:, None]).T @ both
-    second = second / 24.0 - area * np.outer(centre, centre)
-    places = np.concatenate([start, end]) + middle
-    low, high = places.min(axis=0), places.max(axis=0)
-    return StationSection(
-        x=x,
-        area=area,
-        centre=(float(centre[0] + middle[0]), float(centre[1] + middle[1])),
-        i_y=float(second[1, 1]),
-        i_z=float(second[0, 0]),
-        i_yz=float(second[0, 1]),
-        low=(float(low[0]), float(low[1])),
-        high=(float(high[0]), float(high[1])),
-    )
 
 
 def _reentrant(body: Body) -> list[ReentrantEdge]:

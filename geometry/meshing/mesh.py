@@ -13,18 +13,17 @@ from numpy.typing import NDArray
 from geometry.base.errors import AlulaError
 from geometry.base.kernel_child import KernelWords, ask_kernel
 from geometry.bodies.body_rules import check_body
+from geometry.bodies.cut_section import CutSection
 from geometry.meshing.mesh_settings import COARSE, MeshSettings
 from geometry.meshing.tagged_mesh import TaggedMesh
 from geometry.parts.part import Body
 from geometry.solids.reentrant import ReentrantEdge
-from geometry.solids.sections import StationSection
 
 __all__ = [
     "COARSE",
     "MassProperties",
     "MeshSettings",
     "ReentrantEdge",
-    "StationSection",
     "export_step",
     "mass_properties",
     "mesh_bodies",
@@ -161,7 +160,7 @@ def reentrant_edges(body: Body) -> list[ReentrantEdge]:
     return edges
 
 
-def sections_and_rings(body: Body, stations: tuple[float, ...]) -> tuple[list[StationSection], list[float]]:
+def sections_and_rings(body: Body, stations: tuple[float, ...]) -> tuple[list[CutSection], list[float]]:
     """Return sections of a body, and the flat rings about its holes; errors are those of ``mesh_body``.
 
     The body may lack its load points, so that its rules are not checked here.
@@ -175,7 +174,7 @@ def sections_and_rings(body: Body, stations: tuple[float, ...]) -> tuple[list[St
 
     Returns
     -------
-    sections : list of StationSection
+    sections : list of CutSection
         Normal to the link's axis; those that have an area.
     rings : list of float
         Outer diameter of the flat ring about each pin's hole; 0 where there is none [mm].

@@ -11,6 +11,7 @@ from geometry.base.errors import CannotRunError
 from geometry.base.model import Direction, Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import Body, Feature, PartKind
+from geometry.bodies.cut_section import CutSection
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
 from geometry.materials.printable import Printable
@@ -97,16 +98,16 @@ class ImportedPart(PartKind):
     """Bounds of the solid in the link's frame [mm]."""
     unit: float = 1.0
     """Size of the unit of all lengths here [mm]."""
-    stations: tuple[tuple[float, float, float, float, float, float], ...] = ()
-    """Sections across the line between its outermost pins: area [mm²], least and greatest second moment of area about
-    axes through its centroid [mm⁴], the second moment about the axis along z [mm⁴], sizes along y and z [mm]."""
+    stations: tuple[CutSection, ...] = ()
+    """Sections across the x axis, each in the middle of one of as many equal stretches between the outermost pins."""
     fillet_radius: ClassVar[float] = 0.0
-    by_hand: ClassVar[str] = (
-        "hand calculation takes the imported part for a straight beam of the least area and second moments among its "
-        "sections between its pins: an estimate that decides nothing"
-    )
     has_holes: ClassVar[bool] = True
     patches_anywhere: ClassVar[bool] = True
+
+    @property
+    def cuts(self) -> tuple[CutSection, ...]:
+        """As ``PartKind.cuts``: those at its stations."""
+        return self.stations
 
     @property
     def may_be_sharp(self) -> bool:
@@ -138,22 +139,20 @@ class ImportedPart(PartKind):
         return self._uniform(harmonic=False)
 
     def _uniform(self, *, harmonic: bool) -> Section:
-        def one(number: int) -> float:
-            values = [station[number] for station in self.stations]
-            return len(values) / sum(1.0 / value for value in values) if harmonic else min(values)
-
         if not self.stations:
             across, along = self.high[1] - self.low[1], self.high[2] - self.low[2]
             return rectangle(across, along)
-        area, least, greatest, in_plane = (one(number) for number in range(4))
-        sizes = [max(station[number] for station in self.stations) for number in (4, 5)]
+
+        def one(values: list[float]) -> float:
+            return len(values) / sum(1.0 / value for value in values) if harmonic else min(values)
+
         return Section(
-            area=area,
-            i_y=least,
-            i_z=in_plane,
-            torsion=area**4 / (40.0 * (least + greatest)),
-            half_y=sizes[0] / 2.0,
-            half_z=sizes[1] / 2.0,
+            area=one([cut.area for cut in self.stations]),
+            i_y=one([cut.free[0] for cut in self.stations]),
+            i_z=one([cut.free[1] for cut in self.stations]),
+            torsion=one([cut.torsion for cut in self.stations]),
+            half_y=max(cut.width for cut in self.stations) / 2.0,
+            half_z=max(cut.height for cut in self.stations) / 2.0,
             round=False,
         )
 

@@ -119,9 +119,8 @@ def _placed(
     first, last = min(reach), max(reach)
     stations = tuple(first + (last - first) * (i + 0.5) / STATIONS for i in range(STATIONS if last > first else 0))
     sections, rings = sections_and_rings(body, stations)
-    found = [(s.area, *s.principal, s.i_z, s.high[0] - s.low[0], s.high[1] - s.low[1]) for s in sections]
     return Body(
-        part=solid.model_copy(update={"stations": tuple(found)}),
+        part=solid.model_copy(update={"stations": tuple(sections)}),
         pins=tuple(_with_ring(pin, ring) for pin, ring in zip(body.pins, rings, strict=True)),
         ends=(),
         holes=(),

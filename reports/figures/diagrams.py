@@ -18,13 +18,14 @@ _NIL = 1e-9
 _LEFT, _RIGHT, _LABEL = 64.0, 517.0, 22.0
 _PITCH, _PANEL, _BELOW = 90.0, 74.0, 18.0
 """Sides of the panels, middle of their labels, their distance and height, and the room below them [points]."""
-_COLOURS = {"N": "#7a4fa3", "V": "#00795a", "M": "#c8460b", "T": "#0067a8"}
+_COLOURS = {"N": "#7a4fa3", "V": "#00795a", "M": "#c8460b", "T": "#0067a8", "σ": "#8a1538"}
 
 
 def internal_force_diagram(beam: BeamCheck, points: dict[str, float]) -> bytes:
     """Draw N, V and M of a link over its length, with extreme values.
 
-    Out-of-plane shear, moment and torque are drawn where they are not zero.
+    Out-of-plane shear, moment and torque are drawn where they are not zero, and of a part from a file, whose section
+    varies, the largest stress of each section.
 
     Parameters
     ----------
@@ -53,13 +54,15 @@ def _sheet(beam: BeamCheck, points: dict[str, float]) -> Canvas:
     ):
         if np.abs(values).max() > _NIL * size:
             rows.append((kind, label, values))
+    if beam.cuts:
+        rows.append(("σ", "stress [MPa]", beam.equivalent))
     low, wide = float(beam.x[0]), _RIGHT - _LEFT
     along = (low - _BESIDE * length, low + (1.0 + _BESIDE) * length)
     names = stacked(points, [wide * (x - along[0]) / (along[1] - along[0]) for x in points.values()])
     top = 9.0 + heights(names)
     sheet = Canvas(72.0 * WIDTH, top + _PITCH * len(rows) + _BELOW)
     for k, (kind, label, values) in enumerate(rows):
-        size = scale if kind == "N" or kind == "V" else scale * length
+        size = float(values.max()) if kind == "σ" else scale if kind in "NV" else scale * length
         values = np.where(np.abs(values) > _NIL * size, values, 0.0)
         box = (_LEFT, top + _PITCH * k, _RIGHT, top + _PITCH * k + _PANEL)
         axes = Axes(box=box, x=along, y=_room(values))

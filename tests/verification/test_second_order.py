@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fea.beam.column_factor import Stretch
+from fea.beam.cut_beam import curving_forces
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import internal_forces
 from fea.check.run import check_case
@@ -16,6 +17,7 @@ from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
 from fea.common.verdict import Verdict
 from fea.motion.buckling_history import with_second_order
 from fea.motion.link_history import link_histories
+from geometry.bodies.cut_section import CutSection
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.records.applied import LineLoad
@@ -68,6 +70,21 @@ def test_beam_columns_on_two_pins(n: float) -> None:
     one = loaded((0.0, [P, 0.5, 0, 0, 0, 50.0]), (L, [-P, -0.5, 0, 0, 0, 0]))
     largest = 50.0 / math.sin(k * L) if k * L > math.pi / 2.0 else 50.0
     assert moment(between_stations(one, forces(one), BEND, BEND)) == pytest.approx(largest, rel=2e-4)
+
+
+@pytest.mark.parametrize("n", FACTORS)
+def test_a_column_pressed_beside_its_centroid_bears_the_secant_formula(n: float) -> None:
+    """M = P e/cos u in the middle (Timoshenko & Gere, 2nd ed., sec. 1.11); P on the axis, 3 mm off the sections."""
+    P, u = EULER / n, math.pi / 2.0 / math.sqrt(n)
+    second = EI / 2000.0
+    cuts = [
+        CutSection(x=x, area=20.0, centre=(3.0, 0.0), i_y=second, i_z=second, i_yz=0.0, hull=((0, 0), (1, 0), (0, 1)))
+        for x in L * (np.arange(16) + 0.5) / 16.0
+    ]
+    loads = loaded((0.0, [P, 0, 0, 0, 0, 0]), (L, [-P, 0, 0, 0, 0, 0]))
+    found = on_its_pins(loads, curving_forces(forces(loads), cuts), BEND, BEND, (0.0, L))
+    about = curving_forces(forces(found), cuts)
+    assert about.largest(lambda f: abs(float(f[5])))[2] == pytest.approx(P * 3.0 / math.cos(u), rel=1e-3)
 
 
 @pytest.mark.parametrize("n", FACTORS)

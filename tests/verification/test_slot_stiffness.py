@@ -204,6 +204,6 @@ def test_the_check_of_a_link_takes_its_slot_into_account() -> None:
     case = slotted_lever(first=12.0, last=66.0, at=40.0, force=0.0, pull=-1.0, thickness=30.0)
     section, young = case.part_of("lever").section, case.material_of("lever").youngs_modulus
     force = AxialForce(breaks=np.array([0.0, TIP]), values=np.ones((1, 3, 1)))
-    (found,) = link_factors(case, "lever", section, force).value
+    (found,) = link_factors(case, "lever", force).value
     # On one pin it is a cantilever (k = 2), whose slot makes it softer.
     assert found < 0.7 * math.pi**2 * young * section.i_z / (2.0 * TIP) ** 2

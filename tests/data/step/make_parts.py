@@ -141,6 +141,24 @@ def inch() -> cq.Shape:
     return body.cut(hole(-25.4, 0.0, 6.35, -9.0, 9.0)).cut(hole(25.4, 0.0, 6.35, -9.0, 9.0)).val()
 
 
+def angle() -> cq.Shape:
+    """Angle of 16 by 10 by 2 mm along x, 160 mm long, with bores of 4 mm through its wide leg, 140 mm apart.
+
+    Its legs lie on y = 0 to 16, z = 0 to 2 and y = 0 to 2, z = 0 to 10; the bores at y = 8.
+    """
+    body = cq.Workplane("YZ", origin=(-80, 0, 0)).polyline([(0, 0), (16, 0), (16, 2), (2, 2), (2, 10), (0, 10)])
+    body = body.close().extrude(160.0)
+    return body.cut(hole(-70.0, 8.0, 4.0, -1.0, 3.0)).cut(hole(70.0, 8.0, 4.0, -1.0, 3.0)).val()
+
+
+def taper() -> cq.Shape:
+    """Bar of 6 mm whose width grows from 10 to 20 mm over 100 mm between bores of 4 mm; it reaches 8 mm past them."""
+    rise = 10.0 / 100.0 / 2.0
+    low, high = 5.0 - 8.0 * rise, 10.0 + 8.0 * rise
+    body = cq.Workplane("XY").polyline([(-8, -low), (108, -high), (108, high), (-8, low)]).close().extrude(6.0)
+    return body.cut(hole(0.0, 0.0, 4.0, -1.0, 9.0)).cut(hole(100.0, 0.0, 4.0, -1.0, 9.0)).val()
+
+
 def two_solids() -> cq.Shape:
     """A block of 10 mm and one of 20 by 10 by 5 mm, apart."""
     return cq.Compound.makeCompound(
@@ -167,6 +185,8 @@ def main() -> None:
         sleeve,
         splines,
         inch,
+        angle,
+        taper,
         two_solids,
         shell,
         threaded,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from imported_case import imported_case
 
+from fea.beam.cut_beam import beam_sections, cut_remark
 from geometry.base.errors import AlulaError, CaseError
 from geometry.meshing.mesh import COARSE, mass_properties, mesh_body, reentrant_edges
 from loads.case.case_file import read_case
@@ -61,6 +62,12 @@ def test_sections_are_those_of_the_plate(case):
     section = case.part_of("rocker").section
     assert section.area == pytest.approx(100.0, rel=0.1)
     assert section.width == pytest.approx(20.0, rel=1e-4)
+
+
+def test_a_plate_says_that_it_is_no_beam(case):
+    """Its pins are 40 mm apart, and it is 20 mm wide."""
+    assert beam_sections(case.body("rocker")) == ()
+    assert cut_remark(case.body("rocker")).startswith("the part is no beam")
 
 
 @pytest.mark.parametrize(
