@@ -44,6 +44,8 @@ NOTE = (
     "the mesh is that of the part's file; it is not refined, so that the band of its stress is four times the "
     "estimated error"
 )
+_TURNED = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
+"""The nodes of an element whose second and third corner change places."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,6 +104,9 @@ def read_mesh(path: str, digest: str, unit: float) -> FileMesh:
         raise CaseError(f"'{name}' has nodes whose coordinates are no finite numbers; export the mesh anew")
     used, cells = np.unique(cells, return_inverse=True)
     points, cells = points[used] * unit, cells.reshape(-1, 10)
+    x = points[cells[:, :4]]
+    if (np.linalg.det(x[:, 1:] - x[:, :1]) < 0.0).all():  # Netgen numbers corners the other way round
+        cells = cells[:, _TURNED]
     if (worst := int((jacobian_coefficients(points, cells).min(axis=1) <= 0.0).sum())) > 0:
         raise CaseError(
             f"{worst} of {len(cells)} elements of '{name}' are inverted (their Jacobian determinant is not positive "
