@@ -134,7 +134,7 @@ def test_sizes_that_make_no_tube(sizes, rule):
     ("shape", "rule"),
     [
         (body(diameter=7.5), "leaves too little of the tube's side"),
-        (body(y=2.5), "leaves too little of the tube's side"),
+        (body(y=1.4), "leaves too little of the tube's side: keep it within 2.828 mm"),
         (body(overhang="1.5 mm"), "set overhang above 1.5 mm"),
         (body(bush_diameter="3 mm"), "3.3 mm to 4 mm"),
         (body(bush_diameter="3.5 mm", y=0.6), "3.3 mm to 2.8 mm"),
