@@ -27,7 +27,9 @@ class Points(Sequence[Point]):
         In place of the grid.
     """
 
-    def __init__(self, axes: Sequence[Axis], table: Sequence[Mapping[str, str]], sample: Sample | None = None) -> None:
+    def __init__(
+        self, axes: Sequence[Axis], table: Sequence[Mapping[str, object]], sample: Sample | None = None
+    ) -> None:
         self.axes, self._table = tuple(axes), table
         self._shares = None if sample is None else _shares(len(self.axes), sample)
         self._inner = math.prod(len(a.values) for a in self.axes) if self._shares is None else len(self._shares)
@@ -41,7 +43,7 @@ class Points(Sequence[Point]):
         if not 0 <= number < len(self):
             raise IndexError(number)
         row, rest = divmod(number, self._inner)
-        point: Point = {path: plain(value) for path, value in self._table[row].items()}
+        point = {p: plain(value) if isinstance(value, str) else value for p, value in self._table[row].items()}
         return point | (self._of_grid(rest) if self._shares is None else self._of_sample(rest))
 
     def __iter__(self) -> Iterator[Point]:

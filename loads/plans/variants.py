@@ -28,6 +28,8 @@ class Variants:
     plan : StudyPlan
     folder : Path
         That the plan's names are relative to.
+    points : sequence of mapping, optional
+        In place of those that the plan describes: of a search, which chooses them on its way.
 
     Attributes
     ----------
@@ -45,13 +47,13 @@ class Variants:
         entries that the case does not state, a file that is not there.
     """
 
-    def __init__(self, plan: StudyPlan, folder: Path) -> None:
+    def __init__(self, plan: StudyPlan, folder: Path, points: Sequence[Mapping[str, object]] | None = None) -> None:
         self.plan, self.name = plan, case_name(plan, folder)
         changes = [Change(path, value, "set") for path, value in plan.set.items()]
         self.base = changed_tables(read_tables(self.name), changes)
         for table in LEFT_OUT:
             self.base.pop(table, None)
-        self.points = Points(plan.axes(), table_of(plan, folder), plan.sample)
+        self.points = Points(plan.axes(), table_of(plan, folder), plan.sample) if points is None else Points((), points)
         self.files: dict[str, Path] = {}
         self._digests: dict[str, str] = {}
         _refuse_unknown(self.tables(self.points[0]))

@@ -11,6 +11,7 @@ import typer
 
 from reports.commands.ending import end_if_stopped, run
 from reports.commands.materials import app as materials
+from reports.commands.size import app as size
 from reports.commands.starters import app as starters
 from reports.commands.study import app as study
 
@@ -307,6 +308,7 @@ def synth(
 app.add_typer(starters)
 app.add_typer(materials)
 app.add_typer(study)
+app.add_typer(size)
 
 
 @app.command()

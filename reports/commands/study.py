@@ -94,7 +94,7 @@ def run(
     from fea.study.study import Study
     from loads.plans.variants import Variants
 
-    plan, folder = _plan(case, _stated(vary, "--vary"), _stated(link, "--link"), points, sample, seed, overrides, {
+    plan, folder = _plan(case, stated(vary, "--vary"), stated(link, "--link"), points, sample, seed, overrides, {
         "analysis": analysis, "fidelity": fidelity, "accuracy": accuracy, "mass": mass,
     })  # fmt: skip
     variants = Variants(plan, folder)
@@ -108,8 +108,24 @@ def run(
     print(f"Show them: alula study show {output}")
 
 
-def _stated(options: Sequence[str] | None, name: str) -> dict[str, str]:
-    """Read ``path=text`` options."""
+def stated(options: Sequence[str] | None, name: str) -> dict[str, str]:
+    """Read options of the form ``entry=text``.
+
+    Parameters
+    ----------
+    options : sequence of str or None
+    name : str
+        Of the option, for messages.
+
+    Returns
+    -------
+    dict of str to str
+
+    Raises
+    ------
+    CaseError
+        For text of another form, and an entry that is stated twice.
+    """
     from geometry.base.errors import CaseError
     from loads.text.explain import printable
 
@@ -140,8 +156,8 @@ def _plan(
     from loads.case.case_file import built_in_cases, read_tables, stated_changes
     from loads.plans.plan import plan_of, read_plan
 
-    stated = bool(vary or link or points or sample or overrides)
-    if not stated and case not in built_in_cases() and "case" in read_tables(case):
+    options = bool(vary or link or points or sample or overrides)
+    if not options and case not in built_in_cases() and "case" in read_tables(case):
         return read_plan(Path(case))
     data: dict[str, Any] = {"case": case, "vary": dict(vary), "link": dict(link), "points": points} | dict(more)
     data["set"] = {change.path: change.value for change in stated_changes(overrides or ())}

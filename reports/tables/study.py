@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from fea.common.band import Band
-from fea.common.verdict import Quantity, Sense, Verdict
+from fea.common.verdict import Verdict
+from fea.study.margin import margin, nearest, sense_of
 from fea.study.numbers import VariantNumber, VariantResult
 from fea.study.store import Store
 from geometry.base.version import result_stamp
@@ -38,8 +39,7 @@ class Row:
     @property
     def nearest(self) -> VariantNumber | None:
         """The check that is nearest to its limit, or farthest beyond."""
-        checked = [found for found in self.answer.numbers if found.check]
-        return min(checked, key=margin, default=None)
+        return nearest(self.answer)
 
     @property
     def margin(self) -> float:
@@ -56,44 +56,6 @@ class Row:
     def outcome(self) -> str:
         """The verdict, or the state where there is none."""
         return str(self.answer.verdict or self.answer.state)
-
-
-def margin(found: VariantNumber) -> float:
-    """Return by what factor a check keeps its limit with the worse end of its band: 1 at the limit.
-
-    Parameters
-    ----------
-    found : VariantNumber
-        Of a check.
-
-    Returns
-    -------
-    float
-        0 where the number is not known.
-    """
-    worst, best = (found.low, found.limit) if _at_least(found) else (found.limit, found.high)
-    if not (worst == worst and best == best):  # NaN
-        return 0.0
-    return worst / best if best > 0.0 else float("inf")
-
-
-def sense_of(found: VariantNumber) -> Sense:
-    """Return on which side of its limit a checked number must be.
-
-    Parameters
-    ----------
-    found : VariantNumber
-        Of a check.
-
-    Returns
-    -------
-    Sense
-    """
-    return next(quantity.sense for quantity in Quantity if quantity.value == found.quantity)
-
-
-def _at_least(found: VariantNumber) -> bool:
-    return sense_of(found) is Sense.AT_LEAST
 
 
 def study_rows(store: Store) -> Iterator[Row]:
@@ -238,6 +200,22 @@ def _nearest(row: Row) -> str:
     found = row.nearest
     if found is None:
         return row.answer.sentence
+    return number_text(found)
+
+
+def number_text(found: VariantNumber) -> str:
+    """Return a checked number with its band and its limit.
+
+    Parameters
+    ----------
+    found : VariantNumber
+        Of a check.
+
+    Returns
+    -------
+    str
+        Such as ``safety factor of AE 2.1 (1.9 to 2.3) (≥ 1.5)``.
+    """
     value = Band(value=found.value, low=found.low, high=found.high)
     unit = "" if found.unit == "1" else f" {found.unit}"
     sign = sense_of(found).value

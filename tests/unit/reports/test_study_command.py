@@ -64,3 +64,16 @@ def test_the_starter_plan_is_valid_and_its_schema_is_one(tmp_path: Path) -> None
     schema = json.loads(programs.inside("schema", "--study").stdout)
     jsonschema.Draft202012Validator.check_schema(schema)
     jsonschema.validate(tomllib.loads((tmp_path / "study.toml").read_text(encoding="utf-8")), schema)
+
+
+def test_the_least_size_is_told_with_what_limits_it(tmp_path: Path) -> None:
+    """A tie under weight by hand calculation: status, JSON and text agree; a wrong range is one sentence."""
+    wrong = programs.inside("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=4 mm", folder=tmp_path)
+    assert (wrong.returncode, "is no range" in wrong.stderr) == (2, True)
+    arguments = ("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=3 mm..5 mm by 0.5 mm")
+    found = programs.inside(*arguments, "--fidelity", "beam", "--json", "--workers", "1", folder=tmp_path)
+    record = json.loads(found.stdout)
+    assert found.returncode == 0
+    assert record["passing"] == "4 mm"  # README: 4 mm passes, 3.5 mm is undecided
+    assert "3.5 mm" in record["undecided"]
+    assert not list(tmp_path.iterdir())

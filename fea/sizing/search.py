@@ -1,0 +1,88 @@
+"""Computes the variants that a search asks for, batch by batch, into the store of a study."""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+
+from fea.study.engine import Engine
+from fea.study.numbers import VariantResult
+from fea.study.store import Store
+from fea.study.study import Progress, Study
+from loads.plans.plan import StudyPlan
+from loads.plans.variants import Variants
+
+Point = Mapping[str, object]
+
+
+class Search:
+    """Variants of a case, each computed once.
+
+    Parameters
+    ----------
+    plan : StudyPlan
+        Case, analysis, linked entries and what is set; its ``vary`` names the entries that the search chooses.
+    folder : Path
+        That the plan's names are relative to.
+    store : Store
+        Open for writing.
+    engine : Engine
+    tell : callable, optional
+        Called with a sentence before each batch.
+    """
+
+    def __init__(
+        self,
+        plan: StudyPlan,
+        folder: Path,
+        store: Store,
+        engine: Engine,
+        tell: Callable[[str], None] = lambda sentence: None,
+    ) -> None:
+        self._plan, self._folder, self._store, self._engine, self._tell = plan, folder, store, engine, tell
+        self._known: dict[tuple[str, tuple[tuple[str, object], ...]], VariantResult] = {}
+
+    @property
+    def fidelity(self) -> str:
+        """The model that decides."""
+        return self._plan.fidelity
+
+    def at(self, points: Sequence[Point], fidelity: str = "") -> list[VariantResult]:
+        """Return what becomes of some points.
+
+        Parameters
+        ----------
+        points : sequence of mapping
+            Entry -> value, for every entry that varies.
+        fidelity : str, optional
+            Of the check; the plan's unless given.
+
+        Returns
+        -------
+        list of VariantResult
+        """
+        fidelity = fidelity or self._plan.fidelity
+        named = [(fidelity, tuple(point.items())) for point in points]
+        missing = list(dict.fromkeys(name for name in named if name not in self._known))
+        if missing:
+            model = "hand calculation" if fidelity in ("beam", "frame") else "the model that decides"
+            self._tell(f"{len(missing)} of {len(named)} variants by {model} ...")
+            self._compute(missing, fidelity)
+        return [self._known[name] for name in named]
+
+    def _compute(self, missing: Sequence[tuple[str, tuple[tuple[str, object], ...]]], fidelity: str) -> None:
+        plan = self._plan.model_copy(update={"fidelity": fidelity})
+        variants = Variants(plan, self._folder, points=[dict(point) for _, point in missing])
+        Study(variants=variants, store=self._store).run(lambda: nullcontext(self._engine))
+        for position, _, result, _ in self._store.rows():
+            self._known[missing[position]] = result
+
+    def finish(self) -> Progress:
+        """Assign all points by the model that decides to the study, so that ``alula study show`` shows them.
+
+        Returns
+        -------
+        Progress
+        """
+        points = [dict(point) for fidelity, point in self._known if fidelity == self._plan.fidelity]
+        variants = Variants(self._plan, self._folder, points=points)
+        return Study(variants=variants, store=self._store).run(lambda: nullcontext(self._engine))

@@ -1,0 +1,214 @@
+"""The command ``alula size``: the least size that passes, the greatest that fails, and what limits them."""
+
+import json as jsonlib
+import sys
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from reports.commands.study import stated
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from fea.sizing.least import Sized
+
+app = typer.Typer()
+STEPS = 100
+"""Of a range without step."""
+
+
+@app.command()
+def size(
+    case: Annotated[
+        str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
+    ],
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            "--vary", help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm".', show_default=False
+        ),
+    ],
+    step: Annotated[
+        str | None, typer.Option("--step", help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
+    ] = None,
+    link: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--link", help='An entry that follows: parts.tube.eye_thickness="outer_diameter + 2*fillet_radius".'
+        ),
+    ] = None,
+    overrides: Annotated[list[str] | None, typer.Option("--set", help="Override an entry of the case.")] = None,
+    fidelity: Annotated[str, typer.Option(help="Model that decides: auto, beam or solid.")] = "auto",
+    accuracy: Annotated[
+        str | None, typer.Option(help='Discretisation error of solids, such as "5 %".', show_default=False)
+    ] = None,
+    analysis: Annotated[str, typer.Option(help="check or envelope.")] = "check",
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=256, help="Processes; default: one a core.", show_default=False)
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder that keeps what was computed, as of a study.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Find the least value of an entry that passes over its whole band."""
+    from fea.sizing.least import least_size
+    from fea.sizing.search import Search
+    from fea.study.engine import local_engine, usable_cores
+    from fea.study.store import Store
+    from geometry.base.errors import CaseError
+    from loads.case.case_file import stated_changes
+    from loads.plans.axis import axis
+    from loads.plans.plan import plan_of
+
+    varied = stated(vary, "--vary")
+    if len(varied) != 1:
+        raise CaseError("size: one entry varies; state --vary once, and let others follow with --link")
+    [(path, text)] = varied.items()
+    if ".." not in text:
+        raise CaseError(f"vary {path}: '{text}' is no range; write for example \"3 mm..8 mm\"")
+    if "/" not in text and " by " not in text:
+        text = f"{text} by {step}" if step else f"{text}/{STEPS + 1}"
+    elif step:
+        raise CaseError(f"vary {path}: '{text}' has steps of its own; leave --step out")
+    values = axis(path, text).values
+    data: dict[str, Any] = {"case": case, "vary": {path: text}, "link": stated(link, "--link"), "mass": False}
+    data |= {"fidelity": fidelity, "accuracy": accuracy, "analysis": analysis}
+    data["set"] = {change.path: change.value for change in stated_changes(overrides or ())}
+    plan = plan_of(data)
+    with ExitStack() as stack:
+        folder = output or Path(stack.enter_context(TemporaryDirectory(prefix="alula-")))
+        from loads.plans.variants import Variants
+
+        files = Variants(plan, Path(), points=[{path: values[-1]}]).files
+        contents = {name: file.read_bytes() for name, file in files.items()}
+        store = stack.enter_context(Store.writing(folder))
+        engine = stack.enter_context(local_engine(workers or usable_cores(), contents, folder=folder))
+        search = Search(plan, Path(), store, engine, tell=_tell)
+        found = least_size(search, path, values)
+        if output is not None:
+            search.finish()
+    if json:
+        print(jsonlib.dumps(record(found), indent=2, allow_nan=False))
+    else:
+        from rich.console import Console
+
+        print_size(found, Console())
+    raise SystemExit(exit_status(found))
+
+
+def _tell(sentence: str) -> None:
+    print(sentence, file=sys.stderr, flush=True)
+
+
+def exit_status(found: "Sized") -> int:
+    """Return the status of the command: 0 where a value passes, 1 where all fail, 3 where none is decided to pass.
+
+    Parameters
+    ----------
+    found : Sized
+
+    Returns
+    -------
+    int
+    """
+    if found.passing is not None:
+        return 0
+    return 1 if found.failing in (0, len(found.values) - 1) and not found.opened else 3
+
+
+def record(found: "Sized") -> Mapping[str, Any]:
+    """Return the result as plain data.
+
+    Parameters
+    ----------
+    found : Sized
+
+    Returns
+    -------
+    mapping
+    """
+    from geometry.base.version import result_stamp
+    from reports.tables.data import finite
+
+    def value(step: int | None) -> object:
+        return None if step is None else found.values[step]
+
+    solved = [
+        {
+            "value": found.values[step],
+            "state": result.state,
+            "verdict": result.verdict,
+            "sentence": result.sentence,
+            "limit": None if (limit := found.limit(step)) is None else limit.__dict__,
+        }
+        for step, result in sorted(found.results.items())
+    ]
+    told = {
+        **result_stamp(),
+        "entry": found.path,
+        "passing": value(found.passing),
+        "failing": value(found.failing),
+        "undecided": [found.values[step] for step in found.opened],
+        "fails_beyond": [found.values[step] for step in found.turns],
+        "solved": solved,
+    }
+    return dict(finite(told, {}))
+
+
+def print_size(found: "Sized", console: "Console") -> None:
+    """Print the result.
+
+    Parameters
+    ----------
+    found : Sized
+    console : rich.console.Console
+    """
+    from reports.words.terminal import say
+
+    least, most = ("Least", "greatest") if found.rising else ("Greatest", "least")
+    span = f"{found.values[0]} to {found.values[-1]}"
+    if found.passing is None:
+        say(console, f"No value of {found.path} from {span} passes over its whole band.", style="bold")
+    else:
+        say(console, f"{least} {found.path} that passes: {found.values[found.passing]}.", style="bold")
+    if found.failing is None:
+        say(console, f"None from {span} fails.")
+    else:
+        say(console, f"The {most} that fails: {found.values[found.failing]}.")
+    if found.opened:
+        say(console, f"Undecided: {', '.join(str(found.values[step]) for step in found.opened)}.")
+    if found.turns:
+        values = ", ".join(str(found.values[step]) for step in found.turns)
+        say(
+            console, f"The verdict turns more than once: {values} fails again. Choose from alula study with this range."
+        )
+    best = found.passing if found.passing is not None else _best(found)
+    for step in dict.fromkeys((best, found.failing)):
+        if step is not None and (sentence := _limited(found, step)):
+            say(console, sentence)
+
+
+def _best(found: "Sized") -> int | None:
+    """The undecided step on the passing side, where none passes."""
+    return max(found.opened, key=lambda step: step if found.rising else -step, default=None)
+
+
+def _limited(found: "Sized", step: int) -> str:
+    from fea.study.margin import sense_of
+    from reports.tables.study import number_text
+
+    limit, gain = found.limit(step), found.gain(step)
+    if limit is None:
+        return ""
+    told = f"At {found.values[step]} {number_text(limit)} limits it"
+    if gain is None or step == len(found.values) - 1:
+        return told + "."
+    other = found.values[step + (1 if found.rising else -1)]
+    verb = "raises" if sense_of(limit).value == "≥" else "lowers"
+    return f"{told}; {other} {verb} it by some {100.0 * abs(gain):.2g} %."
