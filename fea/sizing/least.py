@@ -127,36 +127,30 @@ def least_size(search: Search, path: str, values: Sequence[object]) -> Sized:
     steps = _Steps(search, path, tuple(values))
     margins = _margins_by_hand(steps)
     rising = margins[max(margins)] >= margins[min(margins)]
-    boundary = _Boundary(steps, rising)
-    boundary.bracket(min(margins, key=lambda step: abs(margins[step])))
-    boundary.look_at(_stretches(margins))
+    order = range(len(values)) if rising else range(len(values) - 1, -1, -1)
+    _bracket(steps, order, order.index(min(margins, key=lambda step: abs(margins[step]))), _stretches(margins))
     results = steps.decided
-    found = {step: result.verdict for step, result in results.items() if result.state == "done"}
-    passing = [step for step, verdict in found.items() if verdict is Verdict.PASS]
-    failing = [step for step, verdict in found.items() if verdict is Verdict.FAIL]
-    best = _extreme(passing, least=rising)
-    beyond = [] if best is None else [step for step in failing if (step > best) == rising]
-    below = [step for step in failing if step not in beyond]
+    passing = [step for step in order if steps.verdict(step) is Verdict.PASS]
+    failing = [step for step in order if steps.verdict(step) is Verdict.FAIL]
+    best = passing[0] if passing else None
+    beyond = [] if best is None else [step for step in failing if order.index(step) > order.index(best)]
+    before = [step for step in failing if step not in beyond]
     return Sized(
         path=path,
         values=steps.values,
         results=results,
         rising=rising,
         passing=best,
-        failing=_extreme(below, least=not rising),
+        failing=before[-1] if before else None,
         turns=tuple(sorted(beyond)),
     )
-
-
-def _extreme(steps: Sequence[int], *, least: bool) -> int | None:
-    return (min if least else max)(steps, default=None)
 
 
 class _Steps:
     """The values of an entry with what was decided of them."""
 
     def __init__(self, search: Search, path: str, values: tuple[object, ...]) -> None:
-        self._search, self._path, self.values = search, path, values
+        self._search, self._path, self.values, self.workers = search, path, values, search.workers
         self.decided: dict[int, VariantResult] = {}
 
     def by_hand(self, steps: Sequence[int]) -> list[VariantResult]:
@@ -167,13 +161,13 @@ class _Steps:
 
     def decide(self, steps: Sequence[int]) -> None:
         new = [step for step in dict.fromkeys(steps) if step not in self.decided]
-        found = self._search.at([{self._path: self.values[step]} for step in new])
+        found = self._search.at([{self._path: self.values[step]} for step in new]) if new else []
         self.decided.update(zip(new, found, strict=True))
 
     def verdict(self, step: int) -> Verdict | None:
-        """The verdict of a decided step; None where it was refused or crashed."""
-        result = self.decided[step]
-        return result.verdict if result.state == "done" else None
+        """The verdict of a step; None where it was refused or crashed, or not decided."""
+        result = self.decided.get(step)
+        return result.verdict if result is not None and result.state == "done" else None
 
 
 def _margins_by_hand(steps: _Steps) -> dict[int, float]:
@@ -195,74 +189,40 @@ def _stretches(margins: Mapping[int, float]) -> list[int]:
     return [run[len(run) // 2] for run in runs]
 
 
+def _bracket(steps: _Steps, order: Sequence[int], guess: int, stretches: Sequence[int]) -> None:
+    """Decide steps until what fails, what is open and what passes are next to each other.
+
+    `order` has the steps from the failing side to the passing one, `guess` counts in it. The search goes from the guess
+    in strides that double, and then splits what is left into as many pieces as there are workers, and one more.
+    """
+    steps.decide([order[guess], order[min(guess + 1, len(order) - 1)]])
+    looked = len(stretches) < 3
+    while True:
+        wanted = _next(steps, order, guess, lambda verdict: verdict is Verdict.PASS)
+        wanted += _next(steps, order, guess, lambda verdict: verdict not in (Verdict.FAIL, None))
+        if not wanted and not looked:
+            wanted, looked = list(stretches), True
+        if not wanted:
+            return
+        steps.decide(wanted)
+
+
+def _next(steps: _Steps, order: Sequence[int], guess: int, holds: "Callable[[Verdict | None], bool]") -> list[int]:
+    """Return the steps to decide next in search of the first that holds; none once the one before it does not hold."""
+    told = {place: holds(steps.verdict(step)) for place, step in enumerate(order) if step in steps.decided}
+    first = min((place for place, held in told.items() if held), default=len(order))
+    last = max((place for place, held in told.items() if not held and place < first), default=-1)
+    if first == len(order):
+        places = [min(last + max(last - guess, 1), len(order) - 1)]
+    elif last == -1:
+        places = [max(first - max(guess - first, 1), 0)]
+    else:
+        pieces = min(steps.workers + 1, first - last)
+        places = [last + (first - last) * i // pieces for i in range(1, pieces)]
+    return [order[place] for place in places if place not in told]
+
+
 def _log_margin(result: VariantResult) -> float:
     number = nearest(result, worst=False)
     share = 0.0 if number is None else margin(number, worst=False)
     return math.log(min(max(share, 1e-9), 1e9))
-
-
-class _Boundary:
-    """Brackets the change of the verdict and halves the bracket."""
-
-    def __init__(self, steps: _Steps, rising: bool) -> None:
-        self._steps, self._sense, self._last = steps, 1 if rising else -1, len(steps.values) - 1
-
-    def bracket(self, guess: int) -> None:
-        """Decide steps until what fails, what is open and what passes are next to each other."""
-        self._steps.decide([guess])
-        passes = self._stride(guess, self._sense, lambda verdict: verdict is Verdict.PASS)
-        fails = self._stride(guess, -self._sense, lambda verdict: verdict in (Verdict.FAIL, None))
-        # Ends that were never reached count as just beyond the range.
-        end = self._last + 1 if self._sense > 0 else -1
-        start = -1 if self._sense > 0 else self._last + 1
-        self._halve(start if fails is None else fails, end if passes is None else passes, Verdict.PASS)
-        fails = self._nearest(Verdict.FAIL)
-        opened = self._nearest_not(Verdict.FAIL, fails)
-        if fails is not None and opened is not None:
-            self._halve(fails, opened, None)
-
-    def look_at(self, stretches: Sequence[int]) -> None:
-        """Decide a step of each stretch where there are more than two, and where the first that passes begins."""
-        if len(stretches) < 3:
-            return
-        self._steps.decide(stretches)
-        passes = self._nearest(Verdict.PASS, first=True)
-        before = [step for step in self._steps.decided if passes is not None and (passes - step) * self._sense > 0]
-        other = [step for step in before if self._steps.verdict(step) is not Verdict.PASS]
-        holds_not = _extreme(other, least=self._sense < 0)
-        if passes is not None and holds_not is not None:
-            self._halve(holds_not, passes, Verdict.PASS)
-
-    def _stride(self, guess: int, sense: int, found: "Callable[[Verdict | None], bool]") -> int | None:
-        """Go from the guess in strides that double until a verdict is found; None where the range ends before."""
-        step, stride = guess, 1
-        while not found(self._steps.verdict(step)):
-            if step == (self._last if sense > 0 else 0):
-                return None
-            step = min(max(step + sense * stride, 0), self._last)
-            stride *= 2
-            self._steps.decide([step])
-        return step
-
-    def _halve(self, fails: int, holds: int, wanted: Verdict | None) -> None:
-        """Halve between a step that does not hold and one that does: passes where that is wanted, else not fails."""
-        while abs(holds - fails) > 1:
-            middle = (fails + holds) // 2
-            self._steps.decide([middle])
-            verdict = self._steps.verdict(middle)
-            keeps = verdict is Verdict.PASS if wanted is Verdict.PASS else verdict not in (Verdict.FAIL, None)
-            fails, holds = (fails, middle) if keeps else (middle, holds)
-
-    def _nearest(self, verdict: Verdict, *, first: bool = False) -> int | None:
-        """The last step of a verdict, from what fails to what passes; the first one where that is wanted."""
-        steps = [step for step in self._steps.decided if self._steps.verdict(step) is verdict]
-        return _extreme(steps, least=(self._sense < 0) != first)
-
-    def _nearest_not(self, verdict: Verdict, beyond: int | None) -> int | None:
-        """The first decided step beyond one that has another verdict."""
-        if beyond is None:
-            return None
-        steps = [
-            s for s in self._steps.decided if (s - beyond) * self._sense > 0 and self._steps.verdict(s) is not verdict
-        ]
-        return _extreme(steps, least=self._sense > 0)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 
-from fea.study.engine import Engine
+from fea.study.engine import IN_FLIGHT, Engine
 from fea.study.numbers import VariantResult
 from fea.study.store import Store
 from fea.study.study import Progress, Study
@@ -40,6 +40,11 @@ class Search:
     ) -> None:
         self._plan, self._folder, self._store, self._engine, self._tell = plan, folder, store, engine, tell
         self._known: dict[tuple[str, tuple[tuple[str, object], ...]], VariantResult] = {}
+
+    @property
+    def workers(self) -> int:
+        """How many variants are computed at once."""
+        return max(self._engine.capacity() // IN_FLIGHT, 1)
 
     @property
     def fidelity(self) -> str:

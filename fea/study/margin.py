@@ -34,8 +34,10 @@ def margin(number: VariantNumber, *, worst: bool = True) -> float:
     Returns
     -------
     float
-        0 where the number is not known.
+        0 where the number is not known; infinite for a share of the load that is held in full, which says no more.
     """
+    if number.quantity == Quantity.LOAD_SHARE.value and number.low >= number.limit:
+        return math.inf
     at_least = sense_of(number) is Sense.AT_LEAST
     end = (number.low if at_least else number.high) if worst else number.value
     over, under = (end, number.limit) if at_least else (number.limit, end)

@@ -189,13 +189,14 @@ class Store:
         Parameters
         ----------
         facts : mapping
-            What ``facts`` gives back.
+            What ``facts`` gives back; at least ``plan`` and how many ``points`` it has.
         paths : sequence of str
             The entries that differ between points: columns of the view ``variants``.
         """
         with self._transaction():
             if self.facts().get("plan") != facts["plan"]:
                 self._db.execute("DELETE FROM points")
+            self._db.execute("DELETE FROM points WHERE position >= ?", (facts["points"],))
             rows = [(name, json.dumps(value)) for name, value in facts.items()]
             self._db.executemany("INSERT OR REPLACE INTO study VALUES (?, ?)", rows)
             self._db.execute("DROP VIEW IF EXISTS variants")
