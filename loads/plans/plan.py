@@ -1,7 +1,6 @@
 """What a study is asked to do: ``study.toml``, or the same from the options of the command."""
 
 import csv
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -10,7 +9,7 @@ from pydantic import Field, ValidationError
 
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Text
-from loads.case.case_file import built_in_cases, read_text
+from loads.case.case_file import built_in_cases, read_tables
 from loads.plans.axis import Axis, axis
 from loads.text.explain import printable, sentence
 
@@ -85,13 +84,15 @@ class StudyPlan(CaseModel):
         return found
 
 
-def read_plan(path: Path) -> tuple[StudyPlan, Path]:
+def read_plan(path: Path, changes: Mapping[str, object] | None = None) -> tuple[StudyPlan, Path]:
     """Read a plan.
 
     Parameters
     ----------
     path : Path
         Of ``study.toml``.
+    changes : mapping, optional
+        Entries to put in place of those of the file.
 
     Returns
     -------
@@ -104,12 +105,7 @@ def read_plan(path: Path) -> tuple[StudyPlan, Path]:
     CaseError
         With one sentence for whatever is wrong.
     """
-    text, where = read_text(str(path))
-    try:
-        data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; correct that line") from None
-    return plan_of(data), path.parent
+    return plan_of(read_tables(str(path)) | dict(changes or {})), path.parent
 
 
 def plan_of(data: Mapping[str, Any]) -> StudyPlan:

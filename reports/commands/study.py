@@ -71,8 +71,12 @@ def run(
     overrides: Annotated[
         list[str] | None, typer.Option("--set", help="Override an entry of the case in all variants.")
     ] = None,
-    analysis: Annotated[str, typer.Option(help="check, motion or envelope.")] = "check",
-    fidelity: Annotated[str, typer.Option(help="Model of a check: auto, beam or solid.")] = "auto",
+    analysis: Annotated[
+        str | None, typer.Option(help="check (default), motion or envelope.", show_default=False)
+    ] = None,
+    fidelity: Annotated[
+        str | None, typer.Option(help="Model of a check: auto (default), beam or solid.", show_default=False)
+    ] = None,
     accuracy: Annotated[
         str | None, typer.Option(help='Discretisation error of solids, such as "5 %".', show_default=False)
     ] = None,
@@ -151,15 +155,16 @@ def _plan(
     overrides: Sequence[str] | None,
     more: Mapping[str, object],
 ) -> "tuple[StudyPlan, Path]":
-    """The plan of the options, or of a file of its own, which takes none of them."""
+    """The plan of the options, or of a file of its own, of which options change analysis and model alone."""
     from geometry.base.errors import CaseError
     from loads.case.case_file import built_in_cases, read_tables, stated_changes
     from loads.plans.plan import plan_of, read_plan
 
+    stated = {name: value for name, value in more.items() if value is not None}
     options = bool(vary or link or points or sample or overrides)
     if not options and case not in built_in_cases() and "case" in read_tables(case):
-        return read_plan(Path(case))
-    data: dict[str, Any] = {"case": case, "vary": dict(vary), "link": dict(link), "points": points} | dict(more)
+        return read_plan(Path(case), stated)
+    data: dict[str, Any] = {"case": case, "vary": dict(vary), "link": dict(link), "points": points} | stated
     data["set"] = {change.path: change.value for change in stated_changes(overrides or ())}
     if sample:
         method, _, count = sample.partition(":")

@@ -59,7 +59,8 @@ def test_the_starter_plan_is_valid_and_its_schema_is_one(tmp_path: Path) -> None
 
     for arguments in (["four-bar.toml"], ["study.toml", "--study"]):
         assert programs.inside("new", *arguments, folder=tmp_path).returncode == 0
-    plan, folder = read_plan(tmp_path / "study.toml")
+    plan, folder = read_plan(tmp_path / "study.toml", {"fidelity": "beam"})
+    assert plan.fidelity == "beam"
     assert len(Variants(plan, folder)) == 14
     schema = json.loads(programs.inside("schema", "--study").stdout)
     jsonschema.Draft202012Validator.check_schema(schema)
