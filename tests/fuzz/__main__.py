@@ -27,6 +27,7 @@ PLAN = (
     ("guided", "quantity", 200_000),
     ("guided", "expression", 400_000),
     ("properties", "companion", 5_000),
+    ("properties", "varied", 30_000),
 )
 """(engine, target, inputs), the slowest first."""
 ENGINES = {"guided": "atheris", "mutations": "mutation", "properties": "hypothesis"}

@@ -112,6 +112,11 @@ STRATEGIES: dict[str, st.SearchStrategy[Any]] = {
         st.dictionaries(_keys, _values, max_size=6).map(lambda tables: {"schema_version": 1} | tables),
         st.builds(lambda key, value: targets.starter_tables() | {key: value}, st.sampled_from(_KEYS[:13]), _values),
     ),
+    "varied": st.one_of(
+        st.builds("{}..{}{}{}".format, _quantities, _quantities, st.sampled_from(("/", " by ", "")), _quantities),
+        st.lists(_quantities, max_size=5).map(",".join),
+        _expressions,
+    ),
     "companion": st.one_of(
         st.sampled_from(mutate.HOSTILE_TEXT), st.text(max_size=300), st.builds("../{}".format, st.text(max_size=20))
     ),

@@ -167,8 +167,27 @@ def companion(text: str) -> bool:
     return True
 
 
+def varied(text: str) -> bool:
+    """Any text as the values of an entry that a study varies, and as the expression of one that is linked."""
+    from loads.plans.axis import axis
+    from loads.plans.derived import derived_value
+
+    accepted = False
+    with watched():
+        try:
+            found = axis("parts.bar.width", text)
+            accepted = bool(found.values) or found.at(0.5) is not None
+        except CaseError as error:
+            _told(error)
+        try:
+            derived_value(_STARTER, "parts.bar.eye_diameter", text)
+        except CaseError as error:
+            _told(error)
+    return accepted
+
+
 TARGETS: dict[str, Callable[[Any], bool]] = {
-    f.__name__: f for f in (case_bytes, case_tables, override, expression, claim, quantity, companion)
+    f.__name__: f for f in (case_bytes, case_tables, override, expression, claim, quantity, companion, varied)
 }
 
 
@@ -183,7 +202,7 @@ def warm() -> None:
     for text in seeds().values():
         case_bytes(text.encode())
     for text in ("sqrt(2 N) + given.x", "word", "1 mm", "0.25 N", "?", 'pose.angle="30 deg"'):
-        for target in (expression, claim, quantity, override, companion):
+        for target in (expression, claim, quantity, override, companion, varied):
             target(text)
     case_bytes(b"\xff")
     case_tables({"schema_version": 1})

@@ -53,7 +53,7 @@ guard.install()
 for engine, name, inputs in (
     (mutations, "case_tables", 150), (mutations, "case_bytes", 100), (properties, "override", 50),
     (properties, "expression", 100), (properties, "claim", 50), (properties, "quantity", 50),
-    (properties, "companion", 25), (properties, "case_tables", 25),
+    (properties, "companion", 25), (properties, "varied", 50), (properties, "case_tables", 25),
 ):
     findings = Findings(engine=engine.__name__, target=name, folder=Path(sys.argv[1]))
     engine.try_many(name, inputs, 7, findings)
