@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from reports.notebook.claims_report import ClaimsReport
     from reports.notebook.envelope_report import EnvelopeReport
     from reports.notebook.motion_report import MotionReport
+    from reports.notebook.study_report import StudyReport
 
-__all__ = ["cases", "check", "claims", "envelope", "motion", "read_case"]
+__all__ = ["cases", "check", "claims", "envelope", "motion", "read_case", "study"]
 __version__ = alula_version()
 
 
@@ -243,6 +244,72 @@ def claims(name_or_path: "str | PathLike[str]", *, fidelity: str = "solid", thre
 
     with bounded(threads):
         return ClaimsReport(check_claims(fspath(name_or_path), fidelity=fidelity, threads=threads))
+
+
+def study(
+    case: "str | PathLike[str]",
+    vary: Mapping[str, object],
+    folder: "str | PathLike[str]",
+    *,
+    link: Mapping[str, str] | None = None,
+    values: Mapping[str, object] | None = None,
+    analysis: str = "check",
+    fidelity: str = "auto",
+    workers: int | None = None,
+) -> "StudyReport":
+    """Compute many variants of a case side by side, and keep them in a folder; what stands there is not computed again.
+
+    Parameters
+    ----------
+    case : str or path
+        Name of a built-in case, or path of a case file.
+    vary : mapping of str to object
+        Entry -> its values: a list, or a range such as ``"2 mm..8 mm/7"``. All combinations are computed.
+    folder : str or path
+        For ``study.sqlite``; on a local disk.
+    link : mapping of str to str, optional
+        Entry -> expression of others, such as ``"outer_diameter + 2*fillet_radius"``.
+    values : mapping of str to object, optional
+        Other values for some entries, the same in all variants.
+    analysis : {"check", "motion", "envelope"}
+        What is done with every variant.
+    fidelity : {"auto", "beam", "solid"}
+        Of a check.
+    workers : int, optional
+        Processes; one a core when left out.
+
+    Returns
+    -------
+    StudyReport
+        Counts and table.
+
+    Raises
+    ------
+    CaseError
+        For a wrong case, entry or range, and for a folder of another study.
+    CannotRunError
+        Where the disk refuses; what was finished stands.
+    """
+    from pathlib import Path
+
+    from fea.study.compute import compute_study
+    from loads.plans.plan import plan_of
+    from loads.plans.variants import Variants
+    from reports.notebook.study_report import StudyReport
+
+    stated = {path: list(value) if isinstance(value, tuple) else value for path, value in vary.items()}
+    plan = plan_of(
+        {
+            "case": fspath(case),
+            "vary": stated,
+            "link": dict(link or {}),
+            "set": dict(values or {}),
+            "analysis": analysis,
+            "fidelity": fidelity,
+        }
+    )
+    _, counts = compute_study(Variants(plan, Path()), Path(folder), workers=workers)
+    return StudyReport(Path(folder), counts)
 
 
 def _case(case: "Case | str | PathLike[str]") -> "Case":

@@ -13,9 +13,6 @@ import typer
 import typer.core
 
 if TYPE_CHECKING:
-    from contextlib import AbstractContextManager
-
-    from fea.study.engine import Engine
     from fea.study.study import Progress
     from loads.plans.plan import StudyPlan
     from loads.plans.variants import Variants
@@ -94,8 +91,7 @@ def run(
     yes: Annotated[bool, typer.Option("--yes", help=f"Run more than {MANY} points.")] = False,
 ) -> None:
     """Compute the variants of a case that are missing in a folder."""
-    from fea.study.store import Store
-    from fea.study.study import Study
+    from fea.study.compute import compute_study
     from loads.plans.variants import Variants
 
     plan, folder = _plan(case, stated(vary, "--vary"), stated(link, "--link"), points, sample, seed, overrides, {
@@ -104,10 +100,7 @@ def run(
     variants = Variants(plan, folder)
     if len(variants) > MANY and not yes:
         _refuse_many(variants, workers)
-    with Store.writing(output) as store:
-        study = Study(variants=variants, store=store, retry=retry, tell=_teller())
-        done = study.run(lambda: _engine(variants, workers, scheduler, output))
-        counts = store.counts()
+    done, counts = compute_study(variants, output, workers=workers, scheduler=scheduler, retry=retry, tell=_teller())
     print(summary(done, counts))
     print(f"Show them: alula study show {output}")
 
@@ -172,19 +165,6 @@ def _plan(
             raise CaseError(f"--sample '{sample}': write method and number of points, for example sobol:64")
         data["sample"] = {"method": method, "count": int(count), "seed": seed}
     return plan_of(data), Path()
-
-
-def _engine(
-    variants: "Variants", workers: int | None, scheduler: str, output: Path
-) -> "AbstractContextManager[Engine]":
-    from fea.study.engine import local_engine, usable_cores
-
-    contents = {name: path.read_bytes() for name, path in variants.files.items()}
-    if scheduler:
-        from fea.study.cluster import cluster_engine
-
-        return cluster_engine(scheduler, contents)
-    return local_engine(workers or usable_cores(), contents, folder=output)
 
 
 def _refuse_many(variants: "Variants", workers: int | None) -> None:

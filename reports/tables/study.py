@@ -184,7 +184,7 @@ def _extremes(judged: Sequence[Row], console: "Console") -> None:
     best, worst = max(judged, key=lambda row: row.margin), min(judged, key=lambda row: row.margin)
     for which, row in (("Best", best), ("Worst", worst)):
         stated = ", ".join(f"{path} = {value}" for path, value in row.parameters.items())
-        say(console, f"{which}: point {row.position} ({stated}): {row.outcome}, {_nearest(row)}.")
+        say(console, f"{which}: point {row.position} ({stated}): {row.outcome}, {nearest_text(row)}.")
 
 
 def _numbers(rows: Sequence[Row]) -> str:
@@ -193,10 +193,20 @@ def _numbers(rows: Sequence[Row]) -> str:
 
 
 def _cells(row: Row, paths: Sequence[str]) -> list[str]:
-    return [str(row.position), *(str(row.parameters.get(path, "")) for path in paths), row.outcome, _nearest(row)]
+    return [str(row.position), *(str(row.parameters.get(path, "")) for path in paths), row.outcome, nearest_text(row)]
 
 
-def _nearest(row: Row) -> str:
+def nearest_text(row: Row) -> str:
+    """Return the check that is nearest to its limit, with its number; the sentence of a point without one.
+
+    Parameters
+    ----------
+    row : Row
+
+    Returns
+    -------
+    str
+    """
     found = row.nearest
     if found is None:
         return row.answer.sentence

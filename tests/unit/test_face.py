@@ -132,3 +132,11 @@ def test_options_are_those_of_the_command():
         alula.motion("owl-wing-closed")
     with pytest.raises(CaseError, match="there is no such file or built-in case"):
         alula.check("owl-wing")
+
+
+def test_a_study_is_kept_and_shown(tmp_path):
+    report = alula.study("four-bar-synthesis", {"motion.poses": (3, 5)}, tmp_path / "s", analysis="motion", workers=1)
+    assert [row["motion.poses"] for row in report.table()] == ["3", "5"]
+    assert dict(report.counts) == {"done": 2}
+    assert "<table>" in report._repr_html_()
+    assert alula.study("four-bar-synthesis", {"motion.poses": "3, 5"}, tmp_path / "s", analysis="motion") == report

@@ -1,0 +1,51 @@
+"""What ``alula.study`` returns."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from fea.study.store import Store
+from reports.notebook.shown import Row, Table
+from reports.tables.study import nearest_text, study_rows
+
+
+@dataclass(frozen=True)
+class StudyReport:
+    """The variants of a case that a folder holds.
+
+    Attributes
+    ----------
+    folder : Path
+        Of ``study.sqlite``, which pandas reads as well (``docs/studies.md``).
+    counts : mapping of str to int
+        Points by verdict, or by state where there is none.
+    """
+
+    folder: Path
+    counts: Mapping[str, int]
+
+    def table(self) -> Table:
+        """Return one row a point: what varies, the verdict, the margin of the check that is nearest to its limit, mass.
+
+        Returns
+        -------
+        Table
+            ``margin`` is 1 where the worse end of that check's band is at its limit, and larger on the safe side.
+        """
+        rows: list[Row] = []
+        with Store.reading(self.folder) as store:
+            for row in study_rows(store):
+                found: Row = {path: str(value) for path, value in row.parameters.items()}
+                found |= {"verdict": row.outcome, "margin": row.margin, "nearest": nearest_text(row)}
+                rows.append(found | {"mass [g]": row.mass})
+        return Table(tuple(rows))
+
+    def __str__(self) -> str:
+        return str(self.table())
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{count} {name}" for name, count in self.counts.items())
+        return f"<study of {sum(self.counts.values())} points: {told}>"
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
