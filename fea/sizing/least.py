@@ -13,7 +13,7 @@ from itertools import groupby
 
 from fea.common.verdict import Verdict
 from fea.sizing.search import Search
-from fea.study.margin import margin, nearest
+from fea.study.margin import counterpart, margin, nearest
 from fea.study.numbers import VariantNumber, VariantResult
 from geometry.base.errors import CaseError
 
@@ -96,11 +96,7 @@ class Sized:
 
     def _same(self, step: int, limit: VariantNumber | None) -> VariantNumber | None:
         """The same check at another step."""
-        if limit is None:
-            return None
-        named = (limit.check, limit.subject, limit.load_case, limit.quantity)
-        found = self.results[step].numbers
-        return next((n for n in found if (n.check, n.subject, n.load_case, n.quantity) == named), None)
+        return None if limit is None else counterpart(self.results[step], limit)
 
 
 def least_size(search: Search, path: str, values: Sequence[object]) -> Sized:

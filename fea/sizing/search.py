@@ -5,13 +5,15 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from fea.study.engine import IN_FLIGHT, Engine
-from fea.study.numbers import VariantResult
+from fea.study.numbers import VariantResult, Weighs
 from fea.study.store import Store
 from fea.study.study import Progress, Study
 from loads.plans.plan import StudyPlan
 from loads.plans.variants import Variants
 
 Point = Mapping[str, object]
+_Asked = tuple[str, Weighs, tuple[tuple[str, object], ...]]
+"""Fidelity, whether the links are weighed, and the point."""
 
 
 class Search:
@@ -39,7 +41,7 @@ class Search:
         tell: Callable[[str], None] = lambda sentence: None,
     ) -> None:
         self._plan, self._folder, self._store, self._engine, self._tell = plan, folder, store, engine, tell
-        self._known: dict[tuple[str, tuple[tuple[str, object], ...]], VariantResult] = {}
+        self._known: dict[_Asked, VariantResult] = {}
 
     @property
     def workers(self) -> int:
@@ -51,7 +53,7 @@ class Search:
         """The model that decides."""
         return self._plan.fidelity
 
-    def at(self, points: Sequence[Point], fidelity: str = "") -> list[VariantResult]:
+    def at(self, points: Sequence[Point], fidelity: str = "", *, roughly: bool = False) -> list[VariantResult]:
         """Return what becomes of some points.
 
         Parameters
@@ -60,23 +62,26 @@ class Search:
             Entry -> value, for every entry that varies.
         fidelity : str, optional
             Of the check; the plan's unless given.
+        roughly : bool
+            Whether links that are weighed are weighed by length and section.
 
         Returns
         -------
         list of VariantResult
         """
         fidelity = fidelity or self._plan.fidelity
-        named = [(fidelity, tuple(point.items())) for point in points]
+        mass = "rough" if roughly and self._plan.weighs else self._plan.weighs
+        named: list[_Asked] = [(fidelity, mass, tuple(point.items())) for point in points]
         missing = list(dict.fromkeys(name for name in named if name not in self._known))
         if missing:
             model = "hand calculation" if fidelity in ("beam", "frame") else "the model that decides"
             self._tell(f"{len(missing)} of {len(named)} variants by {model} ...")
-            self._compute(missing, fidelity)
+            self._compute(missing, fidelity, mass)
         return [self._known[name] for name in named]
 
-    def _compute(self, missing: Sequence[tuple[str, tuple[tuple[str, object], ...]]], fidelity: str) -> None:
-        plan = self._plan.model_copy(update={"fidelity": fidelity})
-        variants = Variants(plan, self._folder, points=[dict(point) for _, point in missing])
+    def _compute(self, missing: Sequence[_Asked], fidelity: str, mass: Weighs) -> None:
+        plan = self._plan.model_copy(update={"fidelity": fidelity, "mass": mass})
+        variants = Variants(plan, self._folder, points=[dict(point) for *_, point in missing])
         Study(variants=variants, store=self._store).run(lambda: nullcontext(self._engine))
         for position, _, result, _ in self._store.rows():
             self._known[missing[position]] = result
@@ -88,6 +93,7 @@ class Search:
         -------
         Progress
         """
-        points = [dict(point) for fidelity, point in self._known if fidelity == self._plan.fidelity]
+        decides = (self._plan.fidelity, self._plan.weighs)
+        points = [dict(point) for fidelity, mass, point in self._known if (fidelity, mass) == decides]
         variants = Variants(self._plan, self._folder, points=points)
         return Study(variants=variants, store=self._store).run(lambda: nullcontext(self._engine))

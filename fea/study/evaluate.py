@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
-from fea.study.numbers import VariantResult
+from fea.study.numbers import VariantResult, Weighs
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.version import alula_version
 
@@ -32,15 +32,15 @@ class Task:
         Of a check.
     accuracy : str or None
         As ``--accuracy``.
-    weighs : bool
-        Whether the links are weighed.
+    weighs : bool or "rough"
+        Whether the links are weighed; "rough" by length and section.
     """
 
     tables: Mapping[str, Any]
     analysis: Analysis = "check"
     fidelity: str = "auto"
     accuracy: str | None = None
-    weighs: bool = False
+    weighs: Weighs = False
 
     def key(self) -> str:
         """Return what tells equal variants: the digest of all that the answer depends on.

@@ -46,6 +46,24 @@ def margin(number: VariantNumber, *, worst: bool = True) -> float:
     return over / under if under > 0.0 else math.inf
 
 
+def counterpart(result: VariantResult, number: VariantNumber) -> VariantNumber | None:
+    """Return the number of another variant that says the same of it.
+
+    Parameters
+    ----------
+    result : VariantResult
+        The other one.
+    number : VariantNumber
+
+    Returns
+    -------
+    VariantNumber or None
+        None where it has none.
+    """
+    named = (number.check, number.subject, number.load_case, number.quantity)
+    return next((n for n in result.numbers if (n.check, n.subject, n.load_case, n.quantity) == named), None)
+
+
 def nearest(result: VariantResult, *, worst: bool = True) -> VariantNumber | None:
     """Return the check that is nearest to its limit, or farthest beyond.
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -14,9 +14,10 @@ from fea.outcomes.result import CheckResult
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
 from loads.states.case_motion import CaseMotion
-from loads.states.masses import part_masses
+from loads.states.masses import part_masses, rough_masses
 
 State = Literal["done", "refused", "crashed"]
+Weighs = bool | Literal["rough"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,14 +126,14 @@ class VariantResult:
     numbers: tuple[VariantNumber, ...] = ()
 
 
-def of_check(result: CheckResult, *, weighs: bool) -> tuple[Verdict, tuple[VariantNumber, ...]]:
+def of_check(result: CheckResult, *, weighs: Weighs) -> tuple[Verdict, tuple[VariantNumber, ...]]:
     """Return verdict and numbers of a check.
 
     Parameters
     ----------
     result : CheckResult
-    weighs : bool
-        Whether the links are weighed.
+    weighs : bool or "rough"
+        Whether the links are weighed; "rough" by length and section.
 
     Returns
     -------
@@ -149,14 +150,14 @@ def of_check(result: CheckResult, *, weighs: bool) -> tuple[Verdict, tuple[Varia
     return result.verdict, (*found, *_masses(result.case, weighs=weighs))
 
 
-def of_envelope(result: EnvelopeResult, *, weighs: bool) -> tuple[Verdict, tuple[VariantNumber, ...]]:
+def of_envelope(result: EnvelopeResult, *, weighs: Weighs) -> tuple[Verdict, tuple[VariantNumber, ...]]:
     """Return verdict and numbers of an envelope.
 
     Parameters
     ----------
     result : EnvelopeResult
-    weighs : bool
-        Whether the links are weighed.
+    weighs : bool or "rough"
+        Whether the links are weighed; "rough" by length and section.
 
     Returns
     -------
@@ -167,14 +168,14 @@ def of_envelope(result: EnvelopeResult, *, weighs: bool) -> tuple[Verdict, tuple
     return result.verdict, (*found, *_masses(result.case, weighs=weighs))
 
 
-def of_motion(result: CaseMotion, *, weighs: bool) -> tuple[Verdict | None, tuple[VariantNumber, ...]]:
+def of_motion(result: CaseMotion, *, weighs: Weighs) -> tuple[Verdict | None, tuple[VariantNumber, ...]]:
     """Return numbers of a motion, with a verdict where a motor is checked.
 
     Parameters
     ----------
     result : CaseMotion
-    weighs : bool
-        Whether the links are weighed.
+    weighs : bool or "rough"
+        Whether the links are weighed; "rough" by length and section.
 
     Returns
     -------
@@ -220,11 +221,12 @@ def _largest(values: object) -> float:
     return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else math.nan
 
 
-def _masses(case: Case, *, weighs: bool) -> Iterable[VariantNumber]:
+def _masses(case: Case, *, weighs: Weighs) -> Iterable[VariantNumber]:
     if not weighs:
         return ()
-    masses: Mapping[str, float] = {link: 1e6 * mass.mass for link, mass in part_masses(case).items()}
-    return (
-        *(VariantNumber.exact("mass", "g", mass, link) for link, mass in masses.items()),
-        VariantNumber.exact("mass", "g", sum(masses.values()), "the linkage"),
-    )
+    rough = weighs == "rough"
+    found = rough_masses(case) if rough else {link: mass.mass for link, mass in part_masses(case).items()}
+    masses: Mapping[str, float] = {link: 1e6 * mass for link, mass in found.items()}
+    numbers = [VariantNumber.exact("mass", "g", mass, link) for link, mass in masses.items()]
+    numbers.append(VariantNumber.exact("mass", "g", sum(masses.values()), "the linkage"))
+    return [replace(number, low=math.nan, high=math.nan) for number in numbers] if rough else numbers

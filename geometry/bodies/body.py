@@ -67,6 +67,21 @@ class PartKind(Printable):
     """Whether a load point without a pin may lie anywhere on it, where a circle about the point is loaded; else it lies
     on the axis, and a stretch of the part is."""
 
+    def rough_volume(self, body: "Body") -> float | None:
+        """Return the volume by length and section, without the geometry kernel.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+
+        Returns
+        -------
+        float or None
+            [mm³]; None of a kind that is no bar with eyes.
+        """
+        return None
+
     @property
     def patch_height(self) -> float | None:
         """Z of the flat faces, of which there is one on either side, that alone carry such a circle; None for any."""

@@ -97,6 +97,23 @@ class Straight(PartKind):
                 pieces.append(Piece(start=pin.foot, angle=math.atan2(y, x), length=math.hypot(x, y)))
         return pieces
 
+    def rough_volume(self, body: Body) -> float:
+        """As ``PartKind.rough_volume``: pieces and eyes less their holes and what they share, without fillets."""
+        section, pieces = self.section, self.pieces(body)
+        volume = section.area * sum(piece.length for piece in pieces)
+        for pin in body.pins:
+            ring, hole = body.ring(pin), pin.diameter
+            if ring.diameter == 0.0:  # no eye: a hole through what there is
+                volume -= ring.thickness * (math.pi / 4.0 * hole**2 + hole * pin.slot)
+                continue
+            diameter = section.width if plain_eye(body, pin) else ring.diameter
+            width = min(section.width, diameter)
+            # Of a disc of the eye's diameter, the bar's sides cut out what follows from the chords at them.
+            shared = diameter**2 / 2.0 * math.asin(width / diameter) + width / 2.0 * math.sqrt(diameter**2 - width**2)
+            volume += ring.thickness * (math.pi / 4.0 * (diameter**2 - hole**2) - hole * pin.slot)
+            volume -= section.area / section.width * shared * _share_within(pieces, pin, diameter / 2.0)
+        return volume
+
     @abstractmethod
     def prism(self, kernel: Kernel, body: Body, piece: Piece) -> list[Entity]:
         """Build one straight piece.
@@ -180,6 +197,17 @@ class Straight(PartKind):
                 pairs = [*(at_eyes if pairs else []), (arm, to_bar)]
             places += [(edge, f"Max(Sqrt({a}^2+{b}^2)-{part.fillet_radius:.12g},0)") for a, b in pairs]
         return places
+
+
+def _share_within(pieces: list[Piece], pin: Pin, radius: float) -> float:
+    """Return how much of an eye's diameter the axes of the pieces fill: a half where one ends, all where one passes."""
+    filled = 0.0
+    for piece in pieces:
+        x, y, cos, sin = pin.x - piece.start[0], pin.y - piece.start[1], math.cos(piece.angle), math.sin(piece.angle)
+        along, across = x * cos + y * sin, abs(y * cos - x * sin)
+        if across < radius:
+            filled += max(min(along + radius, piece.length) - max(along - radius, 0.0), 0.0)
+    return filled / (2.0 * radius)
 
 
 def _on_piece(body: Body, piece: Piece, p: NDArray[np.float64]) -> tuple[bool, bool]:

@@ -115,7 +115,8 @@ def changed_tables(tables: Mapping[str, Any], changes: Sequence[Change]) -> dict
     tables : mapping
         Of a case file; they stay as they are.
     changes : sequence of Change
-        In the order in which they are made.
+        In the order in which they are made, whole parts first: ``parts.tube = "rod"`` makes the part ``tube`` what the
+        part ``rod`` is in ``tables``, for every link that is made of it.
 
     Returns
     -------
@@ -128,6 +129,7 @@ def changed_tables(tables: Mapping[str, Any], changes: Sequence[Change]) -> dict
         For an entry that there is not.
     """
     data = deepcopy(dict(tables))
+    changes = sorted((_of_catalogue(data, change) for change in changes), key=lambda change: not _is_part(change.path))
     for change in changes:
         _override(data, change)
     derived = Case.derived(data)
@@ -307,6 +309,25 @@ def _stated(override: str) -> Change:
 
 def _keys(path: str) -> list[str]:
     return [key.strip().strip("\"'") for key in path.strip().split(".")]
+
+
+def _is_part(path: str) -> bool:
+    keys = _keys(path)
+    return len(keys) == 2 and keys[0] == "parts"
+
+
+def _of_catalogue(data: dict[str, Any], change: Change) -> Change:
+    """Return a change of a part to another one by its name as the change to that one's table."""
+    parts = data.get("parts")
+    if not (_is_part(change.path) and isinstance(change.value, str) and isinstance(parts, dict)):
+        return change
+    if not isinstance(parts.get(change.value), dict):
+        known = ", ".join(sorted(printable(name) for name in parts))
+        raise CaseError(
+            f"{change.who} {printable(change.path)}: the case has no part '{printable(change.value)}'; "
+            f"choose among {known}"
+        )
+    return change._replace(value=deepcopy(parts[change.value]))
 
 
 def _override(data: dict[str, Any], change: Change) -> None:

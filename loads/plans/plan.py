@@ -54,11 +54,11 @@ class StudyPlan(CaseModel):
     """Model of a check."""
     accuracy: Text | None = None
     """Discretisation error to reach in every link, such as ``"5 %"``."""
-    mass: bool | None = None
-    """Whether the links are weighed; unless stated, where solids are built anyway."""
+    mass: bool | Literal["rough"] | None = None
+    """Whether the links are weighed, ``"rough"`` by length and section; by default where solids are built anyway."""
 
     @property
-    def weighs(self) -> bool:
+    def weighs(self) -> bool | Literal["rough"]:
         """Whether the links are weighed."""
         return self.fidelity in ("auto", "solid") and self.analysis != "motion" if self.mass is None else self.mass
 

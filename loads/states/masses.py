@@ -64,6 +64,26 @@ def part_masses(case: Case) -> dict[str, PartMass]:
     return {link: part_mass(case, link) for link in case.checked_links}
 
 
+def rough_masses(case: Case) -> dict[str, float]:
+    """Return the mass of every moving link's part by length and section, within some percent of that by the kernel.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    dict of str to float
+        [tonne] by link; by the kernel for a part that is no bar with eyes, where equal bodies are measured once.
+    """
+    found = {}
+    for link in case.checked_links:
+        body = case.body(link)
+        volume = body.part.rough_volume(body)
+        found[link] = part_mass(case, link).mass if volume is None else volume * case.material_of(link).density
+    return found
+
+
 def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMass]:
     """Return the masses of the links, each of its part and what it carries.
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from fea.sizing.least import Sized
+    from loads.plans.axis import Axis
 
 app = typer.Typer()
 STEPS = 100
@@ -28,11 +29,29 @@ def size(
         str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
     ],
     vary: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(
-            "--vary", help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm".', show_default=False
+            "--vary",
+            help='The entry and its range: parts.tube.outer_diameter="3 mm..8 mm"; of several, the least mass.',
+            show_default=False,
         ),
-    ],
+    ] = None,
+    choose: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--choose",
+            help="An entry and its values, or a part and those of the case that may stand for it: "
+            "parts.tube=tube-4,tube-5.",
+        ),
+    ] = None,
+    minimise: Annotated[
+        str | None, typer.Option(help='What shall be least: mass, or "largest drive torque" and the like.')
+    ] = None,
+    maximise: Annotated[str | None, typer.Option(help="What shall be greatest instead.")] = None,
+    most: Annotated[
+        int, typer.Option("--most", min=1, help="Combinations of several entries that the model that decides solves.")
+    ] = 24,
+    seed: Annotated[int, typer.Option(min=0, help="Of the search over several entries.")] = 0,
     step: Annotated[
         str | None, typer.Option("--step", help='Distance of two values, such as "0.5 mm"; default: a hundredth.')
     ] = None,
@@ -56,28 +75,31 @@ def size(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Find the least value of an entry that passes over its whole band."""
+    """Find the least value of an entry that passes over its whole band, or of several entries the least mass."""
+    from fea.sizing.candidates import Objective
     from fea.sizing.least import least_size
+    from fea.sizing.lightest import lightest
     from fea.sizing.search import Search
     from fea.study.engine import local_engine, usable_cores
     from fea.study.store import Store
     from geometry.base.errors import CaseError
     from loads.case.case_file import stated_changes
-    from loads.plans.axis import axis
     from loads.plans.plan import plan_of
+    from reports.commands.lightest import print_lightest, record_of, status_of
 
-    varied = stated(vary, "--vary")
-    if len(varied) != 1:
-        raise CaseError("size: one entry varies; state --vary once, and let others follow with --link")
-    [(path, text)] = varied.items()
-    if ".." not in text:
-        raise CaseError(f"vary {path}: '{text}' is no range; write for example \"3 mm..8 mm\"")
-    if "/" not in text and " by " not in text:
-        text = f"{text} by {step}" if step else f"{text}/{STEPS + 1}"
-    elif step:
-        raise CaseError(f"vary {path}: '{text}' has steps of its own; leave --step out")
-    values = axis(path, text).values
-    data: dict[str, Any] = {"case": case, "vary": {path: text}, "link": stated(link, "--link"), "mass": False}
+    axes = _axes(stated(vary, "--vary"), stated(choose, "--choose"), step)
+    if minimise and maximise:
+        raise CaseError("size: both --minimise and --maximise are stated; leave one of the two out")
+    objective = Objective(quantity=maximise or minimise or "mass", largest=bool(maximise))
+    several = len(axes) > 1 or not axes[0].is_range or bool(minimise or maximise)
+    if several and analysis != "check":
+        raise CaseError(f"size: several entries or an objective go with --analysis check alone, not '{analysis}'")
+    data: dict[str, Any] = {
+        "case": case,
+        "vary": {a.path: list(a.values) for a in axes},
+        "link": stated(link, "--link"),
+    }
+    data["mass"] = several and objective.quantity == "mass"
     data |= {"fidelity": fidelity, "accuracy": accuracy, "analysis": analysis}
     data["set"] = {change.path: change.value for change in stated_changes(overrides or ())}
     plan = plan_of(data)
@@ -85,21 +107,58 @@ def size(
         folder = output or Path(stack.enter_context(TemporaryDirectory(prefix="alula-")))
         from loads.plans.variants import Variants
 
-        files = Variants(plan, Path(), points=[{path: values[-1]}]).files
-        contents = {name: file.read_bytes() for name, file in files.items()}
+        longest = max(1 if a.is_range else len(a.values) for a in axes)
+        points = [{a.path: a.values[max(i - longest, -len(a.values))] for a in axes} for i in range(longest)]
+        variants = Variants(plan, Path(), points=points)
+        for point in points:
+            variants.tables(point)
+        contents = {name: file.read_bytes() for name, file in variants.files.items()}
         store = stack.enter_context(Store.writing(folder))
         engine = stack.enter_context(local_engine(workers or usable_cores(), contents, folder=folder))
         search = Search(plan, Path(), store, engine, tell=_tell)
-        found = least_size(search, path, values)
+        found = lightest(search, axes, objective, most=most, seed=seed) if several else None
+        sized = None if several else least_size(search, axes[0].path, axes[0].values)
         if output is not None:
             search.finish()
     if json:
-        print(jsonlib.dumps(record(found), indent=2, allow_nan=False))
+        told = record_of(found) if found else record(sized) if sized else {}
+        print(jsonlib.dumps(told, indent=2, allow_nan=False))
     else:
         from rich.console import Console
 
-        print_size(found, Console())
-    raise SystemExit(exit_status(found))
+        if found:
+            print_lightest(found, Console())
+        if sized:
+            print_size(sized, Console())
+    raise SystemExit(status_of(found) if found else exit_status(sized) if sized else 0)
+
+
+def _axes(varied: Mapping[str, str], chosen: Mapping[str, str], step: str | None) -> "list[Axis]":
+    """Read what may be chosen: ranges in steps, and lists."""
+    from geometry.base.errors import CaseError
+    from loads.plans.axis import axis
+    from loads.text.explain import printable
+
+    if twice := [path for path in varied if path in chosen]:
+        raise CaseError(f"size: '{printable(twice[0])}' is varied and chosen; leave one of the two out")
+    if not varied and not chosen:
+        raise CaseError('size: nothing varies; state an entry and its range, --vary ENTRY="3 mm..8 mm"')
+    axes = []
+    for path, text in varied.items():
+        if ".." not in text:
+            raise CaseError(
+                f"vary {printable(path)}: '{printable(text)}' is no range; write for example \"3 mm..8 mm\", or state "
+                "values with --choose"
+            )
+        stepped = "/" in text or " by " in text
+        if step and stepped:
+            raise CaseError(f"vary {printable(path)}: '{printable(text)}' has steps of its own; leave --step out")
+        axes.append(axis(path, text if stepped else f"{text} by {step}" if step else f"{text}/{STEPS + 1}"))
+    for path, text in chosen.items():
+        if ".." in text:
+            raise CaseError(f"choose {printable(path)}: '{printable(text)}' is a range; state it with --vary")
+        axes.append(axis(path, text))
+    return axes
 
 
 def _tell(sentence: str) -> None:

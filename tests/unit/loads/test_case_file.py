@@ -461,3 +461,14 @@ def test_companions_that_are_none(tmp_path: Path, name: str, built_in: bool) -> 
     with pytest.raises(CaseError, match="beside the case file") as caught:
         read_companion(case, name)
     assert str(caught.value).isprintable()
+
+
+def test_a_part_may_stand_for_another_by_its_name() -> None:
+    """Every link of it is made of that one, whatever the order of the overrides; both names may change places."""
+    rod = read_case(OWL, ["parts.tube.fillet_radius=0.5 mm", "parts.tube=rod-4mm"])
+    assert [rod.body(link).part.section.width for link in rod.checked_links] == [4.0] * 5
+    assert rod.parts["tube"].fillet_radius == 0.5
+    assert rod.parts["rod-4mm"].fillet_radius == 0.8
+    swapped = read_case(OWL, ["parts.tube=rod-4mm", "parts.rod-4mm=tube"])
+    assert swapped.parts["rod-4mm"].section.width == 5.0
+    assert "choose among rod-4mm, tube" in sentence(OWL, ["parts.tube=rod-5mm"])

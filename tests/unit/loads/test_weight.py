@@ -7,6 +7,7 @@ import pytest
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import read_case
+from loads.states.masses import part_mass, rough_masses
 
 LADEN = str(Path(__file__).parent / "four-bar-laden.toml")
 
@@ -63,3 +64,23 @@ def test_a_torque_on_a_pin_needs_a_drive_there() -> None:
     read_case(LADEN, [torque % ("rocker", "P", '"2 N*mm"')])  # no pin stands there
     read_case(LADEN, [torque % ("coupler", "A", '["1 N*mm", "2 N*mm", "0 N*mm"]')])  # about other axes a pin holds
     read_case(LADEN, [torque % ("rocker", "O4", '"2 N*mm"'), 'joint_model="bonded"'])
+
+
+def test_rough_masses_are_those_of_the_kernel_but_for_fillets_and_holes() -> None:
+    """A tube with cross holes, one without eyes; flat bars, one with an arm; a disc, which the kernel weighs."""
+    bare = (
+        'parts.tube={shape="tube",material="pvc-paredes-2018",outer_diameter="5 mm",inner_diameter="2.5 mm",'
+        'eyes="none",overhang="6 mm"}',
+        "drive.transfer=bore-shear",
+    )
+    for name, overrides, links, apart in (
+        ("owl-wing-static", (), "CF", 0.01),
+        ("owl-wing-static", bare, "GF", 0.01),
+        ("flapping-wing-chosen", (), "outer-right crank", 0.005),
+    ):
+        case = read_case(name, overrides)
+        rough = rough_masses(case)
+        for link in links.split():
+            assert rough[link] == pytest.approx(part_mass(case, link).mass, rel=apart)
+    disc = read_case("ornithopter")
+    assert rough_masses(disc)["crank"] == part_mass(disc, "crank").mass

@@ -78,3 +78,17 @@ def test_the_least_size_is_told_with_what_limits_it(tmp_path: Path) -> None:
     assert record["passing"] == "4 mm"  # README: 4 mm passes, 3.5 mm is undecided
     assert "3.5 mm" in record["undecided"]
     assert not list(tmp_path.iterdir())
+
+
+def test_the_lightest_part_of_a_catalogue_is_told(tmp_path: Path) -> None:
+    """A rod of 4 mm has less of a section than a tube of 5 mm over 2.5 mm, 16 < 25 - 6.25, and passes as well."""
+    wrong = programs.inside("size", "owl-wing-closed", "--choose", "parts.tube=rod-4mm,rod-5mm", folder=tmp_path)
+    assert (wrong.returncode, "no part 'rod-5mm'" in wrong.stderr) == (2, True)
+    arguments = ("size", "owl-wing-closed", "--choose", "parts.tube=tube,rod-4mm", "--fidelity", "beam")
+    found = programs.inside(*arguments, "--json", "--workers", "1", folder=tmp_path)
+    record = json.loads(found.stdout)
+    assert found.returncode == 0
+    assert record["best"] == {"parts.tube": "rod-4mm"}
+    assert record["complete"]
+    [solved] = record["solved"]  # the tube is heavier by hand calculation already
+    assert 11.0 < solved["objective"]["value"] < 11.0 + 12 * 0.51  # the case file: 11.0 g of rod, and 12 eyes of 0.51 g
