@@ -205,6 +205,42 @@ class Pin:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FlatFace:
+    """A flat face of a part in the frame of its link.
+
+    Attributes
+    ----------
+    centre : tuple of 3 float
+        Centroid of its area [mm].
+    normal : tuple of 3 float
+        Unit vector, out of the material.
+    area : float
+        [mm²].
+    """
+
+    centre: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    area: float
+
+    def scaled(self, s: Callable[[float], float]) -> "FlatFace":
+        """Return the face with its lengths in another unit.
+
+        Parameters
+        ----------
+        s : callable
+            Takes a length to that unit.
+
+        Returns
+        -------
+        FlatFace
+            The face.
+        """
+        x, y, z = map(s, self.centre)
+        side = s(self.area**0.5)
+        return FlatFace(centre=(x, y, z), normal=self.normal, area=side * side)
+
+
+@dataclass(frozen=True, kw_only=True)
 class PlainEnd:
     """A load point that is no pin.
 
@@ -218,9 +254,12 @@ class PlainEnd:
         Length of the loaded patch along x; diameter of the patch on an imported part or a plate [mm].
     y : float
         Its place across the axis, off which only imported parts and plates have load points [mm].
+    face : FlatFace, optional
+        The flat face that carries its load as a whole; None where it enters the nearest ones.
     """
 
     name: str
     x: float
     patch: float
     y: float = 0.0
+    face: FlatFace | None = None

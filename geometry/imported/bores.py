@@ -4,7 +4,7 @@ Runs in the kernel's child process only.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -44,7 +44,10 @@ def find_bores(walls: list[Wall], surface: PartSurface, box: Real) -> tuple[Bore
     hollow = [wall for wall in walls if wall.hollow]
     outside = [wall for wall in walls if not wall.hollow and wall.round]
     found = [*_round_bores(surface, hollow), *_slots(surface, hollow)]
-    return _named([replace(bore, around=_is_around(bore, outside)) for bore in found], box)
+    order = in_order([(bore.centre, bore.diameter) for bore in found], box)
+    return tuple(
+        replace(found[i], name=f"bore {k}", around=_is_around(found[i], outside)) for k, i in enumerate(order, start=1)
+    )
 
 
 def _round_bores(surface: PartSurface, hollow: list[Wall]) -> Iterator[Bore]:
@@ -165,16 +168,30 @@ def _is_around(bore: Bore, outside: list[Wall]) -> bool:
     return together >= 0.5 * bore.length
 
 
-def _named(bores: list[Bore], box: Real) -> tuple[Bore, ...]:
-    """Return bores with names: along the longest side of the part's bounds, then along the next, then the last."""
+def in_order(places: Sequence[tuple[Vector, float]], box: Real) -> list[int]:
+    """Return in which order places are numbered: along the longest side of the part's bounds, then along the others.
+
+    Parameters
+    ----------
+    places : sequence of (tuple of 3 float, float)
+        Centre and size of each; of equal centres the smaller comes first.
+    box : array
+        Least and greatest coordinates (2, 3) of the part [mm].
+
+    Returns
+    -------
+    list of int
+        Numbers of the places.
+    """
     sizes = box[1] - box[0]
     step = 1e-6 * float(sizes.max())
     order = sorted(range(3), key=lambda k: (-round(float(sizes[k]) / step), k))
 
-    def place(bore: Bore) -> tuple[int | float, ...]:
-        return (*(round(bore.centre[k] / step) for k in order), bore.diameter)
+    def key(number: int) -> tuple[int | float, ...]:
+        centre, size = places[number]
+        return (*(round(centre[k] / step) for k in order), size)
 
-    return tuple(replace(bore, name=f"bore {k}") for k, bore in enumerate(sorted(bores, key=place), start=1))
+    return sorted(range(len(places)), key=key)
 
 
 def _vector(values: Real) -> Vector:

@@ -60,6 +60,31 @@ class Bore:
         return f"{self.name} ({kind}{self.diameter:.4g} mm)"
 
 
+@dataclass(frozen=True, kw_only=True)
+class Face:
+    """A flat face of a solid.
+
+    Attributes
+    ----------
+    name : str
+        "face 1", "face 2", ...: in the order of bores, by its centre.
+    normal : tuple of 3 float
+        Unit vector, out of the material.
+    centre : tuple of 3 float
+        Centroid of its area [mm].
+    area : float
+        [mm²].
+    tag : int
+        Its number in ``PartSurface.faces``.
+    """
+
+    name: str
+    normal: Vector
+    centre: Vector
+    area: float
+    tag: int
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PartSurface:
     """Triangles of a solid's surface.
@@ -99,6 +124,8 @@ class PartFacts:
         Largest coordinates [mm].
     bores : tuple of Bore
         The holes, in the order of their names.
+    faces : tuple of Face
+        The flat faces, in the order of their names; none of a mesh.
     digest : str
         SHA-256 of the file's content, in hexadecimal.
     """
@@ -110,4 +137,5 @@ class PartFacts:
     low: Vector
     high: Vector
     bores: tuple[Bore, ...]
+    faces: tuple[Face, ...] = ()
     digest: str

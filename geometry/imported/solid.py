@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from geometry.base.errors import CaseError
-from geometry.imported.bores import find_bores
-from geometry.imported.facts import PartFacts, PartSurface, Vector
+from geometry.imported.bores import find_bores, in_order
+from geometry.imported.facts import Face, PartFacts, PartSurface, Vector
 from geometry.imported.walls import walls_of
 
 _TRIANGLE = 2
@@ -97,7 +97,26 @@ def facts_of_file(gmsh: Any, path: str, digest: str) -> PartFacts:
         low=_vector(box[:3]),
         high=_vector(box[3:]),
         bores=find_bores(walls_of(gmsh, tag, surface), surface, np.reshape(box, (2, 3))),
+        faces=_flat_faces(gmsh, tag, surface, np.reshape(box, (2, 3))),
         digest=digest,
+    )
+
+
+def _flat_faces(gmsh: Any, solid: int, surface: PartSurface, box: Any) -> tuple[Face, ...]:
+    """Return the flat faces of a solid; on which side of them the material is, the triangles of its surface tell."""
+    occ, found = gmsh.model.occ, []
+    for tag in map(int, gmsh.model.getAdjacencies(3, solid)[1]):
+        if gmsh.model.getType(2, tag) == "Plane":
+            a, b, c = np.moveaxis(surface.points[surface.triangles[surface.faces == tag]], 1, 0)
+            normal = np.reshape(gmsh.model.getNormal(tag, [0.0, 0.0]), 3)
+            outward = normal * (1.0 if np.cross(b - a, c - a).sum(axis=0) @ normal > 0.0 else -1.0)
+            found.append(
+                (_vector(np.round(outward, 12)), _vector(occ.getCenterOfMass(2, tag)), float(occ.getMass(2, tag)), tag)
+            )
+    order = in_order([(centre, area) for _, centre, area, _ in found], box)
+    return tuple(
+        Face(name=f"face {k}", normal=normal, centre=centre, area=area, tag=tag)
+        for k, (normal, centre, area, tag) in enumerate((found[i] for i in order), start=1)
     )
 
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
 from geometry.bodies.body import Body, patch_span
+from geometry.bodies.features import PlainEnd
 from geometry.bodies.kernel import ON_SURFACE
-from geometry.solids.patches import patch_faces
+from geometry.solids.patches import patch_faces, pieces_of_face
 from geometry.solids.solid_model import Solid
 
 SAME = 1e-3
@@ -83,7 +84,8 @@ def mesh_target(gmsh: Any, solid: Solid, *, halves: bool) -> MeshTarget:
     occ, body = gmsh.model.occ, solid.body
     areas = _areas(gmsh, solid.tag)
     volume, centroid = occ.getMass(3, solid.tag), np.asarray(occ.getCenterOfMass(3, solid.tag))
-    half = _upper_half(gmsh, solid, areas) if halves and abs(centroid[2]) < SAME else None
+    halves = halves and abs(centroid[2]) < SAME and all(_is_own_image(end) for end in body.ends)
+    half = _upper_half(gmsh, solid, areas) if halves else None
     if half is None:
         surfaces = _surfaces(gmsh, body, areas, ("bore", "top", "bottom"))
         return MeshTarget(
@@ -97,6 +99,11 @@ def mesh_target(gmsh: Any, solid: Solid, *, halves: bool) -> MeshTarget:
     return MeshTarget(
         solid=solid, tag=half, cut=cut, areas=areas, surfaces=surfaces, volume=volume / 2.0, centroid=centroid
     )
+
+
+def _is_own_image(end: PlainEnd) -> bool:
+    """Return whether the load of an end is on both sides of z = 0 alike: not on a single face elsewhere."""
+    return end.face is None or end.face.centre[2] == end.face.normal[2] == 0.0
 
 
 def _areas(gmsh: Any, tag: int) -> dict[int, float]:
@@ -178,7 +185,11 @@ def _surfaces(gmsh: Any, body: Body, tags: Iterable[int], kinds: tuple[str, ...]
             if low < centre[0] < high and _on_outside(body, points):
                 faces[f"end:{end.name}"].append(tag)
     for end in body.ends if body.part.patches_anywhere else ():
-        faces[f"end:{end.name}"] = patch_faces(gmsh, tags, end, body.part.patch_height)
+        faces[f"end:{end.name}"] = (
+            patch_faces(gmsh, tags, end, body.part.patch_height)
+            if end.face is None
+            else pieces_of_face(gmsh, tags, body, end.face)
+        )
     for name, tags in faces.items():
         if not tags:
             raise CannotRunError(f"the part came out without surface '{name}'; change its dimensions a little")

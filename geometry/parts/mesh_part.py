@@ -2,7 +2,10 @@
 
 from typing import ClassVar, Literal
 
+from pydantic import field_validator
+
 from geometry.base.errors import CaseError
+from geometry.base.model import refusal
 from geometry.bodies.body import Body, Feature
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.parts.step import FilePart, ImportedPart
@@ -20,6 +23,13 @@ class MeshPart(FilePart):
     shape: Literal["mesh"]
     unit: Literal["um", "mm", "cm", "m", "in"] = "mm"
     """Unit of length of the file, which states none itself."""
+
+    @field_validator("faces")
+    @classmethod
+    def _no_faces(cls, faces: dict[str, str]) -> dict[str, str]:
+        if faces:
+            raise refusal("a mesh has no faces with names; give the part as a STEP file")
+        return faces
 
     @property
     def mesh_unit(self) -> float:

@@ -45,6 +45,9 @@ class FilePart(Printable):
     bores: Annotated[dict[Name, Text], Field(max_length=100)] = {}
     """Point of the link -> name of its bore, as ``alula inspect`` names them; needed where the points and diameters of
     the link fit the part in several ways, and for ``points = "from-part"``."""
+    faces: Annotated[dict[Name, Text], Field(max_length=100)] = {}
+    """Load point of the link -> name of a flat face of the solid, as ``alula inspect`` names it. The point is the
+    centre of the face, and need not be stated; a load there is spread evenly over the whole face."""
     place_tolerance: Annotated[Length, POSITIVE] = 0.1
     """How far the centre of a bore may lie from the point that the link states for it."""
     diameter_tolerance: Annotated[Length, NOT_NEGATIVE] = 0.3

@@ -11,13 +11,14 @@ import numpy as np
 
 from geometry.base.errors import AlulaError, CaseError
 from geometry.bodies.body import Body
-from geometry.bodies.features import Pin, Ring
+from geometry.bodies.features import FlatFace, Pin, Ring
 from geometry.imported.facts import Bore, PartFacts
 from geometry.imported.read import part_facts
 from geometry.meshing.mesh import sections_and_rings
 from geometry.parts.mesh_part import MeshedPart
 from geometry.parts.step import FilePart, ImportedPart
 from geometry.placement.fit import Fit, Wanted
+from geometry.placement.load_faces import load_faces
 from geometry.placement.match import place, with_loaded_bores
 
 EXACT = 1e-6
@@ -48,6 +49,26 @@ def bores_of(part: FilePart) -> tuple[Bore, ...]:
         Where the kernel fails.
     """
     return part_facts(Path(part.file), part.mesh_unit).bores
+
+
+def faces_of(part: FilePart, body: Body) -> dict[str, FlatFace]:
+    """Return the faces that a part names for load points, where it was placed.
+
+    Parameters
+    ----------
+    part : FilePart
+        The part, as the case states it.
+    body : Body
+        What ``placed_body`` gave of it.
+
+    Returns
+    -------
+    dict of str to FlatFace
+        By point, in the link's frame.
+    """
+    placed = body.part
+    assert isinstance(placed, ImportedPart)
+    return load_faces(part, np.array(placed.turn), np.array(placed.shift))
 
 
 def placed_body(

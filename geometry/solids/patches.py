@@ -5,6 +5,7 @@ nearest place, a round one whole. Where faces are equally near, as top and botto
 load. Runs in a child process only (see ``geometry.meshing.mesh``).
 """
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -12,11 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CaseError
-from geometry.bodies.features import PlainEnd
-from geometry.bodies.kernel import ON_SURFACE, Entity
+from geometry.bodies.body import Body
+from geometry.bodies.features import FlatFace, PlainEnd
+from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
 
 AS_NEAR = 1e-3
 """Share by which the distances of two faces from a point may differ where both count."""
+
+
+FACE = 1e-4
+"""Share of a face's size by which its centre, its plane and its area may be off where it is found again."""
 
 
 def patch_borders(gmsh: Any, solid: int, end: PlainEnd, height: float | None = None) -> list[Entity]:
@@ -43,6 +49,8 @@ def patch_borders(gmsh: Any, solid: int, end: PlainEnd, height: float | None = N
     CaseError
         Where the point lies off the part.
     """
+    if end.face is not None:
+        return []
     faces = [tag for _, tag in gmsh.model.getBoundary([(3, solid)], oriented=False)]
     disks, radius, nearest = [], end.patch / 2.0, _nearest(gmsh, _level(gmsh, faces, height), end)
     away = min(float(np.linalg.norm(at - (end.x, end.y, 0.0))) for at in nearest.values())
@@ -83,6 +91,68 @@ def patch_faces(gmsh: Any, faces: Iterable[int], end: PlainEnd, height: float | 
         if gmsh.model.getType(2, face) != "Plane" or np.abs(box - at).max() < reach:
             found.append(face)
     return found
+
+
+def pieces_of_face(gmsh: Any, faces: Iterable[int], body: Body, wanted: FlatFace) -> list[int]:
+    """Return the faces into which a named face of an imported part was split, as by the rings about its bores.
+
+    Parameters
+    ----------
+    gmsh : module
+        gmsh, with what is meshed in its present model.
+    faces : iterable of int
+        Tags of its faces.
+    body : Body
+        The body, in the unit in which it is built.
+    wanted : FlatFace
+        The face, in the same unit.
+
+    Returns
+    -------
+    list of int
+        Tags; empty where the part has no such face.
+    """
+    model, normal, centre = gmsh.model, np.array(wanted.normal), np.array(wanted.centre)
+    reach = FACE * math.sqrt(wanted.area)
+
+    def lies(face: int) -> bool:
+        """Tell whether a face is on the plane of the wanted one."""
+        if model.getType(2, face) != "Plane":
+            return False
+        corners = np.reshape([model.getValue(0, point, []) for _, point in _corners(gmsh, face)], (-1, 3))
+        return bool(np.abs((corners - centre) @ normal).max() < reach)
+
+    flat = [face for face in faces if lies(face)]
+    whole = body.part.solid(Kernel(gmsh), body)  # once more, as it is without what was imprinted
+    model.occ.synchronize()
+    own = [
+        face
+        for _, face in model.getBoundary([whole], oriented=False)
+        if np.linalg.norm(model.occ.getCenterOfMass(2, face) - centre) < reach
+        and abs(model.occ.getMass(2, face) - wanted.area) < FACE * wanted.area
+        and lies(face)
+    ]
+    found = [face for face in flat if own and _is_within(gmsh, face, own[0])]
+    model.occ.remove([whole], recursive=True)
+    model.occ.synchronize()
+    return found
+
+
+def _corners(gmsh: Any, face: int) -> Any:
+    return gmsh.model.getBoundary([(2, face)], combined=False, oriented=False, recursive=True)
+
+
+def _is_within(gmsh: Any, piece: int, face: int) -> bool:
+    """Return whether a flat face lies within another one on its plane, told by places spread over it."""
+    low, high = gmsh.model.getParametrizationBounds(2, piece)
+    for count in (8, 32, 128):
+        steps = (np.arange(count) + 0.5) / count
+        grid = np.stack(np.meshgrid(*(a + steps * (b - a) for a, b in zip(low, high, strict=True))), axis=-1)
+        own = [at for at in grid.reshape(-1, 2).tolist() if gmsh.model.isInside(2, piece, at, parametric=True)]
+        if own:
+            places = gmsh.model.getValue(2, piece, np.ravel(own))
+            return bool(2 * gmsh.model.isInside(2, face, places) > len(own))
+    return False
 
 
 def _level(gmsh: Any, faces: Iterable[int], height: float | None) -> list[int]:

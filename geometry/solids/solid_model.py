@@ -95,7 +95,16 @@ def scaled(body: Body, unit: float) -> Body:
             )
             for p in body.pins
         ),
-        ends=tuple(PlainEnd(name=e.name, x=s(e.x), patch=s(e.patch), y=s(e.y)) for e in body.ends),
+        ends=tuple(
+            PlainEnd(
+                name=e.name,
+                x=s(e.x),
+                patch=s(e.patch),
+                y=s(e.y),
+                face=None if e.face is None else e.face.scaled(s),
+            )
+            for e in body.ends
+        ),
         holes=tuple(
             HoleRow.model_construct(
                 count=r.count, diameter=s(r.diameter), first=s(r.first), last=s(r.last), along=r.along

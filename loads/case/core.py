@@ -9,12 +9,13 @@ from pydantic import Field
 from geometry.base.errors import CaseError
 from geometry.base.model import Name, Text
 from geometry.bodies.body import PartKind
+from geometry.bodies.features import FlatFace
 from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.materials.material import Material, library
 from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd, Ring
 from geometry.placement.fit import Wanted
-from geometry.placement.placed_body import placed_body
+from geometry.placement.placed_body import faces_of, placed_body
 from loads.case.places import check_point
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
@@ -231,7 +232,7 @@ class CoreCase(Revisable):
 
     @cached_property
     def _imported(self) -> dict[str, Body]:
-        """Bodies of imported parts, placed once: each placement reads their files."""
+        """Bodies of imported parts, each placed once since that reads its file."""
         return {}
 
     def _stated_part(self, link: str) -> Part:
@@ -298,11 +299,30 @@ class CoreCase(Revisable):
                 for pin in pins
             )
             if link not in self._imported:
-                self._imported[link] = placed_body(part, wanted, tuple((end.name, (end.x, end.y)) for end in ends))
-            bores = {pin.name for pin in self._imported[link].pins}
-            outside = tuple(end for end in ends if end.name not in bores)
-            return replace(self._imported[link], ends=outside, holes=record.holes)
+                others = tuple((end.name, (end.x, end.y)) for end in ends if end.name not in part.faces)
+                placed = placed_body(part, wanted, others)
+                bores, faces = {pin.name for pin in placed.pins}, faces_of(part, placed)
+                outside = tuple(replace(end, face=faces.get(end.name)) for end in ends if end.name not in bores)
+                self._imported[link] = replace(placed, ends=outside, holes=record.holes)
+            return self._imported[link]
         return Body(part=part, pins=tuple(pins), ends=tuple(ends), holes=record.holes)
+
+    def face(self, link: str, point: str) -> FlatFace | None:
+        """Return the flat face of an imported part that a point of its link stands for.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        FlatFace or None
+            In the link's frame; None for any other point.
+        """
+        part = self.parts.get(self.links[link].part or "")
+        named = isinstance(part, FilePart) and point in part.faces
+        return next((end.face for end in self.body(link).ends if end.name == point), None) if named else None
 
     @property
     def motion_coordinate(self) -> str:

@@ -7,9 +7,9 @@ from loads.case.core import CoreCase
 from loads.case.places import check_moving, check_point
 from loads.records.aero import AirPatch, check_air
 from loads.records.carried import CarriedBody, CarriedSpread
-from loads.records.load_case import LoadCase, PointForce, PointMoment, SpreadForce
+from loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
 
-Place = PointForce | PointMoment | SpreadForce | CarriedBody | CarriedSpread | AirPatch
+Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch
 
 
 def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
@@ -34,6 +34,14 @@ def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
             check_place(case, f"{where}.{kind}.{i}", load)
             if kind == "moments" and load.moment[2] != 0.0:
                 _check_torque(case, f"{where}.{kind}.{i}", load)
+    for i, load in enumerate(load_case.pressures):
+        entry = f"{where}.pressures.{i}"
+        check_place(case, entry, load)
+        if case.face(load.link, load.at) is None:
+            raise CaseError(
+                f"{entry}.at: a pressure acts on a named face, but point '{load.at}' of link '{load.link}' is none; "
+                f'name the face in its part, faces.{load.at} = "face 1" (parts of shape "step")'
+            )
     for i, air in enumerate(load_case.air):
         check_air(air, f"{where}.air.{i}")
         for j, patch in enumerate(air.spread):

@@ -4,6 +4,7 @@ A link states its points and the part must agree within its tolerance, or it tak
 (``points = "from-part"``). Either way the case goes on with the places that the bores have.
 """
 
+import math
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -19,7 +20,8 @@ from geometry.bodies.features import Slot
 from geometry.linkage.linkage import Joint
 from geometry.parts.mesh_part import MeshPart
 from geometry.parts.step import FilePart, StepPart
-from geometry.placement.fit import Wanted
+from geometry.placement.fit import Fit, Wanted
+from geometry.placement.load_faces import load_faces
 from geometry.placement.match import place, points_of_part, with_loaded_bores
 from geometry.placement.placed_body import bores_of
 from loads.text.explain import sentence
@@ -88,8 +90,10 @@ def _placed(name: str, link: dict[str, Any], part: FilePart, joints: object) -> 
         if wanted is None or not isinstance(points, dict) or not isinstance(slots, dict):
             return {"points": points, "slots": slots}
         places = _places(points)
-        others = {point: at for point, at in places.items() if point not in {one.name for one in wanted}}
+        taken = {*(one.name for one in wanted), *part.faces}
+        others = {point: at for point, at in places.items() if point not in taken}
         fit = with_loaded_bores(part, place(part, bores_of(part), wanted), bores_of(part), others)
+        points = _with_faces(part, fit, points, places)
     except AlulaError as error:
         raise type(error)(f"links.{name}, part {Path(part.file).name}: {error}") from None
     own = {point: fit.middle(point)[:2].tolist() for point in fit.bores}
@@ -99,6 +103,29 @@ def _placed(name: str, link: dict[str, Any], part: FilePart, joints: object) -> 
         "points": points | {point: _stated(*at) for point, at in own.items()},
         "slots": slots | {point: slots[point] | {"first": a, "last": b} for point, (a, b) in ends.items()},
     }
+
+
+def _with_faces(
+    part: FilePart, fit: Fit, points: dict[str, Any], places: Mapping[str, tuple[float, float]]
+) -> dict[str, Any]:
+    """Return the points of a link with those that are the centres of named faces."""
+    found = dict(points)
+    for point, face in load_faces(part, fit.turn, fit.shift).items():
+        if point in fit.bores:
+            raise CaseError(
+                f"faces.{point}: the point {point} is that of a bore; name another point for {part.faces[point]}"
+            )
+        x, y, _ = face.centre
+        away = math.dist(places.get(point, (x, y)), (x, y))
+        if away > part.place_tolerance:
+            raise CaseError(
+                f"the point {point} stands {away:.4g} mm from the centre of {part.faces[point]} at "
+                f"({round(x, 6):g}, {round(y, 6):g}) mm, more than place_tolerance {part.place_tolerance:g} mm; "
+                "leave it out of the link's points"
+            )
+        if point in places or point not in points:  # what is malformed is left for validation to find
+            found[point] = _stated(x, y)
+    return found
 
 
 def _slots_of_part(part: FilePart, stated: dict[str, Any]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, PlainValidator, WithJsonSchema
 
 from geometry.base.model import CaseModel, Name, Text, refusal
-from geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, parse
+from geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Stress, parse
 from loads.records.aero import AirLoad
 from loads.text.shares import LoadScatter
 
@@ -57,6 +57,16 @@ class PointMoment(CaseModel):
     moment: MomentVector
 
 
+class FacePressure(CaseModel):
+    """A pressure on a named face of a link's part, from outside against the material."""
+
+    link: Name
+    at: Name
+    """The point that stands for the face (``faces`` of the part)."""
+    pressure: Stress
+    """Force per area; a negative one pulls."""
+
+
 class SpreadForce(CaseModel):
     """A force spread evenly along the axis of a link between two of its points."""
 
@@ -89,6 +99,7 @@ class LoadCase(CaseModel):
     the bands of all that they do hold it."""
     forces: tuple[PointForce, ...] = ()
     moments: tuple[PointMoment, ...] = ()
+    pressures: tuple[FacePressure, ...] = ()
     spread: tuple[SpreadForce, ...] = ()
     air: tuple[AirLoad, ...] = ()
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.bodies.features import FlatFace
 from geometry.linkage.motion import solve_motion
 from geometry.linkage.placement import Placement, vector
 from geometry.linkage.pose import Pose
@@ -98,11 +99,17 @@ def stated_loads(case: Case, load_case: LoadCase) -> tuple[Load, ...]:
     """
     loads: list[Load] = []
     for force in load_case.forces:
-        wrench = np.concatenate([vector3(force.force), np.zeros(3)])
+        push, face = vector3(force.force), case.face(force.link, force.at)
+        wrench = np.concatenate([push, np.zeros(3)]) if face is None else on_face(face, push)
         loads.append(PointLoad(link=force.link, point=force.at, wrench=wrench, axes=force.axes))
     for moment in load_case.moments:
         wrench = np.array([0.0, 0.0, 0.0, *moment.moment])
         loads.append(PointLoad(link=moment.link, point=moment.at, wrench=wrench))
+    for load in load_case.pressures:
+        face = case.face(load.link, load.at)
+        assert face is not None  # checked as the case was read
+        wrench = on_face(face, -load.pressure * face.area * np.array(face.normal))
+        loads.append(PointLoad(link=load.link, point=load.at, wrench=wrench, axes="link"))
     for spread in load_case.spread:
         points = case.links[spread.link].points
         start, end = sorted((points[spread.start][0], points[spread.end][0]))
@@ -113,6 +120,24 @@ def stated_loads(case: Case, load_case: LoadCase) -> tuple[Load, ...]:
     for i, air in enumerate(load_case.air):
         loads += air_loads(air, f"air.{i}", case.link_points)
     return tuple(loads)
+
+
+def on_face(face: FlatFace, force: Real) -> Real:
+    """Return an even traction on a face as a load at its point, which lies in the plane z = 0.
+
+    Parameters
+    ----------
+    face : FlatFace
+        The face.
+    force : array (3,)
+        Its resultant, through the face's centre [N].
+
+    Returns
+    -------
+    array (6,)
+        [N, N mm]; z is that of both the linkage and the link, so that the axes of the plane do not matter.
+    """
+    return shifted(np.concatenate([force, np.zeros(3)]), np.array([0.0, 0.0, face.centre[2]]))
 
 
 def inertia_loads(place: Placement, masses: Mapping[str, PartMass], gravity: Real) -> tuple[BodyForce, ...]:

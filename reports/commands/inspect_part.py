@@ -26,6 +26,8 @@ ENTRIES, PICTURE, RECORD = "parts.toml", "part.png", "result.json"
 """Files that go to the output folder."""
 ASSUMED_MATERIAL = "pla-fdm-xy"
 """Material in the entries where none is named."""
+MOST_FACES = 40
+"""Flat faces in the printed list."""
 GRAMS = 1e6
 """In a tonne."""
 
@@ -127,6 +129,7 @@ def record(found: Inspection) -> dict[str, Any]:
             }
             for bore in facts.bores
         ],
+        "faces": [entries(face, "name normal centre area") for face in facts.faces],
         "parallel": [[bore.name for bore in group] for group in parallel_groups(facts.bores)],
         "link_points": {} if frame is None else {name: list(at) for name, at in frame.points.items()},
         "link_bores": {} if frame is None else {name: bore.name for name, bore in frame.bores.items()},
@@ -225,6 +228,8 @@ def print_inspection(found: Inspection, console: "Console") -> None:
         _bores(found, console)
     for line in _remarks(found):
         say(console, line)
+    if facts.faces:
+        _faces(found, console)
     text = case_entries(found)
     if text:
         say(console, "\nEntries of the case file")
@@ -276,6 +281,26 @@ def _bores(found: Inspection, console: "Console") -> None:
              "axis\nx", "\ny", "\nz", "kind"]  # fmt: skip
     columns = [(head, 2 <= k <= 9) for k, head in enumerate(heads)]
     say_table(console, columns, rows)
+
+
+def _faces(found: Inspection, console: "Console") -> None:
+    """Print the table of the flat faces, at most the largest."""
+    say(console, "\nFlat faces, with their normals out of the material:")
+    least = sorted((face.area for face in found.facts.faces), reverse=True)[:MOST_FACES][-1]
+    shown = [face for face in found.facts.faces if face.area >= least][:MOST_FACES]
+    rows = [
+        [
+            face.name.replace(" ", KEPT),
+            number(face.area),
+            *(_place(value) for value in face.centre),
+            *(fixed(value, 4) for value in face.normal),
+        ]
+        for face in shown
+    ]
+    heads = ["face", "area\n[mm²]", "centre\nx [mm]", "\ny [mm]", "\nz [mm]", "normal\nx", "\ny", "\nz"]
+    say_table(console, [(head, k >= 1) for k, head in enumerate(heads)], rows)
+    if len(shown) < len(found.facts.faces):
+        say(console, f"The smaller ones of all {len(found.facts.faces)} are left out; --json lists them.")
 
 
 def _kind(bore: Bore, facts: PartFacts) -> str:

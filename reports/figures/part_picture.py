@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from geometry.imported.arrangement import LinkFrame, viewing_frame
 from geometry.imported.facts import Bore, PartFacts, PartSurface
+from reports.figures.face_labels import FaceSpot, face_spot, is_seen
 from reports.figures.figures import rendered, scale_bar
-from reports.figures.scene import Rendering, View, axes_of, hits
+from reports.figures.scene import Rendering, View, axes_of
 from reports.sheet.canvas import SIZE, Canvas, faint
 from reports.sheet.labels import place_labels
 from reports.sheet.plot import Axes
@@ -19,12 +20,15 @@ Real = NDArray[np.float64]
 
 _SIDES = {"from above (z towards you)": 1.0, "from below (z away from you)": -1.0}
 _TILT = np.array([0.24, -0.42, 0.875])
-"""From where the part is looked at from above, in its own frame: walls show, and no axis covers another."""
+"""From where the part is looked at from above, in its own frame: walls show, and no axis covers another. From below it
+is the opposite, so that each wall shows in one of the two views unless something stands before it."""
 _COLOURS = np.array([[190, 200, 210], [0, 103, 168]], dtype=np.uint8)
 """Of the part and of its bores."""
 _PIXELS = 1600
 _MARGIN, _TITLE, _BELOW = 7.2, 20.0, 50.0
 """Room about a view, above and below it [points]."""
+_FACES, _FACE_SIZE = 24, 7.5
+"""Flat faces that are named at most, the largest; size of these names [points]."""
 _HIDDEN = 0.55
 """How strong the name of a bore is on the side where it cannot be seen."""
 
@@ -63,7 +67,7 @@ def part_picture(facts: PartFacts, surface: PartSurface) -> tuple[bytes | None, 
     )
     if len(images) < len(views):
         return None, trouble or "rendering failed"
-    return _composed(facts, frame, points[surface.triangles], views, images), ""
+    return _composed(facts, frame, points[surface.triangles], surface.faces, views, images), ""
 
 
 def _bore_walls(bores: tuple[Bore, ...], surface: PartSurface) -> Real:
@@ -84,7 +88,7 @@ def _bore_walls(bores: tuple[Bore, ...], surface: PartSurface) -> Real:
 
 
 def _view(points: Real, side: float) -> View:
-    toward = _TILT * (1.0, 1.0, side) / np.linalg.norm(_TILT)
+    toward = side * _TILT / np.linalg.norm(_TILT)
     right, up = axes_of(toward)
     u, v = points @ right, points @ up
     middle = (u.min() + u.max()) / 2.0 * right + (v.min() + v.max()) / 2.0 * up
@@ -99,6 +103,7 @@ def _composed(
     facts: PartFacts,
     frame: LinkFrame,
     corners: Real,
+    faces: NDArray[np.int64],
     views: Mapping[str, View],
     images: Mapping[str, Real],
 ) -> bytes:
@@ -108,8 +113,9 @@ def _composed(
     sheet = Canvas(72.0 * WIDTH, sum(tall) + len(tall) * (_TITLE + _BELOW))
     names = {bore.name: point for point, bore in frame.bores.items()}
     ends = {title: {b.name: _nearest_end(frame, b, view.toward) for b in facts.bores} for title, view in views.items()}
-    seen = {title: {name for name, at in ends[title].items() if _seen(at, corners, views[title])} for title in views}
+    seen = {title: {name for name, at in ends[title].items() if is_seen(at, corners, views[title])} for title in views}
     nowhere = {bore.name for bore in facts.bores} - set().union(*seen.values())
+    spots = {title: _face_spots(facts, frame, corners, faces, view) for title, view in views.items()}
     top = 0.0
     for (title, view), height in zip(views.items(), tall, strict=True):
         top += _TITLE
@@ -126,7 +132,14 @@ def _composed(
             for bore in facts.bores
             if bore.name in seen[title] | nowhere
         ]
-        place_labels(sheet, box, labels, _drawn(images[title], box), size=SIZE)
+        drawn = _drawn(images[title], box)
+        for name, spot in spots[title].items():
+            at = axes.at(view.share(spot.at))
+            if spot.fits:
+                sheet.write(name, at, size=_FACE_SIZE, halo=1.5)
+            elif not any(name in others and others[name].fits for others in spots.values()):
+                labels.append((at[None], name, INK))
+        place_labels(sheet, box, labels, drawn, size=SIZE)
         _directions(sheet, view, (box[0] + 26.0, box[3] + 12.0))
         scale_bar(sheet, axes, view, (0.16, 0.0), 14.0)
         top += height + _BELOW
@@ -137,18 +150,26 @@ def _composed(
     return sheet.png()
 
 
+def _face_spots(
+    facts: PartFacts, frame: LinkFrame, corners: Real, faces: NDArray[np.int64], view: View
+) -> dict[str, FaceSpot]:
+    """Return where the names of the largest flat faces go, of those that are seen."""
+    found = {}
+    for face in sorted(facts.faces, key=lambda one: -one.area)[:_FACES]:
+        centre = frame.place(np.array(face.centre))
+        scale = (72.0 * WIDTH - 2.0 * _MARGIN) / (2.0 * view.half_width)
+        spot = face_spot(face.name, corners[faces == face.tag], centre, corners, view, scale, _FACE_SIZE)
+        if spot is not None:
+            found[face.name] = spot
+    return found
+
+
 def _nearest_end(frame: LinkFrame, bore: Bore, toward: Real) -> Real:
     """Return the middle (3,) of the end of a bore that faces the viewer."""
     axis = frame.axes @ np.array(bore.axis)
     return np.asarray(
         frame.place(np.array(bore.centre)) + math.copysign(0.5 * bore.length, float(axis @ toward)) * axis
     )
-
-
-def _seen(at: Real, corners: Real, view: View) -> bool:
-    """Return True if no triangle (k, 3, 3) stands between a place and the viewer."""
-    a, b, c = np.moveaxis(corners, 1, 0)
-    return not hits(at + 1e-6 * view.half_width * view.toward, view.toward, a, b - a, c - a)
 
 
 def _drawn(image: Real, box: tuple[float, float, float, float]) -> Real:
