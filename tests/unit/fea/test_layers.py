@@ -123,7 +123,7 @@ def outcome_of(case, factor, *, decided=True, loaded=True):
         discretisation=state("far") if not factor.unknowable else state("singular"),
         scan=None,
     )
-    beam = SimpleNamespace(worst=SimpleNamespace(equivalent=1.0 if loaded else 0.0))
+    beam = SimpleNamespace(idle=not loaded)
     link = SimpleNamespace(layers=stress if decided and layers else None, beam=beam)
     [found] = layer_outcomes(case, "weight", {"AE": link})
     assert (found.name, found.limit, str(found.subject)) == ("layers", 3.0, "AE")

@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from geometry.base.errors import CaseError
 from geometry.bodies.body import apart, extent, hand_section, reference_line
-from geometry.bodies.body_rules import check_body
+from geometry.bodies.body_rules import check_body, check_length
 from geometry.bodies.eyes import eye_reach
 from geometry.mechanisms.ornithopter import OrnithopterRules, variants
 from geometry.parts.part import Bar, Body, Disc, HoleRow, Pin, PlainEnd, Slot, Tube
@@ -93,12 +93,18 @@ def test_what_fits_passes(right: Body) -> None:
             body(SHAFT, CRANK_PIN, part=DISC, holes=(hole(1.0),)),
             "holes: a part of shape disc takes no rows of holes",
         ),
-        (body(SHAFT, moved(CRANK_PIN, x=0.0, y=3.0), part=DISC), "all pins and load points lie at x = 0 mm"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_named_with_its_remedy(wrong: Body, message: str) -> None:
     with pytest.raises(CaseError, match=message):
         check_body(wrong)
+
+
+def test_a_disc_across_the_x_axis_may_be_the_ground_but_no_link_that_moves() -> None:
+    across = body(SHAFT, moved(CRANK_PIN, x=0.0, y=CRANK_PIN.x), part=DISC)
+    check_body(across)
+    with pytest.raises(CaseError, match="all pins and load points lie at x = 0 mm"):
+        check_length(across)
 
 
 def cornered(angle: float, fillet: float, eye: float, thickness: float = 4.0, width: float = 8.0) -> Body:
