@@ -142,3 +142,11 @@ def test_points_of_a_table_are_checked(tmp_path):
         {DIAMETER: "5 mm"},
         {DIAMETER: "6 mm"},
     ]
+
+
+def test_a_first_point_that_the_rules_refuse_is_a_point_as_any():
+    """A bore wider than its tube is for the study to tell, wherever it stands among the points."""
+    plan = plan_of({"case": CASE, "vary": {"parts.tube.inner_diameter": "6 mm, 2 mm"}})
+    assert len(Variants(plan, Path())) == 2
+    plan = plan_of({"case": CASE, "vary": {"links.GF.points.F.0": "1 mm, 50 mm"}})  # eyes overlap
+    assert len(Variants(plan, Path())) == 2
