@@ -223,3 +223,24 @@ def test_workers_compute_what_a_check_computes(tmp_path):
     checked = [f for f in done.numbers if f.check]
     assert [(f.check, f.subject, f.verdict) for f in checked] == [(c.name, str(c.subject), c.verdict) for c in expected]
     assert [f.value for f in checked] == pytest.approx([c.value.value for c in expected], rel=1e-12, nan_ok=True)
+
+
+def test_a_file_of_an_older_version_is_brought_up_to_date_or_stays_as_it_is(tmp_path, monkeypatch):
+    """Steps from version to version, all or none of them in one go; results stand, and nothing is computed again."""
+    run(tmp_path, Desk(passed))
+    monkeypatch.setattr("fea.study.store.VERSION", VERSION + 2)
+    added = {
+        VERSION: "ALTER TABLE results ADD COLUMN first TEXT",
+        VERSION + 1: "ALTER TABLE nothing ADD COLUMN second TEXT",
+    }
+    monkeypatch.setattr("fea.study.store._UPGRADES", added)
+    with pytest.raises(CannotRunError, match="nothing"):
+        run(tmp_path, Desk(passed))
+    added[VERSION + 1] = "ALTER TABLE results ADD COLUMN second TEXT"
+    desk = Desk(passed)
+    _, rows = run(tmp_path, desk)
+    assert desk.asked == []
+    assert [answer.numbers for _, _, answer, _ in rows] == [(FACTOR,)] * 3
+    with closing(sqlite3.connect(tmp_path / NAME)) as db:
+        assert db.execute("PRAGMA user_version").fetchone() == (VERSION + 2,)
+        assert {"first", "second"} <= {row[1] for row in db.execute("PRAGMA table_info(results)")}
