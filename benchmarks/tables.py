@@ -231,6 +231,42 @@ def iterations(record: Record) -> str:
     return table(header, rows) + "\n" + stamp(record)
 
 
+MILLION, MACHINES, CORES = 1_000_000, 100, 16
+
+
+def studies(record: Record) -> str:
+    """What a study costs beside its checks, and from it on paper a million points on a hundred machines."""
+    rows, paper, store = [], [], record["store"]
+    for fidelity in dict.fromkeys(run["fidelity"] for run in record["runs"]):
+        one, two = (run for run in record["runs"] if run["fidelity"] == fidelity)
+        efficiency = one["wall_s"] / (two["workers"] * two["wall_s"])
+        slower = max(two["check_cpu_s"] / one["check_cpu_s"], 1.0)
+        times = [seconds(run["check_cpu_s"]) for run in (one, two)]
+        beside = [seconds(one["parent_cpu_s"]), seconds(max(one["beside_wall_s"], 0.0))]
+        others = max(run["others"] or 0.0 for run in (one, two))
+        rows.append([fidelity, str(one["points"]), *beside, f"{efficiency:.2f}", *times, f"{others:.0%}"])
+        workers = MACHINES * CORES / (one["check_cpu_s"] * slower)  # points a second
+        parent = 1.0 / one["parent_cpu_s"]
+        first = "the workers" if workers < parent else "the machine that writes"
+        hours = [MILLION / rate / 3600.0 for rate in (workers, parent)]
+        paper.append([fidelity, *(f"{rate:,.0f}" for rate in (workers, parent)), *(f"{h:.2g} h" for h in hours), first])
+    said = (
+        f"Into the store go {store['rows_a_second']:,.0f} points a second of {store['numbers_a_row']} numbers, each a "
+        f"transaction of {1e3 * store['cpu_s_a_row']:.2f} ms of processor time. A point takes "
+        f"{store['bytes_a_row']:,.0f} bytes. {store['read_rows_a_second']:,.0f} a second are read.\n"
+    )
+    header = (
+        "model|points|the study's own processor time a point|wall time a point between checks, one worker|"
+        "efficiency of two workers|check's processor time, one worker|two|others' share of the processors"
+    )
+    size = MILLION * store["bytes_a_row"] / 1e9
+    on_paper = (
+        f"On paper, {MILLION:,} points on {MACHINES} machines of {CORES} workers each: a file of {size:.1f} GB, and\n"
+    )
+    limits = "model|workers' points a second|the parent's|time of the workers|of the parent|first bottleneck"
+    return "\n".join((table(header, rows), said, on_paper, table(limits, paper), stamp(record)))
+
+
 SECTIONS: dict[str, Callable[[Record], str]] = {
     "accuracy": accuracy,
     "peers": peers,
@@ -239,6 +275,7 @@ SECTIONS: dict[str, Callable[[Record], str]] = {
     "growth": growth,
     "motion": motion,
     "stages": stages,
+    "studies": studies,
     "commits": commits,
     "trade": trade,
     "iterations": iterations,
