@@ -172,8 +172,16 @@ class Tube(Straight):
         return kernel.fuse([entity for piece in self.pieces(body) for entity in self.prism(kernel, body, piece)])
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
-        """As ``PartKind.fine_places``: as ``Straight.fine_places``; without eyes there are none."""
-        return super().fine_places(body, size, share) if self.eyes == "round" else []
+        """As ``PartKind.fine_places``: as ``Straight.fine_places``; without eyes at the fillets of plugs or bushes."""
+        if self.eyes == "round":
+            return super().fine_places(body, size, share)
+        first, last = self.reach(body)
+        radius, wall = self._hollow_fillet(body), f"(Sqrt(y^2+z^2)-{self.inner_diameter / 2.0:.12g})"
+        across = [f"(x-({x:.12g}))" for span in self._hollow_spans(body) for x in span if first < x < last]
+        if self.bush_diameter > 0.0:
+            across += [f"({pin.distance_formula}-{self.bush_diameter / 2.0:.12g})" for pin in body.pins]
+        edge = min((radius or size) * share, size)
+        return [(edge, f"Max(Sqrt({one}^2+{wall}^2)-{radius:.12g},0)") for one in across]
 
     def cavities(self, kernel: Kernel, body: Body) -> list[Entity]:
         """As ``PartKind.cavities``: the bore, less plugs or bushes."""
