@@ -220,6 +220,50 @@ def _letters(number: int) -> str:
     return (_letters(number // 26 - 1) if number >= 26 else "") + chr(ord("A") + number % 26)
 
 
+def single_frame(facts: PartFacts) -> LinkFrame | None:
+    """Return a frame of a link with a single pin: x along the axis of the file across the bore that reaches farthest.
+
+    Parameters
+    ----------
+    facts : PartFacts
+        What is found in its file.
+
+    Returns
+    -------
+    LinkFrame or None
+        Its point is the first bore of the largest group of parallel ones; None without a round bore.
+    """
+    bore = next((bore for group in parallel_groups(facts.bores) for bore in group if not bore.slot), None)
+    if bore is None:
+        return None
+    z, arms = np.array(bore.axis), np.diag(np.subtract(facts.high, facts.low))
+    across = arms - np.outer(arms @ z, z)
+    way = int(np.argmax(np.round(np.linalg.norm(across, axis=1) / np.linalg.norm(arms), 6)))
+    x = across[way] / np.linalg.norm(across[way])
+    if float(x @ np.subtract(facts.centroid, bore.centre)) < -COAXIAL * bore.diameter:
+        x = -x
+    return LinkFrame(origin=np.array(bore.centre), axes=np.array([x, np.cross(z, x), z]), bores={"A": bore})
+
+
+def far_end(facts: PartFacts, frame: LinkFrame) -> float:
+    """Return how far a part reaches along x of a frame.
+
+    Parameters
+    ----------
+    facts : PartFacts
+        What is found in its file.
+    frame : LinkFrame
+        The frame.
+
+    Returns
+    -------
+    float
+        Greatest x of the corners of its bounds [mm].
+    """
+    corners = np.array(np.meshgrid(*zip(facts.low, facts.high, strict=True))).reshape(3, -1).T
+    return float(frame.place(corners)[:, 0].max())
+
+
 def viewing_frame(facts: PartFacts) -> LinkFrame:
     """Return a frame in which a part is looked at: that of its link, or else one along its longest direction.
 

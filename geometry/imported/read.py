@@ -72,22 +72,6 @@ def part_surface(path: Path, mesh_unit: float | None = None) -> PartSurface:
     return found
 
 
-def mesh_unit_of(path: Path) -> float | None:
-    """Return the unit in which a file is read of which nothing but its name is known.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    float or None
-        1.0 mm for a mesh, None for any other file.
-    """
-    return 1.0 if path.suffix.lower() in MESH_FORMATS else None
-
-
 def _ask(task: str, path: Path, digest: str, mesh_unit: float | None) -> Any:
     words = KernelWords(
         who=f"the geometry kernel, reading '{path.name}',",

@@ -315,12 +315,13 @@ app.add_typer(size)
 def inspect(
     file: Annotated[
         Path,
-        typer.Argument(
-            help="A STEP file, or a mesh (.msh, .inp, .vtu; lengths taken as mm), of one solid.", show_default=False
-        ),
+        typer.Argument(help="A STEP file, or a mesh (.msh, .inp, .vtu), of one solid.", show_default=False),
     ],
     material: Annotated[
         str | None, typer.Option("--material", help="Material of the library, for the mass.", show_default=False)
+    ] = None,
+    unit: Annotated[
+        str | None, typer.Option("--unit", help="Unit of length of a mesh: um, mm (if left out), cm, m or in.")
     ] = None,
     output: Annotated[
         Path | None,
@@ -338,7 +339,7 @@ def inspect(
     refuse_unusable(output, "inspect")
     if output is not None:
         start_renderer()
-    found = inspect_file(file, material)
+    found = inspect_file(file, material, unit)
     _show(found, as_json if json else None, print_inspection)
     if output is not None:
         _progress("Drawing the part ...")

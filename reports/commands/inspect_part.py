@@ -10,10 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 from geometry.base.errors import AlulaError, CaseError
 from geometry.base.version import result_stamp
-from geometry.imported.arrangement import LinkFrame, angle_between, coaxial, link_frame, parallel_groups
-from geometry.imported.facts import Bore, PartFacts, Vector
-from geometry.imported.read import mesh_unit_of, part_facts, part_surface
+from geometry.imported.arrangement import (
+    LinkFrame,
+    angle_between,
+    coaxial,
+    far_end,
+    link_frame,
+    parallel_groups,
+    single_frame,
+)
+from geometry.imported.facts import MESH_FORMATS, Bore, PartFacts, Vector
+from geometry.imported.read import part_facts, part_surface
 from geometry.materials.material import Material, library
+from geometry.parts.mesh_part import UNITS
 from loads.text.explain import printable
 from reports.tables.data import entries
 from reports.words.terminal import KEPT, say, say_table
@@ -44,11 +53,14 @@ class Inspection:
         What is found in it.
     material : str or None
         Name of the material; None where none is named.
+    unit : str or None
+        Unit of length of a mesh; None of a STEP file, which states its own.
     """
 
     path: Path
     facts: PartFacts
     material: str | None
+    unit: str | None = None
 
     @property
     def card(self) -> Material | None:
@@ -66,6 +78,11 @@ class Inspection:
         return link_frame(self.facts.bores)
 
     @property
+    def mesh_unit(self) -> float | None:
+        """Unit of length of a mesh [mm]; None of a STEP file."""
+        return None if self.unit is None else UNITS[self.unit]
+
+    @property
     def name(self) -> str:
         """Name of part and link in the entries: that of the file, as far as it is one."""
         kept = "".join(c if c.isalnum() or c in "-_+ " else "-" for c in self.path.stem).strip("-_+ ")
@@ -74,7 +91,7 @@ class Inspection:
         return kept or "part"
 
 
-def inspect_file(path: Path, material: str | None) -> Inspection:
+def inspect_file(path: Path, material: str | None, unit: str | None = None) -> Inspection:
     """Look into a STEP file or a mesh.
 
     Parameters
@@ -83,6 +100,8 @@ def inspect_file(path: Path, material: str | None) -> Inspection:
         The file.
     material : str, optional
         Name of a material of the library.
+    unit : str, optional
+        Unit of length of a mesh, as the case file names it, or "inch"; mm unless stated.
 
     Returns
     -------
@@ -92,13 +111,20 @@ def inspect_file(path: Path, material: str | None) -> Inspection:
     Raises
     ------
     CaseError
-        For an unknown material, and where the file holds no single solid.
+        For an unknown material or unit, for a unit of a STEP file, and where the file holds no single solid.
     CannotRunError
         Where the geometry kernel fails.
     """
     if material is not None and material not in library():
         raise CaseError(f"--material: there is no material '{material}'; the library has {', '.join(library())}")
-    return Inspection(path=path, facts=part_facts(path, mesh_unit_of(path)), material=material)
+    if path.suffix.lower() not in MESH_FORMATS:
+        if unit is not None:
+            raise CaseError("--unit: it is that of a mesh, but a STEP file states its own unit; leave it out")
+        return Inspection(path=path, facts=part_facts(path), material=material)
+    unit = "in" if unit == "inch" else unit or "mm"
+    if unit not in UNITS:
+        raise CaseError(f"--unit: '{unit}' is no unit of a mesh; name one of {', '.join(UNITS)}")
+    return Inspection(path=path, facts=part_facts(path, UNITS[unit]), material=material, unit=unit)
 
 
 def record(found: Inspection) -> dict[str, Any]:
@@ -162,17 +188,20 @@ def case_entries(found: Inspection) -> str:
     Returns
     -------
     str
-        Empty where the part has no two bores whose axes are parallel.
+        Empty where the part has no bore that may be a pin's.
     """
-    if found.frame is None:
-        return ""
-    name, points, slots = _quoted(found.name), found.frame.points, found.frame.slots
-    mesh = mesh_unit_of(found.path) is not None
+    frame, along = found.frame, ""
+    if frame is None:
+        single = single_frame(found.facts)
+        if single is None:
+            return ""
+        frame, along = single, f"along = [{', '.join(_exact(value) for value in single.axes[0])}]"
+    name, points, slots = _quoted(found.name), frame.points, frame.slots
     lines = [
         (f"[parts.{name}]", ""),
         *(
-            [('shape = "mesh"', ""), ('unit = "mm"', "the file states none: correct it")]
-            if mesh
+            [('shape = "mesh"', ""), (f'unit = "{found.unit}"', "the file states none: check it")]
+            if found.unit
             else [('shape = "step"', "")]
         ),
         (f"file = {_quoted(found.path.name, bare=False)}", "beside the case file"),
@@ -180,16 +209,22 @@ def case_entries(found: Inspection) -> str:
             f'material = "{found.material or ASSUMED_MATERIAL}"',
             "" if found.material else "assumed: state the part's own",
         ),
-        *((f'bores.{point} = "{bore.name}"', "") for point, bore in found.frame.bores.items()),
+        *((f'bores.{point} = "{bore.name}"', "") for point, bore in frame.bores.items()),
+        *([(along, "x of the link in the file: correct it")] if along else []),
         ("", ""),
         (f"[links.{name}]", ""),
         (f"part = {_quoted(found.name, bare=False)}", ""),
         *(
             (
                 f'points.{point} = ["{_exact(x)} mm", "{_exact(y)} mm"]',
-                f"{'slot' if point in slots else 'pin'} of {_short(found.frame.bores[point].diameter)} mm",
+                f"{'slot' if point in slots else 'pin'} of {_short(frame.bores[point].diameter)} mm",
             )
             for point, (x, y) in points.items()
+        ),
+        *(
+            [(f'points.P = ["{_exact(far_end(found.facts, frame))} mm", "0 mm"]', "a load point: correct it")]
+            if along
+            else []
         ),
         *(
             (
@@ -250,7 +285,7 @@ def write_inspection(found: Inspection, folder: Path, progress: Callable[[str], 
     from reports.figures.part_picture import part_picture
 
     try:
-        picture, trouble = part_picture(found.facts, part_surface(found.path, mesh_unit_of(found.path)))
+        picture, trouble = part_picture(found.facts, part_surface(found.path, found.mesh_unit))
     except AlulaError as error:
         picture, trouble = None, str(error)
     if picture is None:
@@ -363,7 +398,7 @@ def _short(value: float) -> str:
 
 
 def _exact(value: float) -> str:
-    return f"{value:.6f}".rstrip("0").rstrip(".")
+    return f"{round(value, 6) + 0.0:.6f}".rstrip("0").rstrip(".")
 
 
 def _quoted(text: str, *, bare: bool = True) -> str:

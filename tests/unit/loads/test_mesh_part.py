@@ -17,6 +17,7 @@ from geometry.meshing.element_geometry import jacobian_coefficients
 from geometry.meshing.file_mesh import read_mesh
 from geometry.meshing.mesh import export_step, mass_properties, mesh_body, reentrant_edges
 from loads.case.case_file import read_case
+from reports.commands.inspect_part import case_entries, inspect_file
 
 FORMATS = {"msh": "gmsh", "vtu": "vtu", "inp": "abaqus"}
 STAND = Rotation.from_rotvec(np.radians(50.0) * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0))
@@ -253,3 +254,11 @@ def test_faces_of_the_boundary_look_outwards(tmp_path, mesh):
     a, b, c = np.moveaxis(found.points[found.boundary[:, :3]], 1, 0)
     assert np.abs(np.cross(b - a, c - a).sum(axis=0)).max() < 1e-6
     assert np.einsum("kx,kx->", a, np.cross(b, c)) / 6.0 == pytest.approx(mesh.volume, rel=0.01)
+
+
+def test_inspect_reads_a_mesh_in_a_stated_unit(tmp_path, mesh):
+    """An inch is 25.4 mm; the entries state it as the case file does."""
+    path = write(tmp_path / "own.msh", mesh.points / 25.4, mesh.cells)
+    found = inspect_file(path, None, "inch")
+    assert found.facts.volume == pytest.approx(mesh.volume, rel=1e-5)
+    assert 'unit = "in" ' in case_entries(found)

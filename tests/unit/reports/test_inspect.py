@@ -4,6 +4,7 @@ import io
 import json
 import shutil
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -114,6 +115,23 @@ def test_a_link_with_these_entries_has_its_part_where_they_say(name):
     }
 
 
+@pytest.mark.parametrize("name", ["sleeve", "cross_tube"])
+def test_a_part_with_a_single_pin_gets_entries_with_along(name, tmp_path):
+    """Both reach farthest along x of their files; a link of these entries has its pin and its far end there."""
+    shutil.copy(FILES / f"{name}.step", tmp_path / "own.step")
+    found = inspect_file(tmp_path / "own.step", None)
+    text = case_entries(replace(found, facts=replace(found.facts, bores=found.facts.bores[-1:])))
+    tables = tomllib.loads(text)
+    part = StepPart.model_validate(tables["parts"]["own"], context={"folder": str(tmp_path)})
+    [(point, bore)], link = part.bores.items(), tables["links"]["own"]["points"]
+    [stated] = [one for one in found.facts.bores if one.name == bore]
+    fit = place(part, bores_of(part), (Wanted(name=point, place=(0.0, 0.0), diameter=stated.diameter),))
+    assert fit.middle(point) == pytest.approx(np.zeros(3), abs=1e-9)
+    corners = np.array(np.meshgrid(*zip(found.facts.low, found.facts.high, strict=True))).reshape(3, -1).T
+    assert parse_length(link["P"][0]) == pytest.approx((corners @ fit.turn.T + fit.shift)[:, 0].max(), abs=1e-5)
+    assert np.abs(fit.turn[2] @ stated.axis) == pytest.approx(1.0)
+
+
 @pytest.mark.parametrize(
     ("file", "name"), [("knee.step", "knee"), ("(v2) knee.stp", "v2- knee"), ("..step", "part"), ("k" * 99, "k" * 60)]
 )
@@ -166,5 +184,9 @@ def test_triangles_close_about_the_volume():
 def test_wrong_input_is_refused():
     with pytest.raises(CaseError, match="--material: there is no material 'unobtainium'; the library has"):
         inspect_file(FILES / "inch.step", "unobtainium")
+    with pytest.raises(CaseError, match="--unit: it is that of a mesh, but a STEP file states its own unit"):
+        inspect_file(FILES / "inch.step", None, "mm")
+    with pytest.raises(CaseError, match="--unit: 'ft' is no unit of a mesh; name one of um, mm, cm, m, in"):
+        inspect_file(Path("knee.msh"), None, "ft")
     done = inspect(FILES / "none.step")
     assert isinstance(done.exception, CaseError)
