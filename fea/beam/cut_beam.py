@@ -72,6 +72,23 @@ def cells(cuts: Sequence[CutSection]) -> list[tuple[float, float, CutSection]]:
     return list(zip(ends[:-1], ends[1:], cuts, strict=True))
 
 
+def changes(body: Body) -> list[float]:
+    """Return where the section of a beam's part changes.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+
+    Returns
+    -------
+    list of float
+        Borders of the stretches for which its sections stand [mm]; none of a part of one section, or that is no beam.
+    """
+    found = cells(body.cuts) if body.part.is_beam else []
+    return [b for (_, b, one), (_, _, other) in itertools.pairwise(found) if one.hull != other.hull]
+
+
 def about_centre(cut: CutSection) -> Floats:
     """Return the matrix that takes forces on the link's axis to those about a section's centroid.
 
@@ -211,7 +228,7 @@ def beam_sections(body: Body) -> tuple[CutSection, ...]:
         Those in one piece, farther from all pins and loaded places than the section is large, and beside which rims and
         centroid are no steeper than ``STEEPEST``.
     """
-    return tuple(cut for cut in body.part.cuts if not _against(body, cut))
+    return tuple(cut for cut in body.cuts if not _against(body, cut))
 
 
 def _against(body: Body, cut: CutSection) -> str:
@@ -220,7 +237,7 @@ def _against(body: Body, cut: CutSection) -> str:
     reaches = [(pin.x, body.across(pin) / 2.0) for pin in body.pins] + [(end.x, end.patch) for end in body.ends]
     if cut.pieces > 1:
         return "its sections are in several pieces"
-    for other in body.part.cuts:
+    for other in body.cuts:
         step = abs(other.x - cut.x)
         if 0.0 < step < 1.5 * _pitch(body) and _steep(cut, other, step):
             return "its sections change fast along the line of its pins, or run off it"
@@ -230,7 +247,7 @@ def _against(body: Body, cut: CutSection) -> str:
 
 
 def _pitch(body: Body) -> float:
-    cuts = body.part.cuts
+    cuts = body.cuts
     return (cuts[-1].x - cuts[0].x) / max(len(cuts) - 1, 1)
 
 
@@ -254,7 +271,7 @@ def cut_remark(body: Body) -> str:
     str
         For people.
     """
-    cuts = body.part.cuts
+    cuts = body.cuts
     if not cuts:
         return ""
     reasons = [_against(body, cut) for cut in cuts]

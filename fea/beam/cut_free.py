@@ -1,5 +1,6 @@
 """Cutting a link free: all that acts on it, in its own frame, for the beam and for the solid."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam import loads as beam
+from fea.beam.cut_beam import changes
 from fea.common.link_loads import DriveCouple, EndLoad, LinkLoads, PinLoad
 from geometry.base.errors import CaseError
 from geometry.bodies.body import extent, hand_section
@@ -190,12 +192,19 @@ def _on_beam(pin: PinLoad, foot: tuple[float, float] | None) -> beam.PointLoad:
     return beam.PointLoad(point=start, wrench=np.concatenate([pin.wrench[:3], moment]))
 
 
-def _eyes(body: Body, density: float, per_length: float) -> list[tuple[float, float]]:
-    """Return, for each eye on the axis, its station [mm] and its mass less that of the tube or bar there [tonne]."""
-    part = body.part
-    if not part.is_beam:
-        return []
+def _spread(body: Body, density: float) -> list[tuple[float, float, float]]:
+    """Return the stretches of the part between its ends: start, end [mm] and mass per length [tonne/mm]."""
     first, last = extent(body)
+    places = [first, *changes(body), last]
+    if len(places) == 2:
+        return [(first, last, hand_section(body).area * density)]
+    return [(a, b, body.section_at((a + b) / 2.0).area * density) for a, b in itertools.pairwise(places)]
+
+
+def _eyes(body: Body, density: float, spread: list[tuple[float, float, float]]) -> list[tuple[float, float]]:
+    """Return, for each eye on the axis, its station [mm] and its mass less that of the tube or bar there [tonne]."""
+    if not body.part.is_beam:
+        return []
     found = []
     for pin in body.pins:
         if pin.y == 0.0:
@@ -203,8 +212,9 @@ def _eyes(body: Body, density: float, per_length: float) -> list[tuple[float, fl
             volume = (math.pi * radius**2 + ring.diameter * pin.slot) * ring.thickness
             volume -= (math.pi * pin.diameter**2 / 4.0 + pin.diameter * pin.slot) * ring.thickness
             reach = radius + pin.slot / 2.0
-            replaced = min(pin.x + reach, last) - max(pin.x - reach, first)
-            found.append((pin.x, density * volume - per_length * replaced))
+            low, high = pin.x - reach, pin.x + reach
+            replaced = sum(p * max(min(high, b) - max(low, a), 0.0) for a, b, p in spread)
+            found.append((pin.x, density * volume - replaced))
     return found
 
 
@@ -246,22 +256,24 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
             return force.per_mass(np.array([x, height, 0.0]))
 
         first, last = extent(body)
-        per_length = hand_section(body).area * density
-        lumps = _eyes(body, density, per_length)
-        excess = mass.mass - per_length * (last - first) - sum(lump for _, lump in lumps)
-        moment = mass.mass * mass.centroid[0] - per_length * (last**2 - first**2) / 2.0
+        spread = _spread(body, density)
+        lumps = _eyes(body, density, spread)
+        excess = mass.mass - sum(p * (b - a) for a, b, p in spread) - sum(lump for _, lump in lumps)
+        moment = mass.mass * mass.centroid[0] - sum(p * (b**2 - a**2) / 2.0 for a, b, p in spread)
         moment -= sum(x * lump for x, lump in lumps)
         at_last = (moment - excess * first) / (last - first)
         lumps += [(first, excess - at_last), (last, at_last)]
-        ends = [per_length * per_mass(x) for x in (first, last)]
-        lines.append(beam.LineLoad(start=first, end=last, first=ends[0], last=ends[1]))
+        for start, end, per_length in spread:
+            ends = [per_length * per_mass(x) for x in (start, end)]
+            lines.append(beam.LineLoad(start=start, end=end, first=ends[0], last=ends[1]))
         for x, lump in lumps:
             wrench = np.concatenate([lump * per_mass(x), np.zeros(3)])
             points.append(beam.PointLoad(point=np.array([x, 0.0, 0.0]), wrench=wrench))
         # The centroid's distance from the axis adds a moment, and so do the widths of eyes and tube by their inertia.
         off_axis = np.cross([0.0, height, 0.0], mass.mass * per_mass(mass.centroid[0]))
-        spread = per_length * (last - first) ** 3 / 12.0
-        on_line = spread + per_length * (last - first) * ((first + last) / 2.0 - mass.centroid[0]) ** 2
+        on_line = sum(
+            p * (b - a) * ((b - a) ** 2 / 12.0 + ((a + b) / 2.0 - mass.centroid[0]) ** 2) for a, b, p in spread
+        )
         on_line += sum(lump * (x - mass.centroid[0]) ** 2 for x, lump in lumps)
         off_axis[2] -= (mass.inertia - on_line) * force.angular_acceleration
         points.append(beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=np.concatenate([np.zeros(3), off_axis])))

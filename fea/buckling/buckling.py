@@ -205,7 +205,7 @@ def link_factors(case: Case, link: str, force: AxialForce) -> ColumnFactors:
 
     def softer(held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
         planes = (in_plane, across) if in_plane[1] else (min(in_plane, across, key=lambda plane: plane[0]),)
-        if body.part.cuts:
+        if body.cuts:
             planes = (_of_cuts(body, lambda cut: cut.principal[0]),)
         return np.asarray(np.min([factors(plane, held, built_in) for plane in planes], axis=0))
 
@@ -237,9 +237,9 @@ def columns(body: Body, *, free: bool = False) -> tuple[Plane, Plane]:
     tuple of two (float, sequence of Stretch)
         In the plane, and out of it: second moment [mm⁴], and stretches of another one.
     """
-    if body.part.cuts and free:
+    if body.cuts and free:
         return _of_cuts(body, lambda cut: cut.free[1]), _of_cuts(body, lambda cut: cut.free[0])
-    if body.part.cuts:
+    if body.cuts:
         return _of_cuts(body, lambda cut: cut.i_z), _of_cuts(body, lambda cut: cut.i_y)
     section, slots = hand_section(body), flanks_of(body)
     in_plane = [
@@ -257,7 +257,7 @@ def columns(body: Body, *, free: bool = False) -> tuple[Plane, Plane]:
 
 def _of_cuts(body: Body, second: Callable[[CutSection], float]) -> Plane:
     """Return the column of sections that were cut; what lies beyond the outermost pins is as the mean of all."""
-    cuts = body.part.cuts
+    cuts = body.cuts
     mean = sum(map(second, cuts)) / len(cuts)
     return mean, [Stretch(first=a, last=b, bending=second(cut) / mean) for a, b, cut in cells(cuts)]
 

@@ -108,7 +108,7 @@ def link_by_hand(case: Case, link: str, loads: LinkLoads) -> LinkByHand:
         nothing = check_beam(BeamLoads(points=tuple(ends)), section, material.allowable, material.poissons_ratio)
         return LinkByHand(check=replace(nothing, without=without), displacement=0.0, details=(), remarks=(without,))
     acting = beam_loads(loads, body, material.density)
-    check = check_beam(acting, section, material.allowable, material.poissons_ratio, body.part.cuts)
+    check = check_beam(acting, section, material.allowable, material.poissons_ratio, body.cuts)
     bent = deflection(
         check.forces,
         section,
@@ -116,7 +116,7 @@ def link_by_hand(case: Case, link: str, loads: LinkLoads) -> LinkByHand:
         poisson=material.poissons_ratio,
         line=reference_line(body),
         flanks=flanks_of(body),
-        cuts=body.part.cuts,
+        cuts=body.cuts,
     )
     found = details(body, loads, check.forces, material.poissons_ratio)
     return LinkByHand(check=check, displacement=bent.largest, details=found, remarks=remarks(body, found))

@@ -74,7 +74,7 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
     body, material = case.body(link), case.material_of(link)
     if no_beam(body):
         return loads
-    forces = curving_forces(internal_forces(beam_loads(loads, body, material.density)), body.part.cuts)
+    forces = curving_forces(internal_forces(beam_loads(loads, body, material.density)), body.cuts)
     young = material.youngs_modulus
     planes = [Bend(stiffness=young * inertia, stretches=soft) for inertia, soft in columns(body, free=True)]
     on_arms = {pin.name for pin in body.pins if pin.foot is not None}

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.beam.cut_beam import changes
 from fea.beam.flanks import Flanks, flanks_of
 from fea.frame.condensed import CondensedLink, LinkFlexibility
 from fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
@@ -200,6 +201,9 @@ class _Builder:
         wanted += [x for load in loads if isinstance(load, LineLoad) for x in (load.start, load.end)]
         slots = flanks_of(self.case.body(link)) if record.slots else ()
         wanted += [x for slot in slots for x in (slot.first, slot.last)]
+        body = self.case.body(link)
+        changing = changes(body)
+        wanted += [x for x in changing if min(wanted) < x < max(wanted)]
         xs: list[float] = []
         for x in sorted(wanted):
             if not xs or x - xs[-1] > self.slack:
@@ -234,11 +238,12 @@ class _Builder:
         self.stations[link] = tuple(stations)
         lines = [load for load in loads if isinstance(load, LineLoad)]
         lines += [self._spread(link, load, slots) for load in loads if isinstance(load, BodyForce)]
-        material, body = self.case.material_of(link), self.case.body(link)
+        material = self.case.material_of(link)
         section = body.part.frame_section(body)
         for (x0, a), (x1, b) in itertools.pairwise(stations):
             if not any(slot.first < (x0 + x1) / 2.0 < slot.last for slot in slots):
-                self._along(link, (x0, a), (x1, b), section, lines)
+                here = body.section_at((x0 + x1) / 2.0) if changing else section
+                self._along(link, (x0, a), (x1, b), here, lines)
         for slot in slots:
             own = [s for s in stations if slot.first - self.slack <= s[0] <= slot.last + self.slack]
             inner = [(x, self._node(link, x, 0.0, f"x = {x:g} mm of the slot's other flank")) for x, _ in own[1:-1]]

@@ -28,8 +28,9 @@ from fea.common.band import Band
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
-from geometry.bodies.body import Body, PartKind, hand_section
+from geometry.bodies.body import Body, hand_section
 from geometry.bodies.features import Pin
+from geometry.bodies.section import Section
 from loads.case.case import Case
 
 Real = NDArray[np.float64]
@@ -100,7 +101,6 @@ def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank
     tuple of Zone
         From start to end.
     """
-    part = body.part
     rigid: list[tuple[float, float]] = []
     soft: list[Stretch] = []
     if arm is not None:
@@ -109,7 +109,7 @@ def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank
         holes = [(0.0, body.foot(arm)), (reach, arm)]
     else:
         holes = [(pin.x, pin) for pin in body.pins if pin.foot is None and pin.slot == 0.0]
-        soft += [_at_hole(part, row.diameter, row.along, x) for row in body.holes for x in row.positions]
+        soft += [_at_hole(body.section_at(x), row.diameter, row.along, x) for row in body.holes for x in row.positions]
     for x, pin in holes:
         reach = RIGID * body.ring(pin).diameter / 2.0
         rigid.append((x - reach, x + reach))  # nothing where the hole has no eye
@@ -347,12 +347,11 @@ def _factors(area: float, i_y: float, i_z: float) -> Real:
     return np.array([1.0 / area, 1.0 / area, 1.0 / area, worst, 1.0 / i_y, 1.0 / i_z])
 
 
-def _at_hole(part: PartKind, d: float, to: Literal["y", "z"], x: float) -> Stretch:
+def _at_hole(section: Section, d: float, to: Literal["y", "z"], x: float) -> Stretch:
     """Factors about a cross hole: the plain section less the hole's strip through its middle, a tube's bore apart."""
-    across, depth = part.section.width, part.section.height
+    across, depth = section.width, section.height
     if to == "z":
         across, depth = depth, across
-    section = part.section
     inner = section.radius_ratio * section.width
     area = 1.0 - d * (across - inner) / section.area
     along, aside = d * (across**3 - inner**3) / 12.0, d**3 * (across - inner) / 12.0
@@ -367,8 +366,9 @@ def _at_hole(part: PartKind, d: float, to: Literal["y", "z"], x: float) -> Stret
 def _at_bore(body: Body, pin: Pin, x: float) -> Stretch:
     """Factors at a pin's bore, where the eye's net section stands for the plain one; never below 1."""
     if body.ring(pin).diameter == 0.0:
-        return _at_hole(body.part, pin.diameter, "z", x)
-    wide, thick, diameter, section = body.ring(pin).diameter, body.ring(pin).thickness, pin.diameter, body.part.section
+        return _at_hole(body.section_at(pin.x), pin.diameter, "z", x)
+    wide, thick, diameter = body.ring(pin).diameter, body.ring(pin).thickness, pin.diameter
+    section = body.section_at(pin.x)
     area = (wide - diameter) * thick / section.area
     i_z = thick * (wide**3 - diameter**3) / 12.0 / section.i_z
     i_y = (wide - diameter) * thick**3 / 12.0 / section.i_y

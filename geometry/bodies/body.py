@@ -8,6 +8,7 @@ import math
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 from geometry.bodies.cut_section import CutSection
@@ -160,10 +161,37 @@ class PartKind(Printable):
             Element edge, and the distance from the place as a formula of the mesher in x, y and z.
         """
 
-    @property
-    def cuts(self) -> tuple[CutSection, ...]:
-        """Sections across the x axis by rising x, of a part whose shape alula does not know; else none."""
+    def cuts(self, body: "Body") -> tuple[CutSection, ...]:
+        """Return sections across the x axis.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+
+        Returns
+        -------
+        tuple of CutSection
+            By rising x; none of a part of one section, ``section``.
+        """
         return ()
+
+    def half_width(self, body: "Body", x: float) -> float:
+        """Return how far a flat part reaches from the x axis along y.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+        x : float
+            Station [unit of the body].
+
+        Returns
+        -------
+        float
+            That of its section unless the kind knows better.
+        """
+        return self.section.half_y
 
     def check(self, body: "Body") -> None:
         """Refuse a body that this kind of part cannot be built for, by closed form.
@@ -308,6 +336,28 @@ class Body:
     pins: tuple[Pin, ...]
     ends: tuple[PlainEnd, ...]
     holes: tuple[HoleRow, ...]
+
+    @cached_property
+    def cuts(self) -> tuple[CutSection, ...]:
+        """Sections across the x axis by rising x, of a part whose section varies; else none."""
+        return self.part.cuts(self)
+
+    def section_at(self, x: float) -> Section:
+        """Return the section of a beam's part at a station.
+
+        Parameters
+        ----------
+        x : float
+            Station [mm].
+
+        Returns
+        -------
+        Section
+            Where it varies that of the nearest cut.
+        """
+        cuts = self.cuts if self.part.is_beam else ()
+        nearest = min(cuts, key=lambda cut: abs(cut.x - x)).plain if cuts else None
+        return nearest or self.part.section
 
     def ring(self, pin: Pin) -> Ring:
         """Return the flat ring about a hole.

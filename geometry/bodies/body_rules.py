@@ -167,6 +167,8 @@ def _room(body: Body, end: PlainEnd) -> tuple[float, str]:
 def _check_row(body: Body, number: int, row: HoleRow) -> None:
     name = f"holes[{number}] ({row.count} holes of {row.diameter:g} mm along {row.along})"
     (first, last), across, radius = extent(body), body.part.section.across(row.along), row.diameter / 2.0
+    if row.along == "z" and body.cuts:
+        across = 2.0 * min(body.part.half_width(body, x + side) for x in row.positions for side in (-radius, radius))
     if row.diameter >= across:
         raise CaseError(f"{name} cut the link through: set diameter below {across:.4g} mm, the size of its section")
     for x in row.positions:

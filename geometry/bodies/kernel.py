@@ -17,6 +17,8 @@ from geometry.bodies.features import Pin
 Entity = tuple[int, int]
 """Dimension and tag of something in the kernel."""
 Vector = tuple[float, float, float]
+Border = Sequence[tuple[tuple[float, float], tuple[float, float] | None]]
+"""A closed border: (x, y) where each piece of it starts, and the middle of an arc; None of a line."""
 ON_SURFACE = 1e-5
 """Distance within which a point counts as lying on a surface, in the unit of ``geometry.solids.solid_model``."""
 
@@ -137,21 +139,42 @@ class Kernel:
         Entity
             The solid.
         """
-        low = -height / 2.0
         if len(outline.arcs) == 1:
             (circle,) = outline.arcs
-            return self.cylinder((circle.x, circle.y, low), (0, 0, height), circle.radius)
-        starts = [self.occ.addPoint(*arc.point(arc.start), low) for arc in outline.arcs]
-        middles, border = [], []
-        following = zip(outline.arcs, starts, starts[1:] + starts[:1], outline.straight, strict=True)
-        for arc, first, then, line in following:
-            middle = self.occ.addPoint(*arc.point((arc.start + arc.end) / 2.0), low)
-            last = self.occ.addPoint(*arc.point(arc.end), low) if line else then
-            border.append(self.occ.addCircleArc(first, middle, last, center=False))
-            border += [self.occ.addLine(last, then)] if line else []
+            return self.cylinder((circle.x, circle.y, -height / 2.0), (0, 0, height), circle.radius)
+        border: list[tuple[tuple[float, float], tuple[float, float] | None]] = []
+        for arc, line in zip(outline.arcs, outline.straight, strict=True):
+            border.append((arc.point(arc.start), arc.point((arc.start + arc.end) / 2.0)))
+            border += [(arc.point(arc.end), None)] if line else []
+        return self.extruded(border, height)
+
+    def extruded(self, border: Border, height: float) -> Entity:
+        """Extrude a border along z.
+
+        Parameters
+        ----------
+        border : Border
+            Lines and arcs, counter-clockwise.
+        height : float
+            Half of it lies on either side of the mid-plane.
+
+        Returns
+        -------
+        Entity
+            The solid.
+        """
+        low = -height / 2.0
+        starts = [self.occ.addPoint(*place, low) for place, _ in border]
+        middles, curves = [], []
+        for (_, through), first, then in zip(border, starts, starts[1:] + starts[:1], strict=True):
+            if through is None:
+                curves.append(self.occ.addLine(first, then))
+                continue
+            middle = self.occ.addPoint(*through, low)
+            curves.append(self.occ.addCircleArc(first, middle, then, center=False))
             middles.append((0, middle))
         self.occ.remove(middles)
-        loop = self.occ.addCurveLoop(border)
+        loop = self.occ.addCurveLoop(curves)
         solids = self.occ.extrude([(2, self.occ.addPlaneSurface([loop]))], 0, 0, height)
         return self.only([entity for entity in solids if entity[0] == 3])
 

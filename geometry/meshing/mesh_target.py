@@ -204,8 +204,7 @@ def _on_outside(body: Body, points: NDArray[np.float64]) -> bool:
     section = body.part.section
     if section.round:
         return bool(np.abs(np.hypot(points[:, 1], points[:, 2]) - section.half_y).max() < ON_SURFACE)
-    offsets = ((points[:, 1], section.half_y), (points[:, 2], section.half_z))
-    within = np.abs(points[:, 1]).max() < section.half_y + ON_SURFACE
-    return bool(within) and any(
-        bool(np.abs(np.abs(offset.mean()) - half) < ON_SURFACE > np.ptp(offset)) for offset, half in offsets
-    )
+    beyond = np.abs(points[:, 1]) - [body.part.half_width(body, x) for x in points[:, 0]]
+    on_side = np.abs(beyond).max() < ON_SURFACE and np.ptp(np.sign(points[:, 1])) == 0.0
+    on_face = abs(abs(points[:, 2].mean()) - section.half_z) < ON_SURFACE > np.ptp(points[:, 2])
+    return bool(on_side or (on_face and beyond.max() < ON_SURFACE))

@@ -107,8 +107,7 @@ class ImportedPart(PartKind):
     has_holes: ClassVar[bool] = True
     patches_anywhere: ClassVar[bool] = True
 
-    @property
-    def cuts(self) -> tuple[CutSection, ...]:
+    def cuts(self, body: Body) -> tuple[CutSection, ...]:
         """As ``PartKind.cuts``: those at its stations."""
         return self.stations
 

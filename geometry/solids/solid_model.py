@@ -188,7 +188,7 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
     if section.round:
         return solid
     borders: list[Entity] = []
-    width, height = section.width, section.height
+    height = section.height
     for pin in body.pins:
         ring = body.ring(pin)
         if ring.diameter > 0.0 and (body.part.has_holes or flush(body, pin)):
@@ -200,10 +200,14 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
         ]
     for end in () if body.part.patches_anywhere else body.ends:
         low, high = patch_span(body, end)
-        for side in (-0.5, 0.5):
-            flat = occ.addRectangle(low, -width / 2.0, side * height, high - low, width)
-            upright = occ.addRectangle(low, -height / 2.0, side * width, high - low, height)
+        start, stop = (body.part.half_width(body, x) for x in (low, high))
+        wide, slope = max(start, stop), math.atan2(stop - start, high - low)
+        for side in (-1.0, 1.0):
+            flat = occ.addRectangle(low, -wide, side * height / 2.0, high - low, 2.0 * wide)
+            upright = occ.addRectangle(low, -height / 2.0, side * start, (high - low) / math.cos(slope), height)
             occ.rotate([(2, upright)], 0, 0, 0, 1, 0, 0, math.pi / 2.0)
+            if slope:
+                occ.rotate([(2, upright)], low, -side * start, 0, 0, 0, 1, -side * slope)
             borders += [(2, flat), (2, upright)]
     if not borders:
         return solid
@@ -243,7 +247,8 @@ def _flat_eye(kernel: Kernel, pin: Pin, diameter: float, z: float) -> Entity:
 def _hole_rows(kernel: Kernel, body: Body) -> list[Entity]:
     """Return what the rows cut out; of a bar with arms just through its section, since an arm may pass beside it."""
     section, arms = body.part.section, any(pin.foot for pin in body.pins)
-    reach = 2.0 * max(section.width, section.height)
+    stations = [x for row in body.holes for x in row.positions]
+    reach = 2.0 * max([section.width, section.height, *(2.0 * body.part.half_width(body, x) for x in stations)])
     holes: list[Entity] = []
     for row in body.holes:
         if arms:

@@ -381,20 +381,22 @@ class CoreCase(Revisable):
 def _pin(case: CoreCase, link: str, name: str, diameter: float) -> Pin:
     """Return the hole or slot at a point of a link for a pin of that diameter."""
     record = case.links[link]
-    (x, y), slot, ring = record.points[name], record.slots.get(name), _ring(case, link, name)
+    (x, y), slot = record.points[name], record.slots.get(name)
     if slot is not None:
         middle, length = (slot.first + slot.last) / 2.0, slot.last - slot.first
         width = diameter + slot.clearance
-        return Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.clearance, ring=ring)
-    foot = record.arms.get(name)
-    return Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot], ring=ring)
+        pin = Pin(name=name, x=middle, y=y, diameter=width, slot=length, clearance=slot.clearance)
+    else:
+        foot = record.arms.get(name)
+        pin = Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot])
+    return replace(pin, ring=_ring(case, link, pin))
 
 
-def _ring(case: CoreCase, link: str, name: str) -> Ring | None:
+def _ring(case: CoreCase, link: str, pin: Pin) -> Ring | None:
     """Return the ring about the pin hole at a point of a link, where the link states an eye there."""
     record = case.links[link]
-    eye, part = record.eyes.get(name), case.parts[record.part or ""]
+    eye, part = record.eyes.get(pin.name), case.parts[record.part or ""]
     if eye is None or isinstance(part, FilePart):
         return None
     half = (eye.thickness or part.eye_thickness) / 2.0
-    return Ring(diameter=eye.diameter or part.eye_diameter, low=-half, high=half)
+    return Ring(diameter=eye.diameter or part.ring(pin).diameter, low=-half, high=half)

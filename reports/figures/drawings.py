@@ -173,9 +173,9 @@ class _Drawing:
         return found
 
     def _silhouette(self, link: str) -> Real | None:
-        """Draw a part that is no beam as it is seen along its pins, where a solid tells; returns points of it."""
-        found = self.result.load_cases[self.name].links.get(link)
-        if not isinstance(found, SolidResult) or self.result.case.part_of(link).is_beam:
+        """Draw a part that is no uniform beam as it is seen along its pins, where a solid tells; returns its points."""
+        found, case = self.result.load_cases[self.name].links.get(link), self.result.case
+        if not isinstance(found, SolidResult) or (case.part_of(link).is_beam and not case.body(link).cuts):
             return None
         space, place = found.stress.space, self.pose.placement
         places = place.origin(link) + place.direction(link) * (space.nodes[:, 0] + 1j * space.nodes[:, 1])

@@ -116,7 +116,7 @@ def test_sections_of_a_part_bear_what_theory_and_its_solid_say(tmp_path, file, l
     )
     assert [case.load for case in found.cases] == ["bend", "pull"]
     for case in found.cases:
-        beam = check_beam(beam_loads(loads[case.load], body, 1e-9), body.part.section, 1.0, 0.38, body.part.cuts)
+        beam = check_beam(beam_loads(loads[case.load], body, 1e-9), body.part.section, 1.0, 0.38, body.cuts)
         compared = compare_sections(body, beam, stress_field(found.space, case.displacement, **material))
         assert len(compared) >= 9
         assert max(abs(row.difference) for row in compared) < within

@@ -83,7 +83,7 @@ def test_an_angle_bends_across_the_plane_of_its_moment() -> None:
 
 
 def body_of(cuts: list[CutSection], **features: object) -> SimpleNamespace:
-    return SimpleNamespace(part=SimpleNamespace(cuts=tuple(cuts)), pins=(), ends=(), **features)
+    return SimpleNamespace(cuts=tuple(cuts), pins=(), ends=(), **features)
 
 
 def test_a_pyramid_buckles_at_its_closed_form() -> None:
