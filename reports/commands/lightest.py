@@ -87,7 +87,12 @@ def print_lightest(found: "Lightest", console: "Console") -> None:
             style="bold",
         )
         if found.limit is not None:
-            say(console, f"There {number_text(found.limit)} limits it" + "".join(map(_gained, found.gains)) + ".")
+            say(
+                console,
+                f"There {number_text(found.limit)} limits it"
+                + "".join(_gained(found, gain) for gain in found.gains)
+                + ".",
+            )
     total = 1
     for axis in found.axes:
         total *= len(axis.values)
@@ -124,9 +129,9 @@ def _outcome(found: "Lightest", place: "Place") -> tuple[str, str]:
     return str(result.verdict or result.state), result.sentence if limit is None else number_text(limit)
 
 
-def _gained(gain: "Gain") -> str:
+def _gained(found: "Lightest", gain: "Gain") -> str:
     from reports.words.wording import percent
 
     model = ", by hand calculation" if gain.by_hand else ""
-    changes = f"changes it by {percent(gain.share)} and the objective by {percent(gain.cost)}"
+    changes = f"changes it by {percent(gain.share)} and the {found.objective.quantity} by {percent(gain.cost)}"
     return f"; {gain.path} = {gain.value} {changes}{model}"

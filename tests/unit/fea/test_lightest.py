@@ -1,11 +1,13 @@
 """The lightest combination that passes: against rules whose optimum is known in closed form or by trying all."""
 
+import io
 import math
 from concurrent.futures import Future
 from itertools import product
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 from fea.common.verdict import Verdict
 from fea.sizing.candidates import Objective
@@ -17,6 +19,7 @@ from fea.study.store import Store
 from geometry.base.errors import CaseError
 from loads.plans.axis import axis
 from loads.plans.plan import plan_of
+from reports.commands.lightest import print_lightest, record_of, status_of
 
 B, H = "parts.tube.inner_diameter", "parts.tube.outer_diameter"
 
@@ -112,6 +115,13 @@ def test_what_limits_the_answer_is_named_with_the_gains_of_each_entry(tmp_path):
     assert by_path[B].cost == pytest.approx(0.1 / b, rel=1e-9)
     assert by_path[H].share < 0.0
     assert found.gains[0].path == B
+    console = Console(file=io.StringIO(), width=400)
+    print_lightest(found, console)
+    told = console.file.getvalue()
+    assert f"Least mass that passes: 6.300 g with {B} = 0.7 mm, {H} = 9 mm." in told
+    assert f"{B} = 0.8 mm changes it by +14.3 % and the mass by +14.3 %" in told  # 8/7
+    assert record_of(found)["best"] == {B: "0.7 mm", H: "9 mm"}
+    assert status_of(found) == 0
 
 
 def test_equal_seeds_give_equal_searches_and_what_was_computed_stands(tmp_path):
