@@ -100,18 +100,22 @@ class Straight(PartKind):
     def rough_volume(self, body: Body) -> float:
         """As ``PartKind.rough_volume``: pieces and eyes less their holes and what they share, without fillets."""
         section, pieces = self.section, self.pieces(body)
-        volume = section.area * sum(piece.length for piece in pieces)
+        axis, *arms = pieces
+        widths = [2.0 * self.half_width(body, axis.start[0] + axis.length * (i + 0.5) / 100.0) for i in range(100)]
+        thickness = section.area / section.width
+        volume = thickness * sum(widths) / 100.0 * axis.length + section.area * sum(arm.length for arm in arms)
         for pin in body.pins:
             ring, hole = body.ring(pin), pin.diameter
             if ring.diameter == 0.0:  # no eye: a hole through what there is
                 volume -= ring.thickness * (math.pi / 4.0 * hole**2 + hole * pin.slot)
                 continue
-            diameter = section.width if plain_eye(body, pin) else ring.diameter
-            width = min(section.width, diameter)
+            wide = 2.0 * self.half_width(body, pin.x) if pin.foot is None else section.width
+            diameter = wide if plain_eye(body, pin) else ring.diameter
+            width = min(wide, diameter)
             # Of a disc of the eye's diameter, the bar's sides cut out what follows from the chords at them.
             shared = diameter**2 / 2.0 * math.asin(width / diameter) + width / 2.0 * math.sqrt(diameter**2 - width**2)
             volume += ring.thickness * (math.pi / 4.0 * (diameter**2 - hole**2) - hole * pin.slot)
-            volume -= section.area / section.width * shared * _share_within(pieces, pin, diameter / 2.0)
+            volume -= thickness * shared * _share_within(pieces, pin, diameter / 2.0)
         return volume
 
     @abstractmethod

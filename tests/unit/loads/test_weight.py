@@ -67,7 +67,7 @@ def test_a_torque_on_a_pin_needs_a_drive_there() -> None:
 
 
 def test_rough_masses_are_those_of_the_kernel_but_for_fillets_and_holes() -> None:
-    """A tube with cross holes, one without eyes; flat bars, one with an arm; a disc, which the kernel weighs."""
+    """A tube with cross holes, one without eyes; flat bars, one with an arm, one tapered; a disc, which the kernel weighs."""
     bare = (
         'parts.tube={shape="tube",material="pvc-paredes-2018",outer_diameter="5 mm",inner_diameter="2.5 mm",'
         'eyes="none",overhang="6 mm"}',
@@ -77,6 +77,15 @@ def test_rough_masses_are_those_of_the_kernel_but_for_fillets_and_holes() -> Non
         ("owl-wing-static", (), "CF", 0.01),
         ("owl-wing-static", bare, "GF", 0.01),
         ("flapping-wing-chosen", (), "outer-right crank", 0.005),
+        (
+            LADEN,
+            (
+                'parts.bar={shape="bar",material="pvc-paredes-2018",thickness="3 mm",fillet_radius="0.5 mm",'
+                'widths=[["0 mm","10 mm"],["30 mm","6 mm"]],shoulder_radius="1 mm"}',
+            ),
+            "coupler",
+            0.01,
+        ),
     ):
         case = read_case(name, overrides)
         rough = rough_masses(case)
