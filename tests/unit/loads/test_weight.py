@@ -67,7 +67,7 @@ def test_a_torque_on_a_pin_needs_a_drive_there() -> None:
 
 
 def test_rough_masses_are_those_of_the_kernel_but_for_fillets_and_holes() -> None:
-    """A tube with cross holes, one without eyes; flat bars, one with an arm, one tapered; a disc, which the kernel weighs."""
+    """A tube with cross holes, one without eyes; bars, one with an arm, one tapered; a disc, by the kernel."""
     bare = (
         'parts.tube={shape="tube",material="pvc-paredes-2018",outer_diameter="5 mm",inner_diameter="2.5 mm",'
         'eyes="none",overhang="6 mm"}',
