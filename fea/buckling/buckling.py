@@ -1,9 +1,8 @@
 """Buckling of links in compression, each by itself.
 
-A link is a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks
-take the section's place (``fea.beam.flanks``), along a part from a file the sections that were cut. Where these have no
-symmetry, the value bends about the axis of the least second moment. How its joints hold it
-is known but in part, so that its factor is a band:
+Plates, discs and parts from files buckle as solids (``fea.outcomes.solid_buckling``), held alike. Any other link is
+a straight column of its section under its own normal force, as it varies along it; beside a slot two flanks take the
+section's place (``fea.beam.flanks``). How its joints hold it is known but in part, so that its factor is a band:
 
 value  the outermost pins stay where they are and leave the link free to turn, in the linkage's plane and out of it;
        overhangs are free. A link on one pin is built in there, and the ground where its support holds it. A pin in
@@ -304,7 +303,7 @@ def holding(case: Case, link: str) -> Holding:
 def buckling_outcomes(
     case: Case, load_case: str, beams: Mapping[str, BeamCheck], moved: LargeDisplacement
 ) -> Iterator[CheckOutcome]:
-    """Yield the outcome of every link that is compressed under a load case.
+    """Yield the outcome of every beam that is compressed under a load case.
 
     Parameters
     ----------
@@ -320,7 +319,7 @@ def buckling_outcomes(
     CheckOutcome
     """
     for link, beam in beams.items():
-        if (found := column(case, link, beam)) is not None:
+        if case.part_of(link).is_beam and (found := column(case, link, beam)) is not None:
             outcome = column_outcome(case, load_case, link, found, moved)
             yield outcome.because(outcome.reason + beyond_strength({link: beam}))
 
@@ -348,26 +347,63 @@ def column_outcome(
     -------
     CheckOutcome
     """
-    compliance = compliance_scatter(case.material_of(link))
-    band = Band(
-        value=found.value,
-        low=found.least / LEAST_LINEAR / compliance.high,
-        high=found.most / compliance.low,
-        sources=(
-            *compliance.sources,
-            Source(kind=SourceKind.IMPERFECTION, detail="bending that grows with compression"),
-            Source(kind=SourceKind.RESTRAINT),
-        ),
-    )
-    band = load_scatter(case, load_case).inverse.on(band)
+    band = factor_band(case, load_case, link, found.value, (found.least, found.most))
     pins = " and ".join(f"{x:.4g}" for x in found.outermost)
     held = f"free to turn on pins at {pins} mm" if len(found.outermost) > 1 else f"built in at {pins} mm"
     load = f"largest compression {found.compression:.3g} N{where}; buckling at {band.value:.3g} times that, {held}"
     outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, load)
-    return outcome.because(load + _judgement(outcome, moved))
+    return outcome.because(load + judgement(outcome, moved))
 
 
-def _judgement(outcome: CheckOutcome, moved: LargeDisplacement | None) -> str:
+def factor_band(
+    case: Case, load_case: str, link: str, value: float, ends: tuple[float, float], *sources: Source
+) -> Band:
+    """Return the band of a link's buckling factor, with what imperfections, modulus and load add.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    link : str
+    value : float
+    ends : tuple of 2 float
+        The least and the largest that its joints leave.
+    *sources : Source
+        What else ``ends`` cover.
+
+    Returns
+    -------
+    Band
+    """
+    compliance = compliance_scatter(case.material_of(link))
+    band = Band(
+        value=value,
+        low=ends[0] / LEAST_LINEAR / compliance.high,
+        high=ends[1] / compliance.low,
+        sources=(
+            *compliance.sources,
+            Source(kind=SourceKind.IMPERFECTION, detail="bending that grows with compression"),
+            Source(kind=SourceKind.RESTRAINT),
+            *sources,
+        ),
+    )
+    return load_scatter(case, load_case).inverse.on(band)
+
+
+def judgement(outcome: CheckOutcome, moved: LargeDisplacement | None) -> str:
+    """Say, for the end of a reason, what follows from a link's buckling factor.
+
+    Parameters
+    ----------
+    outcome : CheckOutcome
+    moved : LargeDisplacement or None
+        What became of the linkage in large displacement; None where links are taken by themselves.
+
+    Returns
+    -------
+    str
+    """
     band, verdict = outcome.value, outcome.verdict
     if verdict is Verdict.FAIL:
         return f", and at {band.high:.3g} times with the stiffest joints, so it buckles"

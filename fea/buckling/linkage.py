@@ -4,7 +4,8 @@ Sway of the whole linkage is the lowest factor on all loads at which its linear 
 (``fea.nonlinear.stability.buckling_factor``). It leaves out how the frame moves before that, by which a toggle snaps
 through at a linear factor of 5.2 (same module): the lower end of its band. Where equilibrium was followed on
 the deformed shape (``fea.nonlinear.large_displacement``), as it is below a factor of 10, that answer rules and is the
-only outcome.
+only outcome. A link that is no beam is a strip in the frame, and may buckle by itself before it does
+(``fea.outcomes.solid_buckling``): then the lesser factor counts.
 """
 
 import math
@@ -17,7 +18,7 @@ from fea.common.band import Band
 from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, CheckOutcome, Quantity, Verdict
-from fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement
+from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
 from fea.nonlinear.stability import SNAP, growth
 from loads.case.case import Case
 
@@ -26,7 +27,11 @@ NO_EQUILIBRIUM = "the linkage gives way, so the number is that of the undeformed
 
 
 def linkage_outcomes(
-    case: Case, load_case: str, moved: LargeDisplacement, beams: Mapping[str, BeamCheck]
+    case: Case,
+    load_case: str,
+    moved: LargeDisplacement,
+    beams: Mapping[str, BeamCheck],
+    solids: Mapping[str, tuple[float, float]] | None = None,
 ) -> Iterator[CheckOutcome]:
     """Yield the one outcome of the linkage as a whole; none where its frame never buckles.
 
@@ -39,20 +44,35 @@ def linkage_outcomes(
         What became of it.
     beams : mapping of str to BeamCheck
         Link -> its hand calculation, which says where material gives way first.
+    solids : mapping of str to tuple of 2 float, optional
+        Link -> the least and the largest factor at which it buckles as a solid. The frame knows it as a strip along x,
+        so that the linkage holds no more than this.
 
     Yields
     ------
     CheckOutcome
     """
     value, least = moved.buckling, moved.factor
+    weakest = min(solids, key=lambda link: solids[link][0]) if solids else ""
+    own = solids[weakest] if solids else (math.inf, math.inf)
     if moved.followed:
-        yield _followed(load_case, moved, beyond_strength(beams))
+        found = _followed(load_case, moved, beyond_strength(beams))
+        soft = found.verdict is Verdict.PASS and own[0] < LEAST_LINEAR
+        yield found.left_open(_by_itself(weakest, own[0])) if soft else found
+    elif value is not None and least is not None and own[0] < least:
+        how = _by_itself(weakest, own[0])
+        found = by_linear_theory(case, load_case, own[0], max(own[0], min(value, own[1])), how)
+        yield found.because(found.reason + beyond_strength(beams))
     elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
         how = f"the linkage becomes unstable at {value:.3g} times its load by linear theory"
         if least < value:
             how = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
         found = by_linear_theory(case, load_case, least, value, how)
         yield found.because(found.reason + beyond_strength(beams))
+
+
+def _by_itself(link: str, factor: float) -> str:
+    return f"link {link} by itself buckles at {factor:.3g} times its load, as a solid"
 
 
 def by_linear_theory(

@@ -12,6 +12,7 @@ from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.common.ties import first_largest
 from fea.outcomes.result import HandResult, LinkResult
+from fea.outcomes.solid_buckling import solid_buckling, solid_growth
 from geometry.materials.material import Material
 from loads.case.case import Case
 
@@ -49,8 +50,9 @@ def link_result(
     else:
         bands = None if decided.solid is not None else decided.hands.get(load_case)
         result = _hand_result(link, material, hand, bands, decided.decision)
-    load = load_scatter(case, load_case).times(uneven.stress.get(link, Scatter()))
-    bent = load_scatter(case, load_case).times(uneven.displacement.get(link, Scatter()))
+    grown = solid_growth(solid_buckling(result))
+    load = load_scatter(case, load_case).times(uneven.stress.get(link, Scatter())).times(grown)
+    bent = load_scatter(case, load_case).times(uneven.displacement.get(link, Scatter())).times(grown)
     layers = result.layers
     if layers is not None:
         factor = layer_scatter(material).times(load.inverse).on(layers.safety_factor)

@@ -32,6 +32,7 @@ from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.pins import PinStress, stress_at
 from fea.outcomes.point_displacement import meshes_to_refine
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
+from fea.outcomes.solid_buckling import solid_buckling_outcomes
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.refinement import START, Effort
@@ -155,6 +156,7 @@ class _LoadCase:
             *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
             *_bearing(case, load_case, reactions, self.uneven),
             *buckling_outcomes(case, load_case, {link: hand.check for link, hand in self.hands.items()}, moved),
+            *solid_buckling_outcomes(case, load_case, {x: found for x, found in links.items() if self.acts_on(x)}),
             *motors,
         )
         checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())

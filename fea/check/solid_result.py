@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from fea.beam.theory import BeamCheck
+from fea.buckling.solid_holding import solid_holding
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, pin_sources
@@ -55,6 +56,7 @@ def link_task(case: Case, link: str, loads: Sequence[LinkLoads]) -> LinkTask:
         displacement_limits=displacement_limits(case, link),
         layers=layers_of(case, link),
         layer_limits=layer_limits(case, link),
+        holding=None if body.part.is_beam else solid_holding(case, link),
     )
 
 
@@ -138,6 +140,7 @@ def solid_result(
         why=why,
         brittle=material.brittle,
         discretisation=precision,
+        buckling=refined.buckling.get(load_case),
         layers=None
         if layers is None
         else _layer_stress(refined, own, layers, band("layers"), lambda number: precision_of("layers", number)),

@@ -20,12 +20,16 @@ from fea.outcomes.layers import CHECK as LAYERS
 from fea.outcomes.layers import no_strength, without_shear
 from fea.outcomes.limits import layer_limit
 from fea.outcomes.pins import pin_outcome, stress_of
+from fea.outcomes.solid_buckling import undecided_buckling
 from geometry.materials.material import Fatigue, Material
 from loads.records.check_spec import BearingCheck, PinCheck, SafetyFactorCheck
 from loads.states.case_motion import CaseMotion
 
 BEYOND_CARD = "the material's card ends below the repetitions that are wanted"
 LEFT_OUT = "poses near a dead point of the driven link were left out, where its torque grows without bound"
+NOT_FOLLOWED = (
+    "no beam stands for its buckling, and its solid is not looked at over a motion; check single poses with alula check"
+)
 FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck)
 """Checks of the case that are decided over the motion."""
 
@@ -211,6 +215,9 @@ def column_outcomes(
     """
     for link, histories in loaded.items():
         for history in histories:
+            if not moved.case.part_of(link).is_beam:
+                yield undecided_buckling(history.name, link, NOT_FOLLOWED)
+                continue
             factors = factors_over_motion(moved.case, link, history)
             compression, _ = axial_compression(moved.case, link, history)
             column = worst_column(moved.case, link, compression, factors, evaluated)

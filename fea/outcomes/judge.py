@@ -14,6 +14,7 @@ from fea.outcomes.limits import least_safety_factor
 from fea.outcomes.pins import PinStress, pin_outcome
 from fea.outcomes.point_displacement import point_outcome
 from fea.outcomes.result import LinkResult, SolidResult
+from fea.outcomes.solid_buckling import solid_buckling
 from fea.refine.discretisation import Discretisation
 from loads.case.case import Case
 from loads.records.check_spec import (
@@ -78,7 +79,12 @@ def outcomes(
             found += [_link(case, name, check, load_case, links[link]) for link in check.links or case.checked_links]
     beams = {link: result.beam for link, result in links.items()}
     found += layer_outcomes(case, load_case, links)
-    return (*found, *linkage_outcomes(case, load_case, moved, beams))
+    solids = {
+        link: (own.least * (1.0 - own.error), own.most)
+        for link, result in links.items()
+        if (own := solid_buckling(result)) is not None and not own.without
+    }
+    return (*found, *linkage_outcomes(case, load_case, moved, beams, solids))
 
 
 def _link(

@@ -17,6 +17,7 @@ from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.opinion import SecondOpinion
 from fea.outcomes.pins import PinStress
 from fea.refine.discretisation import Discretisation
+from fea.refine.link_buckling import SolidBuckling
 from fea.solid.solution import SolidCase, SolidSolution
 from fea.solid.stress import StressField
 from geometry.linkage.pose import Pose
@@ -176,6 +177,8 @@ class SolidResult(LinkResult):
         Hand calculation against this model, section by section.
     discretisation : Discretisation
         The error that the meshes leave.
+    buckling : SolidBuckling or None
+        The factors on this load case at which it buckles; None where beams stand for the link.
     """
 
     fidelity = "solid"
@@ -186,6 +189,7 @@ class SolidResult(LinkResult):
     governing: VariantPeak
     comparisons: tuple[SectionComparison, ...]
     discretisation: Discretisation
+    buckling: SolidBuckling | None = None
 
     @property
     def elements(self) -> int:

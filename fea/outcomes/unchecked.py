@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from geometry.bodies.body import no_beam
 from geometry.materials.plausible import unusual
 from loads.case.case import Case
 from loads.records.check_spec import PinCheck, SafetyFactorCheck, SustainedCheck
@@ -39,7 +38,6 @@ def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Sus
     if loose:
         which = "pins" if loose == pins else f"pin{'s' if len(loose) > 1 else ''} {', '.join(loose)}"
         found.append(f"{which} (no check)")
-    found += [f"buckling of {link} by itself (no beam)" for link in case.checked_links if no_beam(case.body(link))]
     return tuple(found)
 
 

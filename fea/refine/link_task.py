@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from fea.buckling.solid_holding import SolidHolding
 from fea.common.link_loads import LinkLoads
 from fea.refine.link_series import STRESS, Measure
 from fea.solid.layers import Layers
@@ -40,6 +41,8 @@ class LinkTask:
         As ``stress_limits``, on the stress on the layers.
     displacement_error : float
         Largest relative error of the displacement, which a check of the linkage needs.
+    holding : SolidHolding or None
+        How joints hold it against buckling as a solid; None where beams stand for it.
     """
 
     body: Body
@@ -54,6 +57,7 @@ class LinkTask:
     layers: Layers | None = None
     layer_limits: tuple[tuple[float, float], ...] = ()
     displacement_error: float = math.inf
+    holding: SolidHolding | None = None
 
     @property
     def measures(self) -> tuple[Measure, ...]:

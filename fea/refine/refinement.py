@@ -10,13 +10,14 @@ import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fea.common.threads import bounded
 from fea.refine.convergence import ALONE, SERIES, SEVERAL, GridConvergence
 from fea.refine.level import Level, level_of
+from fea.refine.link_buckling import SolidBuckling, link_buckling
 from fea.refine.link_series import (
     CasePrecision,
     Eye,
@@ -121,6 +122,8 @@ class RefinedSolid:
         What is kept of every mesh, from which refinement goes on.
     settings : MeshSettings
         Of the finest mesh.
+    buckling : mapping of str to SolidBuckling
+        Load case -> factors on the first mesh that tells them; empty where beams stand for the link.
     """
 
     solution: SolidSolution
@@ -132,6 +135,7 @@ class RefinedSolid:
     sharp_edges: int
     levels: tuple[Level, ...] = ()
     settings: MeshSettings = START
+    buckling: Mapping[str, SolidBuckling] = field(default_factory=dict)
 
 
 def refine_links(
@@ -214,6 +218,7 @@ class _Link:
         self.solution: SolidSolution | None = earlier.solution if earlier else None
         self.stopped, self.done = "", False
         self.far = earlier is not None and earlier.far
+        self.buckling = earlier.buckling if earlier else {}
         self._mesh: Callable[[], TaggedMesh] | None = None
         self._sharp: Future[list[ReentrantEdge]] | None = None
 
@@ -244,6 +249,8 @@ class _Link:
             return
         self.solution = solution
         self.levels.append(level_of(solution, mesh.volume, self.task.layers))
+        if not self._told:
+            self.buckling = link_buckling(solution, self.task, self.levels[-1].chord)
         self._judge()
         seconds = [*(mesh.seconds for mesh in self.meshes), time.perf_counter() - begun]
         self.meshes = [
@@ -282,6 +289,7 @@ class _Link:
             sharp_edges=len(self.edges),
             levels=tuple(self.levels),
             settings=self.settings,
+            buckling=self.buckling,
         )
 
     def _solved(self, mesh: TaggedMesh, progress: Progress) -> SolidSolution | None:
@@ -302,6 +310,13 @@ class _Link:
         return self._sharp.result() if self._sharp is not None else ()
 
     @property
+    def _told(self) -> bool:
+        """Whether the buckling factors of all load cases are known, where there are any."""
+        return self.task.holding is None or (
+            bool(self.buckling) and not any(found.without for found in self.buckling.values())
+        )
+
+    @property
     def _growing(self) -> bool:
         return any(s.kind == "growing" for p in self.precision for s in self._deciding(p))
 
@@ -312,7 +327,7 @@ class _Link:
 
     def _settled(self) -> bool:
         """Whether nothing finer is needed."""
-        if any(p.unreliable == "coarse" for p in self.precision):
+        if any(p.unreliable == "coarse" for p in self.precision) or not self._told:
             return False
         if len(self.levels) == 1 or self.far:
             self.far = not self.effort.stated and self._far()

@@ -512,7 +512,7 @@ def no_beam(body: Body) -> str:
         return ""
     return (
         f"no beam along the x axis stands for it, since its points lie {across:.4g} mm apart across that axis and "
-        f"{along:.4g} mm along it: it has no hand calculation, and is not checked as a column"
+        f"{along:.4g} mm along it: it has no hand calculation"
     )
 
 

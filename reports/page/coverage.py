@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 from fea.common.verdict import LINKAGE, Quantity, Subject
 from fea.outcomes.result import CheckResult, LinkResult, SolidResult
+from fea.solid.buckling_factor import MOST
 from reports.words.wording import joined
 
 STACKING = (
@@ -99,11 +100,18 @@ def _buckling(result: CheckResult) -> str:
         if check.quantity is Quantity.BUCKLING_FACTOR
     }
     links = [link for link in result.case.checked_links if Subject.link(link) in judged]
+    columns = [link for link in links if result.case.part_of(link).is_beam]
+    solids = [link for link in result.case.checked_links if not result.case.part_of(link).is_beam]
     found = (
-        f"{joined(links)} {_was(links)} checked" if links else "No link is in compression; one that is would be checked"
+        f"{joined(columns)} {_was(columns)} checked"
+        if columns
+        else f"No {'beam' if solids else 'link'} is in compression; one that is would be checked"
     )
-    found += f" as {'straight elastic columns' if len(links) > 1 else 'a straight elastic column'}"
-    found += ". Initial curvature and local buckling of thin walls are not modelled"
+    found += f" as {'straight elastic columns' if len(columns) > 1 else 'a straight elastic column'}"
+    if solids:
+        found += f". {joined(solids)} {'is no beam' if len(solids) == 1 else 'are no beams'}: elastic solids are looked"
+        found += f" at up to {MOST:g} times the load"
+    found += ". Initial curvature is not modelled, nor is local buckling of thin walls of beams"
     followed = all(case.large_displacement.followed for case in result.load_cases.values())
     unseen = [n for n, case in result.load_cases.items() if case.large_displacement.buckling is None]
     if unseen:

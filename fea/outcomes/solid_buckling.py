@@ -1,0 +1,108 @@
+"""Buckling of links that are no beams: decided on the eigenvalues of their solids, and undecided without them."""
+
+import math
+from collections.abc import Iterator, Mapping
+
+from fea.buckling.buckling import NAME, factor_band, judgement
+from fea.common.band import Band
+from fea.common.scatter import Scatter
+from fea.common.source import Source, SourceKind
+from fea.common.verdict import CheckOutcome, Quantity, Subject
+from fea.nonlinear.large_displacement import LEAST_FACTOR
+from fea.outcomes.result import LinkResult, SolidResult
+from fea.refine.link_buckling import SolidBuckling
+from fea.solid.buckling_factor import MOST
+from loads.case.case import Case
+
+NO_BEAM = "no beam stands for its buckling, and its solid was not solved; run the solid model"
+
+
+def solid_buckling_outcomes(case: Case, load_case: str, loaded: Mapping[str, LinkResult]) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every link that is no beam and may buckle under a load case.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    loaded : mapping of str to LinkResult
+        Link -> its result; the links on which something acts.
+
+    Yields
+    ------
+    CheckOutcome
+        None for a solid that does not buckle below ``MOST`` times the load.
+    """
+    for link, result in loaded.items():
+        if case.part_of(link).is_beam:
+            continue
+        found = solid_buckling(result) or SolidBuckling.unknown(NO_BEAM)
+        if found.without:
+            yield undecided_buckling(load_case, link, found.without)
+        elif math.isfinite(found.least):
+            yield _outcome(case, load_case, link, found)
+
+
+def solid_buckling(result: LinkResult) -> SolidBuckling | None:
+    """Return the buckling factors of a link by its solid; None where beams stand for it, or no solid was solved.
+
+    Parameters
+    ----------
+    result : LinkResult
+
+    Returns
+    -------
+    SolidBuckling or None
+    """
+    return result.buckling if isinstance(result, SolidResult) else None
+
+
+def undecided_buckling(load_case: str, link: str, why: str) -> CheckOutcome:
+    """Return the outcome of a link whose factor is not known.
+
+    Parameters
+    ----------
+    load_case : str
+        Its name.
+    link : str
+    why : str
+        For people.
+
+    Returns
+    -------
+    CheckOutcome
+    """
+    band = Band.unknown(why)
+    return CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, why).because(why)
+
+
+def _outcome(case: Case, load_case: str, link: str, found: SolidBuckling) -> CheckOutcome:
+    times = f"at {found.value:.3g}" if math.isfinite(found.value) else f"at more than {MOST:g}"
+    said = f"its solid buckles {times} times the load, {found.words}"
+    if found.least < found.value:
+        said += f"; at {found.least:.3g} times where its joints move with it"
+    mesh = Source(kind=SourceKind.DISCRETISATION, detail=f"up to {found.error:.1%} of the factor")
+    ends = found.least * max(1.0 - found.error, 0.0), found.most * (1.0 + found.error)
+    band = factor_band(case, load_case, link, min(found.value, MOST), ends, mesh)
+    outcome = CheckOutcome.of(NAME, Subject.link(link), load_case, Quantity.BUCKLING_FACTOR, band, 1.0, said)
+    return outcome.because(said + judgement(outcome, None))
+
+
+def solid_growth(found: SolidBuckling | None) -> Scatter:
+    """Return by how much bending that goes with the load may exceed that of the solid, which is linear.
+
+    Parameters
+    ----------
+    found : SolidBuckling or None
+        Its buckling factors n; below 10 the growth is 1/(1 - 1/n) at most (``fea.buckling.buckling``).
+
+    Returns
+    -------
+    Scatter
+        None at n <= 1, where no factor bounds it, and the link does not pass.
+    """
+    least = found.least * (1.0 - found.error) if found is not None and not found.without else math.inf
+    if not 1.0 < least < LEAST_FACTOR:
+        return Scatter()
+    detail = f"bending towards buckling at {least:.3g} times the load"
+    return Scatter(high=1.0 / (1.0 - 1.0 / least), sources=(Source(kind=SourceKind.GROWTH, detail=detail),))

@@ -1,0 +1,125 @@
+"""The buckling factors of a link that is no beam, by its solid on one mesh."""
+
+import math
+from dataclasses import dataclass
+
+from fea.nonlinear.large_displacement import LEAST_LINEAR
+from fea.refine.error_estimate import estimate_error
+from fea.refine.link_series import CHORD
+from fea.refine.link_task import LinkTask
+from fea.solid.buckling_factor import BucklingProblem
+from fea.solid.solution import SolidCase, SolidSolution
+from fea.solid.stress import stress_field
+from geometry.base.errors import CannotRunError
+from loads.records.bearing import WIDE
+
+LARGEST_ERROR = 0.5
+"""Share of a factor that a mesh may miss before the factor counts as unknown."""
+TOO_COARSE = f"its mesh is too coarse for a buckling factor, which may be off by more than {LARGEST_ERROR:.0%}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolidBuckling:
+    """Factors on a load case at which a link's solid buckles; infinite where none does, NaN where they are not known.
+
+    Attributes
+    ----------
+    value : float
+        Its rigid motions are taken by joints that stay where they are.
+    least : float
+        The least where the joints of a driven or a bonded link move as well.
+    most : float
+        Joints hold it as well as they can; infinite where the value is 3 or more, so that the link cannot fail.
+    error : float
+        Share of the factors by which the mesh may miss them.
+    words : str
+        How joints hold it for ``value``, for people.
+    without : str
+        Why they are not known; "" where they are.
+    """
+
+    value: float
+    least: float
+    most: float
+    error: float
+    words: str = ""
+    without: str = ""
+
+    @classmethod
+    def unknown(cls, why: str) -> "SolidBuckling":
+        """Return what stands for factors that were not found.
+
+        Parameters
+        ----------
+        why : str
+
+        Returns
+        -------
+        SolidBuckling
+        """
+        return cls(value=math.nan, least=math.nan, most=math.nan, error=math.nan, without=why)
+
+
+def link_buckling(solution: SolidSolution, task: LinkTask, chord: float) -> dict[str, SolidBuckling]:
+    """Return the buckling factors of a link under each of its load cases.
+
+    They are those under the pressure over 180°, with the first way in which the torque enters: the resultants decide,
+    and not the stress beside the pins. The factor exceeds the true one by the square of the mode's error in the energy
+    norm (Strang & Fix, An Analysis of the Finite Element Method, 1973, section 6.3), and the stress adds that of its
+    own; the larger of both counts twice, as for displacements (``fea.refine.link_series``).
+
+    Parameters
+    ----------
+    solution : SolidSolution
+        On one mesh.
+    task : LinkTask
+        With the way in which joints hold the link.
+    chord : float
+        Relative difference of volume between mesh and geometry.
+
+    Returns
+    -------
+    dict of str to SolidBuckling
+        By load case; empty where beams stand for the link.
+    """
+    if task.holding is None:
+        return {}
+    chosen = {case.load: case for case in reversed(solution.cases) if case.span == WIDE.span}
+    try:
+        problem = BucklingProblem(
+            solution.space,
+            task.holding.places,
+            E=solution.E,
+            nu=solution.nu,
+            halved=all(case.symmetric for case in chosen.values()),
+        )
+        return {loads.name: _factors(solution, problem, task, chosen[loads.name], chord) for loads in task.loads}
+    except CannotRunError as error:
+        return {loads.name: SolidBuckling.unknown(str(error)) for loads in task.loads}
+
+
+def _factors(
+    solution: SolidSolution, problem: BucklingProblem, task: LinkTask, solved: SolidCase, chord: float
+) -> SolidBuckling:
+    assert task.holding is not None
+    [loads] = [loads for loads in task.loads if loads.name == solved.load]
+    prestress = problem.prestress(solved.displacement, loads)
+    stress = stress_field(solution.space, solved.displacement, E=solution.E, nu=solution.nu)
+    found = [problem.least(prestress, conditions) for conditions in (task.holding.value, *task.holding.alone)]
+    errors = [estimate_error(stress, solved.displacement, E=solution.E, nu=solution.nu).relative]
+    for buckled in (buckled for buckled in found if math.isfinite(buckled.factor)):
+        field = stress_field(solution.space, buckled.mode, E=solution.E, nu=solution.nu)
+        errors.append(estimate_error(field, buckled.mode, E=solution.E, nu=solution.nu).relative)
+    error = 2.0 * max(errors) ** 2 + CHORD * chord
+    if error > LARGEST_ERROR:
+        return SolidBuckling.unknown(TOO_COARSE)
+    most = math.inf
+    if task.holding.most is not None and found[0].factor < LEAST_LINEAR:
+        most = problem.least(prestress, task.holding.most).factor
+    return SolidBuckling(
+        value=found[0].factor,
+        least=min(buckled.factor for buckled in found),
+        most=max(most, found[0].factor),
+        error=error,
+        words=task.holding.words,
+    )
