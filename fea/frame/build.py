@@ -25,7 +25,8 @@ JOINT_DOFS: Mapping[str, frozenset[Dof]] = {"revolute": PIN_DOFS, "pin-in-slot":
 """What the two links of a joint share; guides add what slots hold."""
 ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
-"""How many times stiffer than the stiffest part a link without part is."""
+"""How many times the section of the stiffest part that of a link without part has in large displacements; in small ones
+it does not give (``FrameElement.rigid``)."""
 _SAME_PLACE = 1e-9
 
 
@@ -341,7 +342,7 @@ class _Builder:
             half_z=size,
             round=True,
         )
-        self.elements.append(FrameElement(nodes=(a, b), section=section, young=young, poisson=0.3))
+        self.elements.append(FrameElement(nodes=(a, b), section=section, young=young, poisson=0.3, rigid=True))
 
 
 def _line_between(lines: Sequence[LineLoad], x0: float, x1: float) -> tuple[Real, Real]:

@@ -59,6 +59,8 @@ class FrameElement:
         Force per length at the first end, global axes; linear between [N/mm].
     load_last : ndarray, shape (3,)
         The same at the second end.
+    rigid : bool
+        Whether it stands for a body that does not give, in small displacements; its section is for large ones.
     """
 
     nodes: tuple[int, int]
@@ -69,6 +71,7 @@ class FrameElement:
     offsets: Floats = field(default_factory=lambda: np.zeros((2, 3)))
     load_first: Floats = field(default_factory=_zeros)
     load_last: Floats = field(default_factory=_zeros)
+    rigid: bool = False
 
     def __post_init__(self) -> None:
         """Copy and check."""

@@ -28,6 +28,9 @@ Floats = NDArray[np.float64]
 
 _MECHANISM = 1e-10
 """A motion of unit size that strains the elements less than this is a mechanism."""
+RIGID = 1e-6
+"""Flexibility of an element that stands for a rigid body, over the least of all others, whatever its length. Not nil:
+of a closed loop of rigid bodies the forces would have no single answer."""
 
 
 def _motion(dof: int) -> str:
@@ -254,6 +257,21 @@ class FrameSystem:
         """
         return np.array([1.0, *[self.lengths[i]] * 5])
 
+    def _with_rigid(self, flexibility: list[Floats]) -> list[Floats]:
+        """Return the scaled flexibilities of all elements, those that stand for rigid bodies stiffer than any other."""
+        elements = self.model.elements
+        known = [np.diag(F) for F, e in zip(flexibility, elements, strict=True) if not e.rigid]
+        known += [
+            np.diag(link.natural_flexibility) * np.tile(self.condensed_unit, len(link.nodes) - 1) ** 2
+            for link in self.model.condensed
+        ]
+        every = np.concatenate([*known, np.zeros(1)])
+        least = float(every[every > 0.0].min(initial=np.inf))
+        return [
+            RIGID * least * np.eye(6) if e.rigid and np.isfinite(least) else F
+            for F, e in zip(flexibility, elements, strict=True)
+        ]
+
     def equations(self) -> tuple[Any, Any, Floats, Floats]:
         """Return scaled B (6 m + g + c, k) and F, sparse, deformations v0 (6 m + g + c,) and nodal loads p - p0 (k,).
 
@@ -280,6 +298,7 @@ class FrameSystem:
             v, ends = line_load_effect(e.section, e.young, length, first, last)
             v0[6 * i : 6 * i + 6] = unit * v
             np.add.at(p, numbers, -(matrix.T @ ends))
+        flexibility = self._with_rigid(flexibility)
         for row, guide in enumerate(guides, start=6 * m):
             for node, sign in guide.nodes:
                 place = self.number[6 * node : 6 * node + 6]

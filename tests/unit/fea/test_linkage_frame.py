@@ -297,6 +297,30 @@ def test_a_parallelogram_with_a_third_crank_needs_stiffness():
     assert found.reactions.joints["M"].magnitude > 0.1
 
 
+@pytest.mark.parametrize("share", [0.0, 0.3])
+def test_a_long_coupler_without_part_does_not_sag_on_short_cranks(share):
+    """Three upright cranks are parallel springs under a rigid beam: P/3 each, and more on the side of the load."""
+    data, width, load = portal(), 40.0 * HEIGHT, 6.0
+    del data["links"]["top"]["part"]
+    data["links"]["ground"]["points"] |= {"D": [f"{width} mm", "0 mm"], "N": [f"{width / 2} mm", "0 mm"]}
+    data["links"]["top"]["points"] |= {
+        "M": [f"{width / 2} mm", "0 mm"],
+        "P": [f"{width * (0.5 + share)} mm", "0 mm"],
+        "C": [f"{width} mm", "0 mm"],
+    }
+    data["links"]["third"] = {"part": "rod", "points": {"N": ["0 mm", "0 mm"], "M": [f"{HEIGHT} mm", "0 mm"]}}
+    data["joints"] |= {
+        "N": {"links": ["ground", "third"], "pin_diameter": "1 mm"},
+        "M": {"links": ["top", "third"], "pin_diameter": "1 mm"},
+    }
+    data["pose"]["near"] |= {"third": "90 deg"}
+    case = validate(data)
+    found = joint_forces(case, case.solve_pose(), (force("top", "P", 0.0, -load),)).reactions
+    # Springs at -1/2, 0, 1/2 of the width: P (1/3 + x_i a / Σ x²), a the share off the middle.
+    expected = {name: load * (1.0 / 3.0 + x * share / 0.5) for name, x in (("B", -0.5), ("M", 0.0), ("C", 0.5))}
+    assert {name: found.joints[name].magnitude for name in expected} == pytest.approx(expected, rel=1e-4)
+
+
 def test_in_the_plane_equilibrium_alone_is_used():
     loads = (force("CH", "H", 0.0, -0.25),)
     found = joint_forces(WING, WING.solve_pose(), loads)
