@@ -19,7 +19,8 @@ LAYERS = {
     "loads": ("text", "records", "statics", "sources", "case", "states", "plans"),
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
-        *("refine", "outcomes", "check", "superposition", "motion", "calculix", "claims", "study", "sizing"),
+        *("refine", "outcomes", "check", "superposition", "motion", "calculix", "claims"),
+        *("study", "sizing", "tolerance"),
     ),
     "reports": ("words", "tables", "sheet", "figures", "page", "commands", "notebook"),
 }

@@ -31,7 +31,7 @@ def words(command: str) -> list[str]:
 
 
 def is_slow(command: str) -> bool:
-    return words(command)[0] in ("check", "envelope", "claims")
+    return words(command)[0] in ("check", "envelope", "claims", "tolerance")
 
 
 def writes_a_case(command: str) -> bool:

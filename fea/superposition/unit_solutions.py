@@ -50,6 +50,8 @@ class UnitSolutions:
         Largest support reaction relative to the load.
     imbalance : ndarray, shape (N,)
         Resultant of the load vectors relative to the load.
+    projection : ndarray, shape (modes, unit loads)
+        Turns coefficients of the unit loads into a combination of the modes, of these loads and of any other.
     units : int
         Number of unit loads that the modes are made of.
     solver, solver_reason : str
@@ -65,6 +67,7 @@ class UnitSolutions:
     combination: Real
     reaction: Real
     imbalance: Real
+    projection: Real
     units: int
     solver: str
     solver_reason: str
@@ -126,7 +129,8 @@ def solve_units(
         Where memory does not suffice or a solver fails.
     """
     space = units.space
-    modes, combination = _modes(units, coefficients, scale)
+    modes, projection = _modes(units, coefficients, scale)
+    combination = projection @ coefficients
     count = modes.shape[1]
     memory.require(
         8.0 * count * (2.0 * space.unknowns + 6.0 * len(space.nodes)),
@@ -150,6 +154,7 @@ def solve_units(
         combination=combination,
         reaction=np.abs(free.reactions @ combination).max(axis=0) / scale,
         imbalance=imbalance,
+        projection=projection,
         units=units.count,
         solver=free.solver,
         solver_reason=free.reason,
@@ -169,7 +174,7 @@ def _stress(space: DisplacementSpace, free: FreeSolution, *, E: float, nu: float
 
 
 def _modes(units: UnitLoads, coefficients: Real, scale: Real) -> tuple[Real, Real]:
-    """Return modes (units, m) and their combinations (m, N)."""
+    """Return modes (units, m), and what turns coefficients into their combinations (m, units)."""
     norm = np.sqrt(np.asarray(units.vectors.multiply(units.vectors).sum(axis=0)).ravel())
     norm[norm == 0.0] = 1.0
     found, parts = [], []
@@ -181,10 +186,11 @@ def _modes(units: UnitLoads, coefficients: Real, scale: Real) -> tuple[Real, Rea
         left, values, right = np.linalg.svd(shares, full_matrices=False)
         rest = np.sqrt(np.cumsum((values[:, None] * right)[::-1] ** 2, axis=0))[::-1].max(axis=1, initial=0.0)
         keep = int(np.count_nonzero(rest > tolerance * (rest[0] if len(rest) else 0.0)))
-        mode = np.zeros((units.count, keep))
+        mode, part = np.zeros((units.count, keep)), np.zeros((keep, units.count))
         mode[members] = left[:, :keep] / norm[members, None]
+        part[:, members] = left[:, :keep].T * norm[members]
         found.append(mode)
-        parts.append(left[:, :keep].T @ M)
+        parts.append(part)
     return np.hstack(found), np.vstack(parts)
 
 

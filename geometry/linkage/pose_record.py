@@ -76,6 +76,13 @@ class Pose:
         return dict(zip(self.closure.slots, map(float, self.q[len(self.linkage.moving) :]), strict=True))
 
     @property
+    def held_column(self) -> int:
+        """Column of the coordinate among the unknowns; only where the pose has one."""
+        moving = self.linkage.moving
+        assert self.coordinate is not None
+        return len(moving) + self.closure.slots.index(self.coordinate) if self.slides else moving.index(self.coordinate)
+
+    @property
     def held(self) -> float:
         """Angle [rad] or travel [mm] of the coordinate; 0 where nothing moves."""
         if self.coordinate is None:

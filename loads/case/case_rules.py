@@ -11,6 +11,7 @@ from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
 from loads.case.load_rules import check_loads, check_masses, check_place
 from loads.case.places import check_moving, check_point
+from loads.case.toleranced import toleranced
 from loads.records.check_spec import (
     BearingCheck,
     Check,
@@ -83,6 +84,7 @@ def check_rules(case: CoreCase) -> None:
         require(f"hand_calculations.{name}.part", hand.part, drawn, "is no part of a shape of alula's own")
     if case.motion is not None:
         _check_motion(case, case.motion)
+    toleranced(case)
 
 
 def _check_drive(case: CoreCase) -> None:

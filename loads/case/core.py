@@ -30,6 +30,7 @@ from loads.records.conditions import Conditions, under
 from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
 from loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
+from loads.records.tolerances import TolerancesTable
 from loads.statics.statics import Drive
 
 
@@ -67,6 +68,9 @@ class CoreCase(Revisable):
     checks: dict[Name, Check] = {}
     hand_calculations: dict[Name, CantileverCalculation] = {}
     solid: SolidSettings = SolidSettings()
+    tolerances: TolerancesTable = {}
+    """How far entries of the case may be off, by their path, such as "links.AE.points.E" = "0.2 mm"; pins stands for
+    every place of a pin in every link. For alula tolerance alone; no check counts them."""
 
     @cached_property
     def linkage(self) -> Linkage:

@@ -14,6 +14,7 @@ from reports.commands.materials import app as materials
 from reports.commands.size import app as size
 from reports.commands.starters import app as starters
 from reports.commands.study import app as study
+from reports.commands.tolerance import app as tolerance
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -309,6 +310,7 @@ app.add_typer(starters)
 app.add_typer(materials)
 app.add_typer(study)
 app.add_typer(size)
+app.add_typer(tolerance)
 
 
 @app.command()

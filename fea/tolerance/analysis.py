@@ -1,0 +1,337 @@
+"""Samples of a case's tolerances, and what their numbers say."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.check.case_statics import CaseStatics, solve_case_statics
+from fea.check.run import check_case
+from fea.common.clock import Clock
+from fea.common.threads import bounded_run
+from fea.common.verdict import CheckOutcome
+from fea.frame.joint_forces import PINNED_STATICS
+from fea.nonlinear.large_displacement import LargeDisplacement, examine
+from fea.outcomes.result import CheckResult
+from fea.refine.refinement import Effort
+from fea.tolerance.numbers import Numbers, SampledCheck, covered
+from fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult, WorstCorner
+from fea.tolerance.states import Sampler
+from geometry.base.errors import CannotRunError, CaseError
+from loads.case.case import Case
+from loads.case.toleranced import Variable, toleranced
+from loads.states.actions import needs_masses
+from loads.states.masses import part_masses
+
+Real = NDArray[np.float64]
+
+SAMPLES = 100_000
+_BLOCK = 10_000
+_PILOTS = 40
+"""Of samples at random, and as many corners."""
+_LEAST_SHARE = 0.02
+_SOBOL = 2048
+"""Most base samples of the Sobol' indices."""
+_CONVERGED = 1.2
+"""Largest total index that rounding of the sample explains; beyond it a few samples make all of the variance."""
+
+
+@bounded_run
+def tolerance_case(
+    case: Case,
+    *,
+    name: str = "",
+    samples: int = SAMPLES,
+    seed: int = 0,
+    threads: int = 2,
+    effort: Effort | None = None,
+    progress: Callable[[str], None] = lambda message: None,
+) -> ToleranceResult:
+    """Check a case as solids, and sample its tolerances.
+
+    Parameters
+    ----------
+    case : Case
+        With tolerances.
+    name : str, optional
+        Path or built-in name of the case.
+    samples, seed : int, optional
+    threads : int, optional
+    effort : Effort, optional
+        Of the nominal check.
+    progress : callable
+        Called with a sentence before every stage that may take long.
+
+    Returns
+    -------
+    ToleranceResult
+
+    Raises
+    ------
+    CaseError
+        For a case without tolerances, and for less than 100 samples.
+    CannotRunError
+        Where joint forces do not follow from equilibrium, or the linkage gives way.
+    """
+    variables = _asked(case, samples)
+    clock = Clock()
+    statics = solve_case_statics(case, name)
+    frames = {
+        load_case: examine(case, load_case, forces, statics.loads[load_case])
+        for load_case, forces in statics.forces.items()
+    }
+    _require(statics, frames)
+    result = check_case(
+        case, name=name, fidelity="solid", threads=threads, effort=effort, frames=frames, progress=progress
+    )
+    clock("nominal check")
+    masses = part_masses(case) if needs_masses(case) else {}
+    sampler = Sampler(case=case, pose=result.pose, masses=masses, variables=variables)
+    rng = np.random.default_rng(seed)
+    progress("unit solutions of the links")
+    check = SampledCheck.of(result, sampler, _pilots(variables, rng), threads)
+    clock("unit solutions")
+    progress(f"{samples:,} samples")
+    deviations = _drawn(variables, samples, rng)
+    found = _in_blocks(check, deviations)
+    clock("samples")
+    groups = tuple(dict.fromkeys(variable.tolerance for variable in variables))
+    first, total = _indices(check, variables, groups, deviations, found)
+    clock("Sobol' indices")
+    numbers = _numbers(check, found, first, total)
+    left_out = _left_out(result)
+    decided = [number for number in numbers if number.certain is not None]
+    fell = found.apart | found.dead
+    every = [_kept(number.low, number.high, number.limit, at_least=number.at_least) for number in decided]
+    for (certain, _), outcome in zip(every, check.outcomes, strict=True):
+        certain &= not _left_open(outcome)
+    return ToleranceResult(
+        nominal=result,
+        tolerances=groups,
+        samples=samples,
+        seed=seed,
+        deviations=deviations,
+        numbers=numbers,
+        apart=Probability.of(found.apart),
+        dead=Probability.of(found.dead),
+        certain=Probability.of(np.logical_and.reduce([~fell, *(certain for certain, _ in every)])),
+        possible=Probability.of(np.logical_and.reduce([~fell, *(possible for _, possible in every)])),
+        corner=_corner(check, variables, numbers, deviations),
+        left_out=left_out,
+        notes=_notes(result, found, left_out),
+        timings=clock.stages,
+    )
+
+
+def _asked(case: Case, samples: int) -> tuple[Variable, ...]:
+    variables = toleranced(case)
+    if not variables:
+        raise CaseError('tolerances: the case states none; add for example [tolerances] with pins = "0.2 mm"')
+    if not 100 <= samples <= 10_000_000:
+        raise CaseError(f"samples: there are {samples}, but there must be from 100 to 10000000; choose another number")
+    return variables
+
+
+def _require(statics: CaseStatics, frames: Mapping[str, LargeDisplacement]) -> None:
+    """Refuse what statics of pinned links do not tell, before any solid is solved."""
+    for name, forces in statics.forces.items():
+        if forces.model != PINNED_STATICS:
+            raise CannotRunError(
+                f"tolerances: under load case {name} {forces.reason}, so the joint forces of samples do not "
+                "follow from equilibrium alone, which is not covered; vary entries with alula study"
+            )
+        if frames[name].gives_way:
+            raise CannotRunError(
+                f"tolerances: the linkage gives way under load case {name} without any deviation, so the samples have "
+                "no equilibrium to look at; make the nominal case hold first"
+            )
+
+
+def _drawn(variables: Sequence[Variable], count: int, rng: np.random.Generator) -> Real:
+    """Return independent samples (count, d)."""
+    found = np.empty((count, len(variables)))
+    for column, variable in zip(found.T, variables, strict=True):
+        if variable.distribution == "uniform":
+            column[:] = variable.half * rng.uniform(-1.0, 1.0, count)
+        elif variable.distribution == "normal":
+            column[:] = variable.half / 3.0 * rng.standard_normal(count)
+        else:
+            column[:] = variable.half * rng.choice([-1.0, 1.0], count)
+        if variable.kind in ("material", "load"):
+            np.maximum(column, _LEAST_SHARE - 1.0, out=column)  # the tail of a normal distribution
+    return found
+
+
+def _pilots(variables: Sequence[Variable], rng: np.random.Generator) -> Real:
+    """Return the nominal sample, some at random and some corners."""
+    half = np.array([variable.half for variable in variables])
+    corners = half * rng.choice([-1.0, 1.0], (_PILOTS, len(half)))
+    return np.vstack([np.zeros(len(half)), _drawn(variables, _PILOTS, rng), corners])
+
+
+def _in_blocks(check: SampledCheck, deviations: Real) -> Numbers:
+    return Numbers.joined([check.numbers(deviations[i : i + _BLOCK]) for i in range(0, len(deviations), _BLOCK)])
+
+
+def _indices(
+    check: SampledCheck, variables: Sequence[Variable], groups: Sequence[str], deviations: Real, found: Numbers
+) -> tuple[Real, Real]:
+    """Return first-order and total Sobol' indices (outputs, tolerances) of all values and torques.
+
+    The first samples serve as both base samples of Saltelli's scheme (``scipy.stats.sobol_indices``); each tolerance
+    adds a third one, whose columns of the tolerance come from the second.
+    """
+    from scipy.stats import sobol_indices
+
+    n = 2 ** int(np.log2(max(2, min(_SOBOL, len(deviations) // (2 * len(groups)), len(deviations) // 2))))
+    A, B = deviations[:n], deviations[n : 2 * n]
+    mixed = []
+    for group in groups:
+        own = np.array([variable.tolerance == group for variable in variables])
+        mixed.append(np.where(own, B, A))
+    third = _in_blocks(check, np.vstack(mixed))
+    base = _used(check, found)
+    f_A, f_B = base[:, :n], base[:, n : 2 * n]
+    f_AB = _used(check, third).reshape(len(base), len(groups), n)
+    first, total = np.full((2, len(base), len(groups)), np.nan)
+    for row in range(len(base)):
+        known = np.flatnonzero(np.isfinite(f_A[row]) & np.isfinite(f_B[row]) & np.isfinite(f_AB[row]).all(axis=0))
+        known = known[: 2 ** int(np.log2(max(len(known), 1)))]  # as the estimator wants it
+        a, b, ab = f_A[row, known], f_B[row, known], f_AB[row][:, known]
+        if len(known) < 16 or not np.ptp(a) > 1e-9 * np.abs(a).max():
+            continue
+        if len(groups) == 1:
+            first[row] = total[row] = 1.0  # all variance is its own
+            continue
+        answer = sobol_indices(
+            func={"f_A": a[None], "f_B": b[None], "f_AB": ab[:, None]}, n=len(a), method="saltelli_2010"
+        )
+        if answer.total_order.max() <= _CONVERGED:
+            first[row], total[row] = answer.first_order.ravel(), answer.total_order.ravel()
+    return first, total
+
+
+def _used(check: SampledCheck, found: Numbers) -> Real:
+    """Return the shares of their limits that values use up, which stay finite, and torques."""
+    at_least = np.array([outcome.at_least for outcome in check.outcomes], dtype=np.bool_)
+    with np.errstate(divide="ignore"):
+        used = np.where(at_least[:, None], 1.0 / found.value, found.value)
+    return np.vstack([used, found.torque])
+
+
+def _kept(low: Real, high: Real, limit: float, *, at_least: bool) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Tell which samples keep the limit over their whole band, and which do not miss it over their whole band."""
+    return (low >= limit, ~(high < limit)) if at_least else (high <= limit, ~(low > limit))
+
+
+def _left_open(outcome: CheckOutcome) -> bool:
+    """True for a check that was left open whatever its band says, such as layers without strength in shear."""
+    return outcome.verdict is not outcome.quantity.sense.verdict(outcome.value, outcome.limit)
+
+
+def _numbers(check: SampledCheck, found: Numbers, first: Real, total: Real) -> tuple[ToleranceNumber, ...]:
+    """Return the numbers of the checks, then the drive's torque under each load case."""
+    fell, numbers = found.apart | found.dead, []
+    for row, outcome in enumerate(check.outcomes):
+        low, high = found.low[row], found.high[row]
+        certain, possible = _kept(low, high, outcome.limit, at_least=outcome.at_least)
+        numbers.append(
+            ToleranceNumber(
+                check=outcome.name,
+                subject=str(outcome.subject),
+                load_case=outcome.load_case,
+                quantity=outcome.quantity.value,
+                unit=outcome.unit or "1",
+                limit=outcome.limit,
+                at_least=outcome.at_least,
+                nominal=(outcome.value.value, outcome.value.low, outcome.value.high),
+                values=found.value[row],
+                low=low,
+                high=high,
+                certain=Probability.of(certain & ~fell & (not _left_open(outcome))),
+                possible=Probability.of(possible & ~fell),
+                first=first[row],
+                total=total[row],
+            )
+        )
+    drive = check.result.case.pinned_drive
+    pushes = drive is not None and drive.pushes(check.result.case.linkage)
+    for row, (load_case, forces) in enumerate(check.nominal.forces.items() if drive is not None else ()):
+        torque = float(forces.drive_torque[0] + forces.drive_force[0])
+        at = len(check.outcomes) + row
+        numbers.append(
+            ToleranceNumber(
+                check="",
+                subject="the drive",
+                load_case=load_case,
+                quantity="drive force" if pushes else "drive torque",
+                unit="N" if pushes else "N·mm",
+                limit=np.nan,
+                at_least=True,
+                nominal=(torque, torque, torque),
+                values=found.torque[row],
+                low=found.torque[row],
+                high=found.torque[row],
+                certain=None,
+                possible=None,
+                first=first[at],
+                total=total[at],
+            )
+        )
+    return tuple(numbers)
+
+
+def _corner(
+    check: SampledCheck, variables: Sequence[Variable], numbers: Sequence[ToleranceNumber], deviations: Real
+) -> WorstCorner | None:
+    """Return the corner that is worst for the check closest to its limit, by the signs of its slopes."""
+    asked = [i for i, number in enumerate(numbers) if np.isfinite(number.closeness)]
+    if not asked:
+        return None
+    worst = max(asked, key=lambda i: numbers[i].closeness)
+    number, half = numbers[worst], np.array([variable.half for variable in variables])
+    known = np.isfinite(number.values)
+    if known.sum() < 2:
+        return None
+    values = number.values[known]
+    slopes = (deviations[known] - deviations[known].mean(axis=0)).T @ (values - values.mean())
+    corner = half * np.where(slopes > 0.0, 1.0, -1.0) * (-1.0 if number.at_least else 1.0)
+    there = check.numbers(corner[None])
+    found: dict[str, tuple[float, ...]] = {}
+    for variable, deviation in zip(variables, corner.tolist(), strict=True):
+        found[variable.tolerance] = (*found.get(variable.tolerance, ()), deviation)
+    value, low, high = (float(ends[worst, 0]) for ends in (there.value, there.low, there.high))
+    return WorstCorner(number=worst, value=value, low=low, high=high, deviations=found)
+
+
+def _left_out(result: CheckResult) -> tuple[str, ...]:
+    """Return the checks that the samples do not cover, with their nominal verdicts."""
+    every = [one for load_case in result.load_cases.values() for one in load_case.checks if not covered(one)]
+    return tuple(
+        dict.fromkeys(f"{one.name} of {one.subject.long} (without deviations: {one.verdict})" for one in every)
+    )
+
+
+def _notes(result: CheckResult, found: Numbers, left_out: Sequence[str]) -> tuple[str, ...]:
+    notes = []
+    if left_out:
+        notes.append(f"the samples do not cover, and no probability counts: {', '.join(left_out)}")
+    bent = [name for name, r in result.load_cases.items() if r.large_displacement.followed]
+    if bent:
+        notes.append(
+            f"load case{'s' if len(bent) > 1 else ''} {', '.join(bent)}: joint forces of the samples are those of the "
+            "undeformed pose, in proportion to the nominal ones on the deformed shape; how deviations change the "
+            "deformed shape is not covered"
+        )
+    if found.pressed:
+        notes.append(
+            f"some samples compress {', '.join(sorted(found.pressed))}, which the nominal loads pull; their "
+            "buckling is not covered"
+        )
+    for count, what in (
+        (int(found.apart.sum()), "do not assemble on the branch of the nominal pose, not even when led there in steps"),
+        (int(found.dead.sum()), "are at a dead point of the drive, where joint forces grow without limit"),
+    ):
+        if count:
+            notes.append(f"{count} of {len(found.apart)} samples {what}; they count as failed")
+    return tuple(notes)

@@ -1,0 +1,261 @@
+"""Pose and statics of n samples of a case at once."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.cut_free import link_loads
+from fea.common.link_loads import LinkLoads
+from geometry.linkage.driven import DrivenClosure
+from geometry.linkage.placement import Placement
+from geometry.linkage.pose import Pose
+from geometry.linkage.sampled import SampledPlacement, assemble_samples
+from loads.case.case import Case
+from loads.case.toleranced import Variable
+from loads.records.applied import Load, PartMass, PointLoad
+from loads.records.load_case import LoadCase
+from loads.states.actions import acting_loads
+from loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_reactions
+
+Real = NDArray[np.float64]
+
+SUSPECT = 30.0
+"""Growth of the largest joint force beyond the nominal one from which the distance to a dead point is looked at."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SampledForces(Equilibrium):
+    """Joint forces of n samples.
+
+    Attributes
+    ----------
+    place : SampledPlacement
+    """
+
+    place: SampledPlacement
+
+    @property
+    def placement(self) -> Placement:
+        """Where the links of each sample stand."""
+        return self.place
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class States:
+    """Samples that have an equilibrium.
+
+    Attributes
+    ----------
+    apart : ndarray of bool, shape (N,)
+        Samples that do not assemble on the nominal branch.
+    dead : ndarray of bool, shape (N,)
+        Those at a dead point of the drive, where joint forces grow without limit.
+    forces : mapping of str to SampledForces
+        Load case -> joint forces of the n others.
+    loads : mapping of str to tuple of Load
+        Load case -> all that acts on their links.
+    """
+
+    apart: NDArray[np.bool_]
+    dead: NDArray[np.bool_]
+    forces: Mapping[str, SampledForces]
+    loads: Mapping[str, tuple[Load, ...]]
+
+    @property
+    def good(self) -> NDArray[np.bool_]:
+        """The samples (N,) that have an equilibrium."""
+        return ~(self.apart | self.dead)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sampler:
+    """Solves samples of a case.
+
+    Attributes
+    ----------
+    case : Case
+    pose : Pose
+        Nominal.
+    masses : mapping of str to PartMass
+        Nominal.
+    variables : sequence of Variable
+        The d columns of the samples.
+    """
+
+    case: Case
+    pose: Pose
+    masses: Mapping[str, PartMass]
+    variables: Sequence[Variable]
+
+    def shifts(self, deviations: Real) -> dict[tuple[str, str], NDArray[np.complex128]]:
+        """Return the shifts of points in their links' frames.
+
+        Parameters
+        ----------
+        deviations : ndarray, shape (N, d)
+
+        Returns
+        -------
+        dict of (str, str) to complex ndarray, shape (N,)
+            [mm]
+        """
+        found: dict[tuple[str, str], Any] = {}
+        for variable, column in zip(self.variables, deviations.T, strict=True):
+            if variable.kind == "place":
+                link, point, axis = variable.target
+                at = str(link), str(point)
+                found[at] = found.get(at, 0.0) + (1j if axis else 1.0) * column
+        return found
+
+    def factor(self, deviations: Real, *target: str) -> Real:
+        """Return the factors on an entry of a material.
+
+        Parameters
+        ----------
+        deviations : ndarray, shape (N, d)
+        *target : str
+            Material and entry.
+
+        Returns
+        -------
+        ndarray, shape (N,)
+        """
+        return 1.0 + sum(
+            (
+                x
+                for v, x in zip(self.variables, deviations.T, strict=True)
+                if v.kind == "material" and v.target == target
+            ),
+            np.zeros(len(deviations)),
+        )
+
+    def states(self, deviations: Real) -> States:
+        """Solve pose and statics of samples.
+
+        Parameters
+        ----------
+        deviations : ndarray, shape (N, d)
+
+        Returns
+        -------
+        States
+        """
+        angle = sum(
+            (x for v, x in zip(self.variables, deviations.T, strict=True) if v.kind == "pose"),
+            np.zeros(len(deviations)),
+        )
+        place, assembled = assemble_samples(self.pose, self.shifts(deviations), angle)
+        dead = np.zeros(len(deviations), dtype=np.bool_)
+        drive = self.case.pinned_drive
+        systems: dict[str, Any] = {}
+        kept = assembled.copy()
+        for _ in range(2):  # once more without those at a dead point
+            here, own = _chosen(place, kept), deviations[kept]
+            systems = {}
+            for name, load_case in self.case.load_cases.items():
+                loads = self._loads(name, load_case, here, own)
+                systems[name] = loads, assemble(here, drive, loads)
+            lost = ~_holds([system for _, system in systems.values()])
+            if not lost.any():
+                break
+            dead[np.flatnonzero(kept)[lost]] = True
+            kept = assembled & ~dead
+        forces = {}
+        for name, (_, system) in systems.items():
+            unknowns, residual = system.solved()
+            value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
+            forces[name] = SampledForces(
+                drive=drive,
+                joints=joint_reactions(here, drive, value),
+                drive_torque=value.get("T", np.zeros(len(unknowns))),
+                drive_force=value.get("P", np.zeros(len(unknowns))),
+                residual=residual,
+                place=here,
+            )
+        return States(
+            apart=~assembled, dead=dead, forces=forces, loads={name: loads for name, (loads, _) in systems.items()}
+        )
+
+    def _loads(self, name: str, load_case: LoadCase, place: SampledPlacement, deviations: Real) -> tuple[Load, ...]:
+        if load_case.speed != 0.0:
+            assert self.pose.coordinate is not None
+            first, second = DrivenClosure(place.closure, self.pose.coordinate, self.pose.slides).coefficients(place.q)
+            place = replace(place, qdot=load_case.speed * first, qddot=load_case.speed**2 * second)
+        found = list(acting_loads(self.case, load_case, place, self.masses))
+        for variable, column in zip(self.variables, deviations.T, strict=True):
+            if variable.kind in ("load", "force") and variable.target[0] == name:
+                number = int(variable.target[1])
+                for i in range(len(found)) if number < 0 else (number,):
+                    found[i] = _changed(found[i], variable, column)
+        return tuple(found)
+
+    def link_loads(self, states: States, deviations: Real, load_case: str, link: str) -> LinkLoads:
+        """Return what acts on a link of each sample, moved to the places of its nominal body.
+
+        A pin that is off its nominal place by δ presses there with its force F; about the nominal place this is F and
+        the moment δ × F. So the loads balance on the nominal body as they do on the sample's.
+
+        Parameters
+        ----------
+        states : States
+        deviations : ndarray, shape (n, d)
+            Of the samples that have an equilibrium.
+        load_case, link : str
+
+        Returns
+        -------
+        LinkLoads
+        """
+        forces, loads = states.forces[load_case], states.loads[load_case]
+        found = link_loads(load_case, link, self.case.body(link), forces, loads)
+        shifts = self.shifts(deviations)
+        pins = tuple(
+            p if p.slotted else replace(p, wrench=_moved(p.wrench, shifts.get((link, p.name)))) for p in found.pins
+        )
+        ends = tuple(replace(e, wrench=_moved(e.wrench, shifts.get((link, e.name)))) for e in found.ends)
+        return replace(found, pins=pins, ends=ends)
+
+
+def _moved(wrench: Real, shift: Any) -> Real:
+    if shift is None:
+        return wrench
+    found = wrench.copy()
+    found[..., 5] += shift.real * wrench[..., 1] - shift.imag * wrench[..., 0]
+    return found
+
+
+def _chosen(place: SampledPlacement, kept: NDArray[np.bool_]) -> SampledPlacement:
+    return SampledPlacement(closure=place.closure.chosen(kept), q=place.q[kept])
+
+
+def _holds(systems: Sequence[Any]) -> NDArray[np.bool_]:
+    """Tell which samples are no dead points, by the smallest singular value where the determinant is small."""
+    matrix = systems[0].scaled
+    if not len(matrix):
+        return np.ones(0, dtype=np.bool_)
+    sign, size = np.linalg.slogdet(matrix)
+    suspect = (sign == 0.0) | ~np.isfinite(size) | (size < np.median(size) - np.log(SUSPECT))
+    found = np.ones(len(matrix), dtype=np.bool_)
+    if suspect.any():
+        found[suspect] = np.linalg.svd(matrix[suspect], compute_uv=False)[:, -1] >= NEARLY_SINGULAR
+    return found
+
+
+def _changed(load: Load, variable: Variable, column: Real) -> Load:
+    """Return a load times 1 + its deviation, or with a component more."""
+    if variable.kind == "load":
+        names = (*load.VECTORS, *load.SCALARS)
+        scaled: Any = {}
+        for name in names:
+            values = np.asarray(getattr(load, name))
+            scaled[name] = values * (1.0 + column).reshape(-1, *[1] * (values.ndim - 1))
+        changed: Any = load
+        found: Load = replace(changed, **scaled)
+        return found
+    assert isinstance(load, PointLoad)
+    wrench = load.wrench.copy()
+    wrench[..., int(variable.target[2])] += column
+    return replace(load, wrench=wrench)

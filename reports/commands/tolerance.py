@@ -1,0 +1,123 @@
+"""The command ``alula tolerance``: samples of a case's tolerances, with their probabilities."""
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from reports.commands.study import stated
+
+if TYPE_CHECKING:
+    from fea.tolerance.result import ToleranceResult
+    from loads.case.case import Case
+
+SAMPLES = "samples.npz"
+app = typer.Typer()
+
+
+@app.command()
+def tolerance(
+    case: Annotated[
+        str, typer.Argument(help="Path to a case file, or the name of a built-in case.", show_default=False)
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder; result.json and samples.npz go to its subfolder tolerance."),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")] = False,
+    overrides: Annotated[list[str] | None, typer.Option("--set", help="Override an entry of the case.")] = None,
+    tolerances: Annotated[
+        list[str] | None,
+        typer.Option("--tolerance", help='Besides those of the case: pins="0.2 mm", links.AE.points.E="0.1 mm".'),
+    ] = None,
+    samples: Annotated[int, typer.Option(min=100, max=10_000_000, help="Independent samples.")] = 100_000,
+    seed: Annotated[int, typer.Option(min=0, help="Of the samples.")] = 0,
+    threads: Annotated[int, typer.Option(min=1, max=256, help="Threads per library.")] = 2,
+    memory: Annotated[str | None, typer.Option(help='Memory limit, such as "4 GB".', show_default=False)] = None,
+    accuracy: Annotated[
+        str | None,
+        typer.Option(help='Discretisation error of the nominal solids, such as "5 %".', show_default=False),
+    ] = None,
+) -> None:
+    """Sample the tolerances of a case: how likely every check passes, and which tolerance matters."""
+    from fea.check.run import effort_of
+    from fea.tolerance.analysis import tolerance_case
+    from loads.case.case_file import read_case
+    from reports.page.output import refuse_unusable
+    from reports.tables.tolerance import as_json, print_tolerance
+    from reports.words.limits import limited
+
+    with limited(threads, memory):
+        parsed = with_tolerances(read_case(case, overrides or ()), stated(tolerances, "--tolerance"))
+        refuse_unusable(output, "tolerance")
+        effort = effort_of(parsed, accuracy)
+        result = tolerance_case(
+            parsed, name=case, samples=samples, seed=seed, threads=threads, effort=effort, progress=_progress
+        )
+        if json:
+            print(as_json(result), flush=True)
+        else:
+            from rich.console import Console
+
+            print_tolerance(result, Console())
+        if output is not None:
+            write_tolerance(result, output)
+            if not json:
+                print(f"Record and samples: {output / 'tolerance'}")
+
+
+def with_tolerances(case: "Case", more: Mapping[str, str]) -> "Case":
+    """Return a case with more tolerances, or others.
+
+    Parameters
+    ----------
+    case : Case
+    more : mapping of str to str
+        Path of an entry -> half the width.
+
+    Returns
+    -------
+    Case
+    """
+    if not more:
+        return case
+    kept = {path: one.model_dump() for path, one in case.tolerances.items()}
+    return case.with_values({"tolerances": kept | dict(more)})
+
+
+def write_tolerance(result: "ToleranceResult", target: Path) -> None:
+    """Write ``result.json`` and ``samples.npz``, the deviations and all numbers of every sample.
+
+    Parameters
+    ----------
+    result : ToleranceResult
+    target : Path
+        The output folder; the files go to its subfolder ``tolerance``.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``write_folder``.
+    """
+    import numpy as np
+
+    from reports.page.output import MARK, write_folder
+    from reports.tables.tolerance import as_json
+
+    def fill(folder: Path) -> None:
+        (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")
+        arrays: dict[str, Any] = {
+            name: np.array([getattr(one, name) for one in result.numbers]) for name in ("values", "low", "high")
+        }
+        np.savez_compressed(folder / SAMPLES, deviations=result.deviations, **arrays)
+
+    write_folder(target, "tolerance", fill)
+
+
+def _progress(message: str) -> None:
+    from reports.commands.ending import end_if_stopped
+
+    end_if_stopped()
+    print(message, file=sys.stderr, flush=True)

@@ -1,0 +1,261 @@
+"""Tolerances: sampled poses, forces and stresses against direct ones, probabilities against closed forms."""
+
+import math
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.stats import beta
+
+from fea.check.case_statics import solve_case_statics
+from fea.refine.refinement import START, Effort
+from fea.solid.solution import solve_solid
+from fea.solid.stress import stress_field
+from fea.tolerance.analysis import _drawn, tolerance_case
+from fea.tolerance.link_response import link_response
+from fea.tolerance.result import Probability
+from fea.tolerance.states import Sampler
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.materials.material import TOLD
+from geometry.meshing.mesh import mesh_body
+from loads.case.case_file import read_case, validate
+from loads.case.toleranced import toleranced
+
+LEVER = {
+    "schema_version": 1,
+    "title": "lever",
+    "links": {
+        "base": {"ground": True, "points": {"O": ["0 mm", "0 mm"], "Q": ["0 mm", "9 mm"]}},
+        "arm": {"part": "bar", "points": {"O": ["0 mm", "0 mm"], "P": ["60 mm", "0 mm"]}},
+    },
+    "joints": {"O": {"links": ["base", "arm"], "pin_diameter": "3 mm"}},
+    "pose": {"coordinate": "arm", "angle": "90 deg"},
+    "drive": {"link": "arm", "joint": "O"},
+    "parts": {"bar": {"shape": "bar", "material": "m", "width": "8 mm", "thickness": "4 mm", "fillet_radius": "2 mm"}},
+    "materials": {
+        "m": {
+            "title": "m", "strength": "yield", "yield_strength": "40 MPa", "youngs_modulus": "2 GPa",
+            "poissons_ratio": 0.3, "density": "1200 kg/m^3", "sources": dict.fromkeys(TOLD, "a test"),
+            "status": dict.fromkeys(TOLD, "assumed"),
+        }
+    },
+    "load_cases": {"pull": {"forces": [{"link": "arm", "at": "P", "force": ["10 N", "0 N"]}]}},
+    "large_displacement": "off",
+    "checks": {"strength": {"type": "safety-factor", "minimum": 1.0}},
+}  # fmt: skip
+ONE_MESH = Effort(max_meshes=1)
+
+
+def lever(**changes):
+    return validate(LEVER | changes)
+
+
+@cache
+def sampled(entry, half, distribution="uniform", samples=20_000, angle="90 deg", minimum=1.0):
+    """The lever under one tolerance."""
+    case = lever(
+        tolerances={entry: {"plus_minus": half, "distribution": distribution}},
+        pose={"coordinate": "arm", "angle": angle},
+        checks={"strength": {"type": "safety-factor", "minimum": minimum}},
+    )
+    return tolerance_case(case, samples=samples, threads=1, effort=ONE_MESH)
+
+
+def deviated(case, variables, row):
+    """The case with the deviations of places and of the pose written into its entries."""
+    values = {}
+    for variable, x in zip(variables, row.tolist(), strict=True):
+        if variable.kind == "place":
+            link, point, axis = variable.target
+            values[f"links.{link}.points.{point}.{axis}"] = f"{case.links[link].points[point][axis] + x!r} mm"
+        elif variable.kind == "pose" and case.pose.travel is None:
+            values["pose.angle"] = f"{case.pose.angle + x!r} rad"
+    return case.with_values(values)
+
+
+CRANK = {f"links.{at}": "0.1 mm" for at in ("base.points.O", "crank.points.A", "rod.points.A")}
+
+
+@pytest.mark.parametrize(
+    ("name", "tolerances"),
+    [("owl-wing-static", {"pins": "0.2 mm"}), ("owl-wing-closed", {"pins": "0.2 mm"}), ("ornithopter", CRANK)],
+)
+def test_samples_have_the_joint_forces_of_direct_checks(name, tolerances):
+    """Places and the pose's angle are off; the ornithopter has slots and inertia."""
+    case = read_case(name).with_values({"tolerances": tolerances | {"pose.angle": "0.5 deg"}})
+    variables = toleranced(case)
+    rows = _drawn(variables, 40, np.random.default_rng(3))
+    nominal = solve_case_statics(case, name)
+    found = Sampler(case=case, pose=nominal.pose, masses=nominal.masses, variables=variables).states(rows)
+    compared = 0
+    for number, row in enumerate(rows[:8]):
+        if not found.good[number]:
+            continue
+        try:
+            direct = solve_case_statics(deviated(case, variables, row), name)
+        except CaseError as error:
+            if "near" not in str(error):
+                raise
+            continue  # rough directions of the case file no longer tell the branch
+        place, compared = int(found.good[:number].sum()), compared + 1
+        for load_case, reactions in direct.reactions.items():
+            scale = max(joint.magnitude for joint in reactions.joints.values())
+            weighs = case.load_cases[load_case].own_weight or case.load_cases[load_case].speed
+            for joint, reaction in reactions.joints.items():
+                wrench = found.forces[load_case].joints[joint].wrench[place]
+                off = np.abs(wrench - reaction.wrench).max()
+                assert off < (2e-2 if weighs else 1e-8) * scale  # the mass of longer parts is left as it is
+    assert compared >= 4
+
+
+def test_samples_that_do_not_assemble_are_told_from_those_that_do():
+    """Next to its dead point the closed owl wing has no assembly in a tenth of the samples; the case file agrees."""
+    case = read_case("owl-wing-closed").with_values({"tolerances": {"pins": "0.2 mm"}})
+    variables = toleranced(case)
+    rows = _drawn(variables, 60, np.random.default_rng(1))
+    states = Sampler(case=case, pose=case.solve_pose(), masses={}, variables=variables).states(rows)
+    assert 1 <= states.apart.sum() <= 20
+    for number in np.flatnonzero(states.apart)[:4]:
+        try:
+            pose = deviated(case, variables, rows[number]).solve_pose()
+        except CaseError:
+            continue
+        # what the case file finds instead is another assembly
+        assert abs(pose.angles["AE"] - case.solve_pose().angles["AE"]) > math.radians(5.0)
+
+
+def test_link_stress_of_samples_equals_direct_solutions_on_the_same_mesh():
+    case = lever(tolerances={"pins": "0.2 mm", "links.arm.points.P": "0.2 mm", "pose.angle": "25 deg"})
+    variables = toleranced(case)
+    sampler = Sampler(case=case, pose=case.solve_pose(), masses={}, variables=variables)
+    rng = np.random.default_rng(0)
+    rows = np.vstack([np.zeros(len(variables)), _drawn(variables, 300, rng)])
+    states, body, card = sampler.states(rows), case.body("arm"), case.material_of("arm")
+    loads = sampler.link_loads(states, rows, "pull", "arm")
+    assert np.abs(loads.resultant()).max() < 1e-9 * 600.0  # what acts on the nominal body balances
+    response = link_response(
+        body, card, SimpleNamespace(space=_solid(body, card, loads.chosen(0)).space), [loads.chosen(slice(0, 60))],
+        stated="eye-faces",
+    )  # fmt: skip
+    peaks = response.peaks("stress", loads)
+    for number in (0, 70, 200, 300):
+        direct = _solid(body, card, loads.chosen(number))
+        for one in direct.cases:
+            largest = stress_field(direct.space, one.displacement, E=direct.E, nu=direct.nu).peak.value
+            [found] = [p[number] for (law, way), p in peaks.items() if (law.span, way) == (one.span, one.transfer)]
+            assert found == pytest.approx(largest, rel=5e-3)
+
+
+def _solid(body, card, loads):
+    return solve_solid(
+        _lever_mesh(), E=card.youngs_modulus, nu=card.poissons_ratio, density=card.density, loads=[loads],
+        line=("bore:O", "bore:O"), threads=1,
+    )  # fmt: skip
+
+
+@cache
+def _lever_mesh():
+    return mesh_body(lever().body("arm"), START)
+
+
+def test_a_normal_load_gives_its_torque_a_known_mean_and_standard_deviation():
+    """T = F l at 90 deg; ±30 % is three standard deviations."""
+    result = sampled("load_cases.pull.forces.0", "30 %", "normal")
+    torque = result.numbers[-1]
+    assert (torque.subject, torque.quantity) == ("the drive", "drive torque")
+    assert torque.values.mean() == pytest.approx(600.0, rel=4.0 * 0.1 / math.sqrt(20_000))
+    assert torque.values.std() == pytest.approx(60.0, rel=4.0 / math.sqrt(2 * 20_000))
+    assert torque.first == pytest.approx([1.0])
+    assert torque.total == pytest.approx([1.0])
+
+
+def test_an_angle_gives_the_torque_the_distribution_of_its_sine():
+    """A uniform angle about 30 deg: mean F l sin(30 deg) sin(h)/h, and Var by the integral of sin²."""
+    result = sampled("pose.angle", "10 deg", angle="30 deg")
+    h, middle = math.radians(10.0), math.radians(30.0)
+    mean = math.sin(middle) * math.sin(h) / h
+    square = 0.5 - math.cos(2.0 * middle) * math.sin(2.0 * h) / (4.0 * h)
+    torque = result.numbers[-1].values / 600.0
+    deviation = math.sqrt(square - mean**2)
+    assert torque.mean() == pytest.approx(mean, abs=4.0 * deviation / math.sqrt(20_000))
+    assert torque.std() == pytest.approx(deviation, rel=0.03)
+
+
+def test_probability_of_strength_under_a_load_follows_from_the_nominal_band():
+    """The factor is n/(1 + δ) with δ uniform in ±0.4, so that P(n/(1 + δ) >= 1) = (n - 0.6)/0.8 for each end n."""
+    low = sampled("load_cases.pull.forces.0", "40 %").numbers[0]
+    factor = low.nominal
+    result = sampled("load_cases.pull.forces.0", "40 %", minimum=round(factor[1] * 0.9, 4))
+    strength = result.numbers[0]
+    for end, found in ((factor[1], strength.certain), (factor[2], strength.possible)):
+        exact = min(max((end / strength.limit - 0.6) / 0.8, 0.0), 1.0)
+        assert found.low - 0.005 <= exact <= found.high + 0.005
+    assert result.certain.count == strength.certain.count
+    assert result.possible.count == strength.possible.count
+    corner = result.corner
+    assert corner.value == pytest.approx(factor[0] / 1.4, rel=1e-6)
+
+
+def test_strength_and_modulus_change_the_numbers_in_proportion():
+    case = lever(
+        tolerances={"materials.m.yield_strength": "10 %", "materials.m.youngs_modulus": "20 %"},
+        checks={
+            "strength": {"type": "safety-factor", "minimum": 1.0},
+            "stiff": {"type": "displacement", "maximum": "1 mm"},
+        },
+    )
+    result = tolerance_case(case, samples=4000, threads=1, effort=ONE_MESH)
+    strength, stiff = result.numbers[:2]
+    assert strength.values == pytest.approx(strength.nominal[0] * (1.0 + result.deviations[:, 0]))
+    assert stiff.values == pytest.approx(stiff.nominal[0] / (1.0 + result.deviations[:, 1]))
+    assert strength.first[0] > 0.9
+    assert stiff.first[1] > 0.9
+
+
+def test_confidence_intervals_are_those_of_clopper_and_pearson():
+    """Ends by the quantiles of the beta distribution (Clopper and Pearson 1934)."""
+    found = Probability.of(np.arange(100) < 7)
+    assert (found.low, found.high) == pytest.approx((beta.ppf(0.025, 7, 94), beta.ppf(0.975, 8, 93)))
+    nothing = Probability.of(np.zeros(50, dtype=bool))
+    assert nothing.low == 0.0
+    assert nothing.high == pytest.approx(1.0 - 0.025 ** (1 / 50))
+
+
+@pytest.mark.parametrize(
+    ("tolerances", "said"),
+    [
+        ({"parts.bar.thickness": "0.1 mm"}, "tolerances of sizes are not covered"),
+        ({"joints.O.pin_diameter": "0.1 mm"}, "tolerances of sizes are not covered"),
+        ({"links.arm.points.X": "0.1 mm"}, "'X' is no point of link arm"),
+        ({"links.arm.points.P": "10 %"}, "above zero"),
+        ({"links.arm.points.P": "0.1 N"}, "not a unit of length"),
+        ({"load_cases.pull.forces.1": "10 %"}, "none of the 1 forces"),
+        ({"load_cases.pull.forces.0": "1 N"}, "must be a share"),
+        ({"materials.m.ultimate_strength": "5 %"}, "states no ultimate_strength"),
+        ({"materials.m.yield_strength": "100 %"}, "as large as"),
+        ({"drive.link": "5 %"}, "cannot have a tolerance"),
+        ({"pins": {"plus_minus": "0.1 mm", "distribution": "cauchy"}}, "uniform"),
+    ],
+)
+def test_entries_that_cannot_be_toleranced_are_refused(tolerances, said):
+    with pytest.raises(CaseError, match=said):
+        lever(tolerances=tolerances)
+
+
+def test_a_case_without_tolerances_and_a_redundant_one_are_refused():
+    with pytest.raises(CaseError, match="states none"):
+        tolerance_case(lever(), effort=ONE_MESH)
+    bonded = lever(joint_model="bonded", tolerances={"pins": "0.1 mm"})
+    with pytest.raises(CannotRunError, match="not covered"):
+        tolerance_case(bonded, samples=100, threads=1, effort=ONE_MESH)
+
+
+def test_a_place_of_its_own_replaces_that_of_all_pins():
+    case = lever(
+        tolerances={"pins": "0.2 mm", "links.arm.points.O": {"plus_minus": "0.1 mm", "distribution": "worst case"}}
+    )
+    own = {(v.target[0], v.half, v.distribution) for v in toleranced(case)}
+    assert own == {("base", 0.2, "uniform"), ("arm", 0.1, "worst case")}
+    drawn = _drawn([v for v in toleranced(case) if v.target[0] == "arm"], 50, np.random.default_rng(0))
+    assert set(np.unique(drawn).tolist()) == {-0.1, 0.1}
