@@ -36,14 +36,53 @@ def margin(number: VariantNumber, *, worst: bool = True) -> float:
     float
         0 where the number is not known; infinite for a share of the load that is held in full, which says no more.
     """
-    if number.quantity == Quantity.LOAD_SHARE.value and number.low >= number.limit:
-        return math.inf
-    at_least = sense_of(number) is Sense.AT_LEAST
-    end = (number.low if at_least else number.high) if worst else number.value
-    over, under = (end, number.limit) if at_least else (number.limit, end)
-    if math.isnan(over) or math.isnan(under):
-        return 0.0
-    return over / under if under > 0.0 else math.inf
+    value, low, _ = margin_band(number)
+    found = low if worst else value
+    return 0.0 if math.isnan(found) else found
+
+
+def margin_band(number: VariantNumber) -> tuple[float, float, float]:
+    """Return the margin of a check with its band.
+
+    Parameters
+    ----------
+    number : VariantNumber
+        Of a check.
+
+    Returns
+    -------
+    tuple of float
+        Value, low and high; NaN from 0 to infinity where the number is not known.
+    """
+    ends = (number.value, number.low, number.high)
+    if any(map(math.isnan, (*ends, number.limit))):
+        return math.nan, 0.0, math.inf
+    if sense_of(number) is Sense.AT_MOST:
+        value, high, low = (number.limit / end if end > 0.0 else math.inf for end in ends)
+        return value, low, high
+    whole = number.limit if number.quantity == Quantity.LOAD_SHARE.value else math.inf
+    value, low, high = (end / number.limit if number.limit > 0.0 and end < whole else math.inf for end in ends)
+    return value, low, high
+
+
+def least_margin(result: VariantResult) -> tuple[float, float, float]:
+    """Return the least margin of all checks: by the values, and the interval that it may lie in.
+
+    The interval lies above 1 where all checks pass, below 1 where one fails, and holds 1 where values leave it open.
+
+    Parameters
+    ----------
+    result : VariantResult
+        With checks.
+
+    Returns
+    -------
+    tuple of float
+        Value, low and high; the value is NaN where no check's value is known.
+    """
+    bands = [margin_band(number) for number in result.numbers if number.check]
+    value = min((value for value, _, _ in bands if not math.isnan(value)), default=math.nan)
+    return value, min(low for _, low, _ in bands), min(high for _, _, high in bands)
 
 
 def counterpart(result: VariantResult, number: VariantNumber) -> VariantNumber | None:

@@ -141,11 +141,36 @@ def _range(path: str, text: str) -> Axis:
 
 def _quantity(text: str, named: str) -> tuple[float, str]:
     """Number and unit of a text such as ``2 mm``."""
-    text = text.strip()
+    found = number_of(text)
+    if found is None:
+        raise CaseError(
+            f"{named} '{printable(text.strip())}' is no number with a unit; write for example \"2 mm..8 mm/7\""
+        )
+    return found
+
+
+def number_of(stated: object) -> tuple[float, str] | None:
+    """Return number and unit of a value such as ``"2 mm"``.
+
+    Parameters
+    ----------
+    stated : object
+        As a case file states it.
+
+    Returns
+    -------
+    tuple or None
+        The unit is "" for a pure number; None for what is no finite number.
+    """
+    if isinstance(stated, int | float) and not isinstance(stated, bool):
+        return (float(stated), "") if math.isfinite(stated) else None
+    if not isinstance(stated, str):
+        return None
+    text = stated.strip()
     number = _NUMBER.match(text)
     unit = text[number.end() :].strip() if number else ""
     if number is None or (unit and not UNIT.fullmatch(unit)) or not math.isfinite(float(number[0])):
-        raise CaseError(f"{named} '{printable(text)}' is no number with a unit; write for example \"2 mm..8 mm/7\"")
+        return None
     return float(number[0]), unit
 
 

@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 import typer.core
@@ -89,6 +89,10 @@ def run(
     ] = "",
     retry: Annotated[bool, typer.Option("--retry", help="Try crashed points again that had three attempts.")] = False,
     yes: Annotated[bool, typer.Option("--yes", help=f"Run more than {MANY} points.")] = False,
+    pictures: Annotated[
+        Path | None,
+        typer.Option("--pictures", help="Folder for study.html and pictures, drawn at the end.", show_default=False),
+    ] = None,
 ) -> None:
     """Compute the variants of a case that are missing in a folder."""
     from fea.study.compute import compute_study
@@ -98,11 +102,23 @@ def run(
         "analysis": analysis, "fidelity": fidelity, "accuracy": accuracy, "mass": mass,
     })  # fmt: skip
     variants = Variants(plan, folder)
+    if pictures is not None:
+        from reports.study.page import refuse_folder
+
+        refuse_folder(output, pictures)
     if len(variants) > MANY and not yes:
         _refuse_many(variants, workers)
     done, counts = compute_study(variants, output, workers=workers, scheduler=scheduler, retry=retry, tell=_teller())
     print(summary(done, counts))
+    if pictures is not None:
+        _draw(output, pictures, (), sys.stdout)
     print(f"Show them: alula study show {output}")
+
+
+def _draw(folder: Path, output: Path, wanted: Sequence[str], told: TextIO) -> None:
+    from reports.study.page import write_study
+
+    print(f"Pictures: {write_study(folder, output, wanted)}", file=told)
 
 
 def stated(options: Sequence[str] | None, name: str) -> dict[str, str]:
@@ -240,8 +256,17 @@ def show(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print points as JSON.")] = False,
     most: Annotated[int, typer.Option("--most", min=1, help="Rows of the table.")] = 40,
-) -> None:
-    """Show what became of the points of a study: table, best, worst, undecided."""
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder for study.html and pictures, in its subfolder study.",
+                     show_default=False),
+    ] = None,
+    numbers: Annotated[
+        list[str] | None,
+        typer.Option("--number", help='Draw numbers of this name as well, such as "drive torque".', show_default=False),
+    ] = None,
+) -> None:  # fmt: skip
+    """Show what became of the points of a study: table, best, worst, undecided; pictures with -o."""
     from fea.study.store import Store
     from reports.tables.study import as_record, columns, print_study
 
@@ -254,6 +279,8 @@ def show(
             from rich.console import Console
 
             print_study(store, Console(), most)
+    if output is not None:
+        _draw(folder, output, numbers or (), sys.stderr if json else sys.stdout)
 
 
 def _write_csv(path: Path, rows: Iterator[Sequence[object]]) -> None:

@@ -47,6 +47,11 @@ class Row:
         return 0.0 if self.nearest is None else margin(self.nearest)
 
     @property
+    def merit(self) -> tuple[int, float]:
+        """What the best point has most of: the verdict, then the margin."""
+        return (Verdict.FAIL, Verdict.UNDECIDED, Verdict.PASS).index(self.answer.verdict or Verdict.FAIL), self.margin
+
+    @property
     def mass(self) -> float | None:
         """Of all links [g]; None where they were not weighed."""
         found = [f.value for f in self.answer.numbers if f.quantity == "mass" and f.subject == "the linkage"]
@@ -181,7 +186,7 @@ def print_study(store: Store, console: "Console", most: int) -> None:
 
 
 def _extremes(judged: Sequence[Row], console: "Console") -> None:
-    best, worst = max(judged, key=lambda row: row.margin), min(judged, key=lambda row: row.margin)
+    best, worst = max(judged, key=lambda row: row.merit), min(judged, key=lambda row: row.merit)
     for which, row in (("Best", best), ("Worst", worst)):
         stated = ", ".join(f"{path} = {value}" for path, value in row.parameters.items())
         say(console, f"{which}: point {row.position} ({stated}): {row.outcome}, {nearest_text(row)}.")

@@ -1,0 +1,321 @@
+"""Pictures of a study show what its store holds, and what they state beside it (R², fronts, contours) is right."""
+
+import math
+import re
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import programs
+import pytest
+from html_pages import Page, stands_alone
+
+from fea.common.verdict import Verdict
+from fea.study.margin import least_margin, margin, margin_band, nearest
+from fea.study.numbers import VariantNumber, VariantResult
+from fea.study.store import Store
+from geometry.base.errors import CaseError
+from reports.study.choice import chosen
+from reports.study.columns import Parameter, Response, read_study
+from reports.study.curves import curves
+from reports.study.many import front, parallel
+from reports.study.maps import verdict_map
+from reports.study.page import write_study
+from reports.study.regression import regression
+from reports.study.spread import histogram, tornado
+from reports.study.style import LOOKS
+
+CSS = Path(__file__).resolve().parents[3] / "reports" / "templates" / "report.css"
+
+
+def checked(value, low, high, limit, quantity="safety factor", unit="1"):
+    """A checked number with the verdict of its band."""
+    at_most = unit == "mm"
+    kept, missed = (high <= limit, low > limit) if at_most else (low >= limit, high < limit)
+    return VariantNumber(
+        check="strength", subject="AE", load_case="flight", quantity=quantity, unit=unit, value=value, low=low,
+        high=high, limit=limit, verdict=Verdict.PASS if kept else Verdict.FAIL if missed else Verdict.UNDECIDED,
+    )  # fmt: skip
+
+
+def answer(factor, mass=None):
+    """What became of a variant with that safety factor, of which 2 is asked."""
+    numbers = [checked(factor, 0.9 * factor, 1.1 * factor, 2.0)]
+    if mass is not None:
+        numbers.append(VariantNumber.exact("mass", "g", mass, "the linkage"))
+    return VariantResult(state="done", verdict=numbers[0].verdict, numbers=tuple(numbers))
+
+
+def store_of(folder, points, link=(), case="owl-wing-static"):
+    """Keep points in a store of their own."""
+    plan = {"case": case, "analysis": "check", "fidelity": "beam", "set": {}, "vary": {}, "link": dict(link)}
+    with Store.writing(folder) as store:
+        store.begin({"plan": plan, "versions": ["0.1.0", "4.13.1"], "points": len(points)}, ())
+        for position, (parameters, result) in enumerate(points):
+            store.add(position, str(position), parameters, result)
+    return folder
+
+
+def columns_of(folder, points, **options):
+    """Read a study of these points."""
+    with Store.reading(store_of(folder, points, **options)) as store:
+        return read_study(store)
+
+
+def quantity(values, path="parts.bar.thickness"):
+    return Parameter(path=path, unit="mm", values=np.array(values, dtype=float))
+
+
+def response(values, limit=1.0, spread=0.1):
+    value = np.array(values, dtype=float)
+    return Response(label="n", value=value, low=(1 - spread) * value, high=(1 + spread) * value, limit=limit)
+
+
+def marks(axes, name):
+    """Places of the marks of an outcome."""
+    [line] = [line for line in axes.lines if line.get_label() == name]
+    return np.column_stack(line.get_data())
+
+
+def counted(axes):
+    """How many values the bars of each outcome hold."""
+    names = axes.get_legend_handles_labels()[1]
+    return {name: sum(bar.get_height() for bar in bars) for name, bars in zip(names, axes.containers, strict=True)}
+
+
+@pytest.mark.parametrize(
+    ("number", "band"),
+    [
+        (checked(3.0, 2.4, 4.0, 2.0), (1.5, 1.2, 2.0)),
+        (checked(0.5, 0.4, 0.8, 1.0, "displacement", "mm"), (2.0, 1.25, 2.5)),
+        (checked(0.7, 0.0, 0.9, 1.0, "share of the load that is held"), (0.7, 0.0, 0.9)),
+        (checked(1.0, 0.6, 1.0, 1.0, "share of the load that is held"), (math.inf, 0.6, math.inf)),
+        (checked(math.nan, math.nan, math.nan, 2.0), (math.nan, 0.0, math.inf)),
+    ],
+)
+def test_a_margin_is_a_factor_with_a_band(number, band):
+    assert margin_band(number) == pytest.approx(band, nan_ok=True)
+    assert margin(number) == band[1]
+
+
+def test_a_load_that_is_held_whole_says_nothing_of_the_margin():
+    held, factor = checked(1.0, 1.0, 1.0, 1.0, "share of the load that is held"), checked(9.0, 8.0, 10.0, 2.0)
+    found = VariantResult(state="done", verdict=Verdict.PASS, numbers=(held, factor))
+    assert nearest(found) is factor
+    assert least_margin(found) == (4.5, 4.0, 5.0)
+
+
+def test_a_point_that_passes_is_better_than_one_with_more_margin_that_nobody_can_decide(tmp_path):
+    """Hand calculation beyond its calibration may have a band far above the limit without deciding anything."""
+    open_end = VariantResult(state="done", verdict=Verdict.UNDECIDED, numbers=(checked(9.0, 8.0, 10.0, 2.0),))
+    study = columns_of(tmp_path, [({"a": "1 mm"}, answer(3.0)), ({"a": "2 mm"}, open_end), ({"a": "3 mm"}, answer(1))])
+    assert (study.extremes["best"].position, study.extremes["worst"].position) == (0, 2)
+
+
+def test_a_study_is_read_into_columns(tmp_path):
+    """Values of one kind in one unit, words apart, linked entries left out; what was refused has no numbers."""
+    refused = VariantResult(state="refused", sentence="parts.a.width: it must be positive")
+    points = [
+        ({"width": "5 mm", "kind": "tube", "pin": "3 mm", "same": 1}, answer(3.0, 10.0)),
+        ({"width": "0.6 cm", "kind": "bar", "pin": "4 mm", "same": 1}, answer(1.0, 12.0)),
+        ({"width": "7 mm", "kind": "bar", "pin": "5 mm", "same": 1}, refused),
+    ]
+    study = columns_of(tmp_path, points, link={"pin": "width - 2 mm"})
+    assert [(one.path, one.unit, one.words) for one in study.parameters] == [
+        ("width", "mm", ()), ("kind", "", ("tube", "bar")),
+    ]  # fmt: skip
+    assert study.parameters[0].values == pytest.approx([5.0, 6.0, 7.0])
+    assert study.margin.value == pytest.approx([1.5, 0.5, math.nan], nan_ok=True)
+    assert study.margin.low == pytest.approx([1.35, 0.45, math.nan], nan_ok=True)
+    assert study.mass == pytest.approx([10.0, 12.0, math.nan], nan_ok=True)
+    assert (study.safety_factor.limit, list(study.outcome)) == (2.0, ["pass", "fail", "refused"])
+    assert (study.extremes["best"].position, study.extremes["worst"].position) == (0, 1)
+    assert study.sentences == {("refused", refused.sentence): 1}
+
+
+GRID = {"a": ["1 mm", "2 mm", "3 mm"], "b": ["1 mm", "2 mm", "3 mm"], "c": ["1 mm", "2 mm"], "k": ["x", "y"]}
+
+
+@pytest.mark.parametrize(
+    ("varied", "expected"),
+    [
+        ("a", "curve"),
+        ("ak", "curve"),
+        ("ab", "map"),
+        ("abk", "map"),
+        ("k", "values"),
+        ("abc", "sensitivity parallel"),
+    ],
+)
+def test_what_varies_chooses_the_pictures(varied, expected, tmp_path):
+    points = []
+    for values in product(*(GRID[name] for name in varied)):
+        size = math.prod(float(value[0]) if value[0].isdigit() else ord(value) / 100 for value in values)
+        points.append((dict(zip(varied, values, strict=True)), answer(size, 3.0 * size)))
+    study = columns_of(tmp_path, points)
+    assert [one[0] for one in chosen(study)] == [*expected.split(), "margins", "pareto"]
+    assert "pareto" not in [one[0] for one in chosen(replace(study, mass=None))]
+
+
+def test_a_curve_shows_values_verdicts_and_limit():
+    """Marks of each outcome where its points are; refused ones at the lower edge; the scale holds the limit."""
+    outcome = np.array(["fail", "undecided", "pass", "refused"])
+    figure = curves(quantity([2, 3, 4, 5]), response([0.5, 1.0, 2.0, math.nan]), outcome, [("", np.ones(4, bool))])
+    [axes] = figure.axes
+    assert marks(axes, "fail").tolist() == [[2.0, 0.5]]
+    assert marks(axes, "undecided").tolist() == [[3.0, 1.0]]
+    assert marks(axes, "refused")[0, 0] == 5.0
+    assert any(np.allclose(line.get_ydata(), 1.0) and len(line.get_xdata()) == 2 for line in axes.lines)
+    assert axes.get_ylim()[0] < 0.45
+    assert axes.get_xlabel() == "parts.bar.thickness [mm]"
+    band = np.vstack([path.vertices for area in axes.collections for path in area.get_paths()])
+    assert band[:, 1].min() == pytest.approx(0.45)
+    assert band[:, 1].max() == pytest.approx(2.2)
+
+
+@pytest.mark.parametrize("scattered", [False, True])
+def test_contours_of_a_map_lie_where_the_number_is(scattered):
+    """A number whose logarithm is linear is interpolated exactly, on a grid as between scattered points."""
+    x, y = (values.ravel() for values in np.meshgrid(np.linspace(2.0, 8.0, 7), np.linspace(1.0, 4.0, 5)))
+    if scattered:
+        random = np.random.default_rng(1)
+        x, y = x + random.uniform(-0.3, 0.3, x.size), y + random.uniform(-0.3, 0.3, y.size)
+    number = response(np.exp(0.4 * (x - 5.0) - 0.7 * (y - 2.5)))
+    outcome = np.where(number.value >= 1.0, "pass", "fail")
+    figure = verdict_map((quantity(x), quantity(y, "b")), number, outcome, [("", np.ones(x.size, bool))])
+    [axes] = figure.axes
+    [contours] = [one for one in axes.collections if hasattr(one, "levels")]
+    assert 0.0 in contours.levels  # the logarithm of the limit
+    for level, path in zip(contours.levels, contours.get_paths(), strict=True):
+        at = path.vertices
+        assert 0.4 * (at[:, 0] - 5.0) - 0.7 * (at[:, 1] - 2.5) == pytest.approx(np.full(len(at), level), abs=1e-9)
+    assert len(marks(axes, "pass")) + len(marks(axes, "fail")) == x.size
+    assert bool(axes.patches) != scattered  # cells of a grid alone
+
+
+def test_no_contour_crosses_a_point_without_value():
+    x, y = (values.ravel() for values in np.meshgrid(np.arange(5.0), np.arange(5.0)))
+    value = np.where(x == 2.0, np.nan, 1.0 + y)
+    figure = verdict_map(
+        (quantity(x), quantity(y, "b")), response(value), np.where(x == 2.0, "refused", "pass"), [("", x > -1.0)]
+    )
+    [contours] = [one for one in figure.axes[0].collections if hasattr(one, "levels")]
+    at = np.vstack([path.vertices for path in contours.get_paths()])
+    assert not np.any((at[:, 0] > 1.0) & (at[:, 0] < 3.0))
+
+
+def test_a_histogram_counts_every_value_once_and_divides_at_the_limit():
+    random = np.random.default_rng(3)
+    values = np.append(np.exp(random.normal(0.5, 1.0, 400)), np.inf)
+    outcome = np.where(values >= 1.2, "pass", np.where(values < 0.8, "fail", "undecided"))
+    axes = histogram(values, 1.0, label="n", outcome=outcome).axes[0]
+    assert counted(axes) == {name: np.sum(outcome[:-1] == name) for name in ("pass", "undecided", "fail")}
+    edges = np.array([bar.get_x() for bar in axes.containers[0]])
+    assert np.abs(np.log(edges)).min() == pytest.approx(0.0, abs=1e-9)
+    assert "1 points without" in axes.get_title(loc="right")
+
+
+def test_a_histogram_of_plain_values_tells_those_beyond_their_limit():
+    axes = histogram(np.linspace(0.0, 10.0, 101), 4.05, label="sag [mm]", at_least=False, counted="samples").axes[0]
+    assert counted(axes) == {"pass": 41, "fail": 60}
+    histogram([2.0, 2.0], label="n")
+    histogram([math.nan], 3.0, label="n")
+
+
+def test_sensitivities_of_a_linear_model_are_its_coefficients():
+    """Of ln n = 2 a - 3 b + (1 for steel): coefficient times deviation of the entry, over that of the number."""
+    a, b, k = (np.array(values, dtype=float) for values in zip(*product(range(4), range(3), range(2)), strict=True))
+    parameters = (quantity(a, "a"), quantity(b, "b"), Parameter(path="k", unit="", values=k, words=("pvc", "steel")))
+    found = regression(parameters, response(np.exp(2.0 * a - 3.0 * b + k)))
+    parts = np.array([2.0 * math.sqrt(15 / 12), -3.0 * math.sqrt(8 / 12), 0.5])  # of 0 to 3, 0 to 2, 0 and 1
+    assert found.coefficients == pytest.approx(parts / np.linalg.norm(parts))
+    assert found.r_squared == pytest.approx(1.0)
+    assert (found.unsigned, found.points) == ((False, False, True), 24)
+    axes = tornado(found.names, found.coefficients, label="", unsigned=found.unsigned).axes[0]
+    assert [text.get_text() for text in axes.get_yticklabels()] == ["b", "a", "k"]
+    assert [bar.get_width() for bar in axes.patches] == pytest.approx(sorted(found.coefficients, key=abs, reverse=True))
+
+
+def test_r_squared_tells_that_a_model_is_not_linear():
+    a = np.linspace(-1.0, 1.0, 21)
+    found = regression((quantity(a, "a"),), response(a**2))
+    assert found.r_squared == pytest.approx(0.0, abs=1e-12)
+    assert "too few" in regression((quantity(a[:3], "a"),), response(a[:3] + 2.0))
+    assert "together" in regression((quantity(a, "a"), quantity(2.0 * a, "b")), response(a + 2.0))
+
+
+def test_indices_of_first_and_total_order_stand_beside_each_other():
+    axes = tornado(["pin", "load"], [0.1, 0.5], [0.3, 0.6], label="Sobol' index").axes[0]
+    assert [bar.get_width() for bar in axes.patches] == [0.5, 0.1, 0.6, 0.3]
+
+
+def test_the_front_is_what_no_other_point_beats():
+    """Point 1 is heavier than 0 without gain, 3 is beaten by 2, 4 fails, 5 is not known."""
+    mass, gain = np.array([1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 6.0]), np.array([1.0, 1.0, 4.0, 2.0, 9.0, np.nan, 5.0])
+    assert front(mass, gain, np.arange(7) != 4).tolist() == [0, 2, 6]
+
+
+def test_parallel_coordinates_hold_every_point_and_end_where_nothing_is_known():
+    values = response([0.5, 2.0, math.nan])
+    outcome = np.array(["fail", "pass", "refused"])
+    axes = parallel((quantity([1, 2, 3], "a"), quantity([4, 6, 5], "b")), (values,), outcome).axes[0]
+    lines = [line for lines in axes.collections for line in lines.get_segments()]
+    assert sorted(len(line) for line in lines) == [2, 3, 3]
+    assert any(np.allclose(line[:, 1], [0.5, 1.0, 1.0]) for line in lines if len(line) == 3)
+
+
+def test_colours_of_verdicts_are_those_of_the_report():
+    stated = dict(re.findall(r"--(pass|fail|undecided): (#\w+)", CSS.read_text(encoding="utf-8")))
+    assert {name: LOOKS[name].colour for name in stated} == stated
+    assert len({look.mark for look in LOOKS.values()}) == len(LOOKS) - 1  # "done" never stands beside "pass"
+
+
+def test_the_page_stands_alone_and_leaves_the_study_as_it_is(tmp_path):
+    """It also stands a text of the case that is no HTML."""
+    hostile = "<script>alert(1)</script>"
+    refused = VariantResult(state="refused", sentence=hostile)
+    points = [({"width": f"{i + 2} mm", hostile: i % 2}, answer(0.7 * i + 0.5, 10.0 + i)) for i in range(6)]
+    folder = store_of(tmp_path / "study", [*points, ({"width": "9 mm", hostile: 1}, refused)], case="x/four-bar.toml")
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    page = write_study(folder, tmp_path / "out")
+    text = page.read_text(encoding="utf-8")
+    stands_alone(Page(text))
+    words = Page(text).words
+    assert "7 points: 3 pass, 1 undecided, 2 fail and 1 refused." in words
+    assert re.search(r"Best, point 5: pass *, safety factor of AE 4.00", words)
+    assert "1 refused: <script>alert(1)</script>" in words
+    assert "<script" not in text
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+    names = {path.stem for path in (page.parent / "pictures").iterdir()}
+    assert names == {"map", "margins", "pareto"}
+    assert text.count("data:image/png;base64,") == len(names)
+    assert len(text) < 400_000
+
+
+def test_mistakes_are_one_sentence(tmp_path):
+    """A study without points, a number that there is not, the folder of the study itself."""
+    empty = store_of(tmp_path / "empty", [])
+    with pytest.raises(CaseError, match="no point of it has a result yet"):
+        write_study(empty, tmp_path / "out")
+    full = store_of(tmp_path / "full", [({"a": "1 mm"}, answer(1.0)), ({"a": "2 mm"}, answer(2.0))])
+    with pytest.raises(CaseError, match=r"'phase lag'.*there are: safety factor"):
+        write_study(full, tmp_path / "out", ["phase lag"])
+    with pytest.raises(CaseError, match="stays as it is"):
+        write_study(full, full)
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_command_draws_a_study_of_motions(tmp_path):
+    """Without checks the first numbers that vary are drawn, or those that are asked for."""
+    arguments = ("study", "four-bar-synthesis", "--analysis", "motion", "--workers", "1", "--set", "motion.poses=31",
+                 "--vary", "links.a.points.A.0=1.6 m..1.7 m/4", "-o", "out", "--pictures")  # fmt: skip
+    refused = programs.inside(*arguments, "out", folder=tmp_path)
+    assert (refused.returncode, list(tmp_path.iterdir())) == (2, []), refused.stderr
+    done = programs.inside(*arguments, "drawn", folder=tmp_path)
+    assert "Pictures: drawn/study/study.html" in done.stdout, done.stderr
+    names = {path.stem for path in (tmp_path / "drawn/study/pictures").iterdir()}
+    assert names == {"curve", "curve-2", "curve-3", "histogram", "histogram-2", "histogram-3"}
+    shown = programs.inside("study", "show", "out", "-o", "drawn", "--number", "swing of b", folder=tmp_path)
+    assert shown.returncode == 0, shown.stderr
+    assert sorted(path.name for path in (tmp_path / "drawn/study/pictures").iterdir()) == ["curve.png", "histogram.png"]
