@@ -234,8 +234,8 @@ def _arm(body: Body, pin: Pin, foot: tuple[float, float], load: PinLoad, poisson
     length = float(np.linalg.norm(end - start))
     along = (end - start) / length
     axes = np.array([along, [-along[1], along[0], 0.0], [0.0, 0.0, 1.0]])
-    root = start + along * body.ring(body.foot(pin)).diameter / 2.0
+    root = start + along * body.arm_root(pin)
     moment = load.wrench[3:] + np.cross(end - root, load.wrench[:3])
-    stress = section_stress(part.section, np.concatenate([axes @ load.wrench[:3], axes @ moment]), poisson)
-    remark = "its own section at the eye from which it starts, under the pin's force alone"
+    stress = section_stress(part.arm_section, np.concatenate([axes @ load.wrench[:3], axes @ moment]), poisson)
+    remark = "its own section at the eye or wall from which it starts, under the pin's force alone"
     return Detail(name=f"the arm to {pin.name}", x=foot[0], stress=stress, remark=remark)

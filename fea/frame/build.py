@@ -258,7 +258,8 @@ class _Builder:
             young, poisson = material.youngs_modulus, material.poissons_ratio
             reach = float(np.linalg.norm(self.places[tip] - self.places[ends[0]]))
             self.beams[len(self.elements)] = LinkBeam(link=link, start=0.0, end=reach, arm=name)
-            self.elements.append(FrameElement(nodes=ends, section=section, young=young, poisson=poisson))
+            arm = body.part.arm_section
+            self.elements.append(FrameElement(nodes=ends, section=arm, young=young, poisson=poisson))
 
     def _along(
         self,

@@ -106,7 +106,8 @@ def zones(body: Body, start: float, end: float, *, arm: Pin | None = None, flank
     if arm is not None:
         assert arm.foot is not None
         reach = math.hypot(arm.x - arm.foot[0], arm.y - arm.foot[1])
-        holes = [(0.0, body.foot(arm)), (reach, arm)]
+        foot = body.foot(arm)
+        holes = ([] if foot is None else [(0.0, foot)]) + [(reach, arm)]
     else:
         holes = [(pin.x, pin) for pin in body.pins if pin.foot is None and pin.slot == 0.0]
         soft += [_at_hole(body.section_at(x), row.diameter, row.along, x) for row in body.holes for x in row.positions]
@@ -368,7 +369,7 @@ def _at_bore(body: Body, pin: Pin, x: float) -> Stretch:
     if body.ring(pin).diameter == 0.0:
         return _at_hole(body.section_at(pin.x), pin.diameter, "z", x)
     wide, thick, diameter = body.ring(pin).diameter, body.ring(pin).thickness, pin.diameter
-    section = body.section_at(pin.x)
+    section = body.section_at(pin.x) if pin.foot is None else body.part.arm_section
     area = (wide - diameter) * thick / section.area
     i_z = thick * (wide**3 - diameter**3) / 12.0 / section.i_z
     i_y = (wide - diameter) * thick**3 / 12.0 / section.i_y

@@ -34,8 +34,8 @@ def clear_sections(body: Body) -> tuple[float, ...]:
     eyes = [pin for pin in body.pins if pin.foot is None]
     blocked = [(pin.span[0] - body.across(pin) / 2, pin.span[1] + body.across(pin) / 2) for pin in eyes]
     # An arm disturbs the section as far as its own width reaches along the axis.
-    feet = [body.foot(pin) for pin in body.pins if pin.foot]
-    blocked += [(pin.x - body.across(pin), pin.x + body.across(pin)) for pin in feet]
+    feet = [(pin.foot[0], body.across(body.foot(pin) or pin)) for pin in body.pins if pin.foot]
+    blocked += [(x - across, x + across) for x, across in feet]
     blocked += [(x - row.diameter / 2, x + row.diameter / 2) for row in body.holes for x in row.positions]
     blocked += [(end.x - end.patch, end.x + end.patch) for end in body.ends]
     margins = sorted((low - size, high + size) for low, high in blocked)

@@ -207,6 +207,11 @@ class PartKind(Printable):
             With the entry, its value, the rule and a remedy.
         """
 
+    @property
+    def arm_section(self) -> Section:
+        """Cross-section of its arms: that between the eyes unless the kind knows better."""
+        return self.section
+
     def hand_section(self, body: "Body") -> Section:
         """Return the section of which hand calculation takes the link to be made.
 
@@ -404,8 +409,8 @@ class Body:
         """
         return next(pin for pin in self.pins if pin.name == name)
 
-    def foot(self, arm: Pin) -> Pin:
-        """Return the pin on the axis from which an arm reaches to another.
+    def foot(self, arm: Pin) -> Pin | None:
+        """Return the pin on the axis from which an arm reaches to another; None where it starts at none, on a tube.
 
         Parameters
         ----------
@@ -414,10 +419,26 @@ class Body:
 
         Returns
         -------
-        Pin
+        Pin or None
             The pin at its foot.
         """
-        return next(pin for pin in self.pins if (pin.x, pin.y) == arm.foot)
+        return next((pin for pin in self.pins if (pin.x, pin.y) == arm.foot), None)
+
+    def arm_root(self, arm: Pin) -> float:
+        """Return how far from its foot on the axis an arm begins.
+
+        Parameters
+        ----------
+        arm : Pin
+            The pin at the arm's end.
+
+        Returns
+        -------
+        float
+            Radius of the eye or tube from which it starts [mm].
+        """
+        foot = self.foot(arm)
+        return self.part.section.half_y if foot is None else self.ring(foot).diameter / 2.0
 
 
 def extent(body: Body) -> tuple[float, float]:

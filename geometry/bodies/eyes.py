@@ -24,7 +24,7 @@ and on a thick eye at an arm's foot at 1e-5; from 1e-4 on no build failed."""
 
 
 def flush(body: Body, pin: Pin) -> bool:
-    """Return whether an eye is as thick as its flat bar.
+    """Return whether an eye is as thick as its flat bar or arm.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def flush(body: Body, pin: Pin) -> bool:
     bool
         False of tubes, and of thicker eyes of bars.
     """
-    section = body.part.section
+    section = body.part.section if pin.foot is None else body.part.arm_section
     return not section.round and body.ring(pin).thickness <= (1.0 + ROUNDING) * section.height
 
 

@@ -32,7 +32,9 @@ class Link(CaseModel):
     slots: Annotated[dict[Name, Slot], Field(max_length=10)] = {}
     """Slots of the part, by the point of the joint (pin in slot) whose pin slides in it."""
     arms: Annotated[dict[Name, Name], Field(max_length=10)] = {}
-    """Pins far off the axis: point -> the pin on the axis from which an arm of the bar's section reaches to it."""
+    """Pins far off the axis: point -> the point on the axis from which an arm reaches to it. An arm of a bar has its
+    section and starts at a pin; one of a tube is a flat lug (arm_width, arm_thickness) and starts at a point without a
+    joint or load."""
     eyes: Annotated[dict[Name, EyeSizes], Field(max_length=100)] = {}
     """Eyes whose sizes are not those that the part states for all, by the point of the pin."""
     end_patch: Annotated[Length, POSITIVE] = 5.0

@@ -139,7 +139,7 @@ class Straight(PartKind):
 
     def flat_diameter(self, body: Body, pin: Pin) -> float:
         """As ``PartKind.flat_diameter``: within the wall where a flat bar's sides pass close to the eye's rim."""
-        eye, width = body.ring(pin).diameter, self.section.width
+        eye, width = body.ring(pin).diameter, (self.section if pin.foot is None else self.arm_section).width
         if 0.0 < eye < CLEAR_EYE * width:
             return pin.diameter + FLAT_WALL * (min(eye, width) - pin.diameter)
         return eye
@@ -197,7 +197,9 @@ class Straight(PartKind):
             pairs = [] if plain_eye(body, pin) else [(to_eye(pin), to_bar)]
             if pin.foot is not None:
                 arm = f"(Fabs({_across(pin)})-{half:.12g})"
-                at_eyes = [(to_eye(pin), arm), (to_eye(body.foot(pin)), arm)]
+                foot = body.foot(pin)
+                assert foot is not None
+                at_eyes = [(to_eye(pin), arm), (to_eye(foot), arm)]
                 pairs = [*(at_eyes if pairs else []), (arm, to_bar)]
             places += [(edge, f"Max(Sqrt({a}^2+{b}^2)-{part.fillet_radius:.12g},0)") for a, b in pairs]
         return places

@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
+from geometry.base.errors import CaseError
 from geometry.base.model import Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import Body, Feature, extent, patch_span
 from geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
 from geometry.bodies.features import Pin, Ring
 from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
-from geometry.bodies.section import Section, ring
+from geometry.bodies.section import Section, rectangle, ring
+from geometry.parts.lugs import check_lugs, fine_at_lugs, with_lugs, without_lugs
 from geometry.parts.straight import Piece, Straight
 from geometry.parts.tube_pins import check_pins_through
 
@@ -30,7 +32,9 @@ class Tube(Straight):
     their pin hole.
     """
 
-    takes: ClassVar[frozenset[Feature]] = frozenset(("rows of holes", "load points without a pin", "eyes of their own"))
+    takes: ClassVar[frozenset[Feature]] = frozenset(
+        ("arms", "rows of holes", "load points without a pin", "eyes of their own")
+    )
 
     shape: Literal["tube"]
     material: Name
@@ -63,6 +67,11 @@ class Tube(Straight):
     """Only with eyes = "none": outer diameter of a bush about every pin, from wall to wall across the bore, glued in.
     1.1 times the pin's to 0.8 times inner_diameter; tube and bushes are modelled as one solid of one material, and the
     glue is not checked."""
+    arm_width: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Width of the arms, in the linkage's plane: flat lugs on the tube's wall, with a round end about their pin and
+    fillet_radius at the wall. Needed where a link of this part has arms."""
+    arm_thickness: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Thickness of the arms along their pins; stated together with arm_width."""
 
     def check_sizes(self) -> None:
         """As ``Straight.check_sizes``: there is a wall, and the eyes stand out by enough for their fillets."""
@@ -71,6 +80,10 @@ class Tube(Straight):
                 "no_wall",
                 "inner_diameter {inner} mm must be less than outer_diameter {outer} mm; reduce it, or set 0 for a rod",
                 {"inner": f"{self.inner_diameter:g}", "outer": f"{self.outer_diameter:g}"},
+            )
+        if (self.arm_width > 0.0) != (self.arm_thickness > 0.0):
+            raise PydanticCustomError(
+                "half_an_arm", "arm_width and arm_thickness are the two sides of one section; state both, or neither"
             )
         if self.eyes == "none":
             self._without_eyes()
@@ -136,10 +149,19 @@ class Tube(Straight):
     @property
     def unmeasured(self) -> str:
         """As ``PartKind.unmeasured``: without eyes."""
+        if self.arm_width > 0.0:
+            return "it has arms"
         return "" if self.eyes == "round" else "its pins go through its walls, without eyes"
+
+    @property
+    def arm_section(self) -> Section:
+        """As ``PartKind.arm_section``: that of a flat lug."""
+        return rectangle(self.arm_width, self.arm_thickness)
 
     def ring(self, pin: Pin) -> Ring:
         """As ``PartKind.ring``: without eyes there is none, and the hole goes through both walls, a plug or a bush."""
+        if pin.foot is not None:
+            return Ring(diameter=self.arm_width, low=-self.arm_thickness / 2.0, high=self.arm_thickness / 2.0)
         if self.eyes == "round":
             return super().ring(pin)
         high, bore = (math.sqrt(max(d**2 / 4.0 - pin.y**2, 0.0)) for d in (self.outer_diameter, self.inner_diameter))
@@ -148,15 +170,23 @@ class Tube(Straight):
 
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: of a tube with eyes as ``Straight.check``, else the pins' holes fit its walls."""
+        bare = without_lugs(body)
         if self.eyes == "round":
-            super().check(body)
+            super().check(bare)
         else:
-            check_pins_through(body, self.reach(body), self.bush_diameter)
+            check_pins_through(bare, self.reach(body), self.bush_diameter)
+        arms = [pin.name for pin in body.pins if pin.foot is not None]
+        if arms and self.arm_width == 0.0:
+            raise CaseError(
+                f"the arm to {arms[0]} needs sizes, since an arm of a tube is a flat lug: state arm_width and "
+                "arm_thickness"
+            )
+        check_lugs(body, self.reach(body))
 
     def reach(self, body: Body) -> tuple[float, float]:
         """As ``Straight.reach``: without eyes the overhang beyond an outermost pin."""
         first, last = extent(body)
-        pinned = {pin.x for pin in body.pins}
+        pinned = {pin.x for pin in body.pins if pin.foot is None}
         return first - self.overhang * (first in pinned), last + self.overhang * (last in pinned)
 
     def prism(self, kernel: Kernel, body: Body, piece: Piece) -> list[Entity]:
@@ -166,26 +196,30 @@ class Tube(Straight):
         return [kernel.cylinder((low, 0, 0), (high - low, 0, 0), radius) for low, high in itertools.pairwise(stations)]
 
     def solid(self, kernel: Kernel, body: Body) -> Entity:
-        """As ``PartKind.solid``: with eyes as ``Straight.solid``, else the tube alone."""
+        """As ``PartKind.solid``: with eyes as ``Straight.solid``, else the tube alone; then the arms."""
+        bare = without_lugs(body)
         if self.eyes == "round":
-            return super().solid(kernel, body)
-        return kernel.fuse([entity for piece in self.pieces(body) for entity in self.prism(kernel, body, piece)])
+            return with_lugs(kernel, body, super().solid(kernel, bare))
+        tube = [entity for piece in self.pieces(bare) for entity in self.prism(kernel, bare, piece)]
+        return with_lugs(kernel, body, kernel.fuse(tube))
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
-        """As ``PartKind.fine_places``: as ``Straight.fine_places``; without eyes at the fillets of plugs or bushes."""
+        """As ``PartKind.fine_places``: as ``Straight.fine_places``, or at fillets of plugs and bushes; and at arms."""
+        at_lugs, body = fine_at_lugs(body, size, share), without_lugs(body)
         if self.eyes == "round":
-            return super().fine_places(body, size, share)
+            return super().fine_places(body, size, share) + at_lugs
         first, last = self.reach(body)
         radius, wall = self._hollow_fillet(body), f"(Sqrt(y^2+z^2)-{self.inner_diameter / 2.0:.12g})"
         across = [f"(x-({x:.12g}))" for span in self._hollow_spans(body) for x in span if first < x < last]
         if self.bush_diameter > 0.0:
             across += [f"({pin.distance_formula}-{self.bush_diameter / 2.0:.12g})" for pin in body.pins]
         edge = min((radius or size) * share, size)
-        return [(edge, f"Max(Sqrt({one}^2+{wall}^2)-{radius:.12g},0)") for one in across]
+        return [(edge, f"Max(Sqrt({one}^2+{wall}^2)-{radius:.12g},0)") for one in across] + at_lugs
 
     def cavities(self, kernel: Kernel, body: Body) -> list[Entity]:
         """As ``PartKind.cavities``: the bore, less plugs or bushes."""
-        return [self._hollow(kernel, body, *span) for span in self._hollow_spans(body)]
+        bare = without_lugs(body)
+        return [self._hollow(kernel, bare, *span) for span in self._hollow_spans(bare)]
 
     def _hollow_fillet(self, body: Body) -> float:
         """Fillet radius in the bore: the part's, but at most half the bore's radius, or half of what fits at a bush.

@@ -181,12 +181,10 @@ def present(gmsh: Any, tag: int) -> None:
 def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
     """Split flat faces along the borders of the surfaces that carry names.
 
-    These are the rings about holes where eyes lie flush with their bar or disc, and the loaded patches. A round part
-    has its patches from the start, and eyes that stand out.
+    These are the rings about holes where eyes lie flush with their bar, arm or disc, and the loaded patches. A round
+    part has its patches from the start.
     """
     occ, section = kernel.occ, body.part.section
-    if section.round:
-        return solid
     borders: list[Entity] = []
     height = section.height
     for pin in body.pins:
@@ -198,7 +196,7 @@ def _imprint(kernel: Kernel, body: Body, solid: Entity) -> Entity:
         borders += [
             border for end in body.ends for border in patch_borders(kernel.gmsh, solid[1], end, body.part.patch_height)
         ]
-    for end in () if body.part.patches_anywhere else body.ends:
+    for end in () if body.part.patches_anywhere or section.round else body.ends:
         low, high = patch_span(body, end)
         start, stop = (body.part.half_width(body, x) for x in (low, high))
         wide, slope = max(start, stop), math.atan2(stop - start, high - low)

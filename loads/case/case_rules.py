@@ -351,7 +351,15 @@ def _check_slots(case: CoreCase, link: str) -> None:
                 f"links.{link}.arms: an arm from '{foot}' to '{point}' needs two points of the link; "
                 f"its points are {', '.join(record.points)}"
             )
-        if not {point, foot} <= {linkage.point_of(name, link) for name in linkage.joints_of(link)}:
+        pinned = {linkage.point_of(name, link) for name in linkage.joints_of(link)}
+        if part.shape == "tube" and (foot in pinned or foot == record.held_at or record.points[foot][1] != 0.0):
+            raise CaseError(
+                f"links.{link}.arms: the arm of a tube from '{foot}' to '{point}' starts on its plain wall, at a point "
+                "on the axis (y = 0) without a joint or support; add such a point to points"
+            )
+        if not {point, *([] if part.shape == "tube" else [foot])} <= pinned:
             raise CaseError(
                 f"links.{link}.arms: an arm from '{foot}' to '{point}' needs a pin at both; make them joints"
+                if part.shape != "tube"
+                else f"links.{link}.arms: an arm from '{foot}' to '{point}' needs a pin at '{point}'; make it a joint"
             )

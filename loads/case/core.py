@@ -272,7 +272,7 @@ class CoreCase(Revisable):
                     f"joints.{joint}.pin_diameter: it differs from that of joint '{first}', but both pins sit in one "
                     f"hole of link '{link}'; give both the same diameter"
                 )
-        pins, ends = [], []
+        pins, ends, feet = [], [], self.bare_feet(link)
         for name, (x, y) in record.points.items():
             if name in pinned:
                 diameter = self.joints[pinned[name]].pin_diameter
@@ -282,6 +282,8 @@ class CoreCase(Revisable):
                         'state it, for example "1.5 mm"'
                     )
                 pins.append(_pin(self, link, name, diameter))
+            elif name in feet:
+                continue
             elif isinstance(part, FilePart) or part.patches_anywhere:
                 ends.append(PlainEnd(name=name, x=x, patch=record.end_patch, y=y))
             elif abs(y) > 1e-9 * self.linkage.longest:
@@ -327,6 +329,22 @@ class CoreCase(Revisable):
         part = self.parts.get(self.links[link].part or "")
         named = isinstance(part, FilePart) and point in part.faces
         return next((end.face for end in self.body(link).ends if end.name == point), None) if named else None
+
+    def bare_feet(self, link: str) -> set[str]:
+        """Return the points without a joint at which arms of a link start, as those of tubes do.
+
+        Parameters
+        ----------
+        link : str
+            Name of a link.
+
+        Returns
+        -------
+        set of str
+            Names of points; no load enters there.
+        """
+        joints = {self.linkage.point_of(joint, link) for joint in self.linkage.joints_of(link)}
+        return set(self.links[link].arms.values()) - joints
 
     @property
     def motion_coordinate(self) -> str:

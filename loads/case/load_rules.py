@@ -80,6 +80,11 @@ def check_place(case: CoreCase, entry: str, place: Place) -> None:
         raise CaseError(
             f"{entry}: point '{at}' of link '{place.link}' is a slot, where the pin alone can push; name another point"
         )
+    if at in case.bare_feet(place.link):
+        raise CaseError(
+            f"{entry}: point '{at}' of link '{place.link}' is where an arm starts, and no load enters there; name "
+            "another point"
+        )
     points = case.links[place.link].points
     if start is not None and end is not None and np.isclose(points[start][0], points[end][0]):
         raise CaseError(f"{entry}: start and end lie at the same station; name two different points")

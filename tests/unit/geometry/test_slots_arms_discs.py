@@ -30,10 +30,12 @@ TUBE = Tube(
     eye_thickness="7 mm",
     fillet_radius="0.8 mm",
 )
+LUGGED = TUBE.model_copy(update={"arm_width": 5.0, "arm_thickness": 2.0})
 DISC = Disc(shape="disc", material="resin", diameter="9 mm", thickness="2 mm", eye_diameter="2.6 mm")
 A, B = Pin(name="A", x=0.0, y=0.0, diameter=3.0), Pin(name="B", x=60.0, y=0.0, diameter=3.0)
 SLOT = Pin(name="S", x=20.0, y=0.0, diameter=3.0, slot=10.0)
 ARM = Pin(name="Q", x=10.0, y=40.0, diameter=3.0, foot=(0.0, 0.0))
+LUG = Pin(name="Q", x=30.0, y=15.0, diameter=2.0, foot=(30.0, 0.0))
 SHAFT, CRANK_PIN = Pin(name="O", x=0.0, y=0.0, diameter=1.0), Pin(name="A", x=3.0, y=0.0, diameter=2.0)
 
 
@@ -59,6 +61,7 @@ def moved(pin: Pin, **changes: object) -> Pin:
         body(A, SLOT, B),
         body(SLOT, B),
         body(A, B, ARM),
+        body(A, B, LUG, part=LUGGED),
         body(A, ARM, ends=(end(60.0, 5.0),)),
         body(SHAFT, CRANK_PIN, part=DISC),
     ],
@@ -84,7 +87,13 @@ def test_what_fits_passes(right: Body) -> None:
         (body(A, SLOT, B, moved(ARM, foot=(20.0, 0.0))), "arm to Q must start at a pin hole"),
         (body(A, B, moved(ARM, x=70.0)), "arm to Q stands at 29.7 degrees.*at least 30: .* at most 69.28 mm"),
         (body(A, B, moved(ARM, x=5.0, y=13.0)), "Q is too close to the bar: move it more than 14 mm off"),
-        (body(A, B, ARM, part=TUBE), "Q: a part of shape tube takes no arms"),
+        (body(A, B, LUG, part=TUBE), "arm to Q needs sizes.*state arm_width and arm_thickness"),
+        (body(A, B, moved(LUG, x=31.0), part=LUGGED), "arm to Q starts at x = 30 mm.* square on it: .* x = 31 mm"),
+        (body(A, B, moved(LUG, y=5.5), part=LUGGED), "Q is too close to the tube: move it more than 5.8 mm off"),
+        (body(A, moved(B, x=36.0), LUG, part=LUGGED), "26.7 to 33.3 mm .* runs into the eye or pin hole at B"),
+        (body(A, B, LUG, moved(LUG, name="R", x=36.0, foot=(36.0, 0.0)), part=LUGGED), "runs into the arm to Q"),
+        (body(A, B, LUG, part=LUGGED, holes=(hole(33.0),)), "runs into a hole at x = 33 mm"),
+        (body(A, B, LUG, part=LUGGED.model_copy(update={"arm_thickness": 3.5})), "arm_thickness 3.5 mm and two fil"),
         (body(ARM), "no pin on its axis, but a part needs at least 1"),
         (body(SHAFT, moved(CRANK_PIN, x=3.3), part=DISC), "ring about the hole at A .* diameter above 9.2 mm"),
         (body(SHAFT, moved(CRANK_PIN, x=2.5), part=DISC), "holes at O and A overlap: .* below 2.5 mm"),
