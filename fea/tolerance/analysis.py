@@ -306,7 +306,9 @@ def _corner(
 
 def _left_out(result: CheckResult) -> tuple[str, ...]:
     """Return the checks that the samples do not cover, with their nominal verdicts."""
-    every = [one for load_case in result.load_cases.values() for one in load_case.checks if not covered(one)]
+    every = [
+        one for load_case in result.load_cases.values() for one in load_case.checks if not covered(result.case, one)
+    ]
     return tuple(
         dict.fromkeys(f"{one.name} of {one.subject.long} (without deviations: {one.verdict})" for one in every)
     )

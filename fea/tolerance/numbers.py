@@ -22,6 +22,7 @@ from fea.tolerance.link_response import LinkResponse, PeakShares, link_response
 from fea.tolerance.states import SampledForces, Sampler, States
 from geometry.base.errors import CannotRunError
 from geometry.materials.material import Material
+from loads.case.case import Case
 from loads.records.applied import PointLoad, at_poses
 from loads.records.check_spec import BearingCheck, DisplacementCheck
 from loads.statics.statics import assemble, joint_reactions
@@ -142,7 +143,9 @@ class SampledCheck:
                     threads=threads,
                 )
         every = [one for r in result.load_cases.values() for one in r.checks]
-        return cls(result=result, sampler=sampler, outcomes=tuple(o for o in every if covered(o)), responses=found)
+        return cls(
+            result=result, sampler=sampler, outcomes=tuple(o for o in every if covered(case, o)), responses=found
+        )
 
     @cached_property
     def nominal(self) -> States:
@@ -220,11 +223,12 @@ class SampledCheck:
         return {}
 
 
-def covered(outcome: CheckOutcome) -> bool:
+def covered(case: Case, outcome: CheckOutcome) -> bool:
     """Return True for an outcome whose number follows from statics and unit solutions.
 
     Parameters
     ----------
+    case : Case
     outcome : CheckOutcome
 
     Returns
@@ -232,7 +236,7 @@ def covered(outcome: CheckOutcome) -> bool:
     bool
     """
     if outcome.quantity is Quantity.BUCKLING_FACTOR:
-        return outcome.subject.kind == "link"
+        return outcome.subject.kind == "link" and case.part_of(outcome.subject.name).is_beam  # others buckle as solids
     known = (*STRESS, Quantity.LAYERS, Quantity.DISPLACEMENT)
     return outcome.quantity in known
 
@@ -338,7 +342,7 @@ class _Told:
             link
             for link, response in self.check.responses.items()
             for load_case in response.pilots
-            if (load_case, link) not in told and self._compression(link, load_case).any()
+            if response.body.part.is_beam and (load_case, link) not in told and self._compression(link, load_case).any()
         )
 
     def _point(self, outcome: CheckOutcome) -> PeakShares | None:

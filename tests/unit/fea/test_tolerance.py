@@ -9,11 +9,14 @@ import pytest
 from scipy.stats import beta
 
 from fea.check.case_statics import solve_case_statics
+from fea.common.band import Band
+from fea.common.verdict import CheckOutcome, Quantity, Subject
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from fea.tolerance.analysis import _drawn, tolerance_case
 from fea.tolerance.link_response import link_response
+from fea.tolerance.numbers import covered
 from fea.tolerance.result import Probability
 from fea.tolerance.states import Sampler
 from geometry.base.errors import CannotRunError, CaseError
@@ -259,3 +262,11 @@ def test_a_place_of_its_own_replaces_that_of_all_pins():
     assert own == {("base", 0.2, "uniform"), ("arm", 0.1, "worst case")}
     drawn = _drawn([v for v in toleranced(case) if v.target[0] == "arm"], 50, np.random.default_rng(0))
     assert set(np.unique(drawn).tolist()) == {-0.1, 0.1}
+
+
+def test_the_buckling_of_plates_is_left_out():
+    """It comes from their solids, not from columns."""
+    plate = {"shape": "plate", "material": "m", "thickness": "4 mm", "eye_diameter": "12 mm"}
+    outcome = CheckOutcome.of("buckling", Subject.link("arm"), "pull", Quantity.BUCKLING_FACTOR, Band.exact(5.0), 1.0)
+    assert covered(lever(), outcome)
+    assert not covered(lever(parts={"bar": plate}), outcome)
