@@ -17,6 +17,7 @@ NAMED = {
     "link_points",
     "link_bores",
     "link_slots",
+    "linkage",
 }
 """Keys whose own keys are names: by their last part, or by the whole."""
 SHAPES = {

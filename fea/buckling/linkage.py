@@ -138,7 +138,7 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
         Under these load cases links and pins that passed are undecided. What fails in the undeformed pose still
         fails. Motors are judged on a rigid linkage and stay; a point without equilibrium has no value anyway.
     """
-    failed = {one.load_case for one in outcomes if one.subject == LINKAGE and one.verdict is Verdict.FAIL}
+    failed = {one.load_case for one in outcomes if one.gives_way}
     failed |= set(lost)
     return [_in_no_equilibrium(one) if one.load_case in failed and _rests_on_it(one) else one for one in outcomes]
 

@@ -16,6 +16,7 @@ from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.link_result import link_result
+from fea.check.linkage_numbers import limit_load_outcomes, linkage_numbers
 from fea.check.load_growth import Growths, growths
 from fea.check.point_solids import decide_point
 from fea.check.solid_frame import with_solids
@@ -152,11 +153,13 @@ class _LoadCase:
         case, load_case, moved = self.statics.case, self.load_case, self.moved
         reactions = moved.reactions or self.statics.reactions[load_case]
         links, pins = self.links(decided), _pins(case, reactions)
+        linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
         found = (
             *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
             *_bearing(case, load_case, reactions, self.uneven),
             *buckling_outcomes(case, load_case, {link: hand.check for link, hand in self.hands.items()}, moved),
             *solid_buckling_outcomes(case, load_case, {x: found for x, found in links.items() if self.acts_on(x)}),
+            *limit_load_outcomes(case, load_case, linkage),
             *motors,
         )
         checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())
@@ -170,6 +173,7 @@ class _LoadCase:
             links=links,
             pins=pins,
             ways_to_hold=ways_to_hold(case, self.statics.pose, self.statics.loads[load_case]),
+            linkage=linkage,
             checks=tuple(checks),
         )
 

@@ -19,7 +19,7 @@ class SourceKind(StrEnum):
     MODULUS = "scatter of the modulus"
     GROWTH = "nonlinear growth with the load"
     IMPERFECTION = "geometric imperfection"
-    PATH = "path to the deformed shape"
+    PATH = "path to the limit load"
     RESTRAINT = "restraint by the neighbouring links"
     SNAP_THROUGH = "snap-through of a shallow toggle"
     EYES = "flexibility of eyes, bores and holes"

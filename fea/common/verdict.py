@@ -70,6 +70,8 @@ class Quantity(StrEnum):
     """Of a point, with the whole linkage."""
     BUCKLING_FACTOR = "buckling factor", "", Sense.AT_LEAST
     LOAD_SHARE = "share of the load that is held", "", Sense.AT_LEAST
+    LIMIT_LOAD = "limit-load factor", "", Sense.AT_LEAST
+    """By what all loads may grow until the linkage gives way."""
     FATIGUE_STRESS = "fatigue, stress", "", Sense.AT_LEAST
     """Fatigue strength over stress."""
     FATIGUE_LIFE = "fatigue, life", "", Sense.AT_LEAST
@@ -250,6 +252,12 @@ class CheckOutcome:
     def link(self) -> str:
         """The subject as text: a link's own name, ``pin A``, ``point H of CH`` or ``the linkage``."""
         return str(self.subject)
+
+    @property
+    def gives_way(self) -> bool:
+        """True where it says that the linkage as a whole does not hold the load."""
+        asked = self.subject == LINKAGE and self.quantity is not Quantity.LIMIT_LOAD
+        return asked and self.verdict is Verdict.FAIL
 
     @property
     def unit(self) -> str:

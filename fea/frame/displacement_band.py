@@ -263,6 +263,23 @@ def point_bounds(
     return Band(value=value, low=low, high=high)
 
 
+def compliance_range(case: Case, frame: LinkageFrame, solution: FrameSolution) -> tuple[float, float]:
+    """Return how soft a linkage may be under its loads, over its frame of plain beams.
+
+    Parameters
+    ----------
+    case, frame, solution
+        As of ``flexibility_ranges``.
+
+    Returns
+    -------
+    tuple of 2 float
+        Least and largest ratio of the work of all loads; 1 where they do none.
+    """
+    band = bounds(solution, solution, *_links(case, frame, ()))
+    return (max(band.low / band.value, STIFFEST), band.high / band.value) if band.value > 0.0 else (1.0, 1.0)
+
+
 def flexibility_ranges(case: Case, frame: LinkageFrame, solution: FrameSolution) -> dict[str, tuple[float, float]]:
     """Return how flexible each link may be under what acts on it, over its beam.
 

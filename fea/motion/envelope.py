@@ -27,7 +27,7 @@ from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from fea.motion.layer_envelope import layer_envelopes
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
-from fea.motion.linkage_history import linkage_outcomes
+from fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
 from fea.outcomes.limits import layers_of
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
@@ -207,6 +207,9 @@ def envelope_case(
     links = over.solved(start, effort or effort_of(case), repetitions)
     clock("solids")
     checks = over.outcomes(links)
+    linkage = over_motion(moved, evaluated)
+    checks += limit_load_outcomes(moved, linkage)
+    clock("frames")
     idle = [nothing_acts(load_case, over.sizes[load_case]) for load_case in over.idle]
     return EnvelopeResult(
         name=name,
@@ -218,6 +221,7 @@ def envelope_case(
         evaluated=evaluated,
         links=links,
         idle=tuple(link for link in case.checked_links if link not in over.loaded),
+        linkage=linkage,
         checks=tuple(checks),
         verdict=overall(check.verdict for check in checks),
         warnings=(*idle, *_warnings(case, moved, evaluated, growth)),

@@ -22,7 +22,7 @@ from fea.outcomes.limits import layer_limit
 from fea.outcomes.pins import pin_outcome, stress_of
 from fea.outcomes.solid_buckling import undecided_buckling
 from geometry.materials.material import Fatigue, Material
-from loads.records.check_spec import BearingCheck, PinCheck, SafetyFactorCheck
+from loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck, SafetyFactorCheck
 from loads.states.case_motion import CaseMotion
 
 BEYOND_CARD = "the material's card ends below the repetitions that are wanted"
@@ -30,7 +30,7 @@ LEFT_OUT = "poses near a dead point of the driven link were left out, where its 
 NOT_FOLLOWED = (
     "no beam stands for its buckling, and its solid is not looked at over a motion; check single poses with alula check"
 )
-FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck)
+FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, LimitLoadCheck)
 """Checks of the case that are decided over the motion."""
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Verdict
 from fea.motion.fatigue import FatigueLife
+from fea.motion.linkage_history import LinkageOverMotion
 from fea.refine.discretisation import Discretisation
 from fea.solid.stress import StressField
 from fea.tractions.traction import Transfer
@@ -259,6 +260,8 @@ class EnvelopeResult:
     links : mapping of str to LinkEnvelope
     idle : tuple of str
         Links on which nothing acts.
+    linkage : mapping of str to LinkageOverMotion
+        Load case -> numbers of the linkage as a whole.
     checks : tuple of CheckOutcome
         For every link and load case.
     verdict : Verdict
@@ -278,6 +281,7 @@ class EnvelopeResult:
     evaluated: NDArray[np.bool_]
     links: Mapping[str, LinkEnvelope]
     idle: tuple[str, ...]
+    linkage: Mapping[str, LinkageOverMotion]
     checks: tuple[CheckOutcome, ...]
     verdict: Verdict
     warnings: tuple[str, ...]

@@ -1,19 +1,58 @@
-"""Whether a linkage as a whole may buckle or snap through at some pose of a motion, by its linear frame."""
+"""The linkage as a whole over a motion: whether it may give way by its linear frame, and its numbers at some poses."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.buckling.linkage import by_linear_theory
+from fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
+from fea.common.band import Band
+from fea.common.source import distinct
 from fea.common.verdict import CheckOutcome, Verdict
 from fea.frame.build import build_frame
+from fea.frame.joint_forces import joint_forces
 from fea.frame.linear import solve_frame
+from fea.nonlinear.large_displacement import examine
 from fea.nonlinear.stability import dead_point_factor, linkage_factor
 from geometry.base.errors import CannotRunError, CaseError
-from geometry.linkage.pose import Pose
 from loads.records.applied import chosen
+from loads.records.check_spec import LimitLoadCheck
 from loads.states.case_motion import CaseMotion
+from loads.states.dead_point_reach import pose_at
+
+SPREAD = 5
+"""Poses over the range, both ends included, at which the numbers of the linkage are computed besides the worst two."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinkageOverMotion:
+    """The linkage under a load case over a motion, by its frame at some poses.
+
+    Attributes
+    ----------
+    poses : tuple of int
+        Numbers of the poses that were looked at.
+    limit_load : Band
+        The least factor on all loads at which it gives way.
+    limit_pose : int
+        Number of its pose; -1 where it is not known.
+    displacement : Band
+        The largest of any place [mm]; not known where it gives way at a pose.
+    where : str
+        That place, for people; "" where it is not known.
+    displacement_pose : int
+        Number of its pose; -1 where it is not known.
+    """
+
+    poses: tuple[int, ...]
+    limit_load: Band
+    limit_pose: int
+    displacement: Band
+    where: str
+    displacement_pose: int
 
 
 def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterator[CheckOutcome]:
@@ -35,16 +74,10 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
     case, motion = moved.case, moved.motion
     if case.large_displacement == "off":
         return
-    poses = {
-        int(i): Pose(linkage=motion.linkage, q=motion.q[i], coordinate=motion.coordinate, residual=0.0)
-        for i in np.flatnonzero(evaluated)
-    }
-    nearest = min(poses, key=lambda i: moved.drive.dead_point_distance(poses[i]))
     for load_case, acting in moved.loads.items():
         found = []
-        hardest = max(poses, key=lambda i: abs(float(moved.torque[load_case][i])))
-        for i in dict.fromkeys((nearest, hardest)):
-            pose = poses[i]
+        for i in _worst(moved, load_case, evaluated):
+            pose = pose_at(motion, i)
             try:
                 loads = [chosen(load, i) for load in acting]
                 frame = build_frame(case, pose, loads, held=moved.drive)
@@ -61,3 +94,112 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
         outcome = by_linear_theory(case, load_case, least, factor, how, remedy)
         if outcome.verdict is not Verdict.PASS:
             yield outcome
+
+
+def over_motion(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[str, LinkageOverMotion]:
+    """Return the numbers of the linkage over a motion, by its frame.
+
+    They are computed at ``SPREAD`` poses over the range, next to a dead point of the driven link and where its torque
+    is largest, each as a check of that pose has them without solids.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+
+    Returns
+    -------
+    dict of str to LinkageOverMotion
+        By load case.
+    """
+    counted = np.flatnonzero(evaluated)
+    spread = counted[np.linspace(0, len(counted) - 1, SPREAD).round().astype(int)]
+    found = {}
+    for load_case in moved.loads:
+        poses = sorted({*map(int, spread), *_worst(moved, load_case, evaluated)})
+        found[load_case] = _over(poses, [_at(moved, load_case, i) for i in poses])
+    return found
+
+
+@lru_cache(maxsize=1)
+def asked_over_motion(moved: CaseMotion) -> dict[str, LinkageOverMotion]:
+    """Return the numbers of ``over_motion`` at all poses where a check asks for the limit load; else nothing.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+
+    Returns
+    -------
+    dict of str to LinkageOverMotion
+        By load case.
+    """
+    asked = any(isinstance(check, LimitLoadCheck) for check in moved.case.checks.values())
+    balanced = np.all([np.isfinite(torque) for torque in moved.torque.values()], axis=0)
+    return over_motion(moved, balanced) if asked and balanced.any() else {}
+
+
+def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion]) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every check of the limit load over a motion.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    found : mapping of str to LinkageOverMotion
+        By load case.
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    for name, check in moved.case.checks.items():
+        if not isinstance(check, LimitLoadCheck):
+            continue
+        for load_case, over in found.items():
+            where = f"; the least of {len(over.poses)} of {len(moved.motion.angles)} poses"
+            if over.limit_pose >= 0:
+                angle = moved.motion.told(moved.motion.angles[over.limit_pose])
+                where += f", at {moved.motion.coordinate} = {float(angle):.5g} {moved.motion.unit}"
+            yield limit_load_outcome(name, check, load_case, over.limit_load, where)
+
+
+def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[int]:
+    """Numbers of the pose next to a dead point of the driven link and of that with the largest torque."""
+    counted = [int(i) for i in np.flatnonzero(evaluated)]
+    nearest = min(counted, key=lambda i: moved.drive.dead_point_distance(pose_at(moved.motion, i)))
+    hardest = max(counted, key=lambda i: abs(float(moved.torque[load_case][i])))
+    return list(dict.fromkeys((nearest, hardest)))
+
+
+def _at(moved: CaseMotion, load_case: str, i: int) -> tuple[Band, Band, str]:
+    """Limit-load factor and largest displacement at a pose, and the place of the latter."""
+    case, loads = moved.case, [chosen(load, i) for load in moved.loads[load_case]]
+    try:
+        forces = joint_forces(case, pose_at(moved.motion, i), loads)
+        shape = examine(case, load_case, forces, loads)
+        numbers = linkage_numbers(case, load_case, shape, forces)
+        return numbers.limit_load, numbers.displacement, numbers.where
+    except (CaseError, CannotRunError) as error:
+        return Band.unknown(str(error)), Band.unknown(str(error)), ""
+
+
+def _over(poses: list[int], at: list[tuple[Band, Band, str]]) -> LinkageOverMotion:
+    limits, moves, places = zip(*at, strict=True)
+    least = Band.unknown(next((b.without for b in limits if b.unknowable), ""))
+    most, where, least_at, most_at = Band.unknown(next((b.without for b in moves if b.unknowable), "")), "", -1, -1
+    if not any(band.unknowable for band in limits):
+        ends = {end: min(getattr(band, end) for band in limits) for end in ("value", "low", "high")}
+        least = Band(**ends, sources=distinct(*(band.sources for band in limits)))
+        least_at = poses[min(range(len(poses)), key=lambda k: (limits[k].value, limits[k].low))]
+    if not any(band.unknowable for band in moves):
+        k = max(range(len(poses)), key=lambda k: moves[k].value)
+        most, where, most_at = Band.largest(moves), places[k], poses[k]
+    return LinkageOverMotion(
+        poses=tuple(poses),
+        limit_load=least,
+        limit_pose=least_at,
+        displacement=most,
+        where=where,
+        displacement_pose=most_at,
+    )

@@ -73,6 +73,7 @@ def solve_large_displacement(
     *,
     least_step: float = _LEAST_STEP,
     most_iterations: int = _MOST_ITERATIONS,
+    stable: bool = False,
 ) -> CorotationalSolution:
     """Find the equilibrium of a frame on its deformed shape, following it from the unloaded state.
 
@@ -89,6 +90,8 @@ def solve_large_displacement(
         Of the load, below which there is no equilibrium.
     most_iterations : int, optional
         Of Newton's method in one step.
+    stable : bool, optional
+        Whether the path ends where it is not stable any more.
 
     Returns
     -------
@@ -106,5 +109,5 @@ def solve_large_displacement(
     system = FrameSystem(divided)
     refuse_mechanism(system, system.equations()[0])
     path = EquilibriumPath(divided)
-    path.follow(least_step, most_iterations)
+    path.follow(least_step, most_iterations, stable=stable)
     return path.record()

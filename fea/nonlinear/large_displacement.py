@@ -58,9 +58,9 @@ class LargeDisplacement:
     Attributes
     ----------
     state : State
-        Small: the linear answer is valid. deformed: equilibrium was found on the deformed shape. unstable: it was
-        found, but the linkage buckles on its way there. no equilibrium: it ends below the whole load. off: the case
-        says not to look. unknown: there is no frame of this linkage.
+        Small: the linear answer is valid. deformed: stable equilibrium was found on the deformed shape. unstable: it
+        buckles below the whole load. no equilibrium: equilibrium ends below it. off: the case says not to look.
+        unknown: there is no frame of this linkage.
     span : float
         Largest distance between two points of the pose [mm].
     linear : float
@@ -68,9 +68,13 @@ class LargeDisplacement:
     where : str
         Place of that displacement, for people.
     held : float
-        Share of the load up to which equilibrium was found; 1 for all of it.
+        Share of the load up to which stable equilibrium was found; 1 for all of it.
+    lost : float
+        The least share at which none was found; infinite where there is none.
     held_band : Band
-        The same with the stated scatter of load and modulus; of no meaning unless ``followed``.
+        ``held`` with the stated scatter of load and modulus; of no meaning unless ``followed``.
+    scatter : Scatter
+        Of load over modulus, as stated.
     buckling : float or None
         Lowest factor on all loads at which the linear frame becomes unstable; infinite where it never does, None where
         there is no frame.
@@ -96,7 +100,9 @@ class LargeDisplacement:
     linear: float = 0.0
     where: str = ""
     held: float = 1.0
+    lost: float = math.inf
     held_band: Band = field(default_factory=lambda: Band.exact(1.0))
+    scatter: Scatter = field(default_factory=Scatter)
     buckling: float | None = None
     dead_point: float = math.inf
     points: Mapping[tuple[str, str], Real]
@@ -185,10 +191,18 @@ def examine(
         factor = linkage_factor(frame)
     except (CaseError, CannotRunError) as error:
         return left("off", as_said) if off else left("unknown", f": {error}")
+    materials = [compliance_scatter(case.material_of(link)) for link in case.bending_links]
+    slack = Scatter(
+        low=min(m.low for m in materials),
+        high=max(m.high for m in materials),
+        sources=distinct(*(m.sources for m in materials)),
+    )
+    scatter = slack.times(load_scatter(case, title))
     near, points = dead_point_factor(frame, solution), frame.at_points(solution.displacements)
     if off:
         found = left("off", as_said)
-        return replace(found, buckling=factor, dead_point=near, points=points, frame=frame, solution=solution)
+        known = replace(found, buckling=factor, dead_point=near, points=points, frame=frame, solution=solution)
+        return replace(known, scatter=scatter)
     linear, where = _largest(frame, solution)
     small = LargeDisplacement(
         state="small",
@@ -197,6 +211,7 @@ def examine(
         where=where,
         buckling=factor,
         dead_point=near,
+        scatter=scatter,
         points=points,
         links={},
         frame=frame,
@@ -206,31 +221,22 @@ def examine(
             f"{size:.4g} mm (limit {100.0 * LARGE:g} %): equilibrium in the undeformed pose is accurate enough"
         ),
     )
-    materials = [compliance_scatter(case.material_of(link)) for link in case.bending_links]
-    slack = Scatter(
-        low=min(m.low for m in materials),
-        high=max(m.high for m in materials),
-        sources=distinct(*(m.sources for m in materials)),
-    )
-    scatter = slack.times(load_scatter(case, title))
     if scatter.high * linear <= LARGE * size and min(factor, near) >= LEAST_FACTOR * scatter.high:
         return small
     found = _deformed(case, title, frame, small, loads)
-    return replace(found, held_band=_held_band(frame, found, scatter))
+    return replace(found, held_band=_held_band(frame, found))
 
 
-def _held_band(frame: LinkageFrame, found: LargeDisplacement, scatter: Scatter) -> Band:
-    """Band of the share of the load that is held, with what load over modulus may be by ``scatter``.
+def _held_band(frame: LinkageFrame, found: LargeDisplacement) -> Band:
+    """Band of the share of the load that is held, with what load over modulus may be by its scatter.
 
     A frame of linear material has the shape that load over modulus gives it, so that its limit load scales.
     """
+    scatter = found.scatter
+    if found.gives_way:
+        ends = found.held / scatter.high, found.held / scatter.low
+        return Band(value=found.held, low=ends[0], high=ends[1], sources=scatter.sources)
     sources = scatter.sources
-    if found.state == "no equilibrium":
-        return Band(value=found.held, low=found.held / scatter.high, high=found.held / scatter.low, sources=sources)
-    if found.state == "unstable":
-        sources = (*sources, Source(kind=SourceKind.PATH, detail="it becomes unstable at an unknown share of the load"))
-        high = 1.0 if scatter.low < 1.0 and _holds(frame, scatter.low) == 1.0 else math.nextafter(1.0, 0.0)
-        return Band(value=min(found.buckling or 1.0, high), low=0.0, high=high, sources=sources)
     low = _holds(frame, scatter.high) if scatter.high > 1.0 else 1.0
     faults = math.inf if found.buckling is None else found.buckling / scatter.high / LEAST_LINEAR
     if faults < low:
@@ -241,12 +247,12 @@ def _held_band(frame: LinkageFrame, found: LargeDisplacement, scatter: Scatter) 
 
 
 def _holds(frame: LinkageFrame, factor: float) -> float:
-    """Share that is held of ``factor`` times load over modulus; 0 where the linkage becomes unstable on the way."""
+    """Share that is held of ``factor`` times load over modulus."""
     try:
-        found = _followed(frame, factor)
+        followed(frame, factor)
     except NoEquilibriumError as error:
         return error.reached
-    return 1.0 if found.stable else 0.0
+    return 1.0
 
 
 def displaced(frame: LinkageFrame, link: str, point: str, factor: float) -> float:
@@ -269,20 +275,39 @@ def displaced(frame: LinkageFrame, link: str, point: str, factor: float) -> floa
         Distance [mm]; infinite where nothing holds.
     """
     try:
-        found = _followed(frame, factor)
+        found = followed(frame, factor)
     except NoEquilibriumError:
         return math.inf
-    return float(np.linalg.norm(frame.at_points(found.displacements)[link, point])) if found.stable else math.inf
+    return float(np.linalg.norm(frame.at_points(found.displacements)[link, point]))
 
 
-def _followed(frame: LinkageFrame, factor: float) -> CorotationalSolution:
-    """Equilibrium under ``factor`` times load over modulus; raises ``NoEquilibriumError`` where it ends on the way."""
+def followed(frame: LinkageFrame, factor: float) -> CorotationalSolution:
+    """Return the stable equilibrium under another load over modulus.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        Of the linkage.
+    factor : float
+        Load over modulus, relative to the case: a frame of linear material has the shape that this gives it.
+
+    Returns
+    -------
+    CorotationalSolution
+        With forces over that factor.
+
+    Raises
+    ------
+    NoEquilibriumError
+        Where the path of stable equilibrium ends on the way.
+    """
     elements = tuple(replace(element, young=element.young / factor) for element in frame.model.elements)
     return solve_large_displacement(
         replace(frame.model, elements=elements),
         PATH_SUBDIVISIONS,
         least_step=LEAST_STEP,
         most_iterations=MOST_ITERATIONS,
+        stable=True,
     )
 
 
@@ -311,19 +336,14 @@ def _deformed(
         )
     lead = f"{lead}; on its deformed shape "
     try:
-        found = solve_large_displacement(
-            frame.model, PATH_SUBDIVISIONS, least_step=LEAST_STEP, most_iterations=MOST_ITERATIONS
-        )
+        found = followed(frame, 1.0)
     except NoEquilibriumError as error:
-        sentence = (
-            f"{lead}it does not hold the load: it gives way at {100.0 * error.reached:.3g} % of it (a limit load or a "
-            "snap-through)"
-        )
-        return replace(small, state="no equilibrium", held=error.reached, points={}, sentence=sentence)
+        state: State = "unstable" if error.buckled else "no equilibrium"
+        how = "buckles" if error.buckled else "gives way"
+        kind = "it is unstable beyond" if error.buckled else "a limit load or a snap-through"
+        sentence = f"{lead}it does not hold the load: it {how} at {100.0 * error.reached:.3g} % of it ({kind})"
+        return replace(small, state=state, held=error.reached, lost=error.failed, points={}, sentence=sentence)
     points = frame.at_points(found.displacements)
-    if not found.stable:
-        sentence = f"{lead}it does not hold the load: it buckles before the whole load acts"
-        return replace(small, state="unstable", points=points, sentence=sentence)
     count = len(frame.model.nodes)
     reactions = frame.reactions(found.joint_wrenches[:count], found.residual, found.displacements[:count])
     moved = max((float(np.linalg.norm(d)) for d in points.values()), default=0.0)

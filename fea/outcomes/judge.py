@@ -20,6 +20,7 @@ from loads.case.case import Case
 from loads.records.check_spec import (
     BearingCheck,
     DisplacementCheck,
+    LimitLoadCheck,
     MotorCheck,
     PinCheck,
     SafetyFactorCheck,
@@ -37,9 +38,9 @@ def outcomes(
     uneven: Mapping[str, Scatter] | None = None,
     forces: JointForces | None = None,
 ) -> tuple[CheckOutcome, ...]:
-    """Return the outcome of every check of a load case, but for motors, bearing and links' buckling.
+    """Return the outcome of every check of a load case, but for motors, bearing, limit load and links' buckling.
 
-    These are in ``fea.outcomes.motor``, ``fea.outcomes.bearing`` and ``fea.buckling.buckling``.
+    These are in ``fea.outcomes`` (``motor``, ``bearing``), ``fea.check.linkage_numbers`` and ``fea.buckling.buckling``.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def outcomes(
             ]
         elif isinstance(check, DisplacementCheck) and check.at is not None:
             found.append(point_outcome(case, name, check, load_case, moved, links, free, forces))
-        elif not isinstance(check, MotorCheck | BearingCheck):
+        elif not isinstance(check, MotorCheck | BearingCheck | LimitLoadCheck):
             found += [_link(case, name, check, load_case, links[link]) for link in check.links or case.checked_links]
     beams = {link: result.beam for link, result in links.items()}
     found += layer_outcomes(case, load_case, links)

@@ -59,26 +59,28 @@ class PointDisplacement:
     def of(
         cls,
         case: Case,
-        name: str,
-        check: DisplacementCheck,
+        at: tuple[str, str],
         load_case: str,
         moved: LargeDisplacement,
         links: Mapping[str, LinkResult],
         free: Mapping[str, LinkLoads],
         forces: JointForces | None = None,
     ) -> "PointDisplacement":
-        """Return how far the point of a check moves.
+        """Return how far a point moves.
 
         Parameters
         ----------
-        case, name, check, load_case, moved, links, free, forces
+        case : Case
+        at : tuple of 2 str
+            Link and point.
+        load_case, moved, links, free, forces
             As of ``point_outcome``.
 
         Returns
         -------
         PointDisplacement
         """
-        link, point = case.displaced_point(name, check)
+        link, point = at
         displacement, factor, shares = moved.points.get((link, point)), moved.factor, Shares()
         why = f"the frame gives no displacement: {moved.sentence}"
         if displacement is not None and moved.state in ("small", "deformed", "off"):
@@ -262,7 +264,8 @@ def point_outcome(
     -------
     CheckOutcome
     """
-    told = PointDisplacement.of(case, name, check, load_case, moved, links, free, forces)
+    at = case.displaced_point(name, check)
+    told = PointDisplacement.of(case, at, load_case, moved, links, free, forces)
     subject = Subject.point(told.point, told.link)
     found = CheckOutcome.of(name, subject, load_case, Quantity.DISPLACEMENT, told.value, check.maximum, told.why)
     if told.why:
@@ -302,7 +305,7 @@ def meshes_to_refine(
     found: dict[str, float] = {}
     for name, check in case.checks.items():
         if isinstance(check, DisplacementCheck) and check.at is not None:
-            told = PointDisplacement.of(case, name, check, load_case, moved, links, free)
+            told = PointDisplacement.of(case, case.displaced_point(name, check), load_case, moved, links, free)
             for link, error in told.meshes_to_refine(check.maximum, links).items():
                 found[link] = min(error, found.get(link, math.inf))
     return found

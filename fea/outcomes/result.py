@@ -1,8 +1,9 @@
 """The records that a check hands to the reports."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -10,9 +11,10 @@ from numpy.typing import NDArray
 
 from fea.beam.theory import BeamCheck, CantileverCheck
 from fea.common.band import Band
-from fea.common.verdict import LINKAGE, CheckOutcome, Verdict
+from fea.common.verdict import CheckOutcome, Verdict
 from fea.frame.joint_forces import JointForces, WayToHold
 from fea.nonlinear.large_displacement import LargeDisplacement
+from fea.nonlinear.limit_load import limit_load
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.opinion import SecondOpinion
 from fea.outcomes.pins import PinStress
@@ -202,6 +204,52 @@ class SolidResult(LinkResult):
         return self.solution.space.unknowns
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinkageNumbers:
+    """Numbers of the linkage as a whole under a load case; each is computed once it is asked for.
+
+    Attributes
+    ----------
+    case : Case
+    moved : LargeDisplacement
+    forces : JointForces
+        In the undeformed pose.
+    largest : callable
+        Returns the largest displacement of any place [mm], and that place for people.
+    """
+
+    case: Case
+    moved: LargeDisplacement
+    forces: JointForces
+    largest: Callable[[], tuple[Band, str]]
+
+    @cached_property
+    def limit_load(self) -> Band:
+        """Factor on all loads at which the linkage gives way."""
+        return limit_load(self.case, self.moved)
+
+    @cached_property
+    def displacement_and_place(self) -> tuple[Band, str]:
+        """The largest displacement [mm], and its place for people; "" where it is not known."""
+        return self.largest()
+
+    @property
+    def displacement(self) -> Band:
+        """Largest displacement of any place of the linkage [mm]."""
+        return self.displacement_and_place[0]
+
+    @property
+    def where(self) -> str:
+        """The place that moves most, for people; "" where it is not known."""
+        return self.displacement_and_place[1]
+
+    @property
+    def dead_point_distance(self) -> float | None:
+        """Of the pose from a dead point of the driven link, 0 there; None where nothing is driven."""
+        drive = self.case.pinned_drive
+        return None if drive is None else drive.dead_point_distance(self.forces.reactions.pose)
+
+
 @dataclass(frozen=True, kw_only=True)
 class LoadCaseResult:
     """One load case.
@@ -219,6 +267,8 @@ class LoadCaseResult:
         Of every joint whose pin a check asks for.
     ways_to_hold : tuple of WayToHold
         Displacement of the point that the case names, for every way to hold the linkage.
+    linkage : LinkageNumbers
+        Limit-load factor, largest displacement and distance to a dead point.
     checks : tuple of CheckOutcome
     """
 
@@ -228,6 +278,7 @@ class LoadCaseResult:
     links: Mapping[str, LinkResult]
     pins: Mapping[str, PinStress]
     ways_to_hold: tuple[WayToHold, ...]
+    linkage: LinkageNumbers
     checks: tuple[CheckOutcome, ...]
 
     @property
@@ -238,8 +289,7 @@ class LoadCaseResult:
     @property
     def gives_way(self) -> bool:
         """True where the linkage as a whole does not hold the load, so that no link passes."""
-        failed = any(check.subject == LINKAGE and check.verdict is Verdict.FAIL for check in self.checks)
-        return failed or self.large_displacement.gives_way
+        return any(check.gives_way for check in self.checks) or self.large_displacement.gives_way
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,17 +7,22 @@ from typing import Literal
 
 import numpy as np
 
-from fea.common.verdict import CheckOutcome, Verdict, overall
+from fea.common.band import Band
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict, overall
 from fea.motion.envelope_result import EnvelopeResult
+from fea.motion.linkage_history import LinkageOverMotion, asked_over_motion, limit_load_outcomes
 from fea.outcomes.motor import motor_outcomes
-from fea.outcomes.result import CheckResult
+from fea.outcomes.result import CheckResult, LinkageNumbers
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
 from loads.states.case_motion import CaseMotion
+from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
 from loads.states.masses import part_masses, rough_masses
 
 State = Literal["done", "refused", "crashed"]
 Weighs = bool | Literal["rough"]
+LINKED = str(LINKAGE)
+DEAD_POINT = "distance to a dead point"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +79,27 @@ class VariantNumber:
         return cls(
             quantity=quantity, unit=unit, value=value, low=value, high=value, subject=subject, load_case=load_case
         )
+
+    @classmethod
+    def banded(cls, quantity: str, unit: str, band: Band, subject: str, load_case: str = "") -> "VariantNumber":
+        """Return a number with its band that nothing is asked of.
+
+        Parameters
+        ----------
+        quantity, unit : str
+        band : Band
+        subject : str
+        load_case : str, optional
+
+        Returns
+        -------
+        VariantNumber
+        """
+        low, high = float(band.low), float(band.high)
+        return cls(
+            quantity=quantity, unit=unit, value=float(band.value), low=low, high=high, subject=subject,
+            load_case=load_case,
+        )  # fmt: skip
 
     @classmethod
     def of(cls, outcome: CheckOutcome) -> "VariantNumber":
@@ -146,7 +172,11 @@ def of_check(result: CheckResult, *, weighs: Weighs) -> tuple[Verdict, tuple[Var
         reactions = load_case.large_displacement.reactions or load_case.forces.reactions
         largest = max((joint.magnitude for joint in reactions.joints.values()), default=0.0)
         found.append(VariantNumber.exact("drive torque", "N·mm", reactions.drive_torque, "the drive", name))
-        found.append(VariantNumber.exact("largest joint force", "N", largest, "the linkage", name))
+        found.append(VariantNumber.exact("largest joint force", "N", largest, LINKED, name))
+        found += _of_linkage(load_case.linkage, name)
+    distance = next(iter(result.load_cases.values())).linkage.dead_point_distance
+    if distance is not None:
+        found.append(VariantNumber.exact(DEAD_POINT, "1", distance, LINKED))
     return result.verdict, (*found, *_masses(result.case, weighs=weighs))
 
 
@@ -164,12 +194,13 @@ def of_envelope(result: EnvelopeResult, *, weighs: Weighs) -> tuple[Verdict, tup
     Verdict
     tuple of VariantNumber
     """
-    found = (*map(VariantNumber.of, result.checks), *_of_motion(result.moved))
+    linkage = (number for name, over in result.linkage.items() for number in _of_linkage(over, name))
+    found = (*map(VariantNumber.of, result.checks), *_of_motion(result.moved), *linkage)
     return result.verdict, (*found, *_masses(result.case, weighs=weighs))
 
 
 def of_motion(result: CaseMotion, *, weighs: Weighs) -> tuple[Verdict | None, tuple[VariantNumber, ...]]:
-    """Return numbers of a motion, with a verdict where a motor is checked.
+    """Return numbers of a motion, with a verdict where a motor or the limit load is checked.
 
     Parameters
     ----------
@@ -190,8 +221,18 @@ def of_motion(result: CaseMotion, *, weighs: Weighs) -> tuple[Verdict | None, tu
         for outcomes in motor_outcomes(case, name, check).values()
         for outcome in outcomes
     ]
-    verdict = overall(outcome.verdict for outcome in motors) if motors else None
-    return verdict, (*map(VariantNumber.of, motors), *_of_motion(result), *_masses(case, weighs=weighs))
+    linkage = asked_over_motion(result)
+    checked = [*motors, *limit_load_outcomes(result, linkage)]
+    verdict = overall(outcome.verdict for outcome in checked) if checked else None
+    frames = (number for name, over in linkage.items() for number in _of_linkage(over, name))
+    own = (*_of_motion(result), *frames, *_masses(case, weighs=weighs))
+    return verdict, (*map(VariantNumber.of, checked), *own)
+
+
+def _of_linkage(found: LinkageNumbers | LinkageOverMotion, load_case: str) -> Iterator[VariantNumber]:
+    """By what factor the loads may grow, and how far the linkage moves."""
+    yield VariantNumber.banded(Quantity.LIMIT_LOAD.value, "1", found.limit_load, LINKED, load_case)
+    yield VariantNumber.banded("largest displacement", "mm", found.displacement, LINKED, load_case)
 
 
 def _of_motion(moved: CaseMotion) -> Iterator[VariantNumber]:
@@ -201,18 +242,24 @@ def _of_motion(moved: CaseMotion) -> Iterator[VariantNumber]:
         yield VariantNumber.exact(f"largest drive {name}", unit, _largest(torque), moved.drive.link, load_case)
     for load_case, forces in moved.forces.items():
         largest = max((_largest(np.hypot(f[..., 0], f[..., 1])) for f in forces.forces.values()), default=0.0)
-        yield VariantNumber.exact("largest joint force", "N", largest, "the linkage", load_case)
+        yield VariantNumber.exact("largest joint force", "N", largest, LINKED, load_case)
     for link in moved.case.linkage.links:
         if link != moved.case.linkage.ground:
             yield VariantNumber.exact("swing", "deg", math.degrees(float(np.ptp(moved.motion.angle(link)))), link)
     yield VariantNumber.exact("dead points", "1", len(moved.dead_points), moved.drive.link)
+    yield VariantNumber.exact(DEAD_POINT, "1", least_dead_point_distance(moved), LINKED)
+    way = way_to_dead_point(moved)
+    if moved.motion.slides:
+        yield VariantNumber.exact("travel to a dead point", "mm", way, LINKED)
+    else:
+        yield VariantNumber.exact("angle to a dead point", "deg", math.degrees(way), LINKED)
     if moved.case.flapping_wing is not None:
         wing = moved.case.flapping_wing.wing(moved.case.linkage)
         figures = {"": wing.metrics(), ", as published": wing.published_metrics()}
         for which, metrics in figures.items():
             for figure in ("phase_lag", "oscillation", "asymmetry"):
                 value = math.degrees(getattr(metrics, figure))
-                yield VariantNumber.exact(figure.replace("_", " ") + which, "deg", value, "the linkage")
+                yield VariantNumber.exact(figure.replace("_", " ") + which, "deg", value, LINKED)
 
 
 def _largest(values: object) -> float:
@@ -228,5 +275,5 @@ def _masses(case: Case, *, weighs: Weighs) -> Iterable[VariantNumber]:
     found = rough_masses(case) if rough else {link: mass.mass for link, mass in part_masses(case).items()}
     masses: Mapping[str, float] = {link: 1e6 * mass for link, mass in found.items()}
     numbers = [VariantNumber.exact("mass", "g", mass, link) for link, mass in masses.items()]
-    numbers.append(VariantNumber.exact("mass", "g", sum(masses.values()), "the linkage"))
+    numbers.append(VariantNumber.exact("mass", "g", sum(masses.values()), LINKED))
     return [replace(number, low=math.nan, high=math.nan) for number in numbers] if rough else numbers

@@ -16,6 +16,7 @@ from loads.records.check_spec import (
     BearingCheck,
     Check,
     DisplacementCheck,
+    LimitLoadCheck,
     MotorCheck,
     PinCheck,
     SafetyFactorCheck,
@@ -197,6 +198,9 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
         _check_motor(case, name)
     elif isinstance(check, DisplacementCheck) and (check.at, check.link) != (None, None):
         _check_displaced(case, name, check)
+    elif isinstance(check, LimitLoadCheck):
+        if not case.checked_links:
+            raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
     else:
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(

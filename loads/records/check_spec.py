@@ -101,7 +101,18 @@ class MotorCheck(CaseModel):
         return self.voltage * self.current * self.efficiency
 
 
+class LimitLoadCheck(CaseModel):
+    """All loads must be able to grow by a factor before the linkage as a whole gives way.
+
+    It gives way by buckling or snapping through on its deformed shape, whatever its material bears.
+    """
+
+    type: Literal["limit-load"]
+    minimum: Annotated[float, Field(ge=1, le=10)]
+    """The least limit-load factor; the deformed shape is followed to ten times the load."""
+
+
 Check = Annotated[
-    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck | BearingCheck | MotorCheck,
+    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck | BearingCheck | LimitLoadCheck | MotorCheck,
     Field(discriminator="type"),
 ]

@@ -19,6 +19,7 @@ from loads.records.check_spec import SafetyFactorCheck
 from reports.page.output import MARK, write_folder
 from reports.tables.console import say_checks, verdict_line
 from reports.tables.data import check_records, data, entries, finite
+from reports.tables.frames import motion_linkage_line, motion_linkage_record
 from reports.tables.meshes import solver_record
 from reports.words.terminal import say, say_table
 from reports.words.wording import band, fixed, not_checked, number
@@ -173,6 +174,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
             "dead_points": [math.degrees(angle) for angle in result.moved.dead_points],
         },
         "links": {name: _link_record(result, link) for name, link in result.links.items()},
+        "linkage": {name: motion_linkage_record(result.moved, over) for name, over in result.linkage.items()},
         "idle_links": list(result.idle),
         "not_checked": list(unchecked(result.case, (SafetyFactorCheck,))),
         "checks": check_records(result.checks),
@@ -301,6 +303,11 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
             missing.setdefault(link.no_fatigue, []).append(name)
     for why, names in missing.items():
         say(console, f"No fatigue of {', '.join(names)}: {why}.")
+    for name, over in result.linkage.items():
+        say(
+            console,
+            f"{f'Load case {name}: ' if len(result.linkage) > 1 else ''}{motion_linkage_line(result.moved, over)}",
+        )
     say_checks(result.checks, console)
     if result.idle:
         say(console, f"Links without load: {', '.join(result.idle)}.")

@@ -10,10 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.motion.linkage_history import asked_over_motion
 from geometry.base.version import result_stamp
 from geometry.linkage.motion import Motion
 from loads.states.case_motion import CaseMotion, with_inertia
+from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
 from reports.figures.joint_paths import moving_points, path_length
+from reports.tables.data import finite
+from reports.tables.frames import motion_linkage_line, motion_linkage_record
 from reports.tables.mechanism import design_lines, design_record
 
 Real = NDArray[np.float64]
@@ -106,9 +110,14 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
             "link": result.drive.link,
             "joint": result.drive.joint,
             "dead_points": [float(result.motion.told(a)) for a in result.dead_points],
+            "least_distance": least_dead_point_distance(result),
+            "way_to_dead_point": _number(float(result.motion.told(way_to_dead_point(result)))),
         },
         "design": design_record(result.case),
         "load_cases": {load_case: _case_record(result, load_case) for load_case in result.torque},
+        "linkage": {
+            n: finite(motion_linkage_record(result, over), {}) for n, over in asked_over_motion(result).items()
+        },
     }
 
 
@@ -179,6 +188,12 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
             f"{motion['unit']}: {drive['link']} reverses its direction there; drive {result.effort[0]} and joint "
             "forces grow without bound."
         )
+    if not drive["dead_points"]:
+        way, unit = drive["way_to_dead_point"], motion["unit"]
+        beyond = "none was met beyond" if way is None else f"the nearest is {way:.4g} {unit} beyond"
+        print(
+            f"\nNo dead point of {drive['link']} in the range, {beyond}; least distance {drive['least_distance']:.3g}"
+        )
     if design := design_lines(result.case):
         print("\n" + "\n".join(design))
     for load_case, row in data["load_cases"].items():
@@ -187,6 +202,8 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         how = f"with inertia at {at}" if row["inertia"] else "without inertia"
         print(f"\nLoad case {load_case} ({how})")
         what, unit = result.effort
+        if load_case in data["linkage"]:
+            print(f"  {motion_linkage_line(result, asked_over_motion(result)[load_case])}")
         told = _line(row[f"drive_{what}"], unit, motion["unit"])
         print(f"  drive {what} on {drive['link']} at {drive['joint']}: {told}")
         if row["joints"] is None:

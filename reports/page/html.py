@@ -16,7 +16,7 @@ from loads.case.case_file import built_in_cases
 from reports.page.coverage import not_covered
 from reports.page.pictures import diagram_name, governing_load_cases, layers_name, linkage_name, stress_name
 from reports.tables.claims import as_records, count
-from reports.tables.frames import AXES, shown_components
+from reports.tables.frames import AXES, linkage_line, shown_components
 from reports.tables.layers import BuildDirections, build_directions_of
 from reports.tables.loads import air_record, anchor_record, weight_sentence
 from reports.tables.mechanism import design_of
@@ -95,6 +95,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         "joined": joined,
         "sentence": sentence,
         "capitalize_first": lambda text: text[:1].upper() + text[1:],
+        "linkage_line": linkage_line,
         "solved": solver_sentence,
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }

@@ -7,11 +7,13 @@ import numpy as np
 
 from fea.frame.joint_forces import PINNED_STATICS
 from loads.statics.statics import Reactions
-from reports.tables.data import entries
-from reports.words.wording import fixed, number
+from reports.tables.data import data, entries
+from reports.words.wording import band, fixed, limit_load, number
 
 if TYPE_CHECKING:
+    from fea.motion.linkage_history import LinkageOverMotion
     from fea.outcomes.result import CheckResult, LoadCaseResult
+    from loads.states.case_motion import CaseMotion
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 _ROUNDING = 1e-9
@@ -61,7 +63,7 @@ def reaction_records(reactions: Reactions) -> list[dict[str, Any]]:
 
 
 def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
-    """Return ``joint_forces``, ``large_displacement``, ``pins`` and ``ways_to_hold`` of a load case as plain data.
+    """Return what a load case does to the joints and to the linkage as a whole, as plain data.
 
     Parameters
     ----------
@@ -70,7 +72,7 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
     Returns
     -------
     dict
-        Those four entries.
+        ``joint_forces``, ``large_displacement``, ``linkage``, ``pins`` and ``ways_to_hold``.
     """
     moved = case.large_displacement
     deformed = moved.reactions
@@ -86,9 +88,87 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
             "drive_torque": deformed and deformed.drive_torque,
             "drive_force": deformed and deformed.drive_force,
         },
+        "linkage": {
+            "limit_load": data(case.linkage.limit_load),
+            "displacement": data(case.linkage.displacement),
+            "where": case.linkage.where or None,
+            "dead_point_distance": case.linkage.dead_point_distance,
+        },
         "pins": [{"joint": joint} | entries(pin, "lever moment bending shear") for joint, pin in case.pins.items()],
         "ways_to_hold": [entries(held, "name displacement size") for held in case.ways_to_hold],
     }
+
+
+def motion_linkage_record(moved: "CaseMotion", over: "LinkageOverMotion") -> dict[str, Any]:
+    """Return limit-load factor and largest displacement over a motion as plain data.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    over : LinkageOverMotion
+        Of a load case.
+
+    Returns
+    -------
+    dict
+    """
+
+    def told(pose: int) -> float | None:
+        return float(moved.motion.told(moved.motion.angles[pose])) if pose >= 0 else None
+
+    return {
+        "poses": [told(pose) for pose in over.poses],
+        "limit_load": data(over.limit_load),
+        "limit_load_at": told(over.limit_pose),
+        "displacement": data(over.displacement),
+        "displacement_at": told(over.displacement_pose),
+        "where": over.where or None,
+    }
+
+
+def motion_linkage_line(moved: "CaseMotion", over: "LinkageOverMotion") -> str:
+    """Return limit-load factor and largest displacement over a motion as one sentence.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    over : LinkageOverMotion
+        Of a load case.
+
+    Returns
+    -------
+    str
+    """
+    found = motion_linkage_record(moved, over)
+
+    def at(value: float | None) -> str:
+        return "" if value is None else f" at {moved.motion.coordinate} = {value:.5g} {moved.motion.unit}"
+
+    told = f"{len(over.poses)} of {len(moved.motion.angles)} poses: least {limit_load(over.limit_load)}"
+    told += at(found["limit_load_at"])
+    if not over.displacement.unknowable:
+        told += f", largest displacement {band(over.displacement)} mm ({over.where}){at(found['displacement_at'])}"
+    return f"Linkage in {told}."
+
+
+def linkage_line(case: "LoadCaseResult") -> str:
+    """Return limit-load factor, largest displacement and distance to a dead point of a load case as one sentence.
+
+    Parameters
+    ----------
+    case : LoadCaseResult
+
+    Returns
+    -------
+    str
+    """
+    found, drive = case.linkage, case.reactions.drive
+    told = [limit_load(found.limit_load)]
+    if not found.displacement.unknowable:
+        told.append(f"largest displacement {band(found.displacement)} mm ({found.where})")
+    if found.dead_point_distance is not None and drive is not None:
+        told.append(f"distance to a dead point of {drive.link} {number(found.dead_point_distance, 3)}")
+    return f"Linkage: {', '.join(told)}."
 
 
 def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
@@ -107,6 +187,7 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     lines = []
     if case.forces.model != PINNED_STATICS:
         lines.append(f"Joint forces by a {case.forces.model}: {case.forces.reason}.")
+    lines.append(linkage_line(case))
     deformed = case.large_displacement.reactions
     if deformed is not None:
         forces = "  ".join(f"{name} {number(joint.magnitude)}" for name, joint in deformed.joints.items())

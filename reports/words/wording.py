@@ -95,6 +95,22 @@ def band(value: Band, digits: int = 3) -> str:
     return shown if low == high else f"{shown} ({low} to {high})"
 
 
+def limit_load(factor: Band) -> str:
+    """Return a limit-load factor in words, such as ``limit-load factor at least 7.29``.
+
+    Parameters
+    ----------
+    factor : Band
+
+    Returns
+    -------
+    str
+    """
+    if factor.unknowable or not math.isinf(factor.high):
+        return f"limit-load factor {band(factor)}"
+    return f"limit-load factor at least {number(factor.low, 3)}"
+
+
 def percent(ratio: float) -> str:
     """Return a ratio as a signed percentage.
 
@@ -281,8 +297,6 @@ def gives_way(check: CheckOutcome) -> str:
     str
     """
     value = check.value
-    if value.low <= 0.0:  # unstable on the way, so that the share itself is not known
-        return "the linkage becomes unstable below its full load"
     shown, low, high = (number(min(100.0 * share, 99.0), 2) for share in (value.value, value.low, value.high))
     return f"the linkage gives way at {shown} %{'' if low == high else f' ({low} to {high} %)'} of its load"
 

@@ -111,9 +111,9 @@ def test_near_to_it_the_deformed_shape_is_asked_though_nothing_moves(share, stat
     assert moved.buckling == pytest.approx(1.0 / share, rel=3e-3)
     assert "by linear theory the linkage buckles at" in moved.sentence
     assert f"buckling factor by linear theory is {moved.buckling:.3g}" in found.reason
-    # Somewhere below the whole load where it became unstable on the way, else all of it.
-    low = 0.0 if state == "unstable" else min(1.0, 1.0 / share / 3.0)
-    assert (found.value.low, found.value.high) == pytest.approx((low, 1.0), rel=3e-3)
+    high = min(1.0, 1.0 / share)
+    low = high if state == "unstable" else min(1.0, 1.0 / share / 3.0)
+    assert (found.value.low, found.value.high) == pytest.approx((low, high), rel=3e-3)
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(0.18, Verdict.PASS), (0.3, Verdict.UNDECIDED), (1.03, Verdict.FAIL)])
@@ -173,3 +173,15 @@ def holds(at, share: float) -> bool:
         return at(share).stable
     except NoEquilibriumError:
         return False
+
+
+@pytest.mark.parametrize(("share", "state"), [(0.05, "small"), (0.5, "deformed"), (1.25, "unstable")])
+def test_sway_is_found_beyond_the_load_or_below_it(share, state):
+    result = check_case(parallelogram(share * critical()), fidelity="beam")
+    found = result.load_cases["weight"].linkage.limit_load
+    assert result.load_cases["weight"].large_displacement.state == state
+    if share < 0.1:
+        assert (found.value, found.high) == (10.0, np.inf)
+    else:
+        assert found.value == pytest.approx(1.0 / share, rel=0.02)
+    assert found.low <= 1.0 / share / 3.0

@@ -16,11 +16,12 @@ from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
-from fea.motion.linkage_history import linkage_outcomes
+from fea.motion.linkage_history import linkage_outcomes, over_motion
 from fea.nonlinear.stability import SNAP, growth
+from fea.study.numbers import of_motion
 from loads.case.case import Case
 from loads.case.case_file import validate
-from loads.records.check_spec import BearingCheck, PinCheck
+from loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck
 from loads.states.case_motion import solve_case_motion
 
 HALF, LEVER = 50.0, 100.0
@@ -232,3 +233,51 @@ def test_what_bears_nothing_is_not_broken_by_a_load_that_nothing_holds() -> None
     found = growth.on(band)
     assert (found.low, found.high) == (0.0, 0.0)
     assert growth.inverse.on(band.inverse(1.0)).low == math.inf
+
+
+def whole(result):
+    return result.load_cases["push"].linkage
+
+
+@pytest.mark.parametrize("share", [0.15, 0.6])
+def test_a_toggle_on_a_spring_gives_way_at_the_load_of_its_exact_equilibrium(share):
+    limit = limit_load(toggle(-1.0, 5.0), 5.0)
+    found = whole(check_case(toggle(-share * limit, 5.0), fidelity="beam")).limit_load
+    assert found.value == pytest.approx(1.0 / share, rel=0.02)
+    assert found.low < 1.0 / share < found.high
+    off = whole(check_case(toggle(-share * limit, 5.0, way="off"), fidelity="beam")).limit_load
+    assert off.low < 1.0 / share < off.high
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(0.4, Verdict.PASS), (0.5, Verdict.UNDECIDED), (0.9, Verdict.FAIL)])
+def test_a_case_may_ask_for_a_margin_which_does_not_say_that_the_linkage_gives_way(share, verdict):
+    case = toggle(-share * limit_load(toggle(-1.0, 5.0), 5.0), 5.0)
+    case = case.model_copy(update={"checks": {"holds": LimitLoadCheck(type="limit-load", minimum=1.5)}})
+    result = check_case(case, fidelity="beam").load_cases["push"]
+    (asked,) = [check for check in result.checks if check.name == "holds"]
+    assert (asked.subject, asked.quantity, asked.verdict) == (LINKAGE, Quantity.LIMIT_LOAD, verdict)
+    assert not result.gives_way
+    assert all("gives way" not in check.reason for check in result.checks if check.subject != LINKAGE)
+
+
+def test_over_a_motion_the_least_factor_is_that_of_its_worst_pose():
+    """The toggle's lever turns by two degrees; a check of the pose in which it is flattest has the same number."""
+    slope = math.degrees(math.atan2(10.0, HALF))
+    text = TOGGLE.format(force=-0.5, length=math.hypot(HALF, 10.0), slope=slope, down=-slope, way="auto", bars="bar")
+    data = tomllib.loads(text) | {"motion": {"poses": 5, "range": ["90 deg", "92 deg"]}}
+    data["checks"] = {"holds": {"type": "limit-load", "minimum": 1.5}}
+    moved = solve_case_motion(validate(data))
+    over = over_motion(moved, np.ones(5, dtype=bool))["push"]
+    assert over.poses == (0, 1, 2, 3, 4)
+    alone = [
+        whole(check_case(validate(data | {"pose": data["pose"] | {"angle": f"{angle} deg"}}), fidelity="beam"))
+        for angle in (90.0, 92.0)
+    ]
+    worst = min(alone, key=lambda one: one.limit_load.value)
+    assert alone[0].limit_load.value != pytest.approx(alone[1].limit_load.value, rel=0.05)
+    assert over.limit_load.value == pytest.approx(worst.limit_load.value, rel=1e-6)
+    assert over.displacement.value == pytest.approx(max(one.displacement.value for one in alone), rel=1e-6)
+    verdict, numbers = of_motion(moved, weighs=False)
+    asked, plain = (n for n in numbers if n.quantity == "limit-load factor")
+    assert (asked.check, plain.check, asked.value) == ("holds", "", plain.value) == ("holds", "", over.limit_load.value)
+    assert verdict is asked.verdict

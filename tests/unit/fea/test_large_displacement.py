@@ -77,6 +77,15 @@ def test_the_wing_held_at_ae_does_not_hold_its_weight():
     assert "it gives way at 20.3 % of it" in found.sentence
 
 
+@pytest.mark.parametrize("times", [3.0, 20.0])
+def test_no_load_is_so_large_that_its_path_jumps_over_the_snap_through(times):
+    """Under twenty times its weight the wing once held: the first step landed on a shape beyond the snap-through."""
+    found, _ = examined(under([0, -0.25 * times]))
+    assert found.state == "no equilibrium"
+    assert times * found.held == pytest.approx(0.203, rel=0.03)
+    assert times * found.held < 0.205 <= times * found.lost + 1e-3
+
+
 def test_its_verdict_is_fail_and_the_undeformed_figures_stay():
     case = under([0, -0.25])
     result = check_case(case, name="owl-wing-static", fidelity="beam")

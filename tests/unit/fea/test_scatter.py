@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 from importlib.resources import files
-from types import SimpleNamespace
 
 import eye_link
 import numpy as np
@@ -22,7 +21,6 @@ from fea.common.verdict import Verdict
 from fea.motion.envelope import envelope_case
 from fea.motion.envelope_outcomes import envelope_outcomes
 from fea.nonlinear import large_displacement
-from fea.nonlinear.equilibrium_path import NoEquilibriumError
 from fea.refine.refinement import Effort
 from geometry.base.errors import CaseError
 from geometry.materials.material import library
@@ -192,8 +190,7 @@ def test_repetitions_are_a_number(coupler, repetitions):
         ("no equilibrium", 0.9, {}, (0.9 / 1.25, 0.9 / 0.8)),
         ("deformed", 1.0, {1.25: 0.85}, (0.85, 1.0)),
         ("deformed", 1.0, {1.25: 1.0}, (1.0, 1.0)),
-        ("unstable", 1.0, {0.8: 1.0}, (0.0, 1.0)),
-        ("unstable", 1.0, {0.8: 0.0}, (0.0, math.nextafter(1.0, 0.0))),
+        ("unstable", 0.7, {}, (0.7 / 1.25, 0.7 / 0.8)),
     ],
 )
 def test_the_limit_load_holds_load_over_least_modulus(monkeypatch, state, held, shares, ends):
@@ -202,30 +199,17 @@ def test_the_limit_load_holds_load_over_least_modulus(monkeypatch, state, held, 
         state=state,
         span=1.0,
         held=held,
-        buckling=0.7 if state == "unstable" else math.inf,
+        buckling=math.inf,
+        scatter=Scatter(low=0.8, high=1.25),
         points={},
         links={},
         sentence="",
     )
-    band = large_displacement._held_band(None, found, Scatter(low=0.8, high=1.25))
+    band = large_displacement._held_band(None, found)
     assert (band.low, band.high) == pytest.approx(ends, abs=0.0)
     [outcome] = linkage_outcomes(None, "lift", replace(found, held_band=band), {"link": _Idle()})
     expected = Verdict.PASS if band.low == 1.0 else Verdict.FAIL if band.high < 1.0 else Verdict.UNDECIDED
     assert outcome.verdict is expected
-
-
-@pytest.mark.parametrize(
-    ("answer", "share"),
-    [(SimpleNamespace(stable=True), 1.0), (SimpleNamespace(stable=False), 0.0), (NoEquilibriumError(0.7), 0.7)],
-)
-def test_what_is_unstable_on_the_way_holds_nothing(monkeypatch, answer, share):
-    def follow(frame, factor):
-        if isinstance(answer, Exception):
-            raise answer
-        return answer
-
-    monkeypatch.setattr(large_displacement, "_followed", follow)
-    assert large_displacement._holds(None, 1.2) == share
 
 
 class _Idle:

@@ -121,7 +121,6 @@ def test_the_headline_of_an_open_answer_gives_the_reason(result, changed):
         (0.203, 0.203, "gives way at 20 % of its load"),
         (0.203, 0.18, "gives way at 20 % (18 to 20 %) of its load"),
         (0.9996, 0.9996, "gives way at 99 % of its load"),
-        (0.8, 0.0, "becomes unstable below its full load"),
     ],
 )
 def test_a_linkage_that_gives_way_comes_first_with_its_share_of_the_load(result, changed, share, low, text):

@@ -1,0 +1,122 @@
+"""The linkage as a whole under a load case, in numbers with bands: its limit-load factor and largest displacement."""
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+
+import numpy as np
+
+from fea.common.band import Band
+from fea.common.link_loads import LinkLoads
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from fea.frame.joint_forces import JointForces
+from fea.nonlinear.large_displacement import LargeDisplacement
+from fea.outcomes.point_displacement import PointDisplacement
+from fea.outcomes.result import LinkageNumbers, LinkResult
+from loads.case.case import Case
+from loads.records.check_spec import LimitLoadCheck
+
+NEARLY = 0.8
+"""Share of the frame's largest displacement from which on a point may be the one that moves most."""
+
+
+def linkage_numbers(
+    case: Case,
+    load_case: str,
+    moved: LargeDisplacement,
+    forces: JointForces,
+    links: Mapping[str, LinkResult] | None = None,
+    free: Mapping[str, LinkLoads] | None = None,
+) -> LinkageNumbers:
+    """Return the numbers of the linkage as a whole.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    moved : LargeDisplacement
+        What became of it.
+    forces : JointForces
+        In the undeformed pose.
+    links : mapping of str to LinkResult, optional
+        Whose solids tell how far points move, where these were solved; the frame alone when left out.
+    free : mapping of str to LinkLoads, optional
+        Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
+
+    Returns
+    -------
+    LinkageNumbers
+    """
+    largest = partial(_largest, case, load_case, moved, forces, links or {}, free or {})
+    return LinkageNumbers(case=case, moved=moved, forces=forces, largest=largest)
+
+
+def limit_load_outcomes(case: Case, load_case: str, linkage: LinkageNumbers) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every check of the limit load in a pose.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    linkage : LinkageNumbers
+        Of the load case.
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    for name, check in case.checks.items():
+        if isinstance(check, LimitLoadCheck):
+            yield limit_load_outcome(name, check, load_case, linkage.limit_load)
+
+
+def limit_load_outcome(name: str, check: LimitLoadCheck, load_case: str, factor: Band, where: str = "") -> CheckOutcome:
+    """Return the outcome of a check of the limit load.
+
+    Parameters
+    ----------
+    name : str
+        Of the check.
+    check : LimitLoadCheck
+    load_case : str
+        Its name.
+    factor : Band
+        Of one pose, or the least of a motion.
+    where : str, optional
+        In which poses, for people.
+
+    Returns
+    -------
+    CheckOutcome
+    """
+    found = CheckOutcome.of(name, LINKAGE, load_case, Quantity.LIMIT_LOAD, factor, check.minimum)
+    return found.because(f"{factor.without if factor.unknowable else found.reason}{where}")
+
+
+def _largest(
+    case: Case,
+    load_case: str,
+    moved: LargeDisplacement,
+    forces: JointForces,
+    links: Mapping[str, LinkResult],
+    free: Mapping[str, LinkLoads],
+) -> tuple[Band, str]:
+    """Largest displacement of any place [mm], and that place."""
+    sizes = {key: float(np.linalg.norm(d)) for key, d in moved.points.items()}
+    if not sizes or moved.frame is None or moved.solution is None:
+        return Band.unknown(moved.sentence), ""
+    places = {tuple(np.round(moved.points[key], 9)): key for key in sizes}  # the two links at a pin move alike
+    most, bands = max(sizes.values()), {}
+    for link, point in places.values():
+        if sizes[link, point] >= NEARLY * most:
+            told = PointDisplacement.of(case, (link, point), load_case, moved, links, free, forces)
+            if told.why:
+                return Band.unknown(told.why), ""
+            bands[link, point] = told.value
+    link, point = max(bands, key=lambda key: bands[key].value)
+    found, where = Band.largest(list(bands.values())), f"{point} of {link}"
+    linear = max(float(np.linalg.norm(moved.solution.displacements[node, :3])) for node in moved.frame.points.values())
+    if moved.linear > (1.0 + 1e-6) * linear > 0.0:  # between points, where stations of the links tell
+        return found.times(moved.linear / linear), moved.where
+    return found, where
