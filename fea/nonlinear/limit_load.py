@@ -70,5 +70,6 @@ def _end(moved: LargeDisplacement) -> tuple[float, float]:
     try:
         followed(moved.frame, MOST)
     except NoEquilibriumError as error:
-        return MOST * error.reached, MOST * error.failed
+        held = max(MOST * error.reached, moved.held)  # the steps to the load itself may be finer
+        return held, max(MOST * error.failed, held)
     return MOST, math.inf
