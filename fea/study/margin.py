@@ -110,7 +110,8 @@ def nearest(result: VariantResult, *, worst: bool = True) -> VariantNumber | Non
     ----------
     result : VariantResult
     worst : bool
-        By the worse ends of the bands; by the values otherwise.
+        By the worse ends of the bands, among the checks that make the verdict what it is; by the values of all checks
+        otherwise.
 
     Returns
     -------
@@ -118,4 +119,5 @@ def nearest(result: VariantResult, *, worst: bool = True) -> VariantNumber | Non
         None where nothing was checked.
     """
     checked = [number for number in result.numbers if number.check]
-    return min(checked, key=lambda number: margin(number, worst=worst), default=None)
+    deciding = [number for number in checked if number.verdict is result.verdict] if worst else []
+    return min(deciding or checked, key=lambda number: margin(number, worst=worst), default=None)

@@ -24,7 +24,9 @@ def tolerance(
     ],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder; result.json and samples.npz go to its subfolder tolerance."),
+        typer.Option(
+            "-o", "--output", help="Folder; result.json, samples.npz and pictures go to its subfolder tolerance."
+        ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON instead of a table.")] = False,
     overrides: Annotated[list[str] | None, typer.Option("--set", help="Override an entry of the case.")] = None,
@@ -65,7 +67,7 @@ def tolerance(
         if output is not None:
             write_tolerance(result, output)
             if not json:
-                print(f"Record and samples: {output / 'tolerance'}")
+                print(f"Record, samples and pictures: {output / 'tolerance'}")
 
 
 def with_tolerances(case: "Case", more: Mapping[str, str]) -> "Case":
@@ -88,7 +90,7 @@ def with_tolerances(case: "Case", more: Mapping[str, str]) -> "Case":
 
 
 def write_tolerance(result: "ToleranceResult", target: Path) -> None:
-    """Write ``result.json`` and ``samples.npz``, the deviations and all numbers of every sample.
+    """Write ``result.json``, ``samples.npz`` (the deviations and all numbers of every sample) and pictures.
 
     Parameters
     ----------
@@ -104,6 +106,7 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
     import numpy as np
 
     from reports.page.output import MARK, write_folder
+    from reports.study.tolerance_pictures import tolerance_pictures
     from reports.tables.tolerance import as_json
 
     def fill(folder: Path) -> None:
@@ -112,6 +115,8 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
             name: np.array([getattr(one, name) for one in result.numbers]) for name in ("values", "low", "high")
         }
         np.savez_compressed(folder / SAMPLES, deviations=result.deviations, **arrays)
+        for name, picture in tolerance_pictures(result).items():
+            (folder / name).write_bytes(picture)
 
     write_folder(target, "tolerance", fill)
 

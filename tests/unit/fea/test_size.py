@@ -10,6 +10,7 @@ from fea.common.verdict import Verdict
 from fea.sizing.least import least_size
 from fea.sizing.search import Search
 from fea.study.engine import Engine
+from fea.study.margin import nearest
 from fea.study.numbers import VariantNumber, VariantResult
 from fea.study.store import Store
 from geometry.base.errors import CaseError
@@ -108,3 +109,18 @@ def test_a_range_without_a_case_is_refused(tmp_path):
     """With the sentence of the case's own rules."""
     with pytest.raises(CaseError, match="too thin"):
         search(lambda d, f: None, tmp_path)
+
+
+def test_what_limits_is_a_check_that_makes_the_verdict():
+    """A column whose wide band reaches lower limits nothing where the linkage gives way beside it."""
+    gives_way = VariantNumber(
+        check="holding", subject="the linkage", quantity="share of the load that is held", unit="1",
+        value=0.7, low=0.65, high=0.75, limit=1.0, verdict=Verdict.FAIL,
+    )  # fmt: skip
+    column = VariantNumber(
+        check="buckling", subject="rocker", quantity="buckling factor", unit="1",
+        value=1.2, low=0.3, high=6.0, limit=1.0, verdict=Verdict.UNDECIDED,
+    )  # fmt: skip
+    failed = VariantResult(state="done", verdict=Verdict.FAIL, numbers=(gives_way, column))
+    assert nearest(failed) is gives_way
+    assert nearest(VariantResult(state="done", verdict=Verdict.UNDECIDED, numbers=(column,))) is column

@@ -26,6 +26,8 @@ def test_a_starter_is_sampled_printed_and_written(tmp_path: Path) -> None:
     assert values.shape == (len(record["numbers"]), 500)
     for number, row in zip(record["numbers"], values, strict=True):
         assert number["percentiles"]["50"] == pytest.approx(np.median(row))
+    pictures = {path.name for path in (tmp_path / "out" / "tolerance").glob("*.png")}
+    assert {"spread-strength-crank-lift.png", "causes-strength-crank-lift.png"} <= pictures
     least, most = (record["every_check_passes"][which]["value"] for which in ("certain", "possible"))
     assert 0.0 <= least <= most <= 1.0
     heaviest = max(zip(record["numbers"][-1]["total"], record["tolerances"], strict=True))

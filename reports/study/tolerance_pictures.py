@@ -1,0 +1,66 @@
+"""Pictures of a case under its tolerances: how its numbers spread about their limits, and what makes them spread."""
+
+import math
+import re
+
+import numpy as np
+
+from fea.tolerance.result import ToleranceNumber, ToleranceResult
+from reports.study.spread import histogram, tornado
+from reports.study.style import png
+
+MOST = 6
+"""Numbers that are drawn: those that come nearest to their limits."""
+
+
+def tolerance_pictures(result: ToleranceResult) -> dict[str, bytes]:
+    """Draw the numbers of a case under its tolerances.
+
+    Parameters
+    ----------
+    result : ToleranceResult
+
+    Returns
+    -------
+    dict of str to bytes
+        Name of the file -> PNG: a histogram of each number that comes nearest to its limit and of the drive torque,
+        with the indices of its tolerances where they are known.
+    """
+    asked = [one for one in result.numbers if one.certain is not None and not math.isnan(one.closeness)]
+    nearest = sorted(asked, key=lambda one: -one.closeness)[:MOST]
+    drawn = [*nearest, *(one for one in result.numbers if one.certain is None)]
+    found: dict[str, bytes] = {}
+    for one in drawn:
+        name, title = _file_name(one), _title(one)
+        outcome = None if one.certain is None else _outcomes(one)
+        found[f"spread-{name}.png"] = png(
+            histogram(one.values, one.limit, label=title, outcome=outcome, at_least=one.at_least, counted="samples")
+        )
+        if np.isfinite(one.total).any() and len(result.tolerances) > 1:
+            label = f"Sobol' index of the {one.quantity} of {one.subject}"
+            texts = "by itself", "in all"
+            found[f"causes-{name}.png"] = png(
+                tornado(
+                    result.tolerances, one.first, one.total, label=label, texts=texts, unsigned=[True] * len(one.total)
+                )
+            )
+    return found
+
+
+def _outcomes(one: ToleranceNumber) -> "np.ndarray[tuple[int], np.dtype[np.str_]]":
+    """The verdict of each sample over its whole band; one without equilibrium fails."""
+    if one.at_least:
+        kept, missed = one.low >= one.limit, one.high < one.limit
+    else:
+        kept, missed = one.high <= one.limit, one.low > one.limit
+    lost = ~np.isfinite(one.values)
+    return np.select([missed | lost, kept], ["fail", "pass"], "undecided")
+
+
+def _title(one: ToleranceNumber) -> str:
+    unit = "" if one.unit in ("", "1") else f" [{one.unit}]"
+    return f"{one.quantity} of {one.subject}" + (f", {one.load_case}" if one.load_case else "") + unit
+
+
+def _file_name(one: ToleranceNumber) -> str:
+    return re.sub(r"[^\w-]+", "-", f"{one.check or one.quantity}-{one.subject}-{one.load_case}").strip("-")
