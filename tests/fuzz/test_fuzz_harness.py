@@ -89,5 +89,5 @@ def test_a_few_inputs_of_every_kind(tmp_path: Path) -> None:
     done = child(FEW, str(tmp_path))
     assert done.returncode == 0, done.stderr
     records = [json.loads(path.read_text()) for path in tmp_path.iterdir()]
-    assert len(records) == 8
+    assert len(records) == 9
     assert [record["faults"] for record in records if record["faults"]] == []

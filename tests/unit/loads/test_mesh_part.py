@@ -117,11 +117,11 @@ def test_a_link_of_a_mesh_has_its_mass_sections_and_bores(tmp_path, step, mesh):
     assert one.volume == pytest.approx(other.volume, rel=1e-5)
     assert one.centroid == pytest.approx(other.centroid, abs=1e-3)
     assert np.allclose(one.inertia, other.inertia, rtol=1e-4, atol=1.0)
-    cut, same = (found.part_of("rocker").cuts[2] for found in (case, step))  # of the plate alone, 20 x 5 mm
+    cut, same = (found.body("rocker").cuts[2] for found in (case, step))  # of the plate alone, 20 x 5 mm
     assert (cut.area, cut.width, cut.height) == pytest.approx((100.0, 20.0, 5.0), rel=1e-6)
     assert (cut.i_y, cut.i_z) == pytest.approx((20.0 * 5.0**3 / 12.0, 5.0 * 20.0**3 / 12.0), rel=1e-6)
     assert cut.plain == same.plain
-    through, exact = (found.part_of("rocker").cuts[0] for found in (case, step))  # beside the bore's axis
+    through, exact = (found.body("rocker").cuts[0] for found in (case, step))  # beside the bore's axis
     assert (through.pieces, exact.pieces) == (2, 2)
     assert through.i_z == pytest.approx(exact.i_z, rel=1e-3)
     placed = mesh_body(body)
