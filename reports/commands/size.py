@@ -80,11 +80,12 @@ def size(
     from fea.sizing.least import least_size
     from fea.sizing.lightest import lightest
     from fea.sizing.search import Search
-    from fea.study.engine import local_engine, usable_cores
+    from fea.study.compute import engine_for
     from fea.study.store import Store
     from geometry.base.errors import CaseError
     from loads.case.case_file import stated_changes
     from loads.plans.plan import plan_of
+    from loads.plans.variants import Variants
     from reports.commands.lightest import print_lightest, record_of, status_of
 
     axes = _axes(stated(vary, "--vary"), stated(choose, "--choose"), step)
@@ -105,16 +106,13 @@ def size(
     plan = plan_of(data)
     with ExitStack() as stack:
         folder = output or Path(stack.enter_context(TemporaryDirectory(prefix="alula-")))
-        from loads.plans.variants import Variants
-
         longest = max(1 if a.is_range else len(a.values) for a in axes)
         points = [{a.path: a.values[max(i - longest, -len(a.values))] for a in axes} for i in range(longest)]
         variants = Variants(plan, Path(), points=points)
         for point in points:
             variants.tables(point)
-        contents = {name: file.read_bytes() for name, file in variants.files.items()}
         store = stack.enter_context(Store.writing(folder))
-        engine = stack.enter_context(local_engine(workers or usable_cores(), contents, folder=folder))
+        engine = stack.enter_context(engine_for(variants, folder, workers=workers))
         search = Search(plan, Path(), store, engine, tell=_tell)
         found = lightest(search, axes, objective, most=most, seed=seed) if several else None
         sized = None if several else least_size(search, axes[0].path, axes[0].values)
