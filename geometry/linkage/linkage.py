@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated, Literal
 
@@ -41,6 +41,13 @@ class Link(CaseModel):
     """Length over which a load at a plain end (a point without pin) enters the part. On a plate it enters both
     faces within a circle of this diameter; on an imported part the nearest face, or those that are equally near: a flat
     one within such a circle, a round one whole."""
+    layer: int | None = None
+    """Layer in which the link lies, counted along z; every link states its own, or none does. Layers stand
+    ``layer_spacing`` apart, or are as thick as their links with a ``washer`` between neighbours."""
+    z: Length | None = None
+    """Height of the link's mid-plane along the pins, in place of a layer."""
+    thickness: Annotated[Length, POSITIVE] | None = None
+    """Height along the pins that the link takes up, where its part does not tell."""
 
     @property
     def pieces(self) -> tuple[tuple[Name, Name], ...]:
@@ -68,7 +75,10 @@ class Joint(CaseModel):
     pin_material: Name = "steel-wire"
     """Material of the pin, for the check of pins."""
     pin_gap: Annotated[Length, NOT_NEGATIVE] = 0.0
-    """Free length of the pin between the two eyes that it joins, for the check of pins."""
+    """Free length of the pin between the two eyes that it joins, for the check of pins; layers tell it as well."""
+    tight_in: Name | None = None
+    """The one of the two links in which the pin is tight, where links lie in layers; in the other it may tilt. Left
+    out, it may be tight in either, and the band holds both."""
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0
@@ -85,6 +95,8 @@ class Linkage:
         Links by name.
     joints : mapping of str to Joint
         Joints by name.
+    heights : mapping of str to float
+        Link -> z of its mid-plane [mm]; a link that is left out lies at 0.
 
     Raises
     ------
@@ -95,6 +107,7 @@ class Linkage:
 
     links: Mapping[str, Link]
     joints: Mapping[str, Joint]
+    heights: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that every name means something and that all links hang together."""
@@ -160,6 +173,22 @@ class Linkage:
         """
         half = sum(j.type == "pin-in-slot" for j in self.joints.values())
         return 3 * (len(self.links) - 1) - 2 * (len(self.joints) - half) - half
+
+    def rise(self, name: str) -> float:
+        """Return how far a joint's second link lies above its first, along z.
+
+        Parameters
+        ----------
+        name : str
+            Name of the joint.
+
+        Returns
+        -------
+        float
+            [mm]
+        """
+        first, second = (self.heights.get(link, 0.0) for link in self.joints[name].links)
+        return second - first
 
     def joint_points(self, name: str) -> tuple[str, str]:
         """Names of the two points that a joint brings together, on its first and its second link.

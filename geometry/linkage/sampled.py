@@ -172,7 +172,9 @@ def _moved(linkage: Linkage, at: tuple[str, str]) -> Linkage:
     record = linkage.links[link]
     x, y = record.points[point]
     points = {**record.points, point: (x + 1.0, y)}
-    return Linkage({**linkage.links, link: record.model_copy(update={"points": points})}, linkage.joints)
+    return Linkage(
+        {**linkage.links, link: record.model_copy(update={"points": points})}, linkage.joints, linkage.heights
+    )
 
 
 def assemble_samples(pose: Pose, shifts: Shifts, value: Real) -> tuple[SampledPlacement, NDArray[np.bool_]]:

@@ -9,6 +9,7 @@ from geometry.materials.laminate import ANISOTROPIC, is_laminate
 from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
+from loads.case.layers import check_layers
 from loads.case.load_rules import check_loads, check_masses, check_place
 from loads.case.places import check_moving, check_point
 from loads.case.toleranced import toleranced
@@ -49,6 +50,7 @@ def check_rules(case: CoreCase) -> None:
     """
     check_file_names("links", case.links)
     check_file_names("load_cases", case.load_cases)
+    check_layers(case)
     _check_drive(case)
     _check_pose(case)
     for name, part in case.parts.items():

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from geometry.base.errors import CaseError
 from geometry.base.model import Name, Text
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import PartKind
 from geometry.bodies.features import FlatFace
 from geometry.linkage.linkage import Joint, Link, Linkage
@@ -16,6 +17,7 @@ from geometry.materials.material import Material, library
 from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd, Ring
 from geometry.placement.fit import Wanted
 from geometry.placement.placed_body import faces_of, placed_body
+from loads.case.layers import heights
 from loads.case.places import check_point
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
@@ -55,6 +57,10 @@ class CoreCase(Revisable):
     joint_model: Literal["pinned", "bonded"] = "pinned"
     """Whether pins turn freely, or are bonded and carry moments about their own axis as well. Sliders and pins in slots
     slide all the same."""
+    layer_spacing: Annotated[Length, POSITIVE] | None = None
+    """Distance between the mid-planes of neighbouring layers in which links lie."""
+    washer: Annotated[Length, NOT_NEGATIVE] | None = None
+    """Thickness of the washers, or width of the gaps, between layers that are as thick as their links."""
     large_displacement: Literal["auto", "off"] = "auto"
     """auto: where the linkage moves by more than 5 % of its span, or may give way below ten times its load,
     equilibrium is sought on the deformed shape. off: never."""
@@ -75,7 +81,17 @@ class CoreCase(Revisable):
     @cached_property
     def linkage(self) -> Linkage:
         """The links and joints as one linkage."""
-        return Linkage(self.links, self.joints)
+        return Linkage(self.links, self.joints, self.heights)
+
+    @cached_property
+    def heights(self) -> dict[str, float]:
+        """Link -> z of its mid-plane [mm]; 0 where no layers are stated."""
+        return heights(self)
+
+    @property
+    def layered(self) -> bool:
+        """True where links lie at several heights."""
+        return len(set(self.heights.values())) > 1
 
     @cached_property
     def pinned_drive(self) -> Drive | None:

@@ -21,7 +21,8 @@ class JointReaction:
     wrench : array (..., 6)
         Of ``by`` on ``on`` about the pin, global axes [N, N mm].
     arm : array (..., 3)
-        From the point of link ``by`` to the pin [mm]: zero but in slots and along guides.
+        From the point of link ``by`` to the pin at the mid-plane of ``on`` [mm]: zero but in slots, along guides, and
+        between layers.
     """
 
     joint: str
@@ -54,10 +55,11 @@ def travelled(place: Placement, name: str) -> Real:
     Returns
     -------
     array (..., 3)
-        Zero at revolute joints [mm].
+        Zero at revolute joints within a layer [mm].
     """
     joint = place.linkage.joints[name]
+    rise = np.array([0.0, 0.0, place.linkage.rise(name)])
     if joint.type == "revolute":
-        return np.zeros((*place.shape, 3))
+        return np.zeros((*place.shape, 3)) + rise
     first, second = (place.position(*at) for at in zip(joint.links, place.linkage.joint_points(name), strict=True))
-    return vector(second - first)
+    return vector(second - first) + rise

@@ -1,0 +1,58 @@
+"""Heights of links in layers, and what is refused of them."""
+
+import re
+
+import pytest
+from edited_cases import edited
+
+from geometry.base.errors import CaseError
+from loads.case.layers import slab
+
+LINKS = ("AG", "GF", "AE", "CF", "CH", "ED")
+FOUR = [f"links.{name}.layer={layer}" for name, layer in zip(LINKS, (0, 0, 1, 2, 3, 2), strict=True)]
+WING = "owl-wing-static"
+
+
+def test_layers_stand_a_spacing_apart() -> None:
+    case = edited(WING, [*FOUR, 'layer_spacing="7.5 mm"'])
+    assert case.layered
+    assert case.heights == {"AG": 0.0, "GF": 0.0, "AE": 7.5, "CF": 15.0, "CH": 22.5, "ED": 15.0}
+    assert case.linkage.rise("A") == 7.5
+    assert slab(case, "AE") == (4.0, 11.0)  # eyes 7 mm thick
+
+
+def test_washers_lie_between_layers_as_thick_as_their_thickest_link() -> None:
+    case = edited(WING, [*FOUR, 'washer="0.5 mm"', 'links.AE.thickness="3 mm"'])
+    # half of 7, the washer, half of 3; then half of 3, the washer, half of 7; then 7.5
+    assert [case.heights[name] for name in ("GF", "AE", "CF", "CH")] == [0.0, 5.5, 11.0, 18.5]
+
+
+def test_a_height_stands_for_a_layer() -> None:
+    case = edited(WING, [f'links.{name}.z="{3 * i} mm"' for i, name in enumerate(LINKS)])
+    assert case.heights["ED"] == 15.0
+
+
+def test_without_layers_all_lies_in_one_plane() -> None:
+    case = edited(WING, [])
+    assert not case.layered
+    assert set(case.heights.values()) == {0.0}
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        (FOUR, r"layer_spacing: it is missing"),
+        ([*FOUR[1:], 'layer_spacing="7 mm"'], r"links\.AG\.layer: it is missing"),
+        ([*FOUR, 'layer_spacing="7 mm"', 'washer="1 mm"'], r"washer: layer_spacing is stated as well"),
+        ([*FOUR, 'layer_spacing="7 mm"', 'links.AE.z="7 mm"'], r"links\.AE\.z: the link states a layer as well"),
+        (['layer_spacing="7 mm"'], r"layer_spacing: no link states a layer"),
+        ([*FOUR, 'layer_spacing="7 mm"', 'joints.A.tight_in="CH"'], r"joints\.A\.tight_in: 'CH' is no link"),
+        (['joints.A.tight_in="AE"'], r"joints\.A\.tight_in: .*only where links lie in layers"),
+        ([*FOUR, 'layer_spacing="7 mm"', 'joints.A.pin_gap="1 mm"'], r"joints\.A\.pin_gap: the layers tell the gap"),
+        ([*FOUR, 'washer="1 mm"', "links.AG.layer=-1"], r"links\.AG\.thickness: how high"),
+    ],
+)
+def test_what_does_not_fit_is_refused(changes: list[str], sentence: str) -> None:
+    with pytest.raises(CaseError) as told:
+        edited(WING, changes)
+    assert re.search(sentence, str(told.value))
