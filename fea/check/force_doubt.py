@@ -1,10 +1,11 @@
-"""What doubt about the links' stiffness makes of joint forces, and of the stress that follows from them.
+"""What doubt about the links' stiffness, and about their pins, makes of joint forces and of the stress that follows.
 
-Each cause changes a joint force, and a link's stress by hand calculation, by some share of it. To first order these
-shares add up, each upwards or downwards; all causes are taken at their worst together.
+Each cause changes a joint force, and a link's stress by hand calculation, by some share of it. To first order the
+shares of stiffnesses add up, each upwards or downwards; all causes are taken at their worst together. How pins share
+the couples between layers is one cause, with several answers: the least and the greatest of them count.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -13,10 +14,15 @@ from fea.check.link_by_hand import link_by_hand
 from fea.check.load_growth import LEAST, Growths
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
-from fea.common.source import Source
+from fea.common.source import Source, SourceKind
 from fea.frame.joint_forces import JointForces
 from loads.case.case import Case
 from loads.records.applied import Load
+from loads.statics.statics import Reactions
+
+COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in the one link or in the other"),)
+_Around = Callable[[float, Sequence[float]], Scatter]
+"""From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""
 
 
 def force_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[Load]) -> Growths:
@@ -34,25 +40,38 @@ def force_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence
     Returns
     -------
     Growths
-        Empty where the forces do not depend on the links' stiffness, or the frame has no condensed solids.
+        Empty where the forces depend on neither, or where no link's stiffness is in doubt since none is a solid.
     """
-    changes, sources = forces.open_by, forces.sources
-    if not changes:
-        return Growths()
+    found = Growths()
+    changes = tuple(change.reactions for change in forces.open_by)
+    if changes:
+        found = _doubt(case, load_case, forces, loads, changes, _summed(forces.sources))
+    if forces.sharings:
+        found = found.times(_doubt(case, load_case, forces, loads, forces.sharings, _widest))
+    return found
+
+
+def _doubt(
+    case: Case,
+    load_case: str,
+    forces: JointForces,
+    loads: Sequence[Load],
+    changes: Sequence[Reactions],
+    around: _Around,
+) -> Growths:
     stress, displacement = {}, {}
     for link in case.checked_links:
         body = case.body(link)
-        every = (forces.reactions, *(change.reactions for change in changes))
         plain, *others = (
-            _measures(case, link, link_loads(load_case, link, body, reactions, loads)) for reactions in every
+            _measures(case, link, link_loads(load_case, link, body, reactions, loads))
+            for reactions in (forces.reactions, *changes)
         )
-        stress[link] = _around(plain[0], (one[0] for one in others), sources)
-        displacement[link] = _around(plain[1], (one[1] for one in others), sources)
+        stress[link] = around(plain[0], [one[0] for one in others])
+        displacement[link] = around(plain[1], [one[1] for one in others])
     joints = {}
     for name, joint in forces.reactions.joints.items():
         along = joint.force / (joint.magnitude or 1.0)
-        found = (float(along @ change.reactions.joints[name].force) for change in changes)
-        joints[name] = _around(joint.magnitude, found, sources)
+        joints[name] = around(joint.magnitude, [float(along @ change.joints[name].force) for change in changes])
     return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
 
 
@@ -65,11 +84,18 @@ def _measures(case: Case, link: str, loads: LinkLoads) -> tuple[float, float]:
     return hand.worst[1].equivalent, hand.displacement
 
 
-def _around(value: float, changed: Iterable[float], sources: tuple[Source, ...]) -> Scatter:
-    """Least and largest factor on a value, with what it becomes by each cause alone."""
-    steps = np.array([one - value for one in changed]) / (value or np.inf)
-    low, high = float(np.minimum(steps, 0.0).sum()), float(np.maximum(steps, 0.0).sum())
-    return Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources)
+def _summed(sources: tuple[Source, ...]) -> _Around:
+    def around(value: float, changed: Sequence[float]) -> Scatter:
+        steps = np.array([one - value for one in changed]) / (value or np.inf)
+        low, high = float(np.minimum(steps, 0.0).sum()), float(np.maximum(steps, 0.0).sum())
+        return Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources)
+
+    return around
+
+
+def _widest(value: float, changed: Sequence[float]) -> Scatter:
+    shares = np.array([value, *changed]) / value if value > 0.0 else np.ones(1)
+    return Scatter(low=max(float(shares.min()), 0.0), high=float(shares.max()), sources=COUPLES)
 
 
 def _open(found: Mapping[str, Scatter]) -> dict[str, Scatter]:

@@ -26,7 +26,7 @@ from fea.elements.space import displacement_space
 from fea.frame.build import build_frame
 from fea.frame.condensed import LinkFlexibility
 from fea.frame.displacement_band import flexibility_ranges
-from fea.frame.joint_forces import OF_SOLIDS, Deviation, JointForces
+from fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, Deviation, JointForces
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.nonlinear.large_displacement import LargeDisplacement
@@ -65,7 +65,8 @@ def with_solids(
 ) -> tuple[CaseStatics, dict[str, TaggedMesh]]:
     """Return the statics of a case with joint forces by the links' solids wherever their stiffness decides.
 
-    A load case that was followed on its deformed shape keeps its centre lines.
+    A load case that was followed on its deformed shape keeps its centre lines. So does one in which layers alone make
+    the frame: what pins leave open of the couples holds more than what stiffness does.
 
     Parameters
     ----------
@@ -89,7 +90,7 @@ def with_solids(
     open_cases = [
         name
         for name, found in forces.items()
-        if found.frame is not None and (always or not centre_lines_do(case, found))
+        if found.frame is not None and found.model != LAYERED_FRAME and (always or not centre_lines_do(case, found))
     ]
     for name in open_cases:
         if moved[name].followed:

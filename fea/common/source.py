@@ -24,6 +24,7 @@ class SourceKind(StrEnum):
     SNAP_THROUGH = "snap-through of a shallow toggle"
     EYES = "flexibility of eyes, bores and holes"
     EYE_SHARING = "load sharing between the two eyes of a pin"
+    COUPLES = "sharing of the couples between layers"
     FLYWHEEL = "energy that a flywheel stores"
 
 

@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from fea.frame.condensed import CondensedLink, LinkFlexibility
 from fea.frame.linkage_frame import LinkageFrame, LinkBeam, slot_normal
 from fea.frame.model import ALL_DOFS, PIN_DOFS, Dof, FrameElement, FrameModel, Guide, NodeLoad, Support, Tie
 from geometry.base.errors import CaseError
+from geometry.bodies.section import ring
 from geometry.linkage.placement import vector
 from geometry.linkage.pose import Pose
 from geometry.parts.part import Section
@@ -21,8 +23,12 @@ from loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
 TURNS: frozenset[Dof] = frozenset({"rx", "ry", "rz"})
+STIFF_IN_TWIST = 1e6
+"""How many times its own twist stiffness the pin of the drive's joint has between layers: the drive's torque goes from
+the one link to the other beside the pin."""
 JOINT_DOFS: Mapping[str, frozenset[Dof]] = {"revolute": PIN_DOFS, "pin-in-slot": frozenset(), "slider": TURNS}
 """What the two links of a joint share; guides add what slots hold."""
+ALONG_X = np.array([1.0, 0.0, 0.0])
 ALONG_PINS = np.array([0.0, 0.0, 1.0])
 RIGID = 1e3
 """How many times the section of the stiffest part that of a link without part has in large displacements; in small ones
@@ -73,14 +79,15 @@ def build_frame(
         )
     loads = tuple(in_axes(load, "global", pose.placement) for load in loads)
     builder = _Builder(case, pose, loads, solids or {})
-    supports, ties, guides = [], [], []
+    supports, ties, guides = builder.supports, [], []
+    contacts = {name: builder.contact(name, twists=held is None or name != held.joint) for name in case.joints}
     places = np.array(builder.places)
     for name, joint in case.joints.items():
         held_here = held is not None and name == held.joint
         keeps = ALL_DOFS if joint.type == "slider" else TURNS
         fixed = bonded and joint.type == "revolute"
         dofs = ALL_DOFS if fixed else JOINT_DOFS[joint.type] | (keeps if held_here else frozenset())
-        first, second = builder.pins[name]
+        first, second = contacts[name]
         if first is not None and second is not None:
             places[second] = places[first]
             ties += [Tie(nodes=(first, second), dofs=dofs)] if dofs else []
@@ -110,6 +117,8 @@ def build_frame(
         ),
         points=builder.points,
         pins=builder.pins,
+        pin_ends=builder.pin_ends,
+        pin_beams=builder.pin_beams,
         stations=builder.stations,
         arms=builder.arms,
         beams=builder.beams,
@@ -133,6 +142,9 @@ class _Builder:
         self.arms: dict[int, Real] = {}
         self.beams: dict[int, LinkBeam] = {}
         self.notes: list[str] = []
+        self.supports: list[Support] = []
+        self.pin_ends: dict[str, int] = {}
+        self.pin_beams: dict[str, int] = {}
         self.slack = _SAME_PLACE * case.linkage.longest
         for link in case.linkage.moving:
             own = [load for load in loads if load.link == link]
@@ -158,6 +170,38 @@ class _Builder:
         known = self.contacts.get((link, name))
         return self.points[link, self.case.linkage.joint_points(name)[which]] if known is None else known
 
+    def contact(self, name: str, *, twists: bool) -> tuple[int | None, int | None]:
+        """Return the nodes that a joint brings together, and put its pin between them where its links lie apart.
+
+        The pin is a beam from the mid-plane of the one link to that of the other: of a revolute joint built into the
+        first link; of a pin in a slot, or along a guide, into the second, since the first cannot hold it. ``twists``:
+        false of the pin of the drive's joint.
+        """
+        first, second = self.pins[name]
+        linkage, joint = self.case.linkage, self.case.joints[name]
+        rise = linkage.rise(name)
+        if rise == 0.0:
+            return first, second
+        revolute = joint.type == "revolute"
+        root, link = (first, joint.links[0]) if revolute else (second, joint.links[1])
+        if root is None:
+            root = self._node(link, *self.case.links[link].points[linkage.point_of(name, link)], name)
+            self.supports.append(Support(node=root))
+        self.places.append(self.places[root] + np.array([0.0, 0.0, rise if revolute else -rise]))
+        self.names.append(f"the pin at {name}")
+        self.pin_ends[name] = end = len(self.places) - 1
+        self.pin_beams[name] = len(self.elements)
+        if joint.pin_diameter is None or joint.type == "slider":
+            self._stiff(root, end, z_axis=ALONG_X)
+        else:
+            material, section = self.case.pin_material(name), ring(joint.pin_diameter, 0.0)
+            section = section if twists else replace(section, torsion=STIFF_IN_TWIST * section.torsion)
+            young, poisson = material.youngs_modulus, material.poissons_ratio
+            self.elements.append(
+                FrameElement(nodes=(root, end), section=section, young=young, poisson=poisson, z_axis=ALONG_X)
+            )
+        return (end, second) if revolute else (first, end)
+
     def _contacts(self, link: str) -> dict[str, tuple[float, float]]:
         """Joint -> place of its pin in the frame of a link that carries the slot."""
         found = {}
@@ -169,7 +213,8 @@ class _Builder:
         return found
 
     def _place(self, link: str, x: float, y: float) -> Real:
-        return np.array([*(self.pose.origins[link] + self.pose.rotation(link) @ np.array([x, y])), 0.0])
+        x, y = self.pose.origins[link] + self.pose.rotation(link) @ np.array([x, y])
+        return np.array([x, y, self.case.linkage.heights.get(link, 0.0)])
 
     def _node(self, link: str, x: float, y: float, name: str) -> int:
         self.places.append(self._place(link, x, y))
@@ -182,7 +227,7 @@ class _Builder:
         nodes = [self._node(link, *points[name], name) for name in solid.places]
         self.points |= {(link, name): node for name, node in zip(solid.places, nodes, strict=True)}
         places = np.array([self.places[node] for node in nodes])
-        arm = np.array([*self.pose.origins[link], 0.0]) - places[0]
+        arm = self._place(link, 0.0, 0.0) - places[0]
         resultants = [
             shifted(load.resultant(self.pose.placement), arm) for load in loads if not isinstance(load, PointLoad)
         ]
@@ -305,7 +350,7 @@ class _Builder:
         solid = [s for s in stations if not any(slot.first < s[0] < slot.last for slot in slots)]
         _, node = min(solid, key=lambda station: abs(station[0] - centroid))
         missing = load.resultant(place) - line.resultant(place)
-        arm = np.array([*self.pose.origins[link], 0.0]) - self.places[node]
+        arm = self._place(link, 0.0, 0.0) - self.places[node]
         self.node_loads.append(NodeLoad(node=node, wrench=shifted(missing, arm)))
         return line
 
@@ -325,10 +370,10 @@ class _Builder:
         place, node = known[0]
         for load in loads:
             if not isinstance(load, PointLoad):
-                arm = np.array([*self.pose.origins[link], 0.0]) - place
+                arm = self._place(link, 0.0, 0.0) - place
                 self.node_loads.append(NodeLoad(node=node, wrench=shifted(load.resultant(self.pose.placement), arm)))
 
-    def _stiff(self, a: int, b: int) -> None:
+    def _stiff(self, a: int, b: int, z_axis: Real = ALONG_PINS) -> None:
         links = self.case.bending_links
         young = max(self.case.material_of(link).youngs_modulus for link in links)
         sections = [self.case.part_of(link).section for link in links]
@@ -343,7 +388,9 @@ class _Builder:
             half_z=size,
             round=True,
         )
-        self.elements.append(FrameElement(nodes=(a, b), section=section, young=young, poisson=0.3, rigid=True))
+        self.elements.append(
+            FrameElement(nodes=(a, b), section=section, young=young, poisson=0.3, z_axis=z_axis, rigid=True)
+        )
 
 
 def _line_between(lines: Sequence[LineLoad], x0: float, x1: float) -> tuple[Real, Real]:

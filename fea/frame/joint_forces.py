@@ -25,9 +25,11 @@ Real = NDArray[np.float64]
 PINNED_STATICS = "equilibrium of pinned links"
 PINNED_FRAME = "spatial frame with pins free about their own axis"
 BONDED_FRAME = "spatial frame with bonded joints"
+LAYERED_FRAME = "spatial frame of links in layers, with pins as beams between them"
 OF_SOLIDS = {
     PINNED_FRAME: "spatial frame of the links' solids with pins free about their own axis",
     BONDED_FRAME: "spatial frame of the links' solids with bonded joints",
+    LAYERED_FRAME: "spatial frame of the links' solids in layers, with pins as beams between them",
 }
 """The same where links are no beams but condensed solids."""
 
@@ -71,6 +73,9 @@ class JointForces:
         Links that are condensed solids in the frame.
     deviations : tuple of Deviation
         What the stiffness of condensed solids leaves open; empty where no link is one.
+    sharings : tuple of Reactions
+        The same forces with pins that tilt in one of their links, so that the other bears the whole couple between
+        their layers (``fea.frame.sharing``); empty without layers.
     """
 
     reactions: Reactions
@@ -80,6 +85,7 @@ class JointForces:
     solution: "FrameSolution | None" = None
     solids: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
+    sharings: tuple[Reactions, ...] = ()
 
     @property
     def open_by(self) -> tuple[Deviation, ...]:
@@ -153,6 +159,8 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         model, reason = PINNED_FRAME, "a load acts out of the linkage's plane, where pins carry moments"
     elif _redundant(case, pose):
         model, reason = PINNED_FRAME, "the linkage has more constraints than equilibrium has equations"
+    elif case.layered:
+        model, reason = LAYERED_FRAME, "the links lie in layers, between which joint forces make couples"
     else:
         return JointForces(
             reactions=solve_statics(pose, case.pinned_drive, loads),
@@ -161,6 +169,8 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         )
     if not bonded:
         refuse_dead_point(assemble(pose.placement, case.pinned_drive, ()), case.pinned_drive)
+    from fea.frame.sharing import sharings
+
     frame, solution = solved_frame(case, pose, loads, case.pinned_drive, bonded=bonded)
     return JointForces(
         reactions=frame.reactions(solution.joint_wrenches, solution.residual),
@@ -168,6 +178,7 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         reason="; ".join([reason, *frame.notes]),
         frame=frame,
         solution=solution,
+        sharings=sharings(frame) if frame.pin_beams else (),
     )
 
 

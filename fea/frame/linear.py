@@ -150,30 +150,116 @@ def solve_frame(model: FrameModel) -> FrameSolution:
         Where the frame can move without strain (naming what moves most) and where the forces found do not balance to
         1e-8 of the load.
     """
-    from scipy.sparse import bmat, csc_matrix
-    from scipy.sparse.linalg import LinearOperator, onenormest, splu
+    return FactorisedFrame(model).solved()
 
-    system = FrameSystem(model)
-    B, F, v0, p = system.equations()
-    refuse_mechanism(system, B)
-    # Displacements in units of the softest element's answer to unit force: no block of the matrix outgrows the rest.
-    scale = float(F.diagonal().max())
-    matrix = csc_matrix(bmat([[-F / scale, B], [B.T, None]]))
-    right = np.concatenate([v0 / scale, p])
-    factors = splu(matrix)
-    solution = factors.solve(right)
-    solution += factors.solve(right - matrix @ solution)
-    # The matrix is symmetric, and so is its inverse.
-    inverse = LinearOperator(matrix.shape, matvec=factors.solve, rmatvec=factors.solve, dtype=np.float64)
-    condition = float(abs(matrix).sum(axis=0).max() * onenormest(inverse))
-    q, u = solution[: len(v0)], solution[len(v0) :] * scale * system.unit
-    found = _collect(system, q, u, condition)
-    if not found.residual <= LARGEST_RESIDUAL:
-        raise CannotRunError(
-            f"the forces of the frame leave {found.residual:.3g} of the load unbalanced, where {LARGEST_RESIDUAL:g} "
-            f"is allowed (condition number {condition:.3g}); the frame is nearly a mechanism: change its pose"
-        )
-    return found
+
+class FactorisedFrame:
+    """A frame whose equations are factorised, so that more than its own loads can be solved.
+
+    Parameters
+    ----------
+    model : FrameModel
+        The frame.
+
+    Raises
+    ------
+    CannotRunError
+        Where the frame can move without strain, naming what moves most.
+    """
+
+    def __init__(self, model: FrameModel) -> None:
+        from scipy.sparse import bmat, csc_matrix
+        from scipy.sparse.linalg import splu
+
+        self.system = FrameSystem(model)
+        B, F, v0, p = self.system.equations()
+        refuse_mechanism(self.system, B)
+        # Displacements in units of the softest element's answer to unit force: no block outgrows the rest.
+        self._scale = float(F.diagonal().max())
+        self._matrix = csc_matrix(bmat([[-F / self._scale, B], [B.T, None]]))
+        self._factors = splu(self._matrix)
+        self._size = len(v0)
+        self._own = self._refined(np.concatenate([v0 / self._scale, p]))
+
+    def _refined(self, right: Floats) -> Floats:
+        found = self._factors.solve(right)
+        return np.asarray(found + self._factors.solve(right - self._matrix @ found))
+
+    def opened(self, rows: NDArray[np.int64]) -> Floats:
+        """Return what a unit of further deformation in each of some natural rows does to a frame without loads.
+
+        Parameters
+        ----------
+        rows : ndarray of int, shape (r,)
+            Numbers of natural deformations: 6 times that of the element, and 0 to 5.
+
+        Returns
+        -------
+        ndarray, shape (k, r)
+            Scaled unknowns, to be added to those of ``solved``; of a row in [mm] or [rad].
+        """
+        right = np.zeros((len(self._own), len(rows)))
+        units = np.array([self.system.natural_unit(i // 6)[i % 6] for i in rows])
+        right[rows, np.arange(len(rows))] = units / self._scale
+        return self._refined(right)
+
+    def natural_forces(self, rows: NDArray[np.int64], unknowns: Floats) -> Floats:
+        """Return natural forces from scaled unknowns.
+
+        Parameters
+        ----------
+        rows : ndarray of int, shape (r,)
+            As for ``opened``.
+        unknowns : ndarray, shape (k, ...)
+            As ``opened`` gives them.
+
+        Returns
+        -------
+        ndarray, shape (r, ...)
+            [N, N·mm]
+        """
+        units = np.array([self.system.natural_unit(i // 6)[i % 6] for i in rows])
+        return np.asarray((unknowns[rows].T * units).T)
+
+    @property
+    def own(self) -> Floats:
+        """(k,) scaled unknowns under the frame's loads."""
+        return self._own
+
+    def solved(self, further: Floats | None = None) -> FrameSolution:
+        """Return the frame's answer to its loads.
+
+        Parameters
+        ----------
+        further : ndarray, shape (k,), optional
+            Scaled unknowns to be added; the condition number is then left out.
+
+        Returns
+        -------
+        FrameSolution
+
+        Raises
+        ------
+        CannotRunError
+            Where the forces found do not balance to 1e-8 of the load.
+        """
+        from scipy.sparse.linalg import LinearOperator, onenormest
+
+        unknowns, condition = self._own if further is None else self._own + further, np.nan
+        if further is None:
+            # The matrix is symmetric, and so is its inverse.
+            solve = self._factors.solve
+            inverse = LinearOperator(self._matrix.shape, matvec=solve, rmatvec=solve, dtype=np.float64)
+            condition = float(abs(self._matrix).sum(axis=0).max() * onenormest(inverse))
+        q, u = unknowns[: self._size], unknowns[self._size :] * self._scale * self.system.unit
+        found = _collect(self.system, q, u, condition)
+        if not found.residual <= LARGEST_RESIDUAL:
+            raise CannotRunError(
+                f"the forces of the frame leave {found.residual:.3g} of the load unbalanced, where "
+                f"{LARGEST_RESIDUAL:g} is allowed (condition number {condition:.3g}); the frame is nearly a mechanism: "
+                "change its pose"
+            )
+        return found
 
 
 def _collect(system: FrameSystem, q: Floats, u: Floats, condition: float) -> FrameSolution:

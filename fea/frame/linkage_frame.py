@@ -1,11 +1,12 @@
 """A linkage as a spatial frame: links as Timoshenko beams, pins that carry all moments but the one about themselves.
 
-Every link with a part is a beam of its section along the x axis of its frame, at z = 0; a pin off the axis sits on
-a rigid arm, or where the link states an arm to it, on a beam of the same section. Along a slot the two flanks are
-beams of their own (``fea.beam.flanks``), of which the pin pushes one. Links without a part are rigid. The
+Every link with a part is a beam of its section along the x axis of its frame, at the height of its layer; a pin off
+the axis sits on a rigid arm, or where the link states an arm to it, on a beam of the same section. Along a slot the two
+flanks are beams of their own (``fea.beam.flanks``), of which the pin pushes one. Links without a part are rigid. The
 link that the drive holds keeps its angle to the other link at the drive's joint, where the moment about z is the drive
 torque; at a slider it keeps its place, and the force along the guide is the drive force. In bonded linkages every pin
-of a revolute joint carries all six components; pins in slots and sliders slide as they do else.
+of a revolute joint carries all six components; pins in slots and sliders slide as they do else. Between layers a pin
+is a beam from the one mid-plane to the other.
 
 A pin in a slot stands at a station of its own of the slotted link. It presses on the slot's flanks: they take a force
 normal to the slot in the linkage's plane, and the moment about the slot of a pin that would tilt between them. It is
@@ -75,6 +76,11 @@ class LinkageFrame:
         (link, point) -> node.
     pins : dict of str to tuple of 2 int or None
         Joint -> nodes of its first and its second link, where the pin stands; None on the ground.
+    pin_ends : dict of str to int
+        Joint between links at different heights -> node at the far end of its pin, where the link is that the pin is
+        not built into.
+    pin_beams : dict of str to int
+        The same joints -> element that is the pin.
     stations : dict of str to tuple of tuple of float and int
         Link with a part -> (x in the link's frame, node) along its axis; the node may stand off the axis.
     arms : dict of int to ndarray
@@ -92,6 +98,8 @@ class LinkageFrame:
     model: FrameModel
     points: Mapping[tuple[str, str], int]
     pins: Mapping[str, tuple[int | None, int | None]]
+    pin_ends: Mapping[str, int]
+    pin_beams: Mapping[str, int]
     stations: Mapping[str, tuple[tuple[float, int], ...]]
     arms: Mapping[int, Real]
     beams: Mapping[int, LinkBeam]
@@ -239,6 +247,14 @@ def _joint_by_joint(frame: LinkageFrame, joint_wrenches: Real, shape: Real) -> d
         return shifted(wrench, away[0] - away[1])
 
     found: dict[str, Real] = {}
+    for name, end in frame.pin_ends.items():
+        held_by, wrench = frame.pins[name][1], -left[end]
+        found[name] = wrench
+        if linkage.joints[name].type != "revolute":
+            held_by = frame.pins[name][0]
+            found[name] = shifted(-wrench, np.array([0.0, 0.0, -linkage.rise(name)]))
+        if held_by is not None:
+            left[held_by] -= wrench
     while len(found) < len(ends):
         open_at: dict[int, list[tuple[str, str]]] = {}
         for name, nodes in ends.items():

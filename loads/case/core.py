@@ -17,7 +17,7 @@ from geometry.materials.material import Material, library
 from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd, Ring
 from geometry.placement.fit import Wanted
 from geometry.placement.placed_body import faces_of, placed_body
-from loads.case.layers import heights
+from loads.case.heights import heights
 from loads.case.places import check_point
 from loads.case.revisable import Revisable
 from loads.records.aero import AirForces, air_forces
@@ -86,7 +86,7 @@ class CoreCase(Revisable):
     @cached_property
     def heights(self) -> dict[str, float]:
         """Link -> z of its mid-plane [mm]; 0 where no layers are stated."""
-        return heights(self)
+        return heights(self.links, self.parts, self.layer_spacing, self.washer)
 
     @property
     def layered(self) -> bool:

@@ -60,6 +60,6 @@ def travelled(place: Placement, name: str) -> Real:
     joint = place.linkage.joints[name]
     rise = np.array([0.0, 0.0, place.linkage.rise(name)])
     if joint.type == "revolute":
-        return np.zeros((*place.shape, 3)) + rise
+        return np.asarray(np.zeros((*place.shape, 3)) + rise)
     first, second = (place.position(*at) for at in zip(joint.links, place.linkage.joint_points(name), strict=True))
-    return vector(second - first) + rise
+    return np.asarray(vector(second - first) + rise)
