@@ -14,13 +14,12 @@ from fea.check.link_by_hand import link_by_hand
 from fea.check.load_growth import LEAST, Growths
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
-from fea.common.source import Source, SourceKind
+from fea.common.source import COUPLES, Source
 from fea.frame.joint_forces import JointForces
 from loads.case.case import Case
 from loads.records.applied import Load
 from loads.statics.statics import Reactions
 
-COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in the one link or in the other"),)
 _Around = Callable[[float, Sequence[float]], Scatter]
 """From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""
 

@@ -30,7 +30,7 @@ from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
 from fea.outcomes.motor import motor_outcomes
-from fea.outcomes.pins import PinStress, stress_at
+from fea.outcomes.pins import PinStress, shared_stress
 from fea.outcomes.point_displacement import meshes_to_refine
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.solid_buckling import solid_buckling_outcomes
@@ -152,7 +152,7 @@ class _LoadCase:
         """Return the result, with the outcomes of ``motors`` after those of links, joints and linkage."""
         case, load_case, moved = self.statics.case, self.load_case, self.moved
         reactions = moved.reactions or self.statics.reactions[load_case]
-        links, pins = self.links(decided), _pins(case, reactions)
+        links, pins = self.links(decided), _pins(case, reactions, self.forces)
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
         found = (
             *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
@@ -304,11 +304,11 @@ def _wanted(load_cases: Sequence[_LoadCase], decided: Mapping[str, DecidedLink])
     return found
 
 
-def _pins(case: Case, reactions: Reactions) -> dict[str, PinStress]:
+def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, PinStress]:
     """Stresses of the pins that a check asks for."""
     checks = [check for check in case.all_checks.values() if isinstance(check, PinCheck)]
     asked = dict.fromkeys(joint for check in checks for joint in check.joints or case.pinned_joints)
-    return {joint: stress_at(case, joint, reactions.joints[joint]) for joint in asked}
+    return {joint: shared_stress(case, joint, reactions.joints[joint], forces) for joint in asked}
 
 
 def _bearing(case: Case, load_case: str, reactions: Reactions, uneven: Growths) -> Iterator[CheckOutcome]:

@@ -53,6 +53,8 @@ PIN_PRESSURE = Source(kind=SourceKind.PIN_PRESSURE, detail="over 180° and over 
 CONTACT = Source(kind=SourceKind.CONTACT, detail=f"up to {CONTACT_SHORTFALL:.0%} more than the narrower pin pressure")
 TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail="by eye-faces and by bore-shear")
 
+COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in the one link or in the other"),)
+
 
 def pin_sources(*, driven: bool) -> tuple[Source, ...]:
     """Return what a solid model does not know of the stress beside a link's pins.

@@ -14,6 +14,9 @@ how the pin sits and how the links are held, so that the moment is a band, from 
 * least: the force crosses the gap, where M changes by F g, so that |M| is F g/2 or more, whatever the bearing. Without
   a gap statics leaves nothing but shear. Both eyes bearing linearly alike, t thick without a gap, make 4/27 F t.
 
+Between layers the couple of each eye is known (``fea.outcomes.pin_between``), and which eye takes it is open only as
+far as ``fea.frame.sharing`` says.
+
 Moments about x and y that the joint carries besides (loads out of the plane) add to the largest; from the least they
 may take off what the eyes' couple can make in the gap's middle, F (t + g)/2. Bending stress 32 M/(π d³); largest shear
 stress of a solid circle (3 + 2ν)/(2 + 2ν) V/A, in the middle, where nothing bends (Love, Mathematical Theory of
@@ -21,7 +24,7 @@ Elasticity, 4th ed., section 230).
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -29,12 +32,15 @@ from numpy.polynomial import Polynomial
 
 from fea.common.band import Band
 from fea.common.scatter import Scatter, load_scatter, strength_scatter
-from fea.common.source import Source, SourceKind
+from fea.common.source import COUPLES, Source, SourceKind
 from fea.common.verdict import CheckOutcome, Quantity, Subject
+from fea.frame.joint_forces import JointForces
 from fea.outcomes.limits import least_safety_factor
+from fea.outcomes.pin_between import largest_between
 from geometry.base.errors import CaseError
 from geometry.bodies.features import Ring
 from loads.case.case import Case
+from loads.records.applied import shifted
 from loads.records.check_spec import PinCheck
 from loads.statics.joint_reaction import JointReaction
 
@@ -110,7 +116,7 @@ def pin_stress(
         shear_force = max(shear_force, force * shear)
     least = max(force * gap / 2.0, moment - force * (max(eye.height for eye in eyes) + gap) / 2.0)
     bent = 32.0 / (math.pi * diameter**3)
-    sheared = (3.0 + 2.0 * poisson) / (2.0 + 2.0 * poisson) * 4.0 / (math.pi * diameter**2)
+    sheared = _shear_stress(1.0, diameter, poisson)
     low = max(least * bent, math.sqrt(3.0) * force * sheared)
     high = max(most * bent, math.sqrt(3.0) * shear_force * sheared)
     return PinStress(
@@ -205,8 +211,67 @@ def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
     CaseError
         For a pin without diameter.
     """
-    wrench = reaction.wrench
-    return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
+    wrench, rise = reaction.wrench, case.linkage.rise(joint)
+    if rise == 0.0:
+        return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
+    diameter, poisson = _pin_of(case, joint)
+    own = eyes(case, joint)
+    parted = own if all(case.links[link].part for link in case.joints[joint].links) else (own[0], own[0])
+    first = shifted(-wrench, np.array([0.0, 0.0, rise]))
+    moment, shear = largest_between(parted, rise, first, wrench)
+    bent = 32.0 / (math.pi * diameter**3) * moment
+    sheared = _shear_stress(shear, diameter, poisson)
+    equivalent = max(bent, math.sqrt(3.0) * sheared)
+    return PinStress(
+        lever=abs(rise),
+        moment=Band.exact(moment),
+        bending=Band.exact(bent),
+        shear=sheared,
+        equivalent=Band.exact(equivalent),
+    )
+
+
+def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: JointForces) -> PinStress:
+    """Return the stresses of a joint's pin, with all ways in which pins may share the couples between layers.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    reaction : JointReaction
+        On the shape that counts.
+    forces : JointForces
+        In the undeformed pose, where the shares are known; they scale what ``reaction`` gives.
+
+    Returns
+    -------
+    PinStress
+        Without layers, that of ``stress_at``.
+
+    Raises
+    ------
+    CaseError
+        For a pin without diameter.
+    """
+    found = stress_at(case, joint, reaction)
+    if not forces.sharings or case.linkage.rise(joint) == 0.0:
+        return found
+    plain = stress_at(case, joint, forces.reactions.joints[joint])
+    others = [stress_at(case, joint, shared.joints[joint]) for shared in forces.sharings]
+
+    def widened(name: str) -> Band:
+        value, sizes = getattr(found, name), [getattr(one, name).value for one in (plain, *others)]
+        share = value.value / (sizes[0] or math.inf)
+        return Band(value=value.value, low=share * min(sizes), high=share * max(sizes), sources=COUPLES)
+
+    shear = found.shear * max(one.shear for one in (plain, *others)) / (plain.shear or math.inf)
+    return replace(
+        found,
+        moment=widened("moment"),
+        bending=widened("bending"),
+        shear=shear,
+        equivalent=widened("equivalent"),
+    )
 
 
 def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinStress:
@@ -230,11 +295,22 @@ def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinS
     CaseError
         For a pin without diameter.
     """
+    diameter, poisson = _pin_of(case, joint)
+    gap = case.joints[joint].pin_gap
+    return pin_stress(force, diameter, eyes(case, joint), gap, moment=moment, poisson=poisson)
+
+
+def _pin_of(case: Case, joint: str) -> tuple[float, float]:
+    """Return the diameter of a joint's pin and Poisson's ratio of its material."""
     record = case.joints[joint]
     if record.pin_diameter is None:
         raise CaseError(f'joints.{joint}.pin_diameter: the check of its pin needs it; state it, for example "1.5 mm"')
-    poisson = case.all_materials[record.pin_material].poissons_ratio
-    return pin_stress(force, record.pin_diameter, eyes(case, joint), record.pin_gap, moment=moment, poisson=poisson)
+    return record.pin_diameter, case.all_materials[record.pin_material].poissons_ratio
+
+
+def _shear_stress(force: float, diameter: float, poisson: float) -> float:
+    """Return the largest shear stress of a solid circle (Love, section 230)."""
+    return force * (3.0 + 2.0 * poisson) / (2.0 + 2.0 * poisson) * 4.0 / (math.pi * diameter**2)
 
 
 def pin_outcome(

@@ -95,7 +95,7 @@ def test_every_link_balances_however_pins_share_the_couples(layers: tuple[int, .
 
 
 def test_a_pin_that_tilts_gives_no_couple_to_that_link() -> None:
-    """So the other has all of F h, h the distance of the mid-planes; of a single hinge, since several may have to bear."""
+    """The other has all of F h, h the distance of the mid-planes; of a single hinge, since several may have to bear."""
     frame, _ = solved(stacked(FOUR))
     tried = list(hinges_tried(frame.pose.linkage, tuple(frame.pin_beams)))
     assert {len(hinges) for hinges in tried} == {1, 2, 3}
