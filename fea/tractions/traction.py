@@ -4,7 +4,6 @@ Every function returns a density (k, q, 3) at the points of a quadrature: MPa on
 """
 
 import math
-from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -22,8 +21,13 @@ Density = NDArray[np.float64]
 
 LARGEST_CORRECTION = 0.1
 """A meshed surface may miss the wrench by this part of the load before its mesh is refused."""
-_UNEVEN, _CORRECTIONS = 0.002, 30
-"""Part of the load that elements of unequal size may miss (1e-3 was measured), and the most attempts to reach it."""
+_NOTHING, _CORRECTIONS = 1e-13, 60
+"""Share of a wrench that counts for nothing, and the most corrections to reach it."""
+_PRESSED = {
+    True: np.array([1.0, 1.0, 0.0, 1.0, 1.0, 0.0]),
+    False: np.array([1.0, 1.0, 0.0, 0.0, 0.0, 0.0]),
+}
+"""Components of the wrench that the pressure itself delivers, with a moment and without."""
 
 
 OPENING = math.radians(15.0)
@@ -78,13 +82,16 @@ def wrench_density(
 def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Density:
     """Return the pressure of a pin that delivers Fx, Fy, Mx and My of its wrench, and nothing else.
 
-    The force is a pressure p0 law(θ − α) n, constant along the pin; the moment is that of a pin tilted
-    in its hole, pressing in the direction β above the mid-plane and in β + π below it, in proportion
-    to the height: p1 |z| law(θ − β). α, p0, β and p1 are solved on the meshed hole, whose facets would
-    else turn and shorten the resultant; together where its wall is longer on one side and they miss the
-    wrench by more than ``LARGEST_CORRECTION``. What then remains (a moment of unsymmetric facets) is removed
-    by a traction of the rigid-body fields. In a hole whose middle lies off the link's plane of forces,
-    heights count from its middle, and the force's moment about that middle is added to the pin's.
+    Force and moment are one pressure p0(z) law(θ − α(z)) n, whose resultant per length varies linearly along the pin,
+
+        q(z) = F/L + D z/I,    D = ∫ z q dz = (My, −Mx),
+
+    with the wall's length L and its second moment I about its middle. So it stands on one side of the hole while a
+    moment in the plane of the force is at most F L/6, and beyond that on both. q is corrected until the meshed
+    hole, whose facets turn and shorten the resultant, and whose wall may be longer on one side, has the wrench.
+    What then remains (a moment of unsymmetric facets) is removed by a traction of the rigid-body fields. In a hole
+    whose middle lies off the link's plane of forces, heights count from its middle, and the force's moment about
+    that middle is added to the pin's.
 
     Parameters
     ----------
@@ -112,36 +119,36 @@ def pin_traction(bore: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Den
         raise CannotRunError(
             f"the hole at pin {pin.name} measures {2.0 * radius:.4g} mm on the mesh, not {pin.diameter:.4g} mm"
         )
-    angle = np.arctan2(arm[..., 1], arm[..., 0])
-    height = arm[..., 2]
-
-    def pushed(direction: float) -> Density:
-        return np.asarray(-law.shape(angle - direction)[..., None] * bore.normals)
-
-    def tilted(direction: float) -> Density:
-        pressure = np.abs(height) * law.shape(angle - direction - np.where(height < 0.0, math.pi, 0.0))
-        return np.asarray(-pressure[..., None] * bore.normals)
-
-    def force(density: Density) -> NDArray[np.float64]:
-        return bore.wrench(density, middle)[:2]
-
-    def moment(density: Density) -> NDArray[np.float64]:
-        whole = bore.wrench(density, middle)
-        return np.array([whole[4], -whole[3]])
-
+    angle, height = np.arctan2(arm[..., 1], arm[..., 0]), arm[..., 2]
     pushes = np.array([pin.wrench[0], pin.wrench[1], 0.0, pin.wrench[3], pin.wrench[4], 0.0])
     target = shifted(pushes, pin.centre - middle)
-    aim, allowed = target.copy(), LARGEST_CORRECTION
+    if not target.any():
+        return np.zeros_like(bore.x)
+    size = _gap(target, pin.diameter)
+    tilts = float(np.hypot(*target[3:5])) > _NOTHING * size * pin.diameter
+    around = 2.0 * math.pi * radius
+    length, second = float(bore.w.sum()) / around, float((bore.w * height**2).sum()) / around
+    unit = law.peak(force=1.0, diameter=pin.diameter, thickness=1.0)
+    push, slope = np.zeros(2), np.zeros(2)
+    missing, last = target, math.inf
     for _ in range(_CORRECTIONS):
-        density = _directed(pushed, force, angle, aim[:2], pin.name)
-        density = density + _directed(tilted, moment, angle, np.array([aim[4], -aim[3]]), pin.name)
+        push = push + missing[:2] / length
+        slope = slope + (np.array([missing[4], -missing[3]]) / second if tilts else 0.0)
+        per_length = push + height[..., None] * slope
+        size_here = np.hypot(per_length[..., 0], per_length[..., 1])
+        aimed = np.arctan2(per_length[..., 1], per_length[..., 0])
+        density = -(unit * size_here * law.shape(angle - aimed))[..., None] * bore.normals
         missing = target - bore.wrench(density, middle)
-        if _gap(missing, pin.diameter) <= allowed * _gap(target, pin.diameter):
+        left = _gap(missing * _PRESSED[tilts], pin.diameter)
+        if left <= _NOTHING * size or left >= last:
             break
-        # The wall is longer on one side, as off a tube's axis: tilting pushes, and pushing tilts.
-        aim, allowed = aim + missing, _UNEVEN
+        last = left
+    for at in np.array([-0.5, 0.5]) * float(np.ptp(height)) if tilts else (0.0,):
+        per_length = push + at * slope
+        if is_opening(angle, math.atan2(per_length[1], per_length[0])):
+            raise CannotRunError(into_opening(pin.name, math.atan2(per_length[1], per_length[0])))
     _limit(missing, target, pin.diameter, f"the hole at pin {pin.name}")
-    return density + wrench_density(bore, middle, missing)
+    return np.asarray(density + wrench_density(bore, middle, missing))
 
 
 def bore_middle(bore: SurfaceQuadrature, centre: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -263,33 +270,6 @@ def line_density(volume: Quadrature, load: LineLoad) -> Density:
     origin = np.zeros(3)
     missing = load.about_origin(ALONG) - volume.wrench(density, origin)
     return np.asarray(density + wrench_density(volume, origin, missing, weight))
-
-
-def _directed(
-    pressure: Callable[[float], Density],
-    measure: Callable[[Density], NDArray[np.float64]],
-    wall: NDArray[np.float64],
-    target: NDArray[np.float64],
-    pin: str,
-) -> Density:
-    """Turn and scale a pressure until its measured plane vector (2,) is the target; refuse to push into an opening."""
-    size = float(np.hypot(*target))
-    if size == 0.0:
-        return np.zeros_like(pressure(0.0))
-    wanted = math.atan2(target[1], target[0])
-    direction = wanted
-    for _ in range(100):
-        if is_opening(wall, direction):
-            raise CannotRunError(into_opening(pin, direction))
-        density = pressure(direction)
-        got = measure(density)
-        if np.hypot(*got) == 0.0:
-            break
-        error = math.remainder(wanted - math.atan2(got[1], got[0]), 2.0 * math.pi)
-        if abs(error) < 1e-13:
-            return np.asarray(density * (size / np.hypot(*got)))
-        direction += error
-    raise CannotRunError(f"the hole at pin {pin} is meshed too coarsely to carry the pin's pressure; refine it")
 
 
 def is_opening(wall: NDArray[np.float64], direction: float) -> bool:
