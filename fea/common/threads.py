@@ -44,7 +44,8 @@ def bounded(threads: int | None, *, children: int | None = None) -> Iterator[Non
     for pool in controller.info():
         current[pool["user_api"]] = max(pool["num_threads"], current.get(pool["user_api"], 1))
     before = {name: os.environ.get(name) for name in VARIABLES}
-    os.environ.update({name: str(_least(threads, value)) for name, value in before.items()})
+    every = _least(threads, before[VARIABLES[0]])  # what OpenBLAS and MKL take where nothing of their own is stated
+    os.environ.update({name: str(_least(every, value)) for name, value in before.items()})
     try:
         limits = {api: min(threads, used) for api, used in current.items()}
         with controller.limit(limits=limits), child.at_most(children or threads):

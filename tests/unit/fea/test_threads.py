@@ -1,6 +1,7 @@
 """What a run may take of the machine holds for all of it: libraries that are loaded or not yet, and children."""
 
 import os
+import subprocess
 import sys
 import threading
 import time
@@ -43,6 +44,15 @@ def test_libraries_children_and_what_is_loaded_later_are_bounded_and_given_back(
             assert [os.environ[name] for name in VARIABLES] == ["1", "1", "1"]
     assert threads_of_libraries() == before
     assert [os.environ.get(name) for name in VARIABLES] == ["3", None, "of no use"]
+
+
+def test_what_openmp_may_take_is_raised_for_no_library_that_is_loaded_later(monkeypatch):
+    """OpenBLAS heeds its own variable before OpenMP's, so that a larger number there gave it more threads."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    code = "import scipy.linalg, threadpoolctl as t; print({pool['num_threads'] for pool in t.threadpool_info()})"
+    with bounded(2):
+        found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert found == "{1}\n"
 
 
 def test_nothing_is_bounded_without_a_number():
