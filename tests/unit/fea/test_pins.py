@@ -63,7 +63,7 @@ def on_foundations(eyes, gap, stiffness, tilting):
 
     The first eye is pushed by 1 N in its middle; it turns freely with its link (``tilting``) or keeps its direction.
     """
-    steps = 60
+    steps = 30
     second = eyes[0].height + gap
     walls = [(low - hole.low + start, high - hole.low + start)
              for hole, start in zip(eyes, (0.0, second), strict=True) for low, high in hole.walls]  # fmt: skip
@@ -71,7 +71,7 @@ def on_foundations(eyes, gap, stiffness, tilting):
     x = np.concatenate([[0.0], *(np.linspace(a, b, steps + 1)[1:] for a, b in pairwise(marks))])
     n = len(x)
     k = np.zeros((2 * n + 2, 2 * n + 2))  # last two: displacement of the first eye's middle, and its turn
-    elements, springs = [], []
+    elements, beside = [], defaultdict(list)
     points, weights = np.polynomial.legendre.leggauss(4)
     for i, h in enumerate(np.diff(x)):
         dofs = np.arange(2 * i, 2 * i + 4)
@@ -83,25 +83,24 @@ def on_foundations(eyes, gap, stiffness, tilting):
         if not any(low < middle < high for low, high in walls):
             continue
         for point, weight in zip((points + 1.0) / 2.0, weights / 2.0, strict=True):
-            row = np.zeros(2 * n + 2)
-            row[dofs] = [1 - 3 * point**2 + 2 * point**3, h * (point - 2 * point**2 + point**3),
-                         3 * point**2 - 2 * point**3, h * (point**3 - point**2)]  # fmt: skip
+            row = np.zeros(6)
+            row[:4] = [1 - 3 * point**2 + 2 * point**3, h * (point - 2 * point**2 + point**3),
+                       3 * point**2 - 2 * point**3, h * (point**3 - point**2)]  # fmt: skip
             if middle < eyes[0].height:
-                row[-2:] = -1.0, -(x[i] + h * point - eyes[0].height / 2.0)
-            k += stiffness * weight * h * np.outer(row, row)
-            springs.append((dofs, row, stiffness * weight * h))
+                row[4:] = -1.0, -(x[i] + h * point - eyes[0].height / 2.0)
+            places = np.array([*dofs, 2 * n, 2 * n + 1])
+            k[np.ix_(places, places)] += stiffness * weight * h * np.outer(row, row)
+            beside[i].append((places, row, stiffness * weight * h))
     free = np.arange(2 * n + (2 if tilting else 1))
     load = np.zeros(2 * n + 2)
     load[-2] = 1.0
     moved = np.zeros(2 * n + 2)
     moved[free] = np.linalg.solve(k[np.ix_(free, free)], load[free])
-    moments, shears, beside = [0.0], [0.0], defaultdict(list)
-    for spring in springs:
-        beside[spring[0][0]].append(spring)
-    for dofs, b in elements:
+    moments, shears = [0.0], [0.0]
+    for i, (dofs, b) in enumerate(elements):
         own = b @ moved[dofs]
-        for at, row, weight in beside[dofs[0]]:
-            own = own + weight * row[at] * (row @ moved)
+        for places, row, weight in beside[i]:
+            own = own + weight * row[:4] * (row @ moved[places])
         moments += [-own[1], own[3]]
         shears += [own[0], -own[2]]
     return np.abs(moments).max(), np.abs(shears).max()
