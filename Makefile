@@ -11,7 +11,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo test verify bench fuzz golden clean distclean
+.PHONY: help setup libraries demo test lint tests verify bench fuzz golden clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -25,10 +25,16 @@ demo: setup ## check the built-in owl wing, all links as solids, and say where i
 	  *) exit $$status ;; \
 	esac
 
+# The types are checked beside the tests: by themselves they would keep one core alone busy.
 test: setup ## lint, types and every test but the converged studies
+	@$(MAKE) --no-print-directory --jobs=2 --keep-going lint tests
+
+lint: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+
+tests: setup
 	$(PYTEST) -m "not converged"
 
 verify: setup ## the converged studies, on fine meshes

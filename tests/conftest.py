@@ -1,11 +1,27 @@
 """Settings that all tests share."""
 
+import os
+import shutil
+import tempfile
+
 from hypothesis import settings
 
 # No deadline per example: a first call may import a library or build a mesh, and machines that test are busy.
 # Forty examples find in seconds what is wrong often; what is wrong once in a million is for the fuzzer.
 settings.register_profile("unhurried", parent=settings(), deadline=None, max_examples=40)
 settings.load_profile("unhurried")
+
+
+def pytest_configure(config):
+    """Make the folder by which the processes of a run share what they solve (``solved``)."""
+    if not hasattr(config, "workerinput"):
+        os.environ["ALULA_TESTS_SHARE"] = tempfile.mkdtemp(prefix="alula-tests-")
+
+
+def pytest_unconfigure(config):
+    """Remove it."""
+    if not hasattr(config, "workerinput"):
+        shutil.rmtree(os.environ["ALULA_TESTS_SHARE"], ignore_errors=True)
 
 
 def pytest_generate_tests(metafunc):

@@ -1,30 +1,62 @@
-"""Results of built-in cases that tests of several files read: solved once per process, and frozen."""
+"""Results of built-in cases that tests of several files read: solved once per run of the tests, and frozen."""
 
+import hashlib
+import os
+import pickle
+from collections.abc import Callable
 from functools import cache
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar
 from unittest.mock import patch
 
 from fea.check.run import check_case
 from fea.claims.audit import ClaimResult
 from fea.claims.sources import check_all
 from fea.outcomes.result import CheckResult
+from geometry.base.locks import locked
 from loads.case.case import Case
 from loads.case.case_file import read_case
+
+T = TypeVar("T")
+
+
+def shared(name: str, solve: Callable[[], T]) -> T:
+    """Return what one process of a run solves, while the others wait for it; ``conftest`` makes the folder."""
+    if "ALULA_TESTS_SHARE" not in os.environ:  # no run of tests
+        return solve()
+    folder = Path(os.environ["ALULA_TESTS_SHARE"], hashlib.sha256(name.encode()).hexdigest())
+    folder.mkdir(exist_ok=True)
+    held, file = locked(folder, wait=True), folder / "result.pickle"
+    try:
+        if file.exists():
+            found: T = pickle.loads(file.read_bytes())
+        else:
+            found = solve()
+            file.write_bytes(pickle.dumps(found))
+    finally:
+        if held is not None:
+            os.close(held)
+    return found
 
 
 @cache
 def by_hand(name: str, *overrides: str) -> CheckResult:
     """Check a built-in case by hand calculation, with entries set anew."""
-    return check_case(read_case(name, overrides), name=name, fidelity="beam")
+    return shared(
+        f"by hand {name} {overrides}", lambda: check_case(read_case(name, overrides), name=name, fidelity="beam")
+    )
 
 
 @cache
 def claims() -> dict[str, tuple[ClaimResult, ...]]:
     """Return the claims of every source document, by its name; their hand calculations are those of ``by_hand``."""
+    return shared("claims", _claims)
 
-    def shared(case: Case, *, name: str, fidelity: str, **options: Any) -> CheckResult:
+
+def _claims() -> dict[str, tuple[ClaimResult, ...]]:
+    def of_this_process(case: Case, *, name: str, fidelity: str, **options: Any) -> CheckResult:
         assert case == read_case(name)
         return by_hand(name) if fidelity == "beam" else check_case(case, name=name, fidelity=fidelity, **options)
 
-    with patch("fea.claims.data.check_case", shared):
+    with patch("fea.claims.data.check_case", of_this_process):
         return check_all()

@@ -39,6 +39,18 @@ def test_the_demo_succeeds_whenever_the_check_ran(tmp_path, status, succeeds):
     assert (tmp_path / "arguments").read_text() == f"check owl-wing-static --fidelity solid -o {tmp_path}/demo\n"
 
 
+@pytest.mark.parametrize("failing", ["", "ruff", "mypy", "pytest"])
+def test_the_test_fails_where_any_of_its_parts_does(tmp_path, failing):
+    """Types are checked beside the tests, so that the status of either is easily lost; both run to their ends."""
+    for name in ("ruff", "mypy", "pytest"):
+        program(tmp_path, name, f'echo "{name} ran"', f"exit {int(name == failing)}")
+    (tmp_path / "installed").touch()
+    result = make("test", f"BIN={tmp_path}", f"INSTALLED={tmp_path}/installed", "PYTHON=true")
+    assert (result.returncode == 0) == (not failing)
+    assert "pytest ran" in result.stdout
+    assert ("mypy ran" in result.stdout) == (failing != "ruff")
+
+
 @pytest.fixture
 def python(tmp_path) -> Path:
     """Stand in for a Python on a system that lacks libGLU."""
