@@ -273,7 +273,7 @@ def holding(case: Case, link: str) -> Holding:
     -------
     Holding
     """
-    linkage, bonded = case.linkage, case.joint_model == "bonded"
+    linkage = case.linkage
     pins = {pin.name: pin for pin in case.body(link).pins}
     joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
     carried = {n for n in joints if linkage.joints[n].type != "revolute" and linkage.joints[n].links[0] == link}
@@ -288,9 +288,9 @@ def holding(case: Case, link: str) -> Holding:
     first, last = min(plain), max(plain)
     drive = {case.drive.joint} if case.drive is not None and case.drive.link == link else set()
     # A pin that holds the link off its axis may keep its angle, held by other pins as well.
-    fixed = {name for name in joints if bonded and linkage.joints[name].type == "revolute"}
+    fixed = {name for name in joints if linkage.joints[name].bonded}
     slides = {name for name in carried if linkage.joints[name].type == "slider"}
-    alone = {first, last} if bonded else {foot[name] for name in drive & set(joints)}
+    alone = {foot[name] for name in (fixed | drive) & set(joints)}
     return Holding(
         outermost=tuple(support) or ((first, last) if last - first > slack else (first,)),
         in_plane=None if carried else tuple(sorted({*foot.values(), *support})),

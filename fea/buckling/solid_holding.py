@@ -80,18 +80,16 @@ def solid_holding(case: Case, link: str) -> SolidHolding:
     held = _Conditions(places)
     held_joints = [point for point in joints.values() if point not in carried] or list(joints.values())
     drive = case.drive.joint if case.drive is not None and case.drive.link == link else None
-    bonded = case.joint_model == "bonded"
-    kept = {point for name, point in joints.items() if bonded or name == drive}
+    kept = {point for name, point in joints.items() if linkage.joints[name].bonded or name == drive}
     most = [held.kept(f"bore:{p}", ALL if p in kept else ALL[:TURN_Z]) for p in joints.values()]
     if support is not None:
         value, words = held.kept(f"end:{support}", ALL), f"built in at {support}"
         return SolidHolding(places=places, value=value, alone=(), most=np.vstack([*most, value]), words=words)
     value, words = held.in_place(held_joints)
-    farthest = set(held_joints) if bonded else kept
     return SolidHolding(
         places=places,
         value=value,
-        alone=tuple(held.kept(f"bore:{point}", ALL) for point in sorted(farthest)),
+        alone=tuple(held.kept(f"bore:{point}", ALL) for point in sorted(kept)),
         most=None if carried else np.vstack(most),
         words=words,
     )

@@ -25,7 +25,7 @@ from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
-from fea.frame.joint_forces import PINNED_STATICS, JointForces, ways_to_hold
+from fea.frame.joint_forces import JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
@@ -334,10 +334,10 @@ def _of(names: Sequence[str]) -> str:
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
     found = unusual_materials(case)
-    for model, reason in dict.fromkeys((f.model, f.reason) for f in statics.forces.values()):
-        if model != PINNED_STATICS:
-            names = [load_case for load_case, f in statics.forces.items() if (f.model, f.reason) == (model, reason)]
-            found.append(f"{_of(names)}: {reason}, so the joint forces are those of a {model}")
+    by_frame = {load_case: (f.model, f.reason) for load_case, f in statics.forces.items() if not f.by_equilibrium}
+    for model, reason in dict.fromkeys(by_frame.values()):
+        names = [load_case for load_case, found_by in by_frame.items() if found_by == (model, reason)]
+        found.append(f"{_of(names)}: {reason}, so the joint forces are those of a {model}")
     said = dict.fromkeys(what.sentence for what in moved.values() if what.state != "small")
     for sentence in said:
         names = [load_case for load_case, what in moved.items() if what.sentence == sentence]

@@ -65,7 +65,7 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
         At one pose.
     stays : bool
         True where all loaded places stay where they are, as on the deformed shape of a frame. Else the outermost pins
-        stay; a link held by the drive alone keeps its place and angle there, and its other joints move.
+        stay; a link held by the drive or one bonded joint keeps its place and angle there, and its other joints move.
 
     Returns
     -------
@@ -81,8 +81,7 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
     if stays:
         return between_stations(loads, forces, planes[0], planes[1], on_arms)
     where = holding(case, link)
-    driven = case.drive is not None and case.drive.link == link and case.joint_model != "bonded"
-    held = where.alone if driven and len(where.alone) == 1 else where.outermost
+    held = where.alone if len(where.alone) == 1 else where.outermost
     return on_its_pins(loads, forces, planes[0], planes[1], held, on_arms)
 
 

@@ -248,7 +248,6 @@ class _Linkage:
             self.plain.frame.pose,
             self.loads,
             held=self.plain.frame.held,
-            bonded=self.plain.frame.bonded,
             solids=flexible,
         )
         solution, reactions = _solved(frame, softer)
@@ -260,12 +259,8 @@ class _Linkage:
     def _bonded(self, link: str) -> set[str]:
         """Points of a link at which it is bonded to another."""
         assert self.plain.frame is not None
-        linkage = self.case.linkage
-        if not self.plain.frame.bonded:
-            return set()
-        return {
-            linkage.point_of(name, link) for name in linkage.joints_of(link) if linkage.joints[name].type == "revolute"
-        }
+        linkage, bonded = self.case.linkage, self.plain.frame.bonded
+        return {linkage.point_of(name, link) for name in linkage.joints_of(link) if name in bonded}
 
     def _pressed(self, reactions: Reactions) -> dict[tuple[str, str], tuple[Real, Give]]:
         """Force (2,) on every bore that a pin presses, in its link's axes, and how the bore gives.

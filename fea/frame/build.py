@@ -24,8 +24,8 @@ from loads.statics.statics import Drive
 Real = NDArray[np.float64]
 TURNS: frozenset[Dof] = frozenset({"rx", "ry", "rz"})
 STIFF_IN_TWIST = 1e6
-"""How many times its own twist stiffness the pin of the drive's joint has between layers: the drive's torque goes from
-the one link to the other beside the pin."""
+"""How many times its own twist stiffness the pin of the drive's joint, or of a bonded one, has between layers: the
+torque goes from the one link to the other beside the pin."""
 JOINT_DOFS: Mapping[str, frozenset[Dof]] = {"revolute": PIN_DOFS, "pin-in-slot": frozenset(), "slider": TURNS}
 """What the two links of a joint share; guides add what slots hold."""
 ALONG_X = np.array([1.0, 0.0, 0.0])
@@ -58,7 +58,7 @@ def build_frame(
     held : Drive or None
         The drive that holds a link; None where nothing is driven.
     bonded : bool, optional
-        True where pins of revolute joints carry moments about their own axis as well.
+        True where all revolute joints are bonded; else those that the case says.
     solids : mapping of str to LinkFlexibility, optional
         Links whose solids tell how they give between their points; these are no beams.
 
@@ -80,13 +80,15 @@ def build_frame(
     loads = tuple(in_axes(load, "global", pose.placement) for load in loads)
     builder = _Builder(case, pose, loads, solids or {})
     supports, ties, guides = builder.supports, [], []
-    contacts = {name: builder.contact(name, twists=held is None or name != held.joint) for name in case.joints}
+    revolute = {name: joint for name, joint in case.linkage.joints.items() if joint.type == "revolute"}
+    bonds = frozenset(name for name, joint in revolute.items() if bonded or joint.bonded)
+    stiff = bonds if held is None else bonds | {held.joint}
+    contacts = {name: builder.contact(name, twists=name not in stiff) for name in case.joints}
     places = np.array(builder.places)
     for name, joint in case.joints.items():
         held_here = held is not None and name == held.joint
         keeps = ALL_DOFS if joint.type == "slider" else TURNS
-        fixed = bonded and joint.type == "revolute"
-        dofs = ALL_DOFS if fixed else JOINT_DOFS[joint.type] | (keeps if held_here else frozenset())
+        dofs = ALL_DOFS if name in bonds else JOINT_DOFS[joint.type] | (keeps if held_here else frozenset())
         first, second = contacts[name]
         if first is not None and second is not None:
             places[second] = places[first]
@@ -103,7 +105,7 @@ def build_frame(
     return LinkageFrame(
         pose=pose,
         held=held,
-        bonded=bonded,
+        bonded=bonds,
         loads=loads,
         model=FrameModel(
             nodes=places,
@@ -175,7 +177,7 @@ class _Builder:
 
         The pin is a beam from the mid-plane of the one link to that of the other: of a revolute joint built into the
         first link; of a pin in a slot, or along a guide, into the second, since the first cannot hold it. ``twists``:
-        false of the pin of the drive's joint.
+        false of the pin of the drive's joint, and of a bonded one.
         """
         first, second = self.pins[name]
         linkage, joint = self.case.linkage, self.case.joints[name]

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 Real = NDArray[np.float64]
 
 PINNED_STATICS = "equilibrium of pinned links"
+BONDED_STATICS = "equilibrium of links, some of them bonded"
 PINNED_FRAME = "spatial frame with pins free about their own axis"
 BONDED_FRAME = "spatial frame with bonded joints"
 LAYERED_FRAME = "spatial frame of links in layers, with pins as beams between them"
@@ -86,6 +87,11 @@ class JointForces:
     solids: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
     sharings: tuple[Reactions, ...] = ()
+
+    @property
+    def by_equilibrium(self) -> bool:
+        """True where equilibrium alone gave them."""
+        return self.frame is None
 
     @property
     def open_by(self) -> tuple[Deviation, ...]:
@@ -152,26 +158,28 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
     CaseError
         Where no model has them, such as at a dead point of the driven link.
     """
-    bonded = case.joint_model == "bonded"
-    if bonded:
-        model, reason = BONDED_FRAME, "the case says that its joints are bonded"
-    elif out_of_plane(loads):
-        model, reason = PINNED_FRAME, "a load acts out of the linkage's plane, where pins carry moments"
+    bonded = [name for name, joint in case.linkage.joints.items() if joint.bonded]
+    which = "its joints are bonded" if case.joint_model == "bonded" else _named(bonded)
+    model = BONDED_FRAME if bonded else PINNED_FRAME
+    if out_of_plane(loads):
+        reason = "a load acts out of the linkage's plane, where pins carry moments"
     elif _redundant(case, pose):
-        model, reason = PINNED_FRAME, "the linkage has more constraints than equilibrium has equations"
+        reason = "the linkage has more constraints than equilibrium has equations"
+        if bonded:
+            reason = f"the case says that {which}, and so {reason}"
     elif case.layered:
         model, reason = LAYERED_FRAME, "the links lie in layers, between which joint forces make couples"
     else:
+        reason = "all loads act in the linkage's plane, where equilibrium alone gives the forces"
         return JointForces(
             reactions=solve_statics(pose, case.pinned_drive, loads),
-            model=PINNED_STATICS,
-            reason="all loads act in the linkage's plane, where equilibrium alone gives the forces",
+            model=BONDED_STATICS if bonded else PINNED_STATICS,
+            reason=f"the case says that {which}; {reason}" if bonded else reason,
         )
-    if not bonded:
-        refuse_dead_point(assemble(pose.placement, case.pinned_drive, ()), case.pinned_drive)
+    refuse_dead_point(assemble(pose.placement, case.pinned_drive, ()), case.pinned_drive)
     from fea.frame.sharing import sharings
 
-    frame, solution = solved_frame(case, pose, loads, case.pinned_drive, bonded=bonded)
+    frame, solution = solved_frame(case, pose, loads, case.pinned_drive)
     return JointForces(
         reactions=frame.reactions(solution.joint_wrenches, solution.residual),
         model=model,
@@ -188,7 +196,7 @@ def solved_frame(
     loads: Sequence[Load],
     held: Drive | None,
     *,
-    bonded: bool,
+    bonded: bool = False,
     solids: "Mapping[str, LinkFlexibility] | None" = None,
 ) -> "tuple[LinkageFrame, FrameSolution]":
     """Return the frame of the linkage and its solution; most linkages need none, and do not import it.
@@ -203,8 +211,8 @@ def solved_frame(
         That act on the links, global axes.
     held : Drive or None
         The drive that holds a link.
-    bonded : bool
-        True where pins carry moments about their own axis as well.
+    bonded : bool, optional
+        True where all pins carry moments about their own axis as well, and not only bonded joints.
     solids : mapping of str to LinkFlexibility, optional
         Links that are condensed solids.
 
@@ -217,6 +225,11 @@ def solved_frame(
 
     frame = build_frame(case, pose, loads, held=held, bonded=bonded, solids=solids)
     return frame, solve_frame(frame.model)
+
+
+def _named(bonded: Sequence[str]) -> str:
+    """Say which joints are bonded."""
+    return f"joint {bonded[0]} is bonded" if len(bonded) == 1 else f"joints {', '.join(bonded)} are bonded"
 
 
 def _redundant(case: Case, pose: Pose) -> bool:

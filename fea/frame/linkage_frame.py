@@ -4,9 +4,8 @@ Every link with a part is a beam of its section along the x axis of its frame, a
 the axis sits on a rigid arm, or where the link states an arm to it, on a beam of the same section. Along a slot the two
 flanks are beams of their own (``fea.beam.flanks``), of which the pin pushes one. Links without a part are rigid. The
 link that the drive holds keeps its angle to the other link at the drive's joint, where the moment about z is the drive
-torque; at a slider it keeps its place, and the force along the guide is the drive force. In bonded linkages every pin
-of a revolute joint carries all six components; pins in slots and sliders slide as they do else. Between layers a pin
-is a beam from the one mid-plane to the other.
+torque; at a slider it keeps its place, and the force along the guide is the drive force. A bonded joint carries all six
+components. Between layers a pin is a beam from the one mid-plane to the other.
 
 A pin in a slot stands at a station of its own of the slotted link. It presses on the slot's flanks: they take a force
 normal to the slot in the linkage's plane, and the moment about the slot of a pin that would tilt between them. It is
@@ -66,8 +65,8 @@ class LinkageFrame:
         The linkage's pose.
     held : Drive or None
         The link that the drive holds, and where; None where nothing is driven.
-    bonded : bool
-        True where pins carry moments about their own axis as well.
+    bonded : frozenset of str
+        Joints whose pins carry moments about their own axis as well.
     loads : tuple of Load
         That act on the links, global axes.
     model : FrameModel
@@ -93,7 +92,7 @@ class LinkageFrame:
 
     pose: Pose
     held: Drive | None
-    bonded: bool
+    bonded: frozenset[str]
     loads: tuple[Load, ...]
     model: FrameModel
     points: Mapping[tuple[str, str], int]

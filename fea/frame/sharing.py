@@ -91,7 +91,8 @@ def sharings(frame: LinkageFrame) -> tuple[Reactions, ...]:
         Where forces do not balance.
     """
     linkage = frame.pose.linkage
-    beams = {name: i for name, i in frame.pin_beams.items() if linkage.joints[name].type == "revolute"}
+    revolute = {name for name, joint in linkage.joints.items() if joint.type == "revolute"}
+    beams = {name: i for name, i in frame.pin_beams.items() if name in revolute - frame.bonded}
     if not beams:
         return ()
     hinges = [(name, link) for name in beams for link in linkage.joints[name].links]

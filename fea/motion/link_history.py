@@ -34,10 +34,6 @@ def link_histories(moved: CaseMotion, link: str) -> tuple[LinkLoads, ...]:
             "envelope: the linkage is redundant, so its joint forces over a motion do not follow from equilibrium; "
             "remove redundant joints or links, or check single poses with alula check"
         )
-    if case.joint_model != "pinned":
-        raise CaseError(
-            "joint_model: an envelope needs joints that turn, but they are bonded; choose pinned, or check single poses"
-        )
     for name, loads in moved.loads.items():
         if out_of_plane([load for load in loads if load.link == link]):
             raise CaseError(

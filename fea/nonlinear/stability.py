@@ -131,7 +131,7 @@ def dead_point_factor(frame: LinkageFrame, solution: FrameSolution) -> float:
     float
         Infinite where they lead away.
     """
-    if frame.bonded:
+    if all(joint.type != "revolute" or name in frame.bonded for name, joint in frame.pose.linkage.joints.items()):
         return math.inf
     matrix = _constraints(frame, frame.pose)
     u, sizes, v = np.linalg.svd(matrix, full_matrices=False)

@@ -10,7 +10,6 @@ from fea.check.run import check_case
 from fea.common.clock import Clock
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome
-from fea.frame.joint_forces import PINNED_STATICS
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.result import CheckResult
 from fea.refine.refinement import Effort
@@ -135,7 +134,7 @@ def _asked(case: Case, samples: int) -> tuple[Variable, ...]:
 def _require(statics: CaseStatics, frames: Mapping[str, LargeDisplacement]) -> None:
     """Refuse what statics of pinned links do not tell, before any solid is solved."""
     for name, forces in statics.forces.items():
-        if forces.model != PINNED_STATICS:
+        if not forces.by_equilibrium:
             raise CannotRunError(
                 f"tolerances: under load case {name} {forces.reason}, so the joint forces of samples do not "
                 "follow from equilibrium alone, which is not covered; vary entries with alula study"

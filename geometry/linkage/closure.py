@@ -32,7 +32,7 @@ class LoopClosure:
 
     Unknowns are ``[angles of the moving links, travels in the slots]`` in the order of
     ``linkage.moving`` and ``slots``; equations are real and imaginary parts of each loop, then one
-    fixed angle per slider.
+    fixed angle per slider and bonded joint.
 
     Attributes
     ----------
@@ -48,9 +48,9 @@ class LoopClosure:
         return tuple(n for n, j in self.linkage.joints.items() if j.type != "revolute")
 
     @cached_property
-    def sliders(self) -> tuple[str, ...]:
-        """Names of the joints that fix a relative angle."""
-        return tuple(n for n, j in self.linkage.joints.items() if j.type == "slider")
+    def angles_fixed(self) -> tuple[str, ...]:
+        """Names of the joints that fix a relative angle: sliders, and bonded joints with a stated angle."""
+        return tuple(n for n, j in self.linkage.joints.items() if j.fixes_angle)
 
     @cached_property
     def unknowns(self) -> int:
@@ -305,7 +305,7 @@ class LoopClosure:
         return self.origin_velocities(q, qddot) + self._quadratic(self._origin_rows, q, qdot)
 
     def residual(self, q: Real) -> Real:
-        """Closure equations (..., equations): mm for loops, longest link times rad for sliders.
+        """Closure equations (..., equations): mm for loops, longest link times rad for fixed angles.
 
         Parameters
         ----------
@@ -317,7 +317,7 @@ class LoopClosure:
         ndarray
             Residuals (..., equations) [mm].
         """
-        return np.concatenate([_split(self._evaluate(self._loop_rows, q)), self._slider_errors(q)], axis=-1)
+        return np.concatenate([_split(self._evaluate(self._loop_rows, q)), self._angle_errors(q)], axis=-1)
 
     def jacobian(self, q: Real) -> Real:
         """Exact derivative of ``residual`` by the unknowns: (..., equations, unknowns).
@@ -334,9 +334,9 @@ class LoopClosure:
         """
         loops = self._derivative(self._loop_rows, q)
         rows = np.concatenate([loops.real, loops.imag], axis=-2)
-        slider = np.zeros((*q.shape[:-1], len(self.sliders), self.unknowns))
-        slider[...] = self._slider_rows
-        return np.concatenate([rows, slider], axis=-2)
+        angles = np.zeros((*q.shape[:-1], len(self.angles_fixed), self.unknowns))
+        angles[...] = self._angle_rows
+        return np.concatenate([rows, angles], axis=-2)
 
     def quadratic(self, q: Real, qdot: Real) -> Real:
         """The part of the residual's second time derivative that is quadratic in the speeds.
@@ -354,21 +354,21 @@ class LoopClosure:
             Terms (..., equations).
         """
         loops = _split(self._quadratic(self._loop_rows, q, qdot))
-        return np.concatenate([loops, np.zeros((*q.shape[:-1], len(self.sliders)))], axis=-1)
+        return np.concatenate([loops, np.zeros((*q.shape[:-1], len(self.angles_fixed)))], axis=-1)
 
     @cached_property
-    def _slider_rows(self) -> Real:
-        rows = np.zeros((len(self.sliders), self.unknowns))
+    def _angle_rows(self) -> Real:
+        rows = np.zeros((len(self.angles_fixed), self.unknowns))
         moving = len(self.linkage.moving)
-        for i, name in enumerate(self.sliders):
+        for i, name in enumerate(self.angles_fixed):
             for link, sign in zip(self.linkage.joints[name].links, (-1.0, 1.0), strict=True):
                 if self._index[link] < moving:
                     rows[i, self._index[link]] = sign * self.linkage.longest
         return rows
 
-    def _slider_errors(self, q: Real) -> Real:
-        fixed = np.array([self.linkage.joints[n].angle for n in self.sliders]) * self.linkage.longest
-        error = (q @ self._slider_rows.T - fixed) / self.linkage.longest
+    def _angle_errors(self, q: Real) -> Real:
+        fixed = np.array([self.linkage.joints[n].angle for n in self.angles_fixed]) * self.linkage.longest
+        error = (q @ self._angle_rows.T - fixed) / self.linkage.longest
         return np.asarray(np.arctan2(np.sin(error), np.cos(error)) * self.linkage.longest)
 
 

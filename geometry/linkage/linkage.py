@@ -63,6 +63,8 @@ class Joint(CaseModel):
     pin-in-slot   the second link's point lies on the line through the first link's point along
                   ``direction`` (a half joint: it may turn and slide)
     slider        as pin-in-slot, and the second link keeps the angle ``angle`` to the first
+
+    A bonded revolute joint does not turn: it bears a moment about its pin as well.
     """
 
     type: Literal["revolute", "pin-in-slot", "slider"] = "revolute"
@@ -82,7 +84,21 @@ class Joint(CaseModel):
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0
-    """Angle of the second link to the first (slider)."""
+    """Angle of the second link to the first (slider, bonded joint). A bonded joint without it keeps the angle that its
+    links have in the pose."""
+    bonded: bool = False
+    """Of a revolute joint: true where its two links do not turn against each other, such as glued, pressed or screwed
+    ones. It then bears a moment about its pin."""
+
+    @property
+    def fixes_angle(self) -> bool:
+        """Whether the case states the angle between its links, which takes part in closing the loops."""
+        return self.type == "slider" or (self.bonded and "angle" in self.model_fields_set)
+
+    @property
+    def bears_moment(self) -> bool:
+        """Whether it bears a moment about z."""
+        return self.type == "slider" or self.bonded
 
 
 @dataclass(frozen=True)
@@ -142,6 +158,11 @@ class Linkage:
                 )
         if joint.links[0] == joint.links[1]:
             raise CaseError(f"joints.{name}: it joins link '{joint.links[0]}' to itself; name two different links")
+        if joint.bonded and joint.type != "revolute":
+            raise CaseError(
+                f"joints.{name}.bonded: a joint of type {joint.type} slides, and only a revolute joint can be bonded; "
+                "leave bonded out, or remove the type"
+            )
 
     @cached_property
     def ground(self) -> str:
@@ -166,13 +187,14 @@ class Linkage:
 
     @cached_property
     def mobility(self) -> int:
-        """Degrees of freedom after Gruebler/Kutzbach: M = 3(L - 1) - 2 J1 - J2.
+        """Degrees of freedom after Gruebler/Kutzbach: M = 3(L - 1) - 2 J1 - J2, less one per stated angle of a bond.
 
         Norton, Design of Machinery, 5th ed., chapter 2. It counts, and can be wrong for special
         dimensions (parallelograms): there the rank of the Jacobian decides.
         """
         half = sum(j.type == "pin-in-slot" for j in self.joints.values())
-        return 3 * (len(self.links) - 1) - 2 * (len(self.joints) - half) - half
+        bonds = sum(j.bonded and j.fixes_angle for j in self.joints.values())
+        return 3 * (len(self.links) - 1) - 2 * (len(self.joints) - half) - half - bonds
 
     def rise(self, name: str) -> float:
         """Return how far a joint's second link lies above its first, along z.

@@ -21,7 +21,7 @@ def open_loop(closure: LoopClosure, free: NDArray[np.bool_], attempts: Sequence[
     """Return the joint that closes the first open loop, and the least gap there [mm]; None if none was found.
 
     Loops with few free unknowns come first, for they can least give way. The gap is the least with
-    which a loop can be left while all loops before it (and the fixed angles of sliders) are closed.
+    which a loop can be left while all loops before it (and the fixed angles) are closed.
     ``attempts`` are (unknowns,) vectors from which the search starts; only the ``free`` unknowns (a
     mask) move.
 
@@ -42,7 +42,7 @@ def open_loop(closure: LoopClosure, free: NDArray[np.bool_], attempts: Sequence[
     count = len(closure.loops)
     takes_part = closure.jacobian(attempts[0])[:, free] != 0.0
     order = sorted(range(count), key=lambda k: int(np.sum(takes_part[k] | takes_part[count + k])))
-    earlier = list(range(2 * count, 2 * count + len(closure.sliders)))
+    earlier = list(range(2 * count, 2 * count + len(closure.angles_fixed)))
     for k in order:
         ends = [end for q in attempts if (end := _narrowed(closure, free, q, [k, count + k], earlier)) is not None]
         if not ends:

@@ -83,7 +83,7 @@ def solve_pose(
     if linkage.mobility > drives:
         raise CaseError(
             f"pose: the linkage has mobility {linkage.mobility} (Gruebler) but {drives} pose coordinate(s); "
-            "they must be equal, so add or remove joints or links, or state pose.coordinate"
+            f"they must be equal, so add or remove joints or links, or state pose.coordinate{_by_angles(linkage)}"
         )
     try:
         pose = _assemble(linkage, held, near)
@@ -99,6 +99,12 @@ def solve_pose(
             "add or remove joints or links"
         )
     return pose
+
+
+def _by_angles(linkage: Linkage) -> str:
+    """Return the further remedy of bonded joints whose angles are not stated."""
+    open_ones = [name for name, joint in linkage.joints.items() if joint.bonded and not joint.fixes_angle]
+    return f", or the angle of a bonded joint, joints.{open_ones[0]}.angle" if open_ones else ""
 
 
 def freedom(pose: Pose) -> int:
@@ -174,7 +180,7 @@ def _refuse_rough(pose: Pose, held: _Held | None, near: Mapping[str, float], fre
 
     Looked for only next to a dead point of the coordinate, where assemblies come close to each other.
     """
-    if held is None or pose.dead_point_distance(held.name, slides=held.slides) > NEAR_DEAD_POINT:
+    if held is None or pose.dead_point_distance(held.name, slides=held.slides, bonds=False) > NEAR_DEAD_POINT:
         return
     columns = [pose.linkage.moving.index(link) for link in free]
     off = float(np.max(_turned(pose.q[columns] - np.array([near[link] for link in free])), initial=0.0))

@@ -132,7 +132,7 @@ class Pose:
         c, s = math.cos(self.angles[link]), math.sin(self.angles[link])
         return np.array([[c, -s], [s, c]])
 
-    def dead_point_distance(self, driven: str, *, slides: bool = False) -> float:
+    def dead_point_distance(self, driven: str, *, slides: bool = False, bonds: bool = True) -> float:
         """How far the pose is from a dead point of the given driven link (0 at the dead point).
 
         Smallest singular value of the scaled constraint Jacobian with that link held: coordinates
@@ -146,13 +146,15 @@ class Pose:
             Name of the driven link, slider or slot.
         slides : bool
             Whether the name is that of a slider or slot.
+        bonds : bool
+            As ``constraint_jacobian`` takes it.
 
         Returns
         -------
         float
             The distance, without unit.
         """
-        matrix = np.vstack([constraint_jacobian(self), held_motion(self, driven, slides=slides)])
+        matrix = np.vstack([constraint_jacobian(self, bonds=bonds), held_motion(self, driven, slides=slides)])
         return float(np.linalg.svd(matrix, compute_uv=False)[-1])
 
 
@@ -176,17 +178,19 @@ def held_motion(pose: Pose, driven: str, *, slides: bool) -> Real:
     return _joint_motion(pose, driven)[0] if slides else _held(pose.linkage, driven)
 
 
-def constraint_jacobian(pose: Pose) -> Real:
+def constraint_jacobian(pose: Pose, *, bonds: bool = True) -> Real:
     """Jacobian of all joint constraints by (x, y, L phi) of every moving link, without dimensions.
 
-    Rows: two per revolute joint (x, y), one per pin in slot (normal), two per slider (normal and
-    angle). García de Jalón & Bayo, Kinematic and Dynamic Simulation of Multibody Systems, 1994,
+    Rows: two per revolute joint (x, y) and a third where it is bonded, one per pin in slot (normal), two per slider
+    (normal and angle). García de Jalón & Bayo, Kinematic and Dynamic Simulation of Multibody Systems, 1994,
     section 2.3 (reference-point coordinates).
 
     Parameters
     ----------
     pose : Pose
         The pose.
+    bonds : bool
+        Whether bonded joints without a stated angle count as such, too; they do not take part in assembling the pose.
 
     Returns
     -------
@@ -198,7 +202,7 @@ def constraint_jacobian(pose: Pose) -> Real:
     for name, joint in linkage.joints.items():
         along, across, turn = _joint_motion(pose, name)
         rows += [along, across] if joint.type == "revolute" else [across]
-        if joint.type == "slider":
+        if joint.type == "slider" or (joint.bonded and (bonds or joint.fixes_angle)):
             rows.append(turn)
     return np.array(rows)
 

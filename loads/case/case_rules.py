@@ -93,13 +93,19 @@ def check_rules(case: CoreCase) -> None:
 def _check_drive(case: CoreCase) -> None:
     check_drive(case.linkage, case.pinned_drive)
     mobility = case.linkage.mobility
-    if case.joint_model == "bonded":
-        return
+    if case.drive is not None and case.joints[case.drive.joint].bonded:
+        raise CaseError(
+            f"drive.joint: joint '{case.drive.joint}' is bonded, so it bears the moment that a drive would; drive "
+            "another joint, or leave out one of the two"
+        )
+    drives = 1 if case.drive else 0
+    held = sum(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
+    if mobility <= drives + held and held:
+        return  # statics tells whether these bonds hold the linkage
     if mobility > 0 and case.drive is None:
         raise CaseError(
             f"drive: the linkage has mobility {mobility}, but nothing drives it; add a [drive] with its link and joint"
         )
-    drives = 1 if case.drive else 0
     if mobility != drives and not (mobility < drives and case.moves):
         raise CaseError(
             f"drive: the linkage has mobility {mobility} (Gruebler) but {drives} drive; they must be equal, so add or "

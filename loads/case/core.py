@@ -55,8 +55,8 @@ class CoreCase(Revisable):
     """Material cards of the case's own; the library's are there by name without being listed."""
     parts: dict[Name, Part] = {}
     joint_model: Literal["pinned", "bonded"] = "pinned"
-    """Whether pins turn freely, or are bonded and carry moments about their own axis as well. Sliders and pins in slots
-    slide all the same."""
+    """Whether pins turn freely, or are all bonded and carry moments about their own axis as well, as if every revolute
+    joint stated bonded = true. Sliders and pins in slots slide all the same."""
     layer_spacing: Annotated[Length, POSITIVE] | None = None
     """Distance between the mid-planes of neighbouring layers in which links lie."""
     washer: Annotated[Length, NOT_NEGATIVE] | None = None
@@ -80,8 +80,11 @@ class CoreCase(Revisable):
 
     @cached_property
     def linkage(self) -> Linkage:
-        """The links and joints as one linkage."""
-        return Linkage(self.links, self.joints, self.heights)
+        """The links and joints as one linkage; with joint_model = bonded, every revolute joint is."""
+        joints, bond = self.joints, {"bonded": True}
+        if self.joint_model == "bonded":
+            joints = {n: j.model_copy(update=bond) if j.type == "revolute" else j for n, j in joints.items()}
+        return Linkage(self.links, joints, self.heights)
 
     @cached_property
     def heights(self) -> dict[str, float]:

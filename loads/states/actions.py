@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.errors import CaseError
 from geometry.bodies.features import FlatFace
 from geometry.linkage.motion import solve_motion
 from geometry.linkage.placement import Placement, vector
@@ -17,6 +18,9 @@ from loads.records.carried import Carried, CarriedSpread, mass_of
 from loads.records.load_case import LoadCase, gravity, vector3
 
 Real = NDArray[np.float64]
+
+_SAME_SPEED = 1e-6
+"""Difference of two links' angular speeds times the longest link, over the largest speed, below which they are one."""
 
 
 def needs_masses(case: Case) -> bool:
@@ -54,7 +58,35 @@ def placed(pose: Pose, speed: float) -> Placement:
     """
     if speed == 0.0:
         return pose.placement
-    return replace(solve_motion(pose, [pose.held], speed=speed).placement.chosen(0), q=pose.q)
+    place = replace(solve_motion(pose, [pose.held], speed=speed).placement.chosen(0), q=pose.q)
+    refuse_turning_bonds(place)
+    return place
+
+
+def refuse_turning_bonds(place: Placement) -> None:
+    """Refuse a motion in which the links of a bonded joint turn against each other.
+
+    Parameters
+    ----------
+    place : Placement
+        One pose or n, with rates.
+
+    Raises
+    ------
+    CaseError
+        With the first such joint.
+    """
+    linkage = place.linkage
+    rates = [np.hypot(np.abs(place.velocity(n)), linkage.longest * place.spin(n)) for n in linkage.moving]
+    most = float(np.max(rates)) / linkage.longest
+    for name, joint in linkage.joints.items():
+        first, second = (place.spin(link) for link in joint.links)
+        if joint.bonded and np.any(np.abs(second - first) > _SAME_SPEED * most):
+            raise CaseError(
+                f"joints.{name}.bonded: links '{joint.links[0]}' and '{joint.links[1]}' are bonded there, but they "
+                "would turn against each other as the linkage moves; leave out the motion or speed, leave bonded out, "
+                f"or state joints.{name}.angle in a linkage that moves nevertheless"
+            )
 
 
 def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:

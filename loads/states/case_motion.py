@@ -13,7 +13,7 @@ from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import Load, PartMass
 from loads.records.load_case import LoadCase, gravity
-from loads.states.actions import acting_loads, inertia_loads, needs_masses, stated_loads
+from loads.states.actions import acting_loads, inertia_loads, needs_masses, refuse_turning_bonds, stated_loads
 from loads.states.kinetostatics import (
     Kinetostatics,
     Power,
@@ -100,6 +100,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
     speed, acceleration = drive_speeds(case, angles)
     slides = spec.travel is not None
     motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate, slides=slides)
+    refuse_turning_bonds(motion.virtual)
     masses = part_masses(case) if spec.inertia or needs_masses(case) else {}
     for name, load_case in case.load_cases.items():
         if load_case.speed != 0.0 and (slides or coordinate != case.pose.coordinate):

@@ -86,9 +86,9 @@ class Kinetostatics(Equilibrium):
 
     @cached_property
     def moments(self) -> Mapping[str, Real]:
-        """Slider -> moment (n,) of its first link on its second about the joint's point [N mm]."""
-        sliders = (name for name, joint in self.motion.linkage.joints.items() if joint.type == "slider")
-        return {name: self.joints[name].wrench[:, 5] for name in sliders}
+        """Slider or bonded joint -> moment (n,) of its first link on its second about the joint's point [N mm]."""
+        bearing = (name for name, joint in self.motion.linkage.joints.items() if joint.bears_moment)
+        return {name: self.joints[name].wrench[:, 5] for name in bearing}
 
     @cached_property
     def dead_points(self) -> tuple[float, ...]:
@@ -203,7 +203,7 @@ def is_determinate(linkage: Linkage) -> bool:
     -------
     bool
     """
-    unknowns = sum(1 if joint.type == "pin-in-slot" else 2 for joint in linkage.joints.values()) + 1
+    unknowns = sum(1 if joint.type == "pin-in-slot" else 2 + joint.bonded for joint in linkage.joints.values()) + 1
     return unknowns == 3 * len(linkage.moving)
 
 

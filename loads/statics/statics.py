@@ -6,7 +6,8 @@ Each link is cut free. With r the arm from the origin of the link's frame to a j
 
 over joint forces, applied loads and the drive torque (Norton, Design of Machinery, 5th ed., chapter 11; inertia is
 among the loads, after D'Alembert). The unknown of a revolute joint is the force that the joint's first link exerts on
-its second. A pin in a slot carries a normal force, and a slider a normal force and a moment. Joints have no friction.
+its second, and where the joint is bonded a moment. A pin in a slot carries a normal force, and a slider a normal force
+and a moment. Joints have no friction.
 """
 
 from collections.abc import Mapping, Sequence
@@ -199,11 +200,17 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
     System
     """
     linkage = place.linkage
-    unknowns = [(column, name, *unit) for name in linkage.joints for column, unit in _units(place, name).items()]
+    turns = None if drive is None or drive.pushes(linkage) else drive.joint
+    unknowns = [
+        (column, name, *unit)
+        for name in linkage.joints
+        for column, unit in _units(place, name).items()
+        if (column, name) != (f"M:{turns}", turns)  # the drive's torque is the moment of its joint
+    ]
     if drive is not None and drive.pushes(linkage):
         unknowns.append(("P", drive.joint, drive.sign(linkage) * _along(place, drive.joint), 0.0))
     columns = tuple(column for column, *_ in unknowns)
-    turned = () if drive is None or drive.pushes(linkage) else linkage.joints[drive.joint].links
+    turned = () if turns is None else linkage.joints[turns].links
     columns += ("T",) if turned else ()
     matrix = np.zeros((*place.shape, 3 * len(linkage.moving), len(columns)))
     for c, (_, name, force, moment) in enumerate(unknowns):
@@ -234,11 +241,11 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
 
 def _units(place: Placement, name: str) -> dict[str, tuple[Complex, float]]:
     """Return, by unknown of a joint, force (...) and moment of the first link on the second at the pin for one unit."""
-    along, kind = _along(place, name), place.linkage.joints[name].type
-    if kind == "revolute":
-        return {f"R{name}x": (along, 0.0), f"R{name}y": (1j * along, 0.0)}
-    units = {f"N{name}": (1j * along, 0.0)}
-    return units | {f"M:{name}": (0.0 * along, 1.0)} if kind == "slider" else units
+    along, joint = _along(place, name), place.linkage.joints[name]
+    units = {f"R{name}x": (along, 0.0), f"R{name}y": (1j * along, 0.0)}
+    if joint.type != "revolute":
+        units = {f"N{name}": (1j * along, 0.0)}
+    return units | ({f"M:{name}": (0.0 * along, 1.0)} if joint.bears_moment else {})
 
 
 def _along(place: Placement, name: str) -> Complex:
@@ -360,7 +367,8 @@ def joint_reactions(place: Placement, drive: Drive | None, value: Mapping[str, A
             force = value[f"N{name}"] * 1j * along
             if drive is not None and drive.joint == name:
                 force = force + drive.sign(place.linkage) * value.get("P", 0.0) * along
-            wrench[..., 0], wrench[..., 1], wrench[..., 5] = force.real, force.imag, value.get(f"M:{name}", 0.0)
+            wrench[..., 0], wrench[..., 1] = force.real, force.imag
+        wrench[..., 5] = value.get(f"M:{name}", 0.0)
         arm = travelled(place, name)
         found[name] = JointReaction(joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=arm)
     return found

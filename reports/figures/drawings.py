@@ -198,7 +198,7 @@ class _Drawing:
                 found.append(self._guide(name, at))
             elif ground in joint.links and held_at is None:
                 found.append(self._support(joint.links, at))
-            self.sheet.disc(self.axes.at(at), 2.75, "#ffffff", INK, 1.0)
+            self.sheet.disc(self.axes.at(at), 2.75, INK if joint.bonded else "#ffffff", INK, 1.0)
             found.append(at[None])
         return found
 

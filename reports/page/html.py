@@ -7,7 +7,6 @@ from typing import Any
 
 from fea.claims.sources import check_claims
 from fea.common.verdict import Quantity, Subject, Verdict, reason_for
-from fea.frame.joint_forces import PINNED_STATICS
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from geometry.base.version import alula_version
 from geometry.linkage.pose import NEAR_DEAD_POINT
@@ -129,7 +128,6 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         materials=_materials(result),
         claims=_claims(result),
         not_covered=not_covered(result),
-        pinned_statics=PINNED_STATICS,
         out_of_plane=lambda load_case: len(shown_components(load_case.reactions)) > 3,
         design=design_of(result.case),
         version=alula_version(),

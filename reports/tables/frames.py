@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fea.frame.joint_forces import PINNED_STATICS
 from loads.statics.statics import Reactions
 from reports.tables.data import data, entries
 from reports.words.wording import band, fixed, limit_load, number
@@ -185,7 +184,7 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     list of str
     """
     lines = []
-    if case.forces.model != PINNED_STATICS:
+    if not case.forces.by_equilibrium:
         lines.append(f"Joint forces by a {case.forces.model}: {case.forces.reason}.")
     lines.append(linkage_line(case))
     deformed = case.large_displacement.reactions

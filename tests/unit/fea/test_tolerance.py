@@ -249,9 +249,9 @@ def test_entries_that_cannot_be_toleranced_are_refused(tolerances, said):
 def test_a_case_without_tolerances_and_a_redundant_one_are_refused():
     with pytest.raises(CaseError, match="states none"):
         tolerance_case(lever(), effort=ONE_MESH)
-    bonded = lever(joint_model="bonded", tolerances={"pins": "0.1 mm"})
+    across = {"push": {"forces": [{"link": "arm", "at": "P", "force": ["0 N", "0 N", "10 N"]}]}}
     with pytest.raises(CannotRunError, match="not covered"):
-        tolerance_case(bonded, samples=100, threads=1, effort=ONE_MESH)
+        tolerance_case(lever(load_cases=across, tolerances={"pins": "0.1 mm"}), samples=100, effort=ONE_MESH)
 
 
 def test_a_place_of_its_own_replaces_that_of_all_pins():

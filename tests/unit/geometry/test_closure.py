@@ -23,7 +23,7 @@ def test_the_jacobian_is_the_derivative_of_the_residual(name: str) -> None:
     closure = LoopClosure(LINKAGES[name])
     rng = np.random.default_rng(3)
     q = np.concatenate([rng.uniform(-3, 3, len(closure.linkage.moving)), rng.uniform(-80, 80, len(closure.slots))])
-    if closure.sliders:
+    if closure.angles_fixed:
         # Away from the half turn at which the slider's angle error jumps.
         q[: len(closure.linkage.moving)] = rng.uniform(-1, 1, len(closure.linkage.moving))
     h = 1e-5
