@@ -11,6 +11,7 @@ from loads.records.applied import Load, PartMass
 from loads.sources.published_statics import StaticsAudit, audit
 from loads.states.actions import acting_loads, needs_masses, placed
 from loads.states.masses import part_masses
+from loads.states.standing import Standing, stand
 from loads.statics.statics import Reactions
 
 
@@ -23,6 +24,8 @@ class CaseStatics:
     case : Case
     pose : Pose
         Undeformed; the same for all load cases.
+    standing : mapping of str to Standing
+        Load case -> what holds that pose.
     loads : mapping of str to tuple of Load
         Load case -> what acts.
     forces : mapping of str to JointForces
@@ -35,6 +38,7 @@ class CaseStatics:
 
     case: Case
     pose: Pose
+    standing: Mapping[str, Standing]
     loads: Mapping[str, tuple[Load, ...]]
     forces: Mapping[str, JointForces]
     masses: Mapping[str, PartMass]
@@ -64,13 +68,14 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     CaseError
         For a pose that cannot be assembled or has no single equilibrium.
     """
-    pose = case.solve_pose()
     masses = part_masses(case) if needs_masses(case) else {}
+    standing = {load_case: stand(case, load_case, masses) for load_case in case.load_cases}
+    pose = next(iter(standing.values())).pose  # one that balances by itself has one load case
     loads = {
-        load_case: acting_loads(case, stated, placed(pose, stated.speed), masses)
+        load_case: acting_loads(standing[load_case].case, stated, placed(pose, stated.speed), masses)
         for load_case, stated in case.load_cases.items()
     }
-    forces = {load_case: joint_forces(case, pose, loads[load_case]) for load_case in loads}
+    forces = {load_case: joint_forces(standing[load_case].case, pose, loads[load_case]) for load_case in loads}
     found = None
     if case.published_statics is not None:
         published = case.published_statics
@@ -81,4 +86,4 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
             pose,
             next(iter(loads.values())),
         )
-    return CaseStatics(case=case, pose=pose, loads=loads, forces=forces, masses=masses, audit=found)
+    return CaseStatics(case=case, pose=pose, standing=standing, loads=loads, forces=forces, masses=masses, audit=found)

@@ -95,6 +95,7 @@ def effort_of(
 class _LoadCase:
     """One load case by hand: what acts on every link cut free, its hand calculation, and what is out of proportion."""
 
+    case: Case
     statics: CaseStatics
     load_case: str
     moved: LargeDisplacement
@@ -105,11 +106,12 @@ class _LoadCase:
 
     @classmethod
     def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement) -> "_LoadCase":
-        case, loads = statics.case, statics.loads[load_case]
+        case, loads = statics.standing[load_case].case, statics.loads[load_case]
         reactions = statics.reactions[load_case]
         cut = {link: cut_link(case, link, load_case, moved, reactions, loads) for link in case.checked_links}
         hands = {link: link_by_hand(case, link, acting) for link, acting in cut.items()}
         return cls(
+            case=case,
             statics=statics,
             load_case=load_case,
             moved=moved,
@@ -123,7 +125,7 @@ class _LoadCase:
 
     def acts_on(self, link: str) -> bool:
         """Return True if anything acts on a link."""
-        return acts(self.cut[link], self.size, self.statics.case.linkage.longest)
+        return acts(self.cut[link], self.size, self.case.linkage.longest)
 
     @property
     def idle(self) -> bool:
@@ -142,7 +144,7 @@ class _LoadCase:
 
     def links(self, decided: Mapping[str, DecidedLink]) -> dict[str, LinkResult]:
         """Return the results of links."""
-        case, load_case = self.statics.case, self.load_case
+        case, load_case = self.case, self.load_case
         return {
             link: link_result(case, link, load_case, hand, decided.get(link), self.uneven)
             for link, hand in self.hands.items()
@@ -150,7 +152,7 @@ class _LoadCase:
 
     def judged(self, decided: Mapping[str, DecidedLink], motors: Sequence[CheckOutcome]) -> LoadCaseResult:
         """Return the result, with the outcomes of ``motors`` after those of links, joints and linkage."""
-        case, load_case, moved = self.statics.case, self.load_case, self.moved
+        case, load_case, moved = self.case, self.load_case, self.moved
         reactions = moved.reactions or self.statics.reactions[load_case]
         links, pins = self.links(decided), _pins(case, reactions, self.forces)
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
@@ -174,6 +176,7 @@ class _LoadCase:
             pins=pins,
             ways_to_hold=ways_to_hold(case, self.statics.pose, self.statics.loads[load_case]),
             linkage=linkage,
+            standing=self.statics.standing[load_case],
             checks=tuple(checks),
         )
 
@@ -225,7 +228,7 @@ def check_case(
     statics = solve_case_statics(case, name)
     clock("pose and statics")
     moved = frames or {
-        load_case: examine(case, load_case, forces, statics.loads[load_case])
+        load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
     }
     clock("frames")
@@ -298,8 +301,8 @@ def _wanted(load_cases: Sequence[_LoadCase], decided: Mapping[str, DecidedLink])
     """Return the error of displacements that links must keep to for the checks of points, the least of all."""
     found: dict[str, float] = {}
     for one in load_cases:
-        if any(isinstance(check, DisplacementCheck) and check.at for check in one.statics.case.checks.values()):
-            wanted = meshes_to_refine(one.statics.case, one.load_case, one.moved, one.links(decided), one.free)
+        if any(isinstance(check, DisplacementCheck) and check.at for check in one.case.checks.values()):
+            wanted = meshes_to_refine(one.case, one.load_case, one.moved, one.links(decided), one.free)
             found |= {link: min(error, found.get(link, math.inf)) for link, error in wanted.items()}
     return found
 
@@ -348,12 +351,13 @@ def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplac
         for air in case.air_forces(load_case)
         for sentence in air.warnings
     ]
-    pose, drive, near = statics.pose, case.pinned_drive, {}
+    pose, near = statics.pose, {}
     if pose.coordinate is not None:
         named = f"the pose coordinate {pose.coordinate}"
         near[named] = pose.dead_point_distance(pose.coordinate, slides=pose.slides)
-    if drive is not None:
-        near[f"the driven link {drive.link}"] = drive.dead_point_distance(pose)
+    for reactions in statics.reactions.values():
+        if reactions.drive is not None and not reactions.drive.idle:
+            near[f"the {reactions.drive.held}"] = reactions.drive.dead_point_distance(pose)
     for what, distance in near.items():
         if distance < NEAR_DEAD_POINT:
             found.append(

@@ -26,6 +26,7 @@ from geometry.linkage.pose import Pose
 from geometry.materials.material import stress_measure
 from loads.case.case import Case
 from loads.sources.published_statics import StaticsAudit
+from loads.states.standing import Standing
 from loads.statics.statics import Reactions
 
 
@@ -247,7 +248,7 @@ class LinkageNumbers:
     def dead_point_distance(self) -> float | None:
         """Of the pose from a dead point of the driven link, 0 there; None where nothing is driven."""
         drive = self.case.pinned_drive
-        return None if drive is None else drive.dead_point_distance(self.forces.reactions.pose)
+        return None if drive is None or drive.idle else drive.dead_point_distance(self.forces.reactions.pose)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -269,6 +270,8 @@ class LoadCaseResult:
         Displacement of the point that the case names, for every way to hold the linkage.
     linkage : LinkageNumbers
         Limit-load factor, largest displacement and distance to a dead point.
+    standing : Standing
+        What holds the pose, and its springs and stops.
     checks : tuple of CheckOutcome
     """
 
@@ -279,6 +282,7 @@ class LoadCaseResult:
     pins: Mapping[str, PinStress]
     ways_to_hold: tuple[WayToHold, ...]
     linkage: LinkageNumbers
+    standing: Standing
     checks: tuple[CheckOutcome, ...]
 
     @property

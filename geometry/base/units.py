@@ -25,6 +25,8 @@ INTERNAL_UNITS = {
     "force": "N",
     "moment": "N*mm",
     "line load": "N/mm",
+    "stiffness": "N/mm",
+    "torsional stiffness": "N*mm/rad",
     "stress": "MPa",
     "mass": "tonne",
     "density": "tonne/mm^3",
@@ -46,6 +48,8 @@ EXAMPLES = {
     "force": "0.25 N",
     "moment": "130 N*mm",
     "line load": "0.9 N/m",
+    "stiffness": "0.5 N/mm",
+    "torsional stiffness": "12 N*mm/rad",
     "stress": "2.4 GPa",
     "mass": "25 g",
     "density": "1450 kg/m^3",
@@ -216,6 +220,8 @@ Angle = Annotated[float, Dimensioned("angle")]
 Force = Annotated[float, Dimensioned("force")]
 Moment = Annotated[float, Dimensioned("moment")]
 LineLoad = Annotated[float, Dimensioned("line load")]
+Stiffness = Annotated[float, Dimensioned("stiffness")]
+TorsionalStiffness = Annotated[float, Dimensioned("torsional stiffness")]
 Stress = Annotated[float, Dimensioned("stress")]
 Mass = Annotated[float, Dimensioned("mass")]
 Density = Annotated[float, Dimensioned("density")]

@@ -15,6 +15,8 @@ USUAL: dict[str, dict[str, tuple[float, float]]] = {
     "force": {"N": (1.0, 1e3), "kN": (1e3, 1e6), "mN": (1e-3, 1.0)},
     "moment": {"N*mm": (1.0, 1.0), "N*m": (1e3, 1e3), "kN*m": (1e6, 1e6)},
     "line load": {"N/mm": (1.0, 1e6), "N/m": (1e-3, 1e3)},
+    "stiffness": {"N/mm": (1.0, 1e6), "N/m": (1e-3, 1e3)},
+    "torsional stiffness": {"N*mm/rad": (1.0, 1.0), "N*m/rad": (1e3, 1e3)},
     "stress": {
         "MPa": (1.0, 1e9),
         "GPa": (1e3, 1e12),
@@ -52,6 +54,8 @@ ROOTS: dict[str, dict[str, int]] = {
     "force": {"gram": 1, "meter": 1, "second": -2},
     "moment": {"gram": 1, "meter": 2, "second": -2},
     "line load": {"gram": 1, "second": -2},
+    "stiffness": {"gram": 1, "second": -2},
+    "torsional stiffness": {"gram": 1, "meter": 2, "radian": -1, "second": -2},
     "stress": {"gram": 1, "meter": -1, "second": -2},
     "mass": {"gram": 1},
     "density": {"gram": 1, "meter": -3},

@@ -12,6 +12,7 @@ from loads.case.core import CoreCase
 from loads.case.layers import check_layers
 from loads.case.load_rules import check_loads, check_masses, check_place
 from loads.case.places import check_moving, check_point
+from loads.case.spring_rules import check_equilibrium, check_springs, check_stops
 from loads.case.toleranced import toleranced
 from loads.records.check_spec import (
     BearingCheck,
@@ -68,6 +69,9 @@ def check_rules(case: CoreCase) -> None:
             raise CaseError(
                 f"links.{name}.part: it is missing, but slots, arms and eyes are shapes of a part; name one"
             )
+    check_springs(case)
+    check_stops(case)
+    check_equilibrium(case)
     for i, mass in enumerate(case.carried):
         check_place(case, f"carried.{i}", mass)
     for name, load_case in case.load_cases.items():
@@ -98,11 +102,12 @@ def _check_drive(case: CoreCase) -> None:
             f"drive.joint: joint '{case.drive.joint}' is bonded, so it bears the moment that a drive would; drive "
             "another joint, or leave out one of the two"
         )
-    drives = 1 if case.drive else 0
+    let_go = case.pose.equilibrium
+    drives = 1 if case.drive or let_go else 0
     held = sum(joint.bonded and not joint.fixes_angle for joint in case.linkage.joints.values())
     if mobility <= drives + held and held:
         return  # statics tells whether these bonds hold the linkage
-    if mobility > 0 and case.drive is None:
+    if mobility > 0 and case.drive is None and not let_go:
         raise CaseError(
             f"drive: the linkage has mobility {mobility}, but nothing drives it; add a [drive] with its link and joint"
         )
@@ -165,7 +170,7 @@ def _check_pose(case: CoreCase) -> None:
         check_moving(case.linkage, "pose.near", name)
     if linkage.mobility == 1 and pose.coordinate is None:
         raise CaseError("pose.coordinate: the linkage can move, but no link fixes its pose; name one and its angle")
-    if case.drive is None and linkage.mobility == 0 and pose.coordinate is not None:
+    if case.drive is None and not pose.equilibrium and linkage.mobility == 0 and pose.coordinate is not None:
         raise CaseError(
             f"pose.coordinate: it is '{pose.coordinate}', but the linkage cannot move (mobility 0); remove it"
         )

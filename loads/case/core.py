@@ -32,6 +32,7 @@ from loads.records.conditions import Conditions, under
 from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
 from loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
+from loads.records.springs import Spring, Stop, Tendon
 from loads.records.tolerances import TolerancesTable
 from loads.statics.statics import Drive
 
@@ -51,6 +52,12 @@ class CoreCase(Revisable):
     pose: PoseSpec = PoseSpec()
     drive: DriveSpec | None = None
     motion: MotionSpec | None = None
+    springs: Annotated[dict[Name, Spring], Field(max_length=100)] = {}
+    """Springs between points of two links, or about a revolute joint; they act in every load case."""
+    tendons: Annotated[dict[Name, Tendon], Field(max_length=100)] = {}
+    """Cords through points of links, which only pull; they act in every load case."""
+    stops: Annotated[dict[Name, Stop], Field(max_length=100)] = {}
+    """Stops in joints: an angle or a travel beyond which the two links cannot go."""
     materials: dict[Name, Material] = {}
     """Material cards of the case's own; the library's are there by name without being listed."""
     parts: dict[Name, Part] = {}
@@ -99,7 +106,8 @@ class CoreCase(Revisable):
     @cached_property
     def pinned_drive(self) -> Drive | None:
         """The drive as statics needs it."""
-        return Drive(link=self.drive.link, joint=self.drive.joint) if self.drive else None
+        drive = self.drive
+        return Drive(link=drive.link, joint=drive.joint, stop=drive.stop, idle=drive.idle) if drive else None
 
     @property
     def torque_transfer(self) -> Literal["eye-faces", "bore-shear"]:
@@ -408,8 +416,9 @@ class CoreCase(Revisable):
             air_forces(air, f"load_cases.{load_case}.air.{i}") for i, air in enumerate(self.load_cases[load_case].air)
         )
 
-    def solve_pose(self) -> Pose:
-        """Assemble the linkage in the stated pose."""
+    @cached_property
+    def stated_pose(self) -> Pose:
+        """The linkage assembled in the stated pose."""
         return solve_pose(
             self.linkage,
             coordinate=self.pose.coordinate,
@@ -417,6 +426,20 @@ class CoreCase(Revisable):
             near=self.pose.near,
             travel=self.pose.travel,
         )
+
+    def solve_pose(self) -> Pose:
+        """Return the linkage assembled in the stated pose.
+
+        Returns
+        -------
+        Pose
+
+        Raises
+        ------
+        CaseError
+            Where it cannot be assembled.
+        """
+        return self.stated_pose
 
 
 def _pin(case: CoreCase, link: str, name: str, diameter: float) -> Pin:

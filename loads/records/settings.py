@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 
 from geometry.base.model import CaseModel, Name, Text
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Force, Length
@@ -21,6 +21,9 @@ class PoseSpec(CaseModel):
     """Travel of that slider or slot, from the point of its first link to that of its second, along its direction."""
     near: dict[Name, Angle] = {}
     """Rough directions of the other links: they choose the assembly branch."""
+    equilibrium: bool = False
+    """True: the linkage is let go at the stated angle or travel, and its pose is where springs, tendons, weights and
+    loads balance, or where a stop holds it. A drive then drives the motion alone."""
 
 
 class DriveSpec(CaseModel):
@@ -34,6 +37,36 @@ class DriveSpec(CaseModel):
     transfer: Literal["eye-faces", "bore-shear"] = "eye-faces"
     """How the torque enters the driven part: as shear on the eye's flat faces, or on its bore. Where the part
     has no flat ring about that hole it enters through the bore."""
+    _stop: str = PrivateAttr("")
+    _idle: bool = PrivateAttr(False)
+
+    @property
+    def stop(self) -> str:
+        """The stop that bears in place of the drive; "" for what a case file states."""
+        return self._stop
+
+    @property
+    def idle(self) -> bool:
+        """True where the pose balances by itself, so that this holds it without any torque."""
+        return self._idle
+
+    def in_place(self, *, link: str, joint: str, stop: str = "") -> "DriveSpec":
+        """Return what holds the linkage in place of this drive.
+
+        Parameters
+        ----------
+        link, joint : str
+            As for the drive.
+        stop : str, optional
+            The stop that bears; without one nothing does, and the pose balances by itself.
+
+        Returns
+        -------
+        DriveSpec
+        """
+        found = self.model_copy(update={"link": link, "joint": joint})
+        found._stop, found._idle = stop, not stop
+        return found
 
 
 class CantileverCalculation(CaseModel):

@@ -16,6 +16,7 @@ from loads.records.aero import air_loads
 from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad, at_poses, shifted
 from loads.records.carried import Carried, CarriedSpread, mass_of
 from loads.records.load_case import LoadCase, gravity, vector3
+from loads.states.springs import spring_loads
 
 Real = NDArray[np.float64]
 
@@ -90,7 +91,7 @@ def refuse_turning_bonds(place: Placement) -> None:
 
 
 def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
-    """Return all that acts on the links but the joint forces: stated loads, air, weight and inertia.
+    """Return all that acts on the links but the joint forces: stated loads, air, weight, inertia, springs and tendons.
 
     Parameters
     ----------
@@ -113,6 +114,7 @@ def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapp
         loads += inertia_loads(place, masses, pull)
         if load_case.carried:
             loads += tuple(_carried_load(place, carried, pull) for carried in case.carried)
+    loads += spring_loads(case, place)
     return tuple(at_poses(load, place.shape) for load in loads)
 
 

@@ -24,6 +24,8 @@ from loads.states.kinetostatics import (
     torque_by_virtual_work,
 )
 from loads.states.masses import laden_masses, part_masses
+from loads.states.springs import spring_loads
+from loads.states.standing import refuse_stops
 from loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
@@ -101,6 +103,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
     slides = spec.travel is not None
     motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate, slides=slides)
     refuse_turning_bonds(motion.virtual)
+    refuse_stops(case, motion)
     masses = part_masses(case) if spec.inertia or needs_masses(case) else {}
     for name, load_case in case.load_cases.items():
         if load_case.speed != 0.0 and (slides or coordinate != case.pose.coordinate):
@@ -156,7 +159,8 @@ def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMa
     load_case, place = case.load_cases[name], motion.placement
     laden = laden_masses(case, masses) if load_case.carried else masses
     weights = inertia_loads(place.at_rest, laden, gravity(load_case)) if load_case.own_weight else ()
-    return energies(place, (*stated_loads(case, load_case), *weights), laden if with_inertia(case, name) else {})
+    others = (*stated_loads(case, load_case), *spring_loads(case, place))
+    return energies(place, (*others, *weights), laden if with_inertia(case, name) else {})
 
 
 def with_inertia(case: Case, load_case: str) -> bool:

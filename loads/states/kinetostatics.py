@@ -188,7 +188,7 @@ def torque_by_virtual_work(motion: Motion, drive: Drive, loads: Sequence[Load]) 
     Norton, Design of Machinery, 5th ed., chapter 10.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        torque = -_work(loads, motion.placement, motion.virtual) / _relative_motion(motion, drive)
+        torque = -work(loads, motion.placement, motion.virtual) / _relative_motion(motion, drive)
     return np.where(_leverage(motion, drive) >= NEARLY_SINGULAR, torque, np.nan)
 
 
@@ -251,8 +251,22 @@ def _leverage(motion: Motion, drive: Drive) -> Real:
     return np.asarray(unit * np.abs(_relative_motion(motion, drive)) / np.sqrt(np.sum(squares, axis=0)))
 
 
-def _work(loads: Sequence[Load], place: Placement, moved: Placement) -> Real:
-    """Return the power (n,) of loads at the velocities of ``moved``, or their virtual work at virtual ones."""
+def work(loads: Sequence[Load], place: Placement, moved: Placement) -> Real:
+    """Return the power of loads at the velocities of ``moved``, or their virtual work at virtual ones.
+
+    Parameters
+    ----------
+    loads : sequence of Load
+    place : Placement
+        The n poses.
+    moved : Placement
+        The same with rates.
+
+    Returns
+    -------
+    array (n,)
+        [N mm/s], or [N mm] per unit of the coordinate.
+    """
     total = np.zeros(place.shape)
     for load in loads:
         if load.link != place.linkage.ground:
@@ -298,5 +312,5 @@ def energies(place: Placement, loads: Sequence[Load], masses: Mapping[str, PartM
         kinetic_rate=kinetic_rate,
         potential=potential,
         potential_rate=potential_rate,
-        applied=_work([load for load in loads if not isinstance(load, BodyForce)], place, place),
+        applied=work([load for load in loads if not isinstance(load, BodyForce)], place, place),
     )

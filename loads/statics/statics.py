@@ -41,10 +41,21 @@ class Drive:
         The driven link.
     joint : str
         Where it is driven against the other link of the joint, often the ground.
+    stop : str
+        The stop that bears in place of the drive; "" for the drive itself.
+    idle : bool
+        True where the pose balances by itself, so that nothing needs to hold it.
     """
 
     link: str
     joint: str
+    stop: str = ""
+    idle: bool = False
+
+    @property
+    def held(self) -> str:
+        """The link that it holds, for people."""
+        return f"link '{self.link}' held by stop '{self.stop}'" if self.stop else f"driven link {self.link}"
 
     def pushes(self, linkage: Linkage) -> bool:
         """Return True where the drive is a force along a guide, and no torque.
@@ -118,6 +129,12 @@ class Equilibrium:
     def placement(self) -> Placement:
         """Where the links stand."""
         raise NotImplementedError
+
+    @property
+    def driving(self) -> tuple[Any, Any]:
+        """Torque [N mm] and force [N] of the drive: none where a stop or the balance of the pose takes its place."""
+        drive = self.drive
+        return (0.0, 0.0) if drive and (drive.stop or drive.idle) else (self.drive_torque, self.drive_force)
 
     def on_link(self, link: str) -> tuple[tuple[str, Real], ...]:
         """Return every joint reaction that acts on a link; the drive torque is not among them.
@@ -334,7 +351,7 @@ def refuse_dead_point(system: System, drive: Drive | None) -> None:
     """
     smallest = float(system.singular_values[-1])
     if smallest < NEARLY_SINGULAR:
-        who = f"driven link '{drive.link}'" if drive else "structure"
+        who = "structure" if drive is None else drive.held if drive.stop else f"driven link '{drive.link}'"
         raise CaseError(
             f"pose: it is at, or next to, a dead point of the {who}: the smallest singular value of "
             f"the scaled equilibrium matrix is {smallest:.2g}, below {NEARLY_SINGULAR:g}, so joint forces would grow "

@@ -147,9 +147,10 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
 def _place(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
     """Where the problem is, as a user would write it.
 
-    Leaves out what pydantic adds: the kind behind the name of a part, check or carried mass, and the mark of a key.
+    Leaves out what pydantic adds: the kind behind the name of a part, check, carried mass or spring,
+    and the mark of a key.
     """
-    if location and location[0] in ("parts", "checks", "carried"):
+    if location and location[0] in ("parts", "checks", "carried", "springs"):
         location = (*location[:2], *location[3:])
     return tuple(part for part in location if part != "[key]")
 

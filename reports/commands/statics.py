@@ -10,6 +10,7 @@ from geometry.base.version import result_stamp
 from loads.statics.statics import Reactions
 from loads.statics.system import System
 from reports.tables.frames import AXES, reaction_records, shown_components
+from reports.tables.springs import holding_sentence, spring_sentences, standing_record
 
 
 def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
@@ -49,7 +50,11 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
                 f"  {joint.joint:<{width}} {joint.by} pushes {joint.on} with ({force}) N, {size} N"
                 f"{turned}{' N·mm' if turned else ''}"
             )
-        if reactions.drive:
+        standing = statics.standing[title]
+        held = holding_sentence(standing)
+        for line in (*filter(None, [held]), *spring_sentences(standing)):
+            print(f"  {line}")
+        if reactions.drive and not held:
             drive = reactions.drive
             if drive.pushes(reactions.pose.linkage):
                 print(f"  drive force on {drive.link}: {reactions.drive_force:.5g} N (along {drive.joint} +)")
@@ -106,8 +111,9 @@ def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
         "load_cases": {
             title: {
                 "reactions": reaction_records(reactions),
-                "drive_torque": reactions.drive_torque,
-                "drive_force": reactions.drive_force,
+                "drive_torque": reactions.driving[0],
+                "drive_force": reactions.driving[1],
+                **standing_record(statics.standing[title]),
                 "residual": reactions.residual,
                 "condition": reactions.system.condition,
                 **({"system": _system(reactions.system)} if matrix else {}),

@@ -1,0 +1,129 @@
+"""Springs, tendons and stops of a load case, and what holds its pose: for console, page and ``result.json``."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from loads.records.springs import TurnSpring
+from loads.states.springs import SpringState
+from loads.states.standing import Standing
+from reports.words.wording import number, turning
+
+
+def holding_sentence(standing: Standing) -> str:
+    """Say what holds the pose of a load case where the drive does not.
+
+    Parameters
+    ----------
+    standing : Standing
+
+    Returns
+    -------
+    str
+        A sentence without its full stop; "" where the drive holds it, or nothing needs to.
+    """
+    pose, case = standing.pose, standing.case
+    value = f"{number(pose.held)} mm" if pose.slides else f"{number(math.degrees(pose.held))} deg"
+    if standing.stop:
+        joint = case.stops[standing.stop].joint
+        first, second = case.joints[joint].links
+        slides = case.stops[standing.stop].limit.slides
+        how = f"N on {second} along joint {joint}" if slides else f"N·mm {turning(standing.contact)} on {second}"
+        size = number(standing.contact if slides else abs(standing.contact))
+        return f"Stop '{standing.stop}' is reached and bears {size} {how}, the opposite on {first}; no drive is needed"
+    if standing.stiffness is not None:
+        unit = "N/mm" if pose.slides else "N·mm/rad"
+        return (
+            f"The pose balances by itself at {pose.coordinate} = {value}, and is stable: its stiffness is "
+            f"{number(standing.stiffness)} {unit}"
+        )
+    return ""
+
+
+def spring_sentences(standing: Standing) -> Iterator[str]:
+    """Yield length and force of every spring and tendon, and how far every joint is from its stop.
+
+    Parameters
+    ----------
+    standing : Standing
+
+    Yields
+    ------
+    str
+        Each without its full stop.
+    """
+    for state in standing.springs:
+        yield f"{state.kind.capitalize()} {state.name}: {_size(standing, state)}, {_effort(standing, state)}"
+    for name, value in standing.stops.items():
+        stop = standing.case.stops[name]
+        limit = stop.limit.value if stop.limit.slides else math.degrees(stop.limit.value)
+        unit = "mm" if stop.limit.slides else "deg"
+        shown = value if stop.limit.slides else math.degrees(value)
+        yield (
+            f"Stop {name}: joint {stop.joint} at {number(shown)} {unit}, at {'least' if stop.sense > 0.0 else 'most'} "
+            f"{number(limit)} {unit}"
+        )
+
+
+def _size(standing: Standing, state: SpringState) -> str:
+    if not state.turns:
+        return f"{number(float(state.size))} mm long"
+    spring = standing.case.springs[state.name]
+    assert isinstance(spring, TurnSpring)
+    return f"joint {spring.joint} at {number(math.degrees(float(state.size)))} deg"
+
+
+def _effort(standing: Standing, state: SpringState) -> str:
+    effort = float(state.effort)
+    if state.turns:
+        spring = standing.case.springs[state.name]
+        assert isinstance(spring, TurnSpring)
+        second = standing.case.joints[spring.joint].links[1]
+        return f"{number(abs(effort))} N·mm {turning(effort)} on {second}" if effort else "not wound"
+    if effort == 0.0:
+        return "slack" if state.kind == "tendon" else "neither pulls nor pushes"
+    return f"{'pulls' if effort > 0.0 else 'pushes'} with {number(abs(effort))} N"
+
+
+def standing_record(standing: Standing) -> dict[str, Any]:
+    """Return springs, tendons and stops, and what holds the pose, as plain data.
+
+    Parameters
+    ----------
+    standing : Standing
+
+    Returns
+    -------
+    dict
+        Empty where the case states none of them and its drive holds the pose.
+    """
+    if not (standing.springs or standing.stops or standing.stiffness is not None):
+        return {}
+    return {
+        "standing": {
+            "held_by": "stop" if standing.stop else "balance" if standing.stiffness is not None else "drive",
+            "stop": standing.stop or None,
+            "contact": standing.contact if standing.stop else None,
+            "stiffness": standing.stiffness,
+            "springs": [
+                {
+                    "name": state.name,
+                    "kind": state.kind,
+                    "length": None if state.turns else float(state.size),
+                    "angle": math.degrees(float(state.size)) if state.turns else None,
+                    "force": None if state.turns else float(state.effort),
+                    "moment": float(state.effort) if state.turns else None,
+                }
+                for state in standing.springs
+            ],
+            "stops": [
+                {
+                    "name": name,
+                    "joint": standing.case.stops[name].joint,
+                    "value": value if standing.case.stops[name].limit.slides else math.degrees(value),
+                    "reached": name == standing.stop,
+                }
+                for name, value in standing.stops.items()
+            ],
+        }
+    }
