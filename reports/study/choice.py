@@ -14,7 +14,7 @@ from reports.study.many import MOST_LINES, categories, parallel, pareto
 from reports.study.maps import verdict_map
 from reports.study.regression import regression
 from reports.study.spread import histogram, tornado
-from reports.study.style import png
+from reports.study.style import MOST_MARKS, marked, png
 
 MOST_PANELS = 6
 """Combinations of words that have a panel each; with more of them the study is drawn in parallel coordinates."""
@@ -133,6 +133,8 @@ def _over(
     each = f" One panel for each value of {' and '.join(one.path for one in words)}." if words else ""
     verdicts = study.margin is not None
     lost = " Points that were refused or crashed have a mark at the edge." if _lost(study) else ""
+    each += _marked(study) if quantities else ""
+    panels = [(name, marked(here, MOST_MARKS // len(panels))) for name, here in panels]
     if len(quantities) == 1:
         band = " The shaded band may hold the value; bands that end far away are cut off." if _wide(response) else ""
         colours = " Marks and colours are verdicts." if verdicts else ""
@@ -200,8 +202,14 @@ def _pareto(study: StudyColumns) -> Iterator[_Drawn]:
     )
     if not (study.outcome[known] != Verdict.FAIL.value).any():
         caption = "Every point fails, so that there is no front."
+    caption += _marked(study).replace("drawn,", "drawn besides the front,")
     drawn = pareto(study.mass, over, study.outcome, study.position)
     yield "pareto", f"Mass and {over.label.partition(' (')[0]}", caption, drawn
+
+
+def _marked(study: StudyColumns) -> str:
+    count = len(study.outcome)
+    return f" At most {MOST_MARKS} of the {count} points are drawn, chosen at random." if count > MOST_MARKS else ""
 
 
 def _title(response: Response) -> str:

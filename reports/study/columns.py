@@ -1,5 +1,6 @@
 """A study as columns: what varies, and what became of every point, as arrays that pictures are drawn from."""
 
+from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,13 +16,14 @@ from fea.study.store import Store
 from geometry.base.errors import CaseError
 from loads.plans.axis import number_of
 from loads.sources.quantity import unit_of
-from reports.tables.study import Row, study_rows, title
+from reports.tables.study import Chosen, Row, study_rows, title
 
 Real = NDArray[np.float64]
 MOST_NUMBERS = 3
 """Numbers that are drawn of a study without checks, unless some are asked for."""
 MOST_ROWS = 40
-"""Points in the table of the page."""
+"""Points in the table of the page; of more, ``MOST_OF_A_KIND`` best, undecided and worst ones each."""
+MOST_OF_A_KIND = 13
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,7 +105,7 @@ class StudyColumns:
     sentences : mapping
         Why points were refused or crashed -> how many.
     rows : tuple of Row
-        The first points.
+        Of the table: all points, or the best, the first undecided and the worst; the first where nothing is checked.
     extremes : mapping of str to Row
         ``best`` and ``worst`` by verdict and margin; empty where nothing is checked.
     """
@@ -133,19 +135,18 @@ class _Columns:
     """Gathers numbers of one kind, point by point."""
 
     def __init__(self) -> None:
-        self.found: dict[str, list[tuple[int, float, float, float]]] = {}
+        self.found: dict[str, array[float]] = {}
 
     def add(self, name: str, point: int, ends: tuple[float, float, float]) -> None:
         """Keep value, low and high of a point."""
-        self.found.setdefault(name, []).append((point, *ends))
+        self.found.setdefault(name, array("d")).extend((point, *ends))
 
     def response(self, name: str, count: int, limit: float = np.nan) -> Response | None:
         """Return the column of a name; None where no point has it."""
         if name not in self.found:
             return None
-        ends = np.full((3, count), np.nan)
-        for point, *values in self.found[name]:
-            ends[:, point] = values
+        ends, known = np.full((3, count), np.nan), np.frombuffer(self.found[name]).reshape(-1, 4)
+        ends[:, known[:, 0].astype(np.intp)] = known[:, 1:].T
         return Response(label=name.removesuffix(" [1]"), value=ends[0], low=ends[1], high=ends[2], limit=limit)
 
 
@@ -195,7 +196,7 @@ def read_study(store: Store, wanted: Sequence[str] = ()) -> StudyColumns:
         mass=None if mass is None else mass.value,
         limiting=dict(gathered.limiting.most_common()),
         sentences=dict(gathered.sentences.most_common()),
-        rows=tuple(gathered.rows),
+        rows=gathered.table,
         extremes=gathered.extremes,
     )
 
@@ -207,19 +208,34 @@ class _Gathered:
         self.outcomes: list[str] = []
         self.positions: list[int] = []
         self.stated: list[Mapping[str, object]] = []
+        self.chosen = Chosen(MOST_OF_A_KIND)
         self.rows: list[Row] = []
         self.limits: set[float] = set()
         self.limiting: Counter[str] = Counter()
         self.sentences: Counter[tuple[str, str]] = Counter()
-        self.extremes: dict[str, Row] = {}
 
     @property
     def count(self) -> int:
         """How many points there are so far."""
         return len(self.outcomes)
 
+    @property
+    def extremes(self) -> dict[str, Row]:
+        """The best and the worst point."""
+        ends = {"best": self.chosen.best, "worst": self.chosen.worst}
+        return {which: found[0] for which, found in ends.items() if found}
+
+    @property
+    def table(self) -> tuple[Row, ...]:
+        """The points of the page's table."""
+        if self.count <= MOST_ROWS or not self.chosen.best:
+            return tuple(self.rows)
+        kinds = (self.chosen.best, self.chosen.open, self.chosen.worst[::-1])
+        return tuple({row.position: row for rows in kinds for row in rows}.values())
+
     def add(self, row: Row) -> None:
         """Keep a point."""
+        self.chosen.add(row)
         self.outcomes.append(row.outcome)
         self.positions.append(row.position)
         self.stated.append(row.parameters)
@@ -231,11 +247,6 @@ class _Gathered:
             return
         self.limiting[f"{found.quantity} of {found.subject}"] += 1
         self.limits |= {one.limit for one in row.answer.numbers if one.quantity == Quantity.SAFETY_FACTOR.value}
-        best, worst = self.extremes.setdefault("best", row), self.extremes.setdefault("worst", row)
-        if row.merit > best.merit:
-            self.extremes["best"] = row
-        if row.merit < worst.merit:
-            self.extremes["worst"] = row
 
 
 def _add(row: Row, point: int, numbers: _Columns, ours: _Columns) -> None:

@@ -12,10 +12,12 @@ from reports.study.columns import Parameter, Response
 from reports.study.curves import reach
 from reports.study.style import (
     LOOKS,
+    MOST_MARKS,
     Words,
     legend,
     limit_handle,
     mark_size,
+    marked,
     present,
     scale,
     scatter,
@@ -239,12 +241,15 @@ def pareto(mass: Real, response: Response, outcome: Words, position: NDArray[np.
     axes.set_ylim(*ends)
     scale(axes.yaxis, decades=decades)
     few = int(known.sum()) <= 100
-    for x, low, high, name in zip(mass[known], response.low[known], response.high[known], outcome[known], strict=True):
-        if few and low < high:
+    for point in np.flatnonzero(known & few):
+        x, low, high, name = mass[point], response.low[point], response.high[point], outcome[point]
+        if low < high:
             axes.plot([x, x], np.clip([low, high], *ends), color=LOOKS[str(name)].colour, linewidth=2.0, alpha=0.25,
                       solid_capstyle="butt", zorder=2)  # fmt: skip
-    scatter(axes, mass[known], response.value[known], outcome[known], size=mark_size(int(known.sum())))
     best = front(mass, response.low, known & (outcome != "fail"))
+    drawn = marked(known, MOST_MARKS)
+    drawn[best] = True
+    scatter(axes, mass[drawn], response.value[drawn], outcome[drawn], size=mark_size(int(drawn.sum())))
     others: list[tuple[Any, str]] = []
     if len(best):
         low = np.clip(response.low[best], *ends)

@@ -18,6 +18,8 @@ from reports.words.wording import number
 
 Real = NDArray[np.float64]
 Words = NDArray[np.str_]
+MOST_MARKS = 5000
+"""Points that have a mark in a picture; more would cover each other."""
 _Given = ParamSpec("_Given")
 
 
@@ -136,6 +138,29 @@ def scatter(axes: Any, x: Real, y: Real, outcome: Words, *, size: float = 5.0, *
             markeredgecolor=look.colour if look.hollow else "white", markeredgewidth=1.1 if look.hollow else 0.4,
             markerfacecolor="white" if look.hollow else look.colour, zorder=4, label=name, **more,
         )  # fmt: skip
+
+
+def marked(here: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
+    """Return which points have a mark: all of few, else so many, drawn at random with a fixed seed.
+
+    Every other point, or each tenth, would follow the lines of a grid.
+
+    Parameters
+    ----------
+    here : ndarray of bool, shape (n,)
+        Which points there are.
+    most : int
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    points = np.flatnonzero(here)
+    if len(points) <= most:
+        return here
+    found = np.zeros_like(here)
+    found[np.random.default_rng(0).choice(points, most, replace=False)] = True
+    return found
 
 
 def mark_size(count: int) -> float:

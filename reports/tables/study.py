@@ -1,7 +1,9 @@
 """The points of a study as tables: for the terminal, for CSV and as plain data."""
 
+from bisect import insort
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from fea.common.band import Band
@@ -36,7 +38,7 @@ class Row:
     answer: VariantResult
     attempts: int
 
-    @property
+    @cached_property
     def nearest(self) -> VariantNumber | None:
         """The check that is nearest to its limit, or farthest beyond."""
         return nearest(self.answer)
@@ -164,37 +166,91 @@ def print_study(store: Store, console: "Console", most: int) -> None:
     most : int
         Rows of the table.
     """
-    rows, facts = list(study_rows(store)), store.facts()
-    told = ", ".join(f"{count} {name}" for name, count in sorted(store.counts().items()))
+    facts, chosen, shown, count, weighed = store.facts(), Chosen(), list[Row](), 0, False
+    paths: dict[str, None] = {}
+    for row in study_rows(store):
+        count += 1
+        chosen.add(row)
+        weighed = weighed or row.mass is not None
+        paths |= dict.fromkeys(row.parameters)
+        if len(shown) < most:
+            shown.append(row)
+    told = ", ".join(f"{number} {name}" for name, number in sorted(store.counts().items()))
     what, total = f"{facts['plan']['case']} ({facts['plan']['analysis']})", facts["points"]
-    say(console, f"Study of {what}: {len(rows)} of {total} points; {told or 'none yet'}.")
-    judged = [row for row in rows if row.answer.verdict is not None and row.nearest is not None]
-    if judged:
-        _extremes(judged, console)
-    undecided = [row for row in judged if row.answer.verdict is Verdict.UNDECIDED]
-    if undecided:
-        say(console, f"Undecided: {_numbers(undecided)}.")
-    paths = list(dict.fromkeys(path for row in rows for path in row.parameters))
+    say(console, f"Study of {what}: {count} of {total} points; {told or 'none yet'}.")
+    for which, found in (("Best", chosen.best), ("Worst", chosen.worst)):
+        for row in found[:1]:
+            stated = ", ".join(f"{path} = {value}" for path, value in row.parameters.items())
+            say(console, f"{which}: point {row.position} ({stated}): {row.outcome}, {nearest_text(row)}.")
+    if chosen.undecided:
+        say(console, f"Undecided: {_numbers(chosen.undecided)}.")
     heads = [("point", True), *((path, False) for path in paths), ("verdict", False), ("nearest to its limit", False)]
-    cells = [_cells(row, paths) for row in rows[:most]]
-    if any(row.mass is not None for row in rows):
+    cells = [_cells(row, list(paths)) for row in shown]
+    if weighed:
         heads.append(("mass\n[g]", True))
-        cells = [[*line, "" if r.mass is None else number(r.mass, 4)] for line, r in zip(cells, rows, strict=False)]
+        cells = [[*line, "" if r.mass is None else number(r.mass, 4)] for line, r in zip(cells, shown, strict=True)]
     say_table(console, heads, cells)
-    if len(rows) > most:
-        say(console, f"{len(rows) - most} more points: --most {len(rows)}, or all numbers with --csv FILE.")
+    if count > most:
+        say(console, f"{count - most} more points: --most {count}, or all numbers with --csv FILE.")
 
 
-def _extremes(judged: Sequence[Row], console: "Console") -> None:
-    best, worst = max(judged, key=lambda row: row.merit), min(judged, key=lambda row: row.merit)
-    for which, row in (("Best", best), ("Worst", worst)):
-        stated = ", ".join(f"{path} = {value}" for path, value in row.parameters.items())
-        say(console, f"{which}: point {row.position} ({stated}): {row.outcome}, {nearest_text(row)}.")
+class Chosen:
+    """The best and the worst of the points that have a verdict and a margin, and which of them are undecided.
+
+    Parameters
+    ----------
+    most : int
+        Points of each kind that are kept.
+
+    Attributes
+    ----------
+    undecided : list of int
+        Positions of all.
+    open : list of Row
+        The first undecided.
+    """
+
+    def __init__(self, most: int = 1) -> None:
+        self._most = most
+        self._best: list[tuple[int, float, int, Row]] = []
+        self._worst: list[tuple[int, float, int, Row]] = []
+        self.undecided: list[int] = []
+        self.open: list[Row] = []
+
+    @property
+    def best(self) -> list[Row]:
+        """The best points, the best first; of equal ones, the first."""
+        return [row for *_, row in self._best]
+
+    @property
+    def worst(self) -> list[Row]:
+        """The worst points, the worst first; of equal ones, the first."""
+        return [row for *_, row in self._worst]
+
+    def add(self, row: Row) -> None:
+        """Take a point into account.
+
+        Parameters
+        ----------
+        row : Row
+        """
+        if row.answer.verdict is None or row.nearest is None:
+            return
+        verdict, margin = row.merit
+        for kept, sign in ((self._best, -1), (self._worst, 1)):
+            place = sign * verdict, sign * margin, row.position
+            if len(kept) < self._most or place < kept[-1][:3]:
+                insort(kept, (*place, row), key=lambda one: one[:3])
+                del kept[self._most :]
+        if row.answer.verdict is Verdict.UNDECIDED:
+            self.undecided.append(row.position)
+            if len(self.open) < self._most:
+                self.open.append(row)
 
 
-def _numbers(rows: Sequence[Row]) -> str:
-    shown = ", ".join(str(row.position) for row in rows[:20])
-    return f"points {shown}" + (f" and {len(rows) - 20} more" if len(rows) > 20 else "")
+def _numbers(positions: Sequence[int]) -> str:
+    shown = ", ".join(map(str, positions[:20]))
+    return f"points {shown}" + (f" and {len(positions) - 20} more" if len(positions) > 20 else "")
 
 
 def _cells(row: Row, paths: Sequence[str]) -> list[str]:

@@ -1,5 +1,6 @@
 """A study: what is kept when, how often a point is tried, and who may write."""
 
+import hashlib
 import math
 import sqlite3
 from concurrent.futures import Future
@@ -10,7 +11,7 @@ import pytest
 
 from fea.common.verdict import Verdict
 from fea.study.engine import CrashError, Engine, local_engine
-from fea.study.evaluate import Task
+from fea.study.evaluate import Task, _folder, evaluate
 from fea.study.numbers import VariantNumber, VariantResult
 from fea.study.store import ATTEMPTS, NAME, VERSION, Store
 from fea.study.study import Study
@@ -203,6 +204,17 @@ def test_a_key_depends_on_all_that_the_answer_depends_on():
     others += [Task(tables=task.tables, **{name: "x"}) for name in ("analysis", "fidelity", "accuracy")]
     others.append(Task(tables=task.tables, weighs=True))
     assert len({task.key(), *(other.key() for other in others)}) == 6
+
+
+def test_a_part_whose_content_changed_on_its_way_is_not_computed():
+    """The name of a part's file is the digest of its content; a name that leads elsewhere is none."""
+    content = b"ISO-10303-21;"
+    digest = hashlib.sha256(content).hexdigest()
+    good = _folder(((f"{digest}.step", content),))
+    assert (Path(good) / f"{digest}.step").read_bytes() == content
+    for name, found in ((f"{digest}.step", content + b" "), (f"{digest}.step/../../part.step", content)):
+        answer = evaluate(Task(tables={}), {name: found})
+        assert (answer.state, "changed on its way" in answer.sentence) == ("crashed", True)
 
 
 def test_workers_compute_what_a_check_computes(tmp_path):

@@ -25,6 +25,7 @@ from reports.study.page import write_study
 from reports.study.regression import regression
 from reports.study.spread import histogram, tornado
 from reports.study.style import LOOKS
+from reports.tables.study import Chosen, Row
 
 CSS = Path(__file__).resolve().parents[3] / "reports" / "templates" / "report.css"
 
@@ -291,6 +292,46 @@ def test_the_page_stands_alone_and_leaves_the_study_as_it_is(tmp_path):
     assert names == {"map", "margins", "pareto"}
     assert text.count("data:image/png;base64,") == len(names)
     assert len(text) < 400_000
+
+
+def test_the_page_of_many_points_is_bounded_and_says_how(tmp_path, monkeypatch):
+    """The table holds the ends and the undecided; a map some marks of every panel, the front all of its own."""
+    factors = [1.0 + 0.01 * ((37 * i) % 200) for i in range(200)]  # 1 to 2.99, each once, in no order
+    points = [({"a.x": f"{i % 20} mm", "a.y": f"{i // 20} mm"}, answer(f, mass=f)) for i, f in enumerate(factors)]
+    monkeypatch.setattr("reports.study.choice.MOST_MARKS", 50)
+    monkeypatch.setattr("reports.study.many.MOST_MARKS", 50)
+    study = columns_of(tmp_path / "s", points)
+    assert study.rows[0].position == factors.index(2.99)
+    assert study.rows[-1].position == factors.index(1.0)
+    undecided = [i for i, f in enumerate(factors) if 0.9 * f < 2.0 <= 1.1 * f]
+    shown = [row.position for row in study.rows if row.answer.verdict is Verdict.UNDECIDED]
+    assert shown == undecided[: len(shown)]
+    assert len(study.rows) == 3 * len(shown) <= 40
+    drawn = {name: (caption, figure) for name, _, caption, figure in chosen(study)}
+    for name, extra in (("map", 0), ("pareto", 120)):
+        caption, figure = drawn[name]
+        assert "of the 200 points" in caption
+        count = sum(len(line.get_xdata()) for line in figure.axes[0].lines if line.get_label() in LOOKS)
+        assert 50 <= count <= 50 + extra
+    page = write_study(tmp_path / "s", tmp_path / "out").read_text(encoding="utf-8")
+    assert "the first undecided ones, and the worst" in page
+    few = columns_of(tmp_path / "few", points[:40])
+    assert [row.position for row in few.rows] == list(range(40))
+    assert not any("points are drawn" in caption for _, _, caption, _ in chosen(few))
+
+
+def test_the_best_and_the_worst_are_those_of_all_points_sorted():
+    """Against a sort of all; of equal points, the first."""
+    rng = np.random.default_rng(3)
+    rows = [Row(position=i, parameters={}, answer=answer(round(float(f), 1)), attempts=1)
+            for i, f in enumerate(rng.uniform(1.0, 4.0, 300))]  # fmt: skip
+    found = Chosen(7)
+    for row in rows:
+        found.add(row)
+    assert [r.position for r in found.best] == [
+        r.position for r in sorted(rows, key=lambda row: (-row.merit[0], -row.merit[1]))[:7]
+    ]
+    assert [r.position for r in found.worst] == [r.position for r in sorted(rows, key=lambda row: row.merit)[:7]]
 
 
 def test_mistakes_are_one_sentence(tmp_path):
