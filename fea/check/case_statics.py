@@ -4,13 +4,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from fea.frame.joint_forces import JointForces, joint_forces
+from fea.frame.rubbing import with_friction
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.case_file import read_companion
+from loads.case.friction_rules import rubbing_joints
 from loads.records.applied import Load, PartMass
 from loads.sources.published_statics import StaticsAudit, audit
 from loads.states.actions import acting_loads, needs_masses, placed
 from loads.states.masses import part_masses
+from loads.states.rubbing import DriveWork, each_direction, pose_work
 from loads.states.standing import Standing, stand
 from loads.statics.statics import Reactions
 
@@ -34,6 +37,8 @@ class CaseStatics:
         Link -> its mass; empty where no load case needs them.
     audit : StaticsAudit or None
         Comparison with published statics, where the case names some.
+    work : mapping of str to DriveWork
+        Load case -> the drive with and without friction, at the one pose; empty where no joint has any.
     """
 
     case: Case
@@ -43,6 +48,7 @@ class CaseStatics:
     forces: Mapping[str, JointForces]
     masses: Mapping[str, PartMass]
     audit: StaticsAudit | None
+    work: Mapping[str, DriveWork]
 
     @property
     def reactions(self) -> Mapping[str, Reactions]:
@@ -68,6 +74,7 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     CaseError
         For a pose that cannot be assembled or has no single equilibrium.
     """
+    case = each_direction(case)
     masses = part_masses(case) if needs_masses(case) else {}
     standing = {load_case: stand(case, load_case, masses) for load_case in case.load_cases}
     pose = next(iter(standing.values())).pose  # one that balances by itself has one load case
@@ -76,6 +83,12 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
         for load_case, stated in case.load_cases.items()
     }
     forces = {load_case: joint_forces(standing[load_case].case, pose, loads[load_case]) for load_case in loads}
+    work = {}
+    if rubbing_joints(case):
+        for load_case, plain in forces.items():
+            own = standing[load_case].case
+            loads[load_case], forces[load_case] = with_friction(own, load_case, pose, loads[load_case], plain)
+            work[load_case] = pose_work(own, load_case, pose, plain.reactions, forces[load_case].reactions)
     found = None
     if case.published_statics is not None:
         published = case.published_statics
@@ -86,4 +99,6 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
             pose,
             next(iter(loads.values())),
         )
-    return CaseStatics(case=case, pose=pose, standing=standing, loads=loads, forces=forces, masses=masses, audit=found)
+    return CaseStatics(
+        case=case, pose=pose, standing=standing, loads=loads, forces=forces, masses=masses, audit=found, work=work
+    )

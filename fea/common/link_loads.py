@@ -30,18 +30,26 @@ class PinLoad:
     diameter : float
         Of the hole; of the pin where it stands in a slot [mm].
     wrench : array (..., 6)
-        Fx, Fy, Fz [N] and Mx, My, Mz [N mm] about ``centre``; Mz enters like a drive couple.
+        Fx, Fy, Fz [N] and Mx, My, Mz [N mm] about ``centre``; Mz enters like a drive couple but for ``friction``.
     slotted : bool
-        True for a pin in a slot along x, which carries neither a force along x nor a moment about z.
+        True for a pin in a slot along x, which carries neither a force along x nor a moment about z but by friction.
+    friction : float or array (...)
+        The part of the wrench that friction exerts: of Mz, which is shear in the bore [N mm]; in a slot, of Fx [N].
     """
 
     VECTORS: ClassVar[tuple[str, ...]] = ("centre", "wrench")
-    SCALARS: ClassVar[tuple[str, ...]] = ()
+    SCALARS: ClassVar[tuple[str, ...]] = ("friction",)
     name: str
     centre: Real
     diameter: float
     wrench: Real
     slotted: bool = False
+    friction: Any = 0.0
+
+    @property
+    def torque(self) -> Any:
+        """The moment about the pin (...) that does not enter by friction; none in a slot [N mm]."""
+        return np.zeros(np.shape(self.wrench)[:-1])[()] if self.slotted else self.wrench[..., 5] - self.friction
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

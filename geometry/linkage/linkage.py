@@ -81,6 +81,12 @@ class Joint(CaseModel):
     tight_in: Name | None = None
     """The one of the two links in which the pin is tight, where links lie in layers; in the other it may tilt. Left
     out, it may be tight in either, and the band holds both."""
+    friction: Annotated[float, Field(ge=0.0, le=2.0)] = 0.0
+    """Coefficient of friction of the pin in its bore, of a pin in its slot or of a slider on its guide, from 0 to 2. It
+    opposes the motion, so every load case is solved for both directions of it, or for the one that it states."""
+    guide_length: Annotated[Length, POSITIVE] | None = None
+    """Length over which the guide holds a slider, half of it on either side of the second link's point. With it a
+    moment on the slider presses its ends on the guide, and these rub; without it the normal force alone does."""
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0

@@ -9,6 +9,7 @@ from geometry.materials.laminate import ANISOTROPIC, is_laminate
 from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
+from loads.case.friction_rules import check_friction
 from loads.case.layers import check_layers
 from loads.case.load_rules import check_loads, check_masses, check_place
 from loads.case.places import check_moving, check_point
@@ -54,6 +55,7 @@ def check_rules(case: CoreCase) -> None:
     check_layers(case)
     _check_drive(case)
     _check_pose(case)
+    check_friction(case)
     for name, part in case.parts.items():
         _check_material(case, f"parts.{name}.material", part.material)
     for name, joint in case.joints.items():

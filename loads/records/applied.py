@@ -72,6 +72,19 @@ class PointLoad:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FrictionLoad(PointLoad):
+    """Friction at a joint, on one of its two links: a couple in a bore, a force along a slot or guide.
+
+    Attributes
+    ----------
+    joint : str
+        The joint. The other link bears the opposite.
+    """
+
+    joint: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class LineLoad:
     """A force spread along the axis of a link (y = z = 0), linear between two stations.
 

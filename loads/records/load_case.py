@@ -92,6 +92,9 @@ class LoadCase(CaseModel):
     speed: AngularSpeed = 0.0
     """Constant angular speed of the pose's coordinate, counter-clockwise positive; where stated, the
     inertia of the parts and of what they carry acts as well."""
+    direction: Literal["both", "forward", "backward"] = "both"
+    """Direction of the motion that friction at the joints opposes: forward where the coordinate of the pose (or of the
+    motion) grows, backward where it falls. With both, each is a load case of its own. A speed gives it as well."""
     carried: bool = True
     """False: without the masses that the links carry."""
     scatter: LoadScatter = (1.0, 1.0)

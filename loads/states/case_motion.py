@@ -1,7 +1,7 @@
 """The motion of a case: poses, joint forces and drive torque over its range, for every load case."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from geometry.base.errors import CaseError
 from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
+from loads.case.friction_rules import rubbing_joints
 from loads.records.applied import Load, PartMass
 from loads.records.load_case import LoadCase, gravity
 from loads.states.actions import acting_loads, inertia_loads, needs_masses, refuse_turning_bonds, stated_loads
@@ -24,6 +25,7 @@ from loads.states.kinetostatics import (
     torque_by_virtual_work,
 )
 from loads.states.masses import laden_masses, part_masses
+from loads.states.rubbing import DriveWork, Rubbing, drive_work, each_direction, lock_sentence, motion_friction
 from loads.states.springs import spring_loads
 from loads.states.standing import refuse_stops
 from loads.statics.statics import Drive
@@ -52,6 +54,10 @@ class CaseMotion:
         of the driven link.
     dead_points : tuple of float
         Values of the coordinate [rad, mm] at which the driven link turns back.
+    rubbing : mapping of str to Rubbing
+        Load case -> friction; empty where no joint has any.
+    frictionless : mapping of str to array (n,)
+        Load case -> drive torque or force without friction; empty where no joint has any.
     """
 
     case: Case
@@ -62,6 +68,29 @@ class CaseMotion:
     forces: Mapping[str, Kinetostatics]
     torque: Mapping[str, Real]
     dead_points: tuple[float, ...]
+    rubbing: Mapping[str, Rubbing]
+    frictionless: Mapping[str, Real]
+
+    def work(self, load_case: str) -> DriveWork:
+        """Return what the drive does with and without friction.
+
+        Parameters
+        ----------
+        load_case : str
+            One with friction.
+
+        Returns
+        -------
+        DriveWork
+        """
+        way, without = self.rubbing[load_case].way, self.frictionless[load_case]
+        return drive_work(self.motion, self.drive, way, without, self.torque[load_case])
+
+    @property
+    def locks(self) -> tuple[str, ...]:
+        """A sentence for every load case under which friction locks the linkage."""
+        told = (lock_sentence(name, found, self.motion) for name, found in self.rubbing.items())
+        return tuple(filter(None, told))
 
     @property
     def pushes(self) -> bool:
@@ -92,6 +121,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
     CaseError
         Where the motion meets a dead point, or the case states no motion, drive or masses.
     """
+    case = each_direction(case, moving=True)
     coordinate = case.motion_coordinate
     spec, drive = case.motion, case.pinned_drive
     assert spec is not None
@@ -112,14 +142,20 @@ def solve_case_motion(case: Case) -> CaseMotion:
                 f"motion prescribes '{coordinate}'; use one link for both, or leave this speed out"
             )
     moved = {name: _at_speed_of(motion, load_case) for name, load_case in case.load_cases.items()}
-    loads = {}
+    loads, rubbing, frictionless = {}, {}, {}
     for name, load_case in case.load_cases.items():
         place = moved[name].placement
         loads[name] = acting_loads(case, load_case, place if with_inertia(case, name) else place.at_rest, masses)
+        if rubbing_joints(case):
+            rubbing[name] = motion_friction(case, name, moved[name], drive, loads[name])
+            frictionless[name] = torque_by_virtual_work(moved[name], drive, loads[name])
+            loads[name] += rubbing[name].loads
     forces: dict[str, Kinetostatics] = {}
     if is_determinate(case.linkage):
         forces = {
-            n: solve_kinetostatics(moved[n], drive, acting, _energies(case, n, moved[n], masses))
+            n: solve_kinetostatics(
+                moved[n], drive, acting, _energies(case, n, moved[n], masses, rubbing[n].loads if rubbing else ())
+            )
             for n, acting in loads.items()
         }
     torque = {
@@ -135,6 +171,8 @@ def solve_case_motion(case: Case) -> CaseMotion:
         forces=forces,
         torque=torque,
         dead_points=dead_points(motion, drive),
+        rubbing=rubbing,
+        frictionless=frictionless,
     )
 
 
@@ -154,13 +192,13 @@ def drive_effort(solved: Kinetostatics) -> Real:
     return np.asarray(solved.drive_force if solved.drive.pushes(solved.motion.linkage) else solved.drive_torque)
 
 
-def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMass]) -> Power:
+def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMass], friction: Sequence[Load]) -> Power:
     """Return the energies of a load case, where each link's part and what it carries count as one mass."""
     load_case, place = case.load_cases[name], motion.placement
     laden = laden_masses(case, masses) if load_case.carried else masses
     weights = inertia_loads(place.at_rest, laden, gravity(load_case)) if load_case.own_weight else ()
     others = (*stated_loads(case, load_case), *spring_loads(case, place))
-    return energies(place, (*others, *weights), laden if with_inertia(case, name) else {})
+    return energies(place, (*others, *weights, *friction), laden if with_inertia(case, name) else {})
 
 
 def with_inertia(case: Case, load_case: str) -> bool:

@@ -101,7 +101,7 @@ class Kinetostatics(Equilibrium):
         """Power of the drive (n,) [N mm/s]."""
         assert self.drive is not None
         effort = self.drive_force if self.drive.pushes(self.motion.linkage) else self.drive_torque
-        return np.asarray(effort * _relative_motion(self.motion, self.drive) * self.motion.speed)
+        return np.asarray(effort * relative_motion(self.motion, self.drive) * self.motion.speed)
 
     @cached_property
     def imbalance(self) -> Real:
@@ -136,8 +136,8 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
     check_drive(linkage, drive)
     if drive is None:
         raise CaseError("drive: the linkage moves, but nothing drives it; add a [drive] with its link and joint")
-    leverage = _leverage(motion, drive)
-    solvable = np.flatnonzero(leverage >= NEARLY_SINGULAR)
+    moving = leverage(motion, drive)
+    solvable = np.flatnonzero(moving >= NEARLY_SINGULAR)
     if not solvable.size:
         raise CaseError(
             f"drive.link: '{drive.link}' does not move at joint '{drive.joint}' during this motion, "
@@ -152,14 +152,14 @@ def solve_kinetostatics(motion: Motion, drive: Drive | None, loads: Sequence[Loa
         unknowns, residual[poses] = system.solved()
         for name, found in zip(system.columns, unknowns.T, strict=True):
             value.setdefault(name, np.full(place.shape, np.nan))[poses] = found
-    still = np.where(leverage >= NEARLY_SINGULAR, 0.0, np.nan)
+    still = np.where(moving >= NEARLY_SINGULAR, 0.0, np.nan)
     return Kinetostatics(
         motion=motion,
         drive=drive,
         joints=joint_reactions(place, drive, value),
         drive_torque=value.get("T", still),
         drive_force=value.get("P", still),
-        leverage=leverage,
+        leverage=moving,
         residual=residual,
         power=power,
     )
@@ -188,8 +188,8 @@ def torque_by_virtual_work(motion: Motion, drive: Drive, loads: Sequence[Load]) 
     Norton, Design of Machinery, 5th ed., chapter 10.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        torque = -work(loads, motion.placement, motion.virtual) / _relative_motion(motion, drive)
-    return np.where(_leverage(motion, drive) >= NEARLY_SINGULAR, torque, np.nan)
+        torque = -work(loads, motion.placement, motion.virtual) / relative_motion(motion, drive)
+    return np.where(leverage(motion, drive) >= NEARLY_SINGULAR, torque, np.nan)
 
 
 def is_determinate(linkage: Linkage) -> bool:
@@ -231,24 +231,47 @@ def dead_points(motion: Motion, drive: Drive) -> tuple[float, ...]:
     return motion.turning_points(drive.link, _counterpart(motion.linkage, drive))
 
 
-def _relative_motion(motion: Motion, drive: Drive) -> Real:
-    """Return the derivative (n,) by the coordinate of the driven link's angle or travel against the other link."""
+def relative_motion(motion: Motion, drive: Drive) -> Real:
+    """Return the derivative by the coordinate of the driven link's angle or travel against the other link.
+
+    Parameters
+    ----------
+    motion : Motion
+        The n poses.
+    drive : Drive
+
+    Returns
+    -------
+    array (n,)
+        Of an angle by an angle without unit, of a travel by an angle [mm].
+    """
     if drive.pushes(motion.linkage):
         column = len(motion.linkage.moving) + motion.closure.slots.index(drive.joint)
         return drive.sign(motion.linkage) * motion.first[:, column]
     return motion.virtual.spin(drive.link) - motion.virtual.spin(_counterpart(motion.linkage, drive))
 
 
-def _leverage(motion: Motion, drive: Drive) -> Real:
-    """Return the leverage (n,) of the driven link.
+def leverage(motion: Motion, drive: Drive) -> Real:
+    """Return the leverage of the driven link: see ``Kinetostatics``.
 
     Joint forces do no virtual work, so their columns of the scaled equilibrium matrix are normal to the scaled virtual
     velocities. Hence the leverage is an upper bound of the matrix's smallest singular value.
+
+    Parameters
+    ----------
+    motion : Motion
+        The n poses.
+    drive : Drive
+
+    Returns
+    -------
+    array (n,)
+        From 0, at a dead point, to 1.
     """
     longest, moved = motion.linkage.longest, motion.virtual
     unit = 1.0 if drive.pushes(motion.linkage) else longest
     squares = [np.abs(moved.velocity(n)) ** 2 + (longest * moved.spin(n)) ** 2 for n in motion.linkage.moving]
-    return np.asarray(unit * np.abs(_relative_motion(motion, drive)) / np.sqrt(np.sum(squares, axis=0)))
+    return np.asarray(unit * np.abs(relative_motion(motion, drive)) / np.sqrt(np.sum(squares, axis=0)))
 
 
 def work(loads: Sequence[Load], place: Placement, moved: Placement) -> Real:

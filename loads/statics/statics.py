@@ -7,7 +7,7 @@ Each link is cut free. With r the arm from the origin of the link's frame to a j
 over joint forces, applied loads and the drive torque (Norton, Design of Machinery, 5th ed., chapter 11; inertia is
 among the loads, after D'Alembert). The unknown of a revolute joint is the force that the joint's first link exerts on
 its second, and where the joint is bonded a moment. A pin in a slot carries a normal force, and a slider a normal force
-and a moment. Joints have no friction.
+and a moment. Friction is among the loads (``friction``).
 """
 
 from collections.abc import Mapping, Sequence
@@ -225,19 +225,13 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
         if (column, name) != (f"M:{turns}", turns)  # the drive's torque is the moment of its joint
     ]
     if drive is not None and drive.pushes(linkage):
-        unknowns.append(("P", drive.joint, drive.sign(linkage) * _along(place, drive.joint), 0.0))
+        unknowns.append(("P", drive.joint, drive.sign(linkage) * along_joint(place, drive.joint), 0.0))
     columns = tuple(column for column, *_ in unknowns)
     turned = () if turns is None else linkage.joints[turns].links
     columns += ("T",) if turned else ()
     matrix = np.zeros((*place.shape, 3 * len(linkage.moving), len(columns)))
     for c, (_, name, force, moment) in enumerate(unknowns):
-        first, second = linkage.joints[name].links
-        at = place.position(second, linkage.joint_points(name)[1])
-        for link, sign in ((first, -1.0), (second, 1.0)):
-            if link != linkage.ground:
-                k = 3 * linkage.moving.index(link)
-                matrix[..., k, c], matrix[..., k + 1, c] = sign * force.real, sign * force.imag
-                matrix[..., k + 2, c] = sign * ((np.conj(at - place.origin(link)) * force).imag + moment)
+        matrix[..., c] = joint_column(place, name, force, moment)
     for link in turned:
         if link != linkage.ground:
             assert drive is not None
@@ -256,17 +250,61 @@ def assemble(place: Placement, drive: Drive | None, loads: Sequence[Load]) -> Sy
     )
 
 
+def joint_column(place: Placement, name: str, force: Complex, moment: Real | float) -> Real:
+    """Return what a joint's force and moment put into the equations of equilibrium.
+
+    Parameters
+    ----------
+    place : Placement
+        Where the links stand.
+    name : str
+        The joint.
+    force : complex array (...)
+        Of its first link on its second, x + iy, at the pin.
+    moment : float or array (...)
+        About the pin.
+
+    Returns
+    -------
+    array (..., 3 links)
+        In the order of ``System.rows``.
+    """
+    linkage = place.linkage
+    column = np.zeros((*place.shape, 3 * len(linkage.moving)))
+    first, second = linkage.joints[name].links
+    at = place.position(second, linkage.joint_points(name)[1])
+    for link, sign in ((first, -1.0), (second, 1.0)):
+        if link != linkage.ground:
+            k = 3 * linkage.moving.index(link)
+            column[..., k], column[..., k + 1] = sign * force.real, sign * force.imag
+            column[..., k + 2] = sign * ((np.conj(at - place.origin(link)) * force).imag + moment)
+    return column
+
+
 def _units(place: Placement, name: str) -> dict[str, tuple[Complex, float]]:
     """Return, by unknown of a joint, force (...) and moment of the first link on the second at the pin for one unit."""
-    along, joint = _along(place, name), place.linkage.joints[name]
+    along, joint = along_joint(place, name), place.linkage.joints[name]
     units = {f"R{name}x": (along, 0.0), f"R{name}y": (1j * along, 0.0)}
     if joint.type != "revolute":
         units = {f"N{name}": (1j * along, 0.0)}
     return units | ({f"M:{name}": (0.0 * along, 1.0)} if joint.bears_moment else {})
 
 
-def _along(place: Placement, name: str) -> Complex:
-    """Return the direction (...) of a joint's slot in global axes; x for a revolute joint."""
+def along_joint(place: Placement, name: str) -> Complex:
+    """Return the direction of a joint's slot or guide.
+
+    Parameters
+    ----------
+    place : Placement
+        Where the links stand.
+    name : str
+        The joint.
+
+    Returns
+    -------
+    complex array (...)
+        Unit vector in global axes; x for a revolute joint.
+    """
     joint = place.linkage.joints[name]
     if joint.type == "revolute":
         return np.ones(place.shape, dtype=complex)
@@ -377,7 +415,7 @@ def joint_reactions(place: Placement, drive: Drive | None, value: Mapping[str, A
     """
     found = {}
     for name, joint in place.linkage.joints.items():
-        wrench, along = np.zeros((*place.shape, 6)), _along(place, name)
+        wrench, along = np.zeros((*place.shape, 6)), along_joint(place, name)
         if joint.type == "revolute":
             wrench[..., 0], wrench[..., 1] = value[f"R{name}x"], value[f"R{name}y"]
         else:

@@ -1,0 +1,352 @@
+"""Friction at the joints of a case: the directions of the motion, the loads it makes, where it locks the linkage."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base.errors import CaseError
+from geometry.linkage.motion import Motion, solve_motion
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.case.friction_rules import rubbing_joints
+from loads.records.applied import Load, at_poses, chosen
+from loads.records.load_case import LoadCase
+from loads.states.kinetostatics import is_determinate, leverage, relative_motion
+from loads.statics.friction import Friction, friction_loads, solve_friction
+from loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions
+
+Real = NDArray[np.float64]
+
+WAYS = {"forward": 1.0, "backward": -1.0}
+_BLOCK = 1024
+_BEYOND = 8.0
+"""Share of the friction up to which poses beside a locked one are followed, to find where the locking begins."""
+
+
+def each_direction(case: Case, *, moving: bool = False) -> Case:
+    """Return the case with a load case for either direction of the motion, where friction makes them differ.
+
+    A load case that states its direction or a speed keeps its name; so do all where the motion has a speed.
+
+    Parameters
+    ----------
+    case : Case
+    moving : bool, optional
+        Whether the case moves as its table [motion] says.
+
+    Returns
+    -------
+    Case
+        The same where no joint has friction.
+    """
+    if not rubbing_joints(case):
+        return case
+    found: dict[str, LoadCase] = {}
+    for name, load_case in case.load_cases.items():
+        way = load_case.direction if load_case.direction != "both" else _known_way(case, load_case, moving)
+        ways = {name: way} if way else {f"{name} {way}": way for way in WAYS}
+        found |= {title: load_case.model_copy(update={"direction": way}) for title, way in ways.items()}
+    return case if found == case.load_cases else case.model_copy(update={"load_cases": found})
+
+
+def _known_way(case: Case, load_case: LoadCase, moving: bool) -> str:
+    """The direction that a speed gives; "" where none is stated."""
+    speed = load_case.speed
+    if speed == 0.0 and moving and case.motion is not None and case.motion.rate != (0.0, 0.0):
+        ends = case.motion.ends
+        speed = math.copysign(1.0, case.motion.speed) if ends is None else ends[1] - ends[0]
+    return "" if speed == 0.0 else "forward" if speed > 0.0 else "backward"
+
+
+def at_one_pose(pose: Pose) -> Motion:
+    """Return a pose as a motion of one pose, with the derivatives by its coordinate.
+
+    Parameters
+    ----------
+    pose : Pose
+        With a coordinate, and not at its dead point.
+
+    Returns
+    -------
+    Motion
+    """
+    return replace(solve_motion(pose, [pose.held]), q=pose.q[None])
+
+
+def pose_friction(case: Case, load_case: str, pose: Pose, loads: Sequence[Load]) -> tuple[Load, ...]:
+    """Return the friction at one pose as loads, where equilibrium alone gives the joint forces.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name; it states its direction.
+    pose : Pose
+        No dead point of the drive.
+    loads : sequence of Load
+        All else that acts.
+
+    Returns
+    -------
+    tuple of Load
+
+    Raises
+    ------
+    CaseError
+        Where the linkage locks itself.
+    """
+    place = at_one_pose(pose).virtual
+    way = case.load_cases[load_case].direction
+    found = solve_friction(place, case.pinned_drive, [at_poses(load, (1,)) for load in loads], WAYS[way])
+    if found.locked[0]:
+        raise CaseError(
+            f"load_cases.{load_case}: with friction the linkage locks itself in this pose, driven "
+            f"{_told(way, pose.coordinate, pose.slides)}: no drive moves it, and joint forces grow without bound; with "
+            f"less than {_percent(found.lock[0])} of joints.*.friction it would move. Change the friction, the pose or "
+            "the drive, or state the direction of the load case if it never moves that way"
+        )
+    return tuple(chosen(load, 0) for load in found.loads)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rubbing:
+    """Friction under one load case over a motion.
+
+    Attributes
+    ----------
+    way : str
+        "forward" or "backward".
+    loads : tuple of Load
+        Friction at the n poses; NaN where the linkage is locked.
+    locked : array of bool (n,)
+        Where no drive moves the linkage.
+    spans : tuple of (float, float)
+        Stretches of the coordinate [rad, mm] in which it is locked.
+    """
+
+    way: str
+    loads: tuple[Load, ...]
+    locked: NDArray[np.bool_]
+    spans: tuple[tuple[float, float], ...]
+
+
+def motion_friction(case: Case, load_case: str, motion: Motion, drive: Drive, loads: Sequence[Load]) -> Rubbing:
+    """Return the friction at the poses of a motion; none at dead points of the drive.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name; it states its direction.
+    motion : Motion
+        The n poses.
+    drive : Drive
+    loads : sequence of Load
+        All else that acts, at these poses.
+
+    Returns
+    -------
+    Rubbing
+
+    Raises
+    ------
+    CaseError
+        Where the joint forces do not follow from equilibrium.
+    """
+    if not is_determinate(case.linkage):
+        raise CaseError(
+            f"joints.{rubbing_joints(case)[0]}.friction: the linkage is redundant, so the joint forces over a motion "
+            "that friction depends on do not follow from equilibrium; leave friction out, or check single poses"
+        )
+    way = case.load_cases[load_case].direction
+    solvable = np.flatnonzero(leverage(motion, drive) >= NEARLY_SINGULAR)
+    lock = np.full(len(motion.angles), np.inf)
+    wrenches: dict[str, Real] = {name: np.zeros((len(lock), 6)) for name in rubbing_joints(case)}
+
+    def solved(poses: NDArray[np.intp], most: float) -> Friction:
+        acting = [chosen(load, poses) for load in loads]
+        return solve_friction(motion.virtual.chosen(poses), drive, acting, WAYS[way], most=most)
+
+    for poses in np.array_split(solvable, max(1, math.ceil(len(solvable) / _BLOCK))):
+        found = solved(poses, 1.0)
+        lock[poses] = found.lock
+        for name, wrench in found.wrenches.items():
+            wrenches[name][poses] = wrench
+    locked = np.isfinite(lock)
+    beside = np.flatnonzero(~locked & (np.roll(locked, 1) | np.roll(locked, -1)))
+    beside = beside[np.isin(beside, solvable)]
+    if len(beside):
+        lock[beside] = solved(beside, _BEYOND).lock
+    acting = friction_loads(motion.placement, wrenches)
+    return Rubbing(way=way, loads=acting, locked=locked, spans=_spans(motion, locked, lock))
+
+
+def _spans(motion: Motion, locked: NDArray[np.bool_], lock: Real) -> tuple[tuple[float, float], ...]:
+    """Stretches of the coordinate that are locked; their ends lie where the share that locks is one."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], locked, [False]]).astype(int)))
+    found = []
+    for first, end in zip(edges[::2], edges[1::2], strict=True):
+        low, high = float(motion.angles[first]), float(motion.angles[end - 1])
+        if first > 0:
+            low = _crossing(motion, lock, first, first - 1)
+        if end < len(locked):
+            high = _crossing(motion, lock, end - 1, end)
+        found.append((low, high))
+    return tuple(found)
+
+
+def _crossing(motion: Motion, lock: Real, inside: int, outside: int) -> float:
+    """Where the share that locks is one, linear between a locked pose and a free one beside it."""
+    a, b = float(motion.angles[inside]), float(motion.angles[outside])
+    if not math.isfinite(lock[outside]):
+        return a
+    return a + (b - a) * float((1.0 - lock[inside]) / (lock[outside] - lock[inside]))
+
+
+def lock_sentence(load_case: str, rubbing: Rubbing, motion: Motion) -> str:
+    """Tell where a load case's friction locks the linkage.
+
+    Parameters
+    ----------
+    load_case : str
+    rubbing : Rubbing
+    motion : Motion
+
+    Returns
+    -------
+    str
+        A sentence; "" where it is locked nowhere.
+    """
+    if not rubbing.spans:
+        return ""
+    spans = [tuple(map(float, motion.told(span))) for span in rubbing.spans]
+    where = " and ".join(f"from {low:.4g} to {high:.4g} {motion.unit}" for low, high in spans)
+    return (
+        f"load case {load_case}: with friction the linkage locks itself {where} of {motion.coordinate}, driven "
+        f"{_told(rubbing.way, motion.coordinate, motion.slides)}; no drive moves it there"
+    )
+
+
+def _told(way: str, coordinate: str | None, slides: bool) -> str:
+    grows = "grows" if way == "forward" else "falls"
+    return f"{way} (the {'travel' if slides else 'angle'} of {coordinate} {grows})"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.3g} %"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DriveWork:
+    """What the drive does with and without friction, at n poses.
+
+    Attributes
+    ----------
+    without, effort : array (n,)
+        Torque [N mm] or force [N] of the drive without friction, and with it.
+    power_without, power : array (n,)
+        Power per unit speed of the coordinate, in the direction of the motion [N mm].
+    angles : array (n,)
+        The coordinate [rad, mm].
+    """
+
+    without: Real
+    effort: Real
+    power_without: Real
+    power: Real
+    angles: Real
+
+    @property
+    def efficiency(self) -> Real:
+        """Work out over work in (n,): from 0 to 1; NaN where nothing is driven.
+
+        Where the drive moves the load, it is the power without friction over that with it; where the load moves the
+        drive, the inverse, and 0 where the load cannot.
+        """
+        return efficiency(self.power_without, self.power)
+
+    @property
+    def of_cycle(self) -> float:
+        """The same of the work over all poses."""
+        return float(efficiency(*(np.trapezoid(p, np.abs(self.angles - self.angles[0])) for p in self._both)))
+
+    @property
+    def _both(self) -> tuple[Real, Real]:
+        return self.power_without, self.power
+
+    @property
+    def holds_itself(self) -> NDArray[np.bool_]:
+        """True (n,) where the load would move the linkage without friction, and does not with it."""
+        rounding = 1e-12 * float(np.nanmax(np.abs(self.power_without), initial=0.0))
+        return np.asarray((self.power_without < -rounding) & (self.power >= 0.0))
+
+
+def efficiency(without: Real | float, power: Real | float) -> Real:
+    """Return work out over work in from the drive's work without friction and with it.
+
+    Parameters
+    ----------
+    without, power : float or array (...)
+        In the direction of the motion; negative where the load moves the drive. ``power`` is the larger of the two.
+
+    Returns
+    -------
+    array (...)
+        From 0 to 1; NaN where no work is done or it is not known.
+
+    References
+    ----------
+    Norton, Design of Machinery, 5th ed., chapter 6 (mechanical efficiency).
+    """
+    out, given = np.asarray(without, dtype=float), np.asarray(power, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(out > 0.0, out / given, np.maximum(np.where(out < 0.0, given / out, np.nan), 0.0))
+
+
+def drive_work(motion: Motion, drive: Drive, way: str, without: Real, effort: Real) -> DriveWork:
+    """Return what the drive does with and without friction.
+
+    Parameters
+    ----------
+    motion : Motion
+        The n poses.
+    drive : Drive
+    way : str
+        "forward" or "backward".
+    without, effort : array (n,)
+        Torque [N mm] or force [N] of the drive without friction, and with it.
+
+    Returns
+    -------
+    DriveWork
+    """
+    moved = WAYS[way] * relative_motion(motion, drive)
+    return DriveWork(
+        without=without, effort=effort, power_without=without * moved, power=effort * moved, angles=motion.angles
+    )
+
+
+def pose_work(case: Case, load_case: str, pose: Pose, without: Reactions, reactions: Reactions) -> DriveWork:
+    """Return what the drive does with and without friction at one pose.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name; it states its direction.
+    pose : Pose
+    without, reactions : Reactions
+        Without friction, and with it.
+
+    Returns
+    -------
+    DriveWork
+        At n = 1 pose.
+    """
+    drive = case.pinned_drive
+    assert drive is not None
+    efforts = (np.array([one.drive_torque + one.drive_force]) for one in (without, reactions))
+    return drive_work(at_one_pose(pose), drive, case.load_cases[load_case].direction, *efforts)

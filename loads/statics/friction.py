@@ -1,0 +1,331 @@
+"""Coulomb friction at the joints of a moving linkage: forces that balance with it, and where it locks the linkage.
+
+The size of friction follows from the joint forces x, and its sense from the motion. With the equations of equilibrium
+A x = b and a unit of friction at every contact, C,
+
+    A x - t sum_k mu_k sgn(v_k) p_k(x) C_k = b
+
+at t = 1. v is the speed at the contact, and p what presses it: the size of the force in a bore (the friction circle has
+the radius mu r), the normal force in a slot and on a guide. Every p is homogeneous of degree one. So x = y / s with
+
+    A y - t sum_k mu_k sgn(v_k) p_k(y) C_k = s b,        |y|^2 + s^2 fixed,
+
+and this system stays regular where the forces grow without bound, at s = 0. It is followed by Newton's method from
+t = 0, without friction, to t = 1. Where s vanishes on the way, or no solution goes on, a share t of the friction has
+locked the linkage: no drive moves it. Other solutions of the equations are not connected to the frictionless one.
+
+References
+----------
+Shigley, Theory of Machines and Mechanisms, section on friction in static force analysis (friction circle).
+Norton, Design of Machinery, 5th ed., chapter 11.
+Qi and Sun (1993), A nonsmooth version of Newton's method, Mathematical Programming 58.
+Allgower and Georg, Introduction to Numerical Continuation Methods, chapter 2.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.placement import Complex, Placement
+from loads.records.applied import FrictionLoad, Load, shifted
+from loads.statics.joint_reaction import travelled
+from loads.statics.statics import Drive, along_joint, assemble, joint_column
+from loads.statics.system import System
+
+Real = NDArray[np.float64]
+
+STANDS_STILL = 1e-9
+"""Share of the links' speeds below which a joint does not move, and has no friction."""
+_FIRST_STEP = 0.5
+_LEAST_STEP = 1e-9
+_SETTLED = 1e-13
+_UNBOUNDED = 1e-6
+"""Least s over |y| of a solution: forces beyond a million times the frictionless ones count as unbounded."""
+_SAME_BRANCH = 0.9
+"""Least cosine between two solutions of one step, so that none jumps to another branch."""
+_ITERATIONS = 12
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Friction:
+    """Friction at all joints at n poses, for one direction of the motion.
+
+    Attributes
+    ----------
+    place : Placement
+        The poses, with the derivatives by the coordinate for rates.
+    wrenches : mapping of str to array (n, 6)
+        Joint with friction -> what its first link exerts on its second by friction, about the second's point, global
+        axes [N, N mm]; NaN where the linkage is locked.
+    lock : array (n,)
+        Share of all coefficients at which the linkage locks itself, at most the one asked for; infinite elsewhere.
+    unknowns : array (n, columns)
+        Of ``assemble``, with friction [N, N mm].
+    residual : array (n,)
+        Largest of the scaled equations, as a share of the load.
+    """
+
+    place: Placement
+    wrenches: Mapping[str, Real]
+    lock: Real
+    unknowns: Real
+    residual: Real
+
+    @property
+    def locked(self) -> NDArray[np.bool_]:
+        """True (n,) where no drive moves the linkage."""
+        return np.asarray(np.isfinite(self.lock))
+
+    @property
+    def loads(self) -> tuple[FrictionLoad, ...]:
+        """Friction as loads on the links."""
+        return friction_loads(self.place, self.wrenches)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Contact:
+    """A place that rubs: friction against the motion is the coefficient times what presses it.
+
+    ``force`` and ``moment`` are those of a unit of friction, of the joint's first link on its second. What presses is
+    the norm of the ``forms`` of the unknowns where it is ``round``, else the largest of them.
+    """
+
+    joint: str
+    force: Complex
+    moment: Real
+    forms: Real
+    round: bool
+    against: Real
+
+    def pressed(self, scaled: Real) -> tuple[Real, Real]:
+        """What presses (n,), and its derivative (n, columns) by the unknowns."""
+        values = scaled @ self.forms.T
+        if self.round:
+            size = np.linalg.norm(values, axis=1)
+            whole = np.linalg.norm(scaled, axis=1)
+            unit = values / np.where(size > 1e-14 * whole, size, np.inf)[:, None]
+            return size, unit @ self.forms
+        chosen = values.argmax(axis=1)
+        return values.max(axis=1), self.forms[chosen]
+
+
+def solve_friction(
+    place: Placement, drive: Drive | None, loads: Sequence[Load], sense: float, *, most: float = 1.0
+) -> Friction:
+    """Return the friction that balances with the joint forces that it depends on.
+
+    Parameters
+    ----------
+    place : Placement
+        The n poses, with the derivatives of the unknowns by the coordinate for rates. No dead points of the drive.
+    drive : Drive or None
+    loads : sequence of Load
+        All else that acts on the links, at these poses.
+    sense : float
+        1 where the coordinate grows, -1 where it falls.
+    most : float, optional
+        Share of the stated coefficients.
+
+    Returns
+    -------
+    Friction
+    """
+    system = assemble(place, drive, loads)
+    contacts = _contacts(place, system, sense)
+    rubbed = [
+        contact.against[:, None] * joint_column(place, contact.joint, contact.force, contact.moment) / system.row_scale
+        for contact in contacts
+    ]
+    scaled, lock = _followed(system.scaled, system.rhs / system.row_scale, contacts, rubbed, most)
+    left = _balance(system.scaled, contacts, rubbed, most, scaled)[0] - system.rhs / system.row_scale
+    load = np.maximum(np.abs(system.rhs / system.row_scale).max(axis=1), 1e-300)
+    return Friction(
+        place=place,
+        wrenches=_wrenches(contacts, most * scaled),
+        lock=lock,
+        unknowns=scaled * system.column_scale,
+        residual=np.abs(left).max(axis=1) / load,
+    )
+
+
+def friction_under(
+    place: Placement, drive: Drive | None, sense: float, joints: Mapping[str, Real]
+) -> tuple[FrictionLoad, ...]:
+    """Return the friction that given joint forces make, for models in which it does not follow from equilibrium.
+
+    Parameters
+    ----------
+    place : Placement
+        As for ``solve_friction``.
+    drive : Drive or None
+    sense : float
+        1 where the coordinate grows, -1 where it falls.
+    joints : mapping of str to array (n, 6)
+        What each joint's first link exerts on its second about the second's point, global axes [N, N mm].
+
+    Returns
+    -------
+    tuple of FrictionLoad
+    """
+    system = assemble(place, drive, ())
+    values = np.zeros((*place.shape, len(system.columns)))
+    for name, wrench in joints.items():
+        force = wrench[..., 0] + 1j * wrench[..., 1]
+        across = (np.conj(1j * along_joint(place, name)) * force).real
+        own = {f"R{name}x": force.real, f"R{name}y": force.imag, f"N{name}": across, f"M:{name}": wrench[..., 5]}
+        for column, value in own.items():
+            if column in system.columns:
+                values[..., system.columns.index(column)] = value
+    return friction_loads(place, _wrenches(_contacts(place, system, sense), values / system.column_scale))
+
+
+def friction_loads(place: Placement, wrenches: Mapping[str, Real]) -> tuple[FrictionLoad, ...]:
+    """Return friction as loads on the links, in pairs that balance.
+
+    Parameters
+    ----------
+    place : Placement
+        Where the links stand.
+    wrenches : mapping of str to array (..., 6)
+        Joint -> what its first link exerts on its second, about the second's point, global axes [N, N mm].
+
+    Returns
+    -------
+    tuple of FrictionLoad
+    """
+    found = []
+    for name, wrench in wrenches.items():
+        points = zip(place.linkage.joints[name].links, place.linkage.joint_points(name), strict=True)
+        on_first = shifted(-wrench, travelled(place, name))
+        for (link, point), own in zip(points, (on_first, wrench), strict=True):
+            found.append(FrictionLoad(link=link, point=point, wrench=own, joint=name))
+    return tuple(found)
+
+
+def _wrenches(contacts: Sequence[_Contact], scaled: Real) -> dict[str, Real]:
+    """Return what each joint's first link exerts on its second by friction (n, 6), under scaled unknowns."""
+    found = {contact.joint: np.zeros((len(scaled), 6)) for contact in contacts}
+    for contact in contacts:
+        size = -contact.against * contact.pressed(scaled)[0]
+        force = size * contact.force
+        for i, part in ((0, force.real), (1, force.imag), (5, size * contact.moment)):
+            found[contact.joint][:, i] += part
+    return found
+
+
+def _contacts(place: Placement, system: System, sense: float) -> list[_Contact]:
+    """Return every contact that rubs, with the signed coefficient (n,) that opposes the motion."""
+    linkage, found = place.linkage, []
+    speeds = [np.abs(place.velocity(n)) ** 2 + (linkage.longest * place.spin(n)) ** 2 for n in linkage.moving]
+    least = STANDS_STILL * np.sqrt(np.sum(speeds, axis=0))
+    column = {name: i for i, name in enumerate(system.columns)}
+
+    def form(name: str, factor: float = 1.0) -> Real:
+        row = np.zeros(len(column))
+        row[column[name]] = factor * system.column_scale[column[name]]
+        return row
+
+    for name, joint in linkage.joints.items():
+        if joint.friction == 0.0:
+            continue
+        turn = place.spin(joint.links[1]) - place.spin(joint.links[0])
+        radius = (joint.pin_diameter or 0.0) / 2.0
+        along = along_joint(place, name)
+
+        def contact(
+            force: Complex, moment: float, forms: list[Real], speed: Real, *, of: str = name, by: float = joint.friction
+        ) -> _Contact:
+            way = np.where(np.abs(speed) > least, np.sign(speed), 0.0)
+            return _Contact(
+                joint=of,
+                force=force,
+                moment=np.full(place.shape, moment),
+                forms=np.array(forms),
+                round=linkage.joints[of].type == "revolute",
+                against=sense * by * way,
+            )
+
+        if joint.type == "revolute":
+            forms = [form(f"R{name}x"), form(f"R{name}y")]
+            found.append(contact(0.0 * along, radius, forms, linkage.longest * turn))
+            continue
+        slides = _sliding(place, name)
+        normal = f"N{name}"
+        if joint.type == "slider":
+            forms = [form(normal), form(normal, -1.0)]
+            if joint.guide_length is not None:
+                forms += [form(f"M:{name}", sign * 2.0 / joint.guide_length) for sign in (1.0, -1.0)]
+            found.append(contact(along, 0.0, forms, slides))
+            continue
+        for side in (1.0, -1.0):  # on the flank below the pin, which a positive force lifts, and on that above it
+            forms = [form(normal, side), np.zeros(len(column))]
+            found.append(contact(along, side * radius, forms, slides + side * radius * turn))
+    return found
+
+
+def _sliding(place: Placement, name: str) -> Real:
+    """Speed (n,) of the pin along its slot or of a slider along its guide [mm]."""
+    assert place.qdot is not None
+    return np.asarray(place.qdot[..., len(place.linkage.moving) + place.closure.slots.index(name)])
+
+
+def _balance(
+    matrix: Real, contacts: Sequence[_Contact], rubbed: Sequence[Real], share: Real | float, scaled: Real
+) -> tuple[Real, Real]:
+    """Left side (n, rows) of the equations of equilibrium with a share of the friction, and its derivative."""
+    left, slope = (matrix @ scaled[..., None])[..., 0], matrix.copy()
+    for contact, column in zip(contacts, rubbed, strict=True):
+        size, by = contact.pressed(scaled)
+        acting = np.reshape(share, (-1, 1)) * column
+        left -= acting * size[:, None]
+        slope -= acting[:, :, None] * by[:, None, :]
+    return left, slope
+
+
+def _followed(
+    matrix: Real, right: Real, contacts: Sequence[_Contact], rubbed: Sequence[Real], most: float
+) -> tuple[Real, Real]:
+    """Return the solutions (n, columns) with all friction, and the share (n,) at which the linkage locks itself."""
+    free = np.linalg.solve(matrix, right[..., None])[..., 0]
+    size = np.linalg.norm(free, axis=1)
+    open_at = size > 0.0
+    unit = np.where(open_at, size, 1.0)[:, None]
+    z = np.concatenate([free / unit, np.ones((len(free), 1))], axis=1) / np.sqrt(2.0)
+    share, step = np.zeros(len(z)), np.full(len(z), _FIRST_STEP * most)
+    lock = np.full(len(z), np.inf)
+    while open_at.any():
+        i = np.flatnonzero(open_at)
+        step[i] = np.minimum(step[i], most - share[i])
+        here = [column[i] for column in rubbed]
+        found, good = _corrected(matrix[i], right[i] / unit[i], contacts, here, share[i] + step[i], z[i])
+        good &= found[:, -1] > _UNBOUNDED * np.linalg.norm(found[:, :-1], axis=1)
+        z[i[good]], share[i[good]] = found[good], share[i[good]] + step[i[good]]
+        step[i] *= np.where(good, 2.0, 0.5)
+        ended = ~good & (step[i] < _LEAST_STEP * most)
+        lock[i[ended]] = share[i[ended]]
+        open_at[i] = ~ended & (share[i] < most)
+    solved = np.where(np.isfinite(lock)[:, None], np.nan, z[:, :-1] / z[:, -1:] * unit)
+    return np.where(size[:, None] > 0.0, solved, 0.0), lock
+
+
+def _corrected(
+    matrix: Real, right: Real, contacts: Sequence[_Contact], rubbed: Sequence[Real], share: Real, start: Real
+) -> tuple[Real, NDArray[np.bool_]]:
+    """Newton's method in (y, s) on the plane through ``start``; also tell where it settled nearby."""
+    z, last = start.copy(), np.full(len(start), np.inf)
+    for _ in range(_ITERATIONS):
+        left, slope = _balance(matrix, contacts, rubbed, share, z[:, :-1])
+        gap = np.concatenate([left - z[:, -1:] * right, (np.sum(start * z, axis=1) - 1.0)[:, None]], axis=1)
+        bordered = np.concatenate([np.concatenate([slope, -right[..., None]], axis=2), start[:, None, :]], axis=1)
+        try:
+            move = np.linalg.solve(bordered, gap[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            move = (np.linalg.pinv(bordered) @ gap[..., None])[..., 0]
+        z = z - move
+        last = np.linalg.norm(move, axis=1) / np.linalg.norm(z, axis=1)
+        if np.all(last <= _SETTLED):
+            break
+    z = z / np.linalg.norm(z, axis=1, keepdims=True)
+    return z, (last <= 10.0 * _SETTLED) & (np.sum(start * z, axis=1) >= _SAME_BRANCH)
