@@ -15,7 +15,7 @@ from geometry.base.errors import CaseError
 from geometry.bodies.body import extent, hand_section
 from geometry.linkage.placement import Placement
 from geometry.parts.part import Body, Pin
-from loads.records.applied import BodyForce, LineLoad, Load, PointLoad, in_axes, rotated, shifted, turned
+from loads.records.applied import BodyForce, FrictionLoad, LineLoad, Load, PointLoad, in_axes, rotated, shifted, turned
 from loads.statics.statics import Equilibrium
 
 Real = NDArray[np.float64]
@@ -58,6 +58,7 @@ def link_loads(
     place = reactions.placement
     turn = (place.axes(link) if axes is None else axes).swapaxes(-1, -2)
     wrenches: dict[str, Real] = {}
+    rubbed: dict[str, Real] = {}
     lines: list[LineLoad] = []
     inertia: BodyForce | None = None
     for point, wrench in reactions.on_link(link):
@@ -68,6 +69,8 @@ def link_loads(
         own = in_axes(load, "link", place) if axes is None else turned(in_axes(load, "global", place), turn)
         if isinstance(own, PointLoad):
             wrenches[own.point] = wrenches.get(own.point, np.zeros(6)) + own.wrench
+            if isinstance(own, FrictionLoad) and place.linkage.joints[own.joint].type != "slider":
+                rubbed[own.point] = rubbed.get(own.point, np.zeros(6)) + own.wrench
         elif isinstance(own, LineLoad):
             lines.append(own)
         else:
@@ -80,7 +83,10 @@ def link_loads(
     found = LinkLoads(
         name=name,
         link=link,
-        pins=tuple(_pin_load(place, link, pin, wrenches.get(pin.name, nothing), axes is None) for pin in body.pins),
+        pins=tuple(
+            _pin_load(place, link, pin, *(found.get(pin.name, nothing) for found in (wrenches, rubbed)), axes is None)
+            for pin in body.pins
+        ),
         couples=(
             (DriveCouple(pin=place.linkage.point_of(drive.joint, link), torque=torque),)
             if drive is not None and np.any(torque)
@@ -105,20 +111,27 @@ def _supported(loads: LinkLoads, held_at: str) -> LinkLoads:
     return replace(loads, pins=tuple(pins), ends=tuple(ends))
 
 
-def _pin_load(place: Placement, link: str, pin: Pin, wrench: Real, own_axes: bool) -> PinLoad:
+def _pin_load(place: Placement, link: str, pin: Pin, wrench: Real, rubbed: Real, own_axes: bool) -> PinLoad:
     """Return the load of a pin from its wrench (..., 6) about the link's point; in a slot, about the pin's place.
 
-    In a slot and the link's axes, the components that such a pin does not carry (``ACROSS_SLOT``) are set to zero.
+    In a slot and the link's axes, components that such a pin does not carry (``ACROSS_SLOT``) are those of friction.
     """
     centre = np.zeros((*place.shape, 3))
     centre[..., 0], centre[..., 1] = pin.x, pin.y
     if pin.slot == 0.0:
-        return PinLoad(name=pin.name, centre=centre, diameter=pin.diameter, wrench=wrench)
+        return PinLoad(name=pin.name, centre=centre, diameter=pin.diameter, wrench=wrench, friction=rubbed[..., 5])
     centre[..., 0] = slot_place(place, link, pin)
     x, y = place.linkage.links[link].points[pin.name]
-    about = shifted(wrench, np.array([x, y, 0.0]) - centre)
-    across = about * ACROSS_SLOT if own_axes else about
-    return PinLoad(name=pin.name, centre=centre, diameter=pin.pin_diameter, wrench=across, slotted=True)
+    about, by_friction = (shifted(each, np.array([x, y, 0.0]) - centre) for each in (wrench, rubbed))
+    taken = about * ACROSS_SLOT + by_friction * (1.0 - ACROSS_SLOT) if own_axes else about
+    return PinLoad(
+        name=pin.name,
+        centre=centre,
+        diameter=pin.pin_diameter,
+        wrench=taken,
+        slotted=True,
+        friction=by_friction[..., 0],
+    )
 
 
 def slot_place(place: Placement, link: str, pin: Pin) -> Real:

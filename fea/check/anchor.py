@@ -1,13 +1,14 @@
 """What the ground must hold: force and moment that the linkage exerts on it at each of its joints, and in all."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.outcomes.result import LoadCaseResult
-from loads.records.applied import shifted
+from loads.records.applied import Load, shifted
+from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
@@ -55,7 +56,7 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
     """
     moved = case.large_displacement.reactions
     reactions = moved or case.reactions
-    joints = wrenches_on_ground(reactions)
+    joints = wrenches_on_ground(reactions, case.loads)
     pose = reactions.pose
     ground = pose.linkage.ground
     places = {}
@@ -90,23 +91,27 @@ def _rounded(wrench: Real, size: Real) -> Real:
     return np.where(np.abs(wrench) <= _ROUNDING * size, 0.0, wrench)
 
 
-def wrenches_on_ground(reactions: Reactions) -> dict[str, Real]:
-    """Return what acts on the ground at each of its joints, the drive torque's reaction included.
+def wrenches_on_ground(reactions: Reactions, loads: Sequence[Load] = ()) -> dict[str, Real]:
+    """Return what acts on the ground at each of its joints, the drive torque's reaction and friction included.
 
     Parameters
     ----------
     reactions : Reactions
+    loads : sequence of Load, optional
+        All else that acts on the links, with friction among them.
 
     Returns
     -------
     dict of str to ndarray, shape (6,)
         Joint -> wrench about it [N, N mm].
     """
+    rubbed = friction_wrenches(loads)
     linkage, drive = reactions.pose.linkage, reactions.drive
     found = {}
     for name, reaction in reactions.joints.items():
         if linkage.ground in (reaction.on, reaction.by):
-            wrench = reaction.wrench if reaction.on == linkage.ground else -reaction.wrench
+            wrench = reaction.wrench + rubbed.get(name, np.zeros(6))
+            wrench = wrench if reaction.on == linkage.ground else -wrench
             if drive is not None and name == drive.joint:
                 wrench = wrench + np.array([0.0, 0.0, 0.0, 0.0, 0.0, reactions.torque_on(linkage.ground)])
             found[name] = wrench

@@ -38,7 +38,7 @@ class CaseStatics:
     audit : StaticsAudit or None
         Comparison with published statics, where the case names some.
     work : mapping of str to DriveWork
-        Load case -> the drive with and without friction, at the one pose; empty where no joint has any.
+        Load case -> the drive with and without friction, at the one pose; none where no joint has any or a stop bears.
     """
 
     case: Case
@@ -88,7 +88,8 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
         for load_case, plain in forces.items():
             own = standing[load_case].case
             loads[load_case], forces[load_case] = with_friction(own, load_case, pose, loads[load_case], plain)
-            work[load_case] = pose_work(own, load_case, pose, plain.reactions, forces[load_case].reactions)
+            if not standing[load_case].stop:
+                work[load_case] = pose_work(own, load_case, pose, plain.reactions, forces[load_case].reactions)
     found = None
     if case.published_statics is not None:
         published = case.published_statics

@@ -178,6 +178,8 @@ class _LoadCase:
             linkage=linkage,
             standing=self.statics.standing[load_case],
             checks=tuple(checks),
+            work=self.statics.work.get(load_case),
+            loads=tuple(self.statics.loads[load_case]),
         )
 
 
@@ -226,6 +228,7 @@ def check_case(
         raise CaseError(f"fidelity: '{fidelity}' is unknown; choose one of {', '.join(FIDELITIES)}")
     clock = Clock()
     statics = solve_case_statics(case, name)
+    case = statics.case
     clock("pose and statics")
     moved = frames or {
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])

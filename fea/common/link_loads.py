@@ -48,8 +48,13 @@ class PinLoad:
 
     @property
     def torque(self) -> Any:
-        """The moment about the pin (...) that does not enter by friction; none in a slot [N mm]."""
-        return np.zeros(np.shape(self.wrench)[:-1])[()] if self.slotted else self.wrench[..., 5] - self.friction
+        """The moment about a pin in its bore (...) that does not enter by friction [N mm]."""
+        return self.wrench[..., 5] - self.friction
+
+    @property
+    def rubbed(self) -> Any:
+        """The moment about a pin in its slot (...) of its friction, which acts where it touches the flank [N mm]."""
+        return -0.5 * self.diameter * np.sign(self.wrench[..., 1]) * self.friction
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

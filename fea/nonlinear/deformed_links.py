@@ -85,7 +85,8 @@ def _driven(loads: LinkLoads, axes: Real) -> LinkLoads:
 def in_slots(loads: LinkLoads, body: Body, link: str) -> LinkLoads:
     """Return the loads with every pin in a slot at the place to which it has slid, pushing across the slot alone.
 
-    On a bent link a slot is not parallel to the chord; what the pin's force has along it is left to ``balanced``.
+    Friction acts along it besides. On a bent link a slot is not parallel to the chord; what the pin's force has along
+    it is left to ``balanced``.
 
     Parameters
     ----------
@@ -109,11 +110,11 @@ def in_slots(loads: LinkLoads, body: Body, link: str) -> LinkLoads:
     pins = []
     for pin in loads.pins:
         if pin.slotted:
-            across, moment = pin.wrench[1], pin.wrench[5]
+            across, moment = pin.wrench[1], pin.wrench[5] - pin.rubbed
             slid = moment / across if abs(across) > NOTHING * float(np.linalg.norm(pin.wrench[:3])) else 0.0
             own = next(p for p in body.pins if p.name == pin.name)
             x = in_slot(own, np.array([pin.centre[0] + slid]), link)[0]
-            wrench = np.array([0.0, across, 0.0, pin.wrench[3], 0.0, 0.0])
+            wrench = np.array([pin.friction, across, 0.0, pin.wrench[3], 0.0, pin.rubbed])
             pin = replace(pin, centre=np.array([x, *pin.centre[1:]]), wrench=wrench)
         pins.append(pin)
     return replace(loads, pins=tuple(pins))

@@ -25,7 +25,9 @@ from fea.solid.stress import StressField
 from geometry.linkage.pose import Pose
 from geometry.materials.material import stress_measure
 from loads.case.case import Case
+from loads.records.applied import Load
 from loads.sources.published_statics import StaticsAudit
+from loads.states.rubbing import DriveWork
 from loads.states.standing import Standing
 from loads.statics.statics import Reactions
 
@@ -273,6 +275,10 @@ class LoadCaseResult:
     standing : Standing
         What holds the pose, and its springs and stops.
     checks : tuple of CheckOutcome
+    work : DriveWork or None
+        The drive with and without friction; None where no joint has any.
+    loads : tuple of Load
+        All that acts on the links, friction included.
     """
 
     name: str
@@ -284,6 +290,8 @@ class LoadCaseResult:
     linkage: LinkageNumbers
     standing: Standing
     checks: tuple[CheckOutcome, ...]
+    work: DriveWork | None = None
+    loads: tuple[Load, ...] = ()
 
     @property
     def reactions(self) -> Reactions:

@@ -75,6 +75,7 @@ def tolerance_case(
     variables = _asked(case, samples)
     clock = Clock()
     statics = solve_case_statics(case, name)
+    case = statics.case
     frames = {
         load_case: examine(case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()

@@ -14,10 +14,13 @@ from geometry.linkage.placement import Placement
 from geometry.linkage.pose import Pose
 from geometry.linkage.sampled import SampledPlacement, assemble_samples
 from loads.case.case import Case
+from loads.case.friction_rules import rubbing_joints
 from loads.case.toleranced import Variable
 from loads.records.applied import Load, PartMass, PointLoad
 from loads.records.load_case import LoadCase
 from loads.states.actions import acting_loads
+from loads.states.rubbing import WAYS, is_of
+from loads.statics.friction import solve_friction
 from loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_reactions
 
 Real = NDArray[np.float64]
@@ -52,7 +55,7 @@ class States:
     apart : ndarray of bool, shape (N,)
         Samples that do not assemble on the nominal branch.
     dead : ndarray of bool, shape (N,)
-        Those at a dead point of the drive, where joint forces grow without limit.
+        Those at a dead point of the drive or locked by friction, where joint forces grow without limit.
     forces : mapping of str to SampledForces
         Load case -> joint forces of the n others.
     loads : mapping of str to tuple of Load
@@ -152,13 +155,15 @@ class Sampler:
         drive = self.case.pinned_drive
         systems: dict[str, Any] = {}
         kept = assembled.copy()
-        for _ in range(2):  # once more without those at a dead point
+        for _ in range(3):  # once more without those at a dead point, and without those that friction locks
             here, own = _chosen(place, kept), deviations[kept]
             systems = {}
             for name, load_case in self.case.load_cases.items():
                 loads = self._loads(name, load_case, here, own)
                 systems[name] = loads, assemble(here, drive, loads)
             lost = ~_holds([system for _, system in systems.values()])
+            if rubbing_joints(self.case) and not lost.any():
+                systems, lost = self._rubbing(here, systems)
             if not lost.any():
                 break
             dead[np.flatnonzero(kept)[lost]] = True
@@ -179,6 +184,18 @@ class Sampler:
             apart=~assembled, dead=dead, forces=forces, loads={name: loads for name, (loads, _) in systems.items()}
         )
 
+    def _rubbing(self, here: SampledPlacement, systems: Mapping[str, Any]) -> tuple[dict[str, Any], NDArray[np.bool_]]:
+        """Add friction to the loads of every load case; also tell which samples it locks."""
+        drive, locked, found = self.case.pinned_drive, np.zeros(len(here.q), dtype=np.bool_), {}
+        assert self.pose.coordinate is not None
+        driven = DrivenClosure(here.closure, self.pose.coordinate, self.pose.slides)
+        moving = replace(here, qdot=driven.coefficients(here.q)[0])
+        for name, (loads, _) in systems.items():
+            friction = solve_friction(moving, drive, loads, WAYS[self.case.load_cases[name].direction])
+            locked |= friction.locked
+            found[name] = (*loads, *friction.loads), assemble(here, drive, (*loads, *friction.loads))
+        return found, locked
+
     def _loads(self, name: str, load_case: LoadCase, place: SampledPlacement, deviations: Real) -> tuple[Load, ...]:
         if load_case.speed != 0.0:
             assert self.pose.coordinate is not None
@@ -186,7 +203,7 @@ class Sampler:
             place = replace(place, qdot=load_case.speed * first, qddot=load_case.speed**2 * second)
         found = list(acting_loads(self.case, load_case, place, self.masses))
         for variable, column in zip(self.variables, deviations.T, strict=True):
-            if variable.kind in ("load", "force") and variable.target[0] == name:
+            if variable.kind in ("load", "force") and is_of(name, str(variable.target[0])):
                 number = int(variable.target[1])
                 for i in range(len(found)) if number < 0 else (number,):
                     found[i] = _changed(found[i], variable, column)

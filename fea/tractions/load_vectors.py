@@ -88,8 +88,8 @@ class LoadVectors:
         return found
 
     def _torques(self, case: LinkLoads) -> list[tuple[str, float]]:
-        """Pins and the torques about them: of the drive, and of pins that turn the link."""
-        turning = [(pin.name, float(pin.wrench[5])) for pin in case.pins if not pin.slotted]
+        """Pins and the torques about them: of the drive, and of pins that turn the link otherwise than by friction."""
+        turning = [(pin.name, float(pin.torque)) for pin in case.pins if not pin.slotted]
         return [(couple.pin, couple.torque) for couple in case.couples] + turning
 
     def _surface(self, *names: str, degree: int | None = None) -> SurfaceQuadrature:
@@ -138,7 +138,7 @@ class LoadVectors:
         return np.asarray(face.load_vector(thrust_traction(face, pin), count))
 
     def _couples(self, case: LinkLoads, transfer: Transfer | None) -> NDArray[np.float64]:
-        """Load vector (3n,) of the torques about the pins."""
+        """Load vector (3n,) of the torques about the pins; friction enters as shear in the bore."""
         count = len(self._space.nodes)
         load = np.zeros(3 * count)
         centres = {pin.name: pin.centre for pin in case.pins}
@@ -148,6 +148,10 @@ class LoadVectors:
                 faces = self._space.flat_faces(name) if transfer != "bore-shear" else ()
                 surface = self._surface(*faces) if faces else bore
                 load += surface.load_vector(couple_traction(surface, centres.get(name, bore.centroid), torque), count)
+        for pin in case.pins:
+            if pin.friction != 0.0 and not pin.slotted:
+                bore = self._surface(f"bore:{pin.name}")
+                load += bore.load_vector(couple_traction(bore, pin.centre, float(pin.friction)), count)
         return load
 
     def _ends(self, case: LinkLoads) -> NDArray[np.float64]:

@@ -1,8 +1,9 @@
 """The push of a pin on the flank of the slot in which it slides, as a traction whose resultant is the load's.
 
-The pin is free along the slot, so its force is normal to it: p(s) = p0 cos(π s/w) over a length w of the flank about
-the place where the pin stands, even along the pin. True contact is a line, so w stands for it (``PressureLaw.patch``);
-tests/verification/test_slotted_bar.py holds what that choice is worth.
+Without friction the pin is free along the slot, so its force is normal to it: p(s) = p0 cos(π s/w) over a length w of
+the flank about the place where the pin stands, even along the pin. True contact is a line, so w stands for it
+(``PressureLaw.patch``); tests/verification/test_slotted_bar.py holds what that choice is worth. Friction is a traction
+along the flank in proportion to that pressure.
 """
 
 import math
@@ -54,12 +55,12 @@ def flank_pressure(wall: SurfaceQuadrature, centre: NDArray[np.float64], length:
 def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Density:
     """Return the pressure of a pin in a slot that delivers its wrench, but for Fz.
 
-    The force Fy is even along the pin; the moment Mx about the slot's axis is that of a tilted pin, which presses
-    on one flank above the mid-plane and on the other below it, in proportion to the height. Amplitude and slope
-    along the slot are solved on the meshed flank, so that force and moment are exact. In a slot whose middle lies
-    off the link's plane of forces, heights count from its middle, and the force's moment about it is added. What
-    else the wrench holds is rounding, or small on a deformed shape, and comes as a traction of the rigid-body
-    fields.
+    The force Fy is even along the pin, and so is friction along the flank; the moment Mx about the slot's axis is that
+    of a tilted pin, which presses on one flank above the mid-plane and on the other below it, in proportion to the
+    height. Amplitude and slope along the slot are solved on the meshed flank, so that force and moment are exact. In a
+    slot whose middle lies off the link's plane of forces, heights count from its middle, and the force's moment about
+    it is added. What else the wrench holds is rounding, or small on a deformed shape, and comes as a traction of the
+    rigid-body fields.
 
     Parameters
     ----------
@@ -81,21 +82,23 @@ def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> De
         For a wrench that a slot cannot take, or a flank meshed too coarsely.
     """
     middle = bore_middle(wall, pin.centre)
-    fx, fy, _, mx, my, mz = shifted(pin.wrench, pin.centre - middle)
+    whole = shifted(pin.wrench, pin.centre - middle)
+    length = law.patch(pin.diameter)
+    rubbed = _rubbed(wall, pin, middle, length)
+    fx, fy, _, mx, my, mz = whole - wall.wrench(rubbed, middle) if np.any(rubbed) else whole
     size = float(np.linalg.norm(pin.wrench[:3]) + np.linalg.norm(pin.wrench[3:]) / pin.diameter)
     if max(abs(fx), abs(my) / pin.diameter, abs(mz) / pin.diameter) > LARGEST_CORRECTION * size:
         raise CannotRunError(
             f"the pin in the slot at {pin.name} would have to push along it with {fx:.4g} N or turn it with "
             f"{my:.4g} N mm about y and {mz:.4g} N mm about z, which a pin free to slide and turn cannot do"
         )
-    length = law.patch(pin.diameter)
     # From -1 to 1 over the pressure's length, and over the height of the wall.
     arm = (wall.x - middle) / np.array([length / 2.0, 1.0, np.abs(wall.x[..., 2] - middle[2]).max()])
 
     def flank(side: float) -> Density:
         return flank_pressure(wall, middle, length, math.copysign(1.0, side))
 
-    density = wrench_density(wall, middle, np.array([fx, 0.0, 0.0, 0.0, my, mz]))
+    density = rubbed + wrench_density(wall, middle, np.array([fx, 0.0, 0.0, 0.0, my, mz]))
     if fy != 0.0:
         pushed = flank(fy)
         density = density + _exact(wall, pin, middle, [pushed, arm[..., :1] * pushed, arm[..., 2:] * pushed], [fy, 0.0])
@@ -104,6 +107,16 @@ def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> De
         tilted = np.abs(above) * np.where(above > 0.0, flank(-mx), flank(mx))
         density = density + _exact(wall, pin, middle, [tilted, arm[..., :1] * flank(mx), flank(mx)], [0.0, mx])
     return density
+
+
+def _rubbed(wall: SurfaceQuadrature, pin: PinLoad, middle: NDArray[np.float64], length: float) -> Density:
+    """Return the traction of friction along the flank that the pin pushes on."""
+    across, friction = float(pin.wrench[1]), float(pin.friction)
+    if friction == 0.0 or across == 0.0:
+        return np.zeros_like(wall.x)
+    side = math.copysign(1.0, across)
+    along = np.abs(flank_pressure(wall, middle, length, side))[..., [1, 0, 2]]
+    return np.asarray(along * (friction / wall.wrench(along, middle)[0]))
 
 
 def _exact(

@@ -42,12 +42,17 @@ def check_friction(case: CoreCase) -> None:
             )
         if case.joint_model == "bonded":
             raise CaseError(f"{entry}, but the case's joints are bonded and nothing turns in them; leave it out")
+        if case.pose.equilibrium:
+            raise CaseError(
+                f"{entry}, with which a linkage that is let go stops anywhere about its balance; leave friction out, or "
+                "state the pose in place of pose.equilibrium"
+            )
         if case.drive is None or case.pose.coordinate is None:
             raise CaseError(f"{entry}, but friction opposes a motion and nothing drives this linkage; leave it out")
     for name in case.load_cases if rubbing else ():
         for way in ("forward", "backward"):
-            if f"{name} {way}" in case.load_cases and case.load_cases[name].direction == "both":
+            if f"{name} {way}" in case.load_cases:
                 raise CaseError(
-                    f"load_cases.{name} {way}: with friction, load case '{name}' is solved in both directions, and one "
-                    "of them has this name; rename it"
+                    f"load_cases.{name} {way}: with friction, load case '{name}' in one direction has this name as "
+                    "well; rename it"
                 )

@@ -341,7 +341,8 @@ def chosen(record: Any, poses: Any) -> Any:
     Load, or part of the loads on a link
         At these poses.
     """
-    return replace(record, **{name: getattr(record, name)[poses] for name in (*record.VECTORS, *record.SCALARS)})
+    values = {name: np.asarray(getattr(record, name)) for name in (*record.VECTORS, *record.SCALARS)}
+    return replace(record, **{name: value[poses] if value.ndim else value for name, value in values.items()})
 
 
 def shifted(wrench: Real, arm: Real) -> Real:

@@ -52,6 +52,20 @@ def each_direction(case: Case, *, moving: bool = False) -> Case:
     return case if found == case.load_cases else case.model_copy(update={"load_cases": found})
 
 
+def is_of(name: str, stated: str) -> bool:
+    """Return True where a load case of ``each_direction`` is the stated one, in either direction.
+
+    Parameters
+    ----------
+    name, stated : str
+
+    Returns
+    -------
+    bool
+    """
+    return name in (stated, *(f"{stated} {way}" for way in WAYS))
+
+
 def _known_way(case: Case, load_case: LoadCase, moving: bool) -> str:
     """The direction that a speed gives; "" where none is stated."""
     speed = load_case.speed
@@ -104,9 +118,9 @@ def pose_friction(case: Case, load_case: str, pose: Pose, loads: Sequence[Load])
     if found.locked[0]:
         raise CaseError(
             f"load_cases.{load_case}: with friction the linkage locks itself in this pose, driven "
-            f"{_told(way, pose.coordinate, pose.slides)}: no drive moves it, and joint forces grow without bound; with "
-            f"less than {_percent(found.lock[0])} of joints.*.friction it would move. Change the friction, the pose or "
-            "the drive, or state the direction of the load case if it never moves that way"
+            f"{told_direction(way, pose.coordinate, pose.slides)}: no drive moves it, and joint forces grow without "
+            f"bound; with less than {_percent(found.lock[0])} of joints.*.friction it would move. Change the friction, "
+            "the pose or the drive, or state the direction of the load case if it never moves that way"
         )
     return tuple(chosen(load, 0) for load in found.loads)
 
@@ -226,11 +240,26 @@ def lock_sentence(load_case: str, rubbing: Rubbing, motion: Motion) -> str:
     where = " and ".join(f"from {low:.4g} to {high:.4g} {motion.unit}" for low, high in spans)
     return (
         f"load case {load_case}: with friction the linkage locks itself {where} of {motion.coordinate}, driven "
-        f"{_told(rubbing.way, motion.coordinate, motion.slides)}; no drive moves it there"
+        f"{told_direction(rubbing.way, motion.coordinate, motion.slides)}; no drive moves it there"
     )
 
 
-def _told(way: str, coordinate: str | None, slides: bool) -> str:
+def told_direction(way: str, coordinate: str | None, slides: bool) -> str:
+    """Return a direction of the motion for people.
+
+    Parameters
+    ----------
+    way : str
+        "forward" or "backward".
+    coordinate : str or None
+        Of the pose or motion.
+    slides : bool
+        Whether it is a slider or slot.
+
+    Returns
+    -------
+    str
+    """
     grows = "grows" if way == "forward" else "falls"
     return f"{way} (the {'travel' if slides else 'angle'} of {coordinate} {grows})"
 
@@ -245,6 +274,8 @@ class DriveWork:
 
     Attributes
     ----------
+    way : str
+        Direction of the motion, "forward" or "backward".
     without, effort : array (n,)
         Torque [N mm] or force [N] of the drive without friction, and with it.
     power_without, power : array (n,)
@@ -253,6 +284,7 @@ class DriveWork:
         The coordinate [rad, mm].
     """
 
+    way: str
     without: Real
     effort: Real
     power_without: Real
@@ -269,13 +301,23 @@ class DriveWork:
         return efficiency(self.power_without, self.power)
 
     @property
-    def of_cycle(self) -> float:
-        """The same of the work over all poses."""
-        return float(efficiency(*(np.trapezoid(p, np.abs(self.angles - self.angles[0])) for p in self._both)))
+    def total_without(self) -> float:
+        """Work of the drive over all poses without friction [N mm]; zero where rounding alone is left."""
+        whole, sizes = (self._integral(power) for power in (self.power_without, np.abs(self.power_without)))
+        return 0.0 if abs(whole) <= 1e-9 * sizes else whole
 
     @property
-    def _both(self) -> tuple[Real, Real]:
-        return self.power_without, self.power
+    def total(self) -> float:
+        """Work of the drive over all poses with friction [N mm]; NaN where it is locked or at a dead point."""
+        return self._integral(self.power)
+
+    @property
+    def of_cycle(self) -> float:
+        """Work out over work in over all poses; NaN where no work is left over them without friction."""
+        return float(efficiency(self.total_without, self.total))
+
+    def _integral(self, power: Real) -> float:
+        return float(np.trapezoid(power, np.abs(self.angles - self.angles[0])))
 
     @property
     def holds_itself(self) -> NDArray[np.bool_]:
@@ -325,7 +367,12 @@ def drive_work(motion: Motion, drive: Drive, way: str, without: Real, effort: Re
     """
     moved = WAYS[way] * relative_motion(motion, drive)
     return DriveWork(
-        without=without, effort=effort, power_without=without * moved, power=effort * moved, angles=motion.angles
+        way=way,
+        without=without,
+        effort=effort,
+        power_without=without * moved,
+        power=effort * moved,
+        angles=motion.angles,
     )
 
 

@@ -204,6 +204,22 @@ def friction_loads(place: Placement, wrenches: Mapping[str, Real]) -> tuple[Fric
     return tuple(found)
 
 
+def friction_wrenches(loads: Sequence[Load]) -> dict[str, Real]:
+    """Return what friction exerts at each joint, from the loads on the links.
+
+    Parameters
+    ----------
+    loads : sequence of Load
+        With those of ``friction_loads`` among them.
+
+    Returns
+    -------
+    dict of str to array (..., 6)
+        Joint -> wrench of its first link on its second about the second's point [N, N mm].
+    """
+    return {load.joint: load.wrench for load in loads if isinstance(load, FrictionLoad)}  # the second link's comes last
+
+
 def _wrenches(contacts: Sequence[_Contact], scaled: Real) -> dict[str, Real]:
     """Return what each joint's first link exerts on its second by friction (n, 6), under scaled unknowns."""
     found = {contact.joint: np.zeros((len(scaled), 6)) for contact in contacts}

@@ -159,6 +159,7 @@ def motion(
     threads: ThreadsOption = 2,
 ) -> None:
     """Analyse a motion: link directions, paths, joint forces and drive torque."""
+    from fea.common.verdict import Verdict
     from loads.case.case_file import read_case
     from loads.states.case_motion import solve_case_motion
     from reports.commands.motion import print_motion, write_motion
@@ -174,6 +175,10 @@ def motion(
             _progress("Drawing figures and the animation ...")
             write_folder(output, "motion", lambda folder: write_motion(result, folder, case))
             _tell(f"\nTables and figures: {output / 'motion'}", json)
+    for sentence in result.locks:
+        _progress(f"Warning: {sentence}.")
+    if result.locks:
+        raise SystemExit(Verdict.UNDECIDED.exit_status)
 
 
 @app.command()

@@ -18,6 +18,7 @@ from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead
 from reports.figures.joint_paths import moving_points, path_length
 from reports.tables.data import finite
 from reports.tables.frames import motion_linkage_line, motion_linkage_record
+from reports.tables.friction import motion_friction_lines, motion_friction_record
 from reports.tables.mechanism import design_lines, design_record
 
 Real = NDArray[np.float64]
@@ -127,6 +128,8 @@ def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
     data: dict[str, Any] = {"inertia": with_inertia(result.case, load_case)}
     data |= {"speed_mm_per_s" if result.motion.slides else "speed_rad_per_s": speed}
     data |= {f"drive_{result.effort[0]}": _extremes(result, result.torque[load_case])}
+    if result.rubbing:
+        data["friction"] = motion_friction_record(result, load_case)
     if not result.forces:
         return data | {"joints": None}
     solved = result.forces[load_case]
@@ -206,6 +209,8 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
             print(f"  {motion_linkage_line(result, asked_over_motion(result)[load_case])}")
         told = _line(row[f"drive_{what}"], unit, motion["unit"])
         print(f"  drive {what} on {drive['link']} at {drive['joint']}: {told}")
+        for line in motion_friction_lines(result, load_case) if result.rubbing else ():
+            print(f"  {line}")
         if row["joints"] is None:
             print("  the linkage is statically indeterminate, so equilibrium alone does not give the joint forces")
             continue
@@ -276,6 +281,9 @@ def _point_columns(motion: Motion) -> dict[str, Real]:
 def _torque_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
     what, unit = result.effort
     columns = {f"{what} on {result.drive.link} [{unit.replace('·', ' ')}]": result.torque[load_case]}
+    if result.rubbing:
+        columns[f"{what} without friction [{unit.replace('·', ' ')}]"] = result.frictionless[load_case]
+        columns["efficiency [1]"] = result.work(load_case).efficiency
     if any(np.any(solved.motion.speed) for solved in result.forces.values()):
         solved = result.forces[load_case]
         columns["drive power [N mm/s]"] = solved.drive_power

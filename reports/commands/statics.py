@@ -7,9 +7,11 @@ import numpy as np
 
 from fea.check.case_statics import CaseStatics
 from geometry.base.version import result_stamp
+from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Reactions
 from loads.statics.system import System
 from reports.tables.frames import AXES, reaction_records, shown_components
+from reports.tables.friction import friction_record, friction_sentence
 from reports.tables.springs import holding_sentence, spring_sentences, standing_record
 
 
@@ -60,6 +62,12 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
                 print(f"  drive force on {drive.link}: {reactions.drive_force:.5g} N (along {drive.joint} +)")
             else:
                 print(f"  drive torque on {drive.link}: {reactions.drive_torque:.5g} N·mm (counter-clockwise +)")
+        if title in statics.work:
+            print(f"  {friction_sentence(statics.work[title], reactions)}")
+            for name, wrench in friction_wrenches(statics.loads[title]).items():
+                joint, force = reactions.joints[name], ", ".join(_column(x, largest).strip() for x in wrench[:2])
+                by = f"({force}) N, " if np.any(wrench[:2]) else ""
+                print(f"  {name:<{width}} {joint.by} rubs {joint.on} with {by}{wrench[5]:.4g} N·mm")
         system = reactions.system
         print(f"  system {len(system.rows)}×{len(system.columns)}, condition number {system.condition:.4g} (scaled),")
         print(f"  residual {reactions.residual:.1e} of the load")
@@ -116,6 +124,11 @@ def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
                 **standing_record(statics.standing[title]),
                 "residual": reactions.residual,
                 "condition": reactions.system.condition,
+                **(
+                    {"friction": friction_record(statics.work[title], statics.loads[title])}
+                    if title in statics.work
+                    else {}
+                ),
                 **({"system": _system(reactions.system)} if matrix else {}),
             }
             for title, reactions in statics.reactions.items()

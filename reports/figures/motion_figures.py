@@ -86,7 +86,7 @@ def angles_figure(result: CaseMotion) -> Figure:
 
 
 def torque_figure(result: CaseMotion) -> Figure:
-    """Draw drive torque or force over the coordinate, one line per load case.
+    """Draw drive torque or force over the coordinate, one line per load case, and dashed what it is without friction.
 
     Parameters
     ----------
@@ -100,11 +100,35 @@ def torque_figure(result: CaseMotion) -> Figure:
     figure, axes = _over_angle(motion, f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]")
     for i, (load_case, torque) in enumerate(result.torque.items()):
         _line(axes, motion, _broken(result, torque), load_case, i)
+    _without_friction(axes, result)
     axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     _clip(axes, result, list(result.torque.values()), symmetric=True)
     _dead_points(axes, result)
+    _locked(axes, result)
     _legend(axes, "load case")
     return figure
+
+
+def _without_friction(axes: Any, result: CaseMotion) -> None:
+    """Draw the drive torque without friction, one dashed line for both directions of a load case."""
+    drawn: list[Real] = []
+    for load_case, torque in result.frictionless.items():
+        if not any(np.array_equal(torque, other, equal_nan=True) for other in drawn):
+            stated = load_case.removesuffix(f" {result.rubbing[load_case].way}")
+            label = f"{stated} without friction"
+            values, style = _broken(result, torque), {"color": "0.45", "linestyle": DASHES[1 + len(drawn) % 2]}
+            axes.plot(result.motion.told(result.motion.angles), values, label=label, linewidth=1.3, **style)
+            drawn.append(torque)
+
+
+def _locked(axes: Any, result: CaseMotion) -> None:
+    """Shade where friction locks the linkage."""
+    for way in dict.fromkeys(rubbing.way for rubbing in result.rubbing.values()):
+        spans = {span for rubbing in result.rubbing.values() if rubbing.way == way for span in rubbing.spans}
+        for i, span in enumerate(sorted(spans)):
+            label = f"locked, {way}" if i == 0 else None
+            style: dict[str, Any] = {"hatch": "///" if way == "forward" else "\\\\\\", "edgecolor": "0.6"}
+            axes.axvspan(*result.motion.told(span), facecolor="0.92", linewidth=0.0, label=label, zorder=0.5, **style)
 
 
 def forces_figure(result: CaseMotion, load_case: str) -> Figure:

@@ -16,6 +16,7 @@ from reports.page.coverage import not_covered
 from reports.page.pictures import diagram_name, governing_load_cases, layers_name, linkage_name, stress_name
 from reports.tables.claims import as_records, count
 from reports.tables.frames import AXES, linkage_line, shown_components
+from reports.tables.friction import friction_sentence
 from reports.tables.layers import BuildDirections, build_directions_of
 from reports.tables.loads import air_record, anchor_record, weight_sentence
 from reports.tables.mechanism import design_of
@@ -122,6 +123,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         axes=AXES,
         shown_components=shown_components,
         weight_sentence=weight_sentence,
+        friction_sentence=friction_sentence,
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
         links=[_link(result, link, figures, layers) for link in first.links],
         agreement=agreement,

@@ -9,6 +9,7 @@ from fea.common.verdict import CheckOutcome, Quantity, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from loads.records.aero import AirForces
 from reports.tables.frames import frame_lines
+from reports.tables.friction import friction_sentence
 from reports.tables.layers import build_directions_of
 from reports.tables.second_opinion import say_opinions
 from reports.words.terminal import KEPT, say, say_table
@@ -95,6 +96,8 @@ def _statics(case: LoadCaseResult) -> str:
     driven = "" if drive is None else f"\nDrive torque on {drive.link}: {number(torque)} N·mm ({turning(torque)})"
     if drive is not None and drive.pushes(case.reactions.pose.linkage):
         driven = f"\nDrive force on {drive.link}: {number(case.reactions.drive_force)} N along {drive.joint}"
+    if case.work is not None:
+        driven += f"\n{friction_sentence(case.work, case.reactions)}"
     return f"Joint forces [N]: {forces}{driven}"
 
 

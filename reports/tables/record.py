@@ -15,6 +15,7 @@ from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions
 from reports.tables.data import check_records, data, entries, finite
 from reports.tables.frames import frame_record, reaction_records
+from reports.tables.friction import friction_record
 from reports.tables.layers import layer_record
 from reports.tables.loads import air_record, anchor_record
 from reports.tables.mechanism import design_record
@@ -208,6 +209,7 @@ def _load_case(result: CheckResult, name: str) -> dict[str, Any]:
         "statics": _statics(case),
         "drive_torque": _drive_torque(case.reactions),
         "drive_force": _drive_force(case.reactions),
+        **({} if case.work is None else {"friction": friction_record(case.work, case.loads)}),
         "anchor": anchor_record(case),
         "air": air_record(result, name),
         **frame_record(case),
