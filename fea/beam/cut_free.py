@@ -84,7 +84,7 @@ def link_loads(
         name=name,
         link=link,
         pins=tuple(
-            _pin_load(place, link, pin, *(found.get(pin.name, nothing) for found in (wrenches, rubbed)), axes is None)
+            _pin_load(place, link, pin, wrenches.get(pin.name, nothing), rubbed.get(pin.name, nothing), axes is None)
             for pin in body.pins
         ),
         couples=(

@@ -40,12 +40,12 @@ def check_friction(case: CoreCase) -> None:
             raise CaseError(
                 f"{entry}, but the torque of friction needs the radius of the pin; add joints.{name}.pin_diameter"
             )
-        if case.joint_model == "bonded":
-            raise CaseError(f"{entry}, but the case's joints are bonded and nothing turns in them; leave it out")
+        if joint.bonded or (case.joint_model == "bonded" and joint.type == "revolute"):
+            raise CaseError(f"{entry}, but a bonded joint does not turn; leave friction out, or do not bond it")
         if case.pose.equilibrium:
             raise CaseError(
-                f"{entry}, with which a linkage that is let go stops anywhere about its balance; leave friction out, or "
-                "state the pose in place of pose.equilibrium"
+                f"{entry}, with which a linkage that is let go stops anywhere about its balance; leave friction out, "
+                "or pose.equilibrium"
             )
         if case.drive is None or case.pose.coordinate is None:
             raise CaseError(f"{entry}, but friction opposes a motion and nothing drives this linkage; leave it out")

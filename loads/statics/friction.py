@@ -16,7 +16,7 @@ locked the linkage: no drive moves it. Other solutions of the equations are not 
 
 References
 ----------
-Shigley, Theory of Machines and Mechanisms, section on friction in static force analysis (friction circle).
+Uicker, Pennock and Shigley, Theory of Machines and Mechanisms, static force analysis with friction (friction circle).
 Norton, Design of Machinery, 5th ed., chapter 11.
 Qi and Sun (1993), A nonsmooth version of Newton's method, Mathematical Programming 58.
 Allgower and Georg, Introduction to Numerical Continuation Methods, chapter 2.

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from fea.common.verdict import LINKAGE, Quantity, Subject
 from fea.outcomes.result import CheckResult, LinkResult, SolidResult
 from fea.solid.buckling_factor import MOST
+from loads.case.friction_rules import rubbing_joints
 from reports.words.wording import joined
 
 STACKING = (
@@ -47,7 +48,16 @@ def not_covered(result: CheckResult) -> tuple[tuple[str, str], ...]:
 def _pins(result: CheckResult) -> str:
     checked = list(dict.fromkeys(joint for case in result.load_cases.values() for joint in case.pins))
     own = f"Checked pins: {joined(checked)}" if checked else "No pin was checked"
-    return f"Each pin is modelled as a pressure on its hole, without clearance, friction or wear. {own}."
+    rubbing, case = rubbing_joints(result.case), result.case
+    smooth = [name for name in case.joints if name not in rubbing]
+    left_out = "friction" if not rubbing else f"friction at {joined(smooth)}" if smooth else ""
+    found = (
+        f"Each pin is modelled as a pressure on its hole, without {joined(['clearance', *filter(None, [left_out])])}"
+    )
+    guided = [name for name in rubbing if case.joints[name].type == "slider" and case.joints[name].guide_length is None]
+    if guided:
+        found += f". The moments of {joined(guided)} add no friction, since no guide_length is stated"
+    return f"{found}. Wear is not modelled. {own}."
 
 
 def _conditions(result: CheckResult) -> str:

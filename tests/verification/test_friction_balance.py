@@ -259,7 +259,7 @@ REFUSED = {
     "joints.O2.friction=2.1": "joints.O2.friction .it is 2.1.: it must be at most 2; make it smaller",
     "joints.O2.friction=-0.1": "joints.O2.friction .it is -0.1.: it must be at least 0; make it larger",
     "joints.O2.guide_length=3 mm": "joints.O2.guide_length: joint O2 is no slider",
-    "joint_model=bonded": "joints.O2.friction: it is 0.3, but the case's joints are bonded",
+    "joint_model=bonded": "joints.O2.friction: it is 0.3, but a bonded joint does not turn",
 }
 
 
