@@ -187,6 +187,7 @@ def legend(figure: Figure, outcome: Words, others: Iterable[tuple[Any, str]] = (
     others : iterable of tuple, optional
         Further handles with their texts.
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.lines import Line2D
 
     handles: list[Any] = []
@@ -205,9 +206,14 @@ def legend(figure: Figure, outcome: Words, others: Iterable[tuple[Any, str]] = (
         texts.append(text)
     if not handles:
         return
-    found = figure.legend(handles, texts, loc="outside upper center", ncols=min(5, len(texts)), frameon=False)
-    for named in found.get_texts():
-        named.set_parse_math(False)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    for columns in range(min(5, len(texts)), 0, -1):
+        found = figure.legend(handles, texts, loc="outside upper center", ncols=columns, frameon=False)
+        for named in found.get_texts():
+            named.set_parse_math(False)
+        if columns == 1 or found.get_window_extent(renderer).width <= figure.bbox.width:
+            break
+        found.remove()
 
 
 def limit_handle() -> Any:

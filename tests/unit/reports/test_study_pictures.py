@@ -16,10 +16,11 @@ from fea.study.margin import least_margin, margin, margin_band, nearest
 from fea.study.numbers import VariantNumber, VariantResult
 from fea.study.store import Store
 from geometry.base.errors import CaseError
+from reports.study import style
 from reports.study.choice import chosen
 from reports.study.columns import Parameter, Response, read_study
 from reports.study.curves import curves
-from reports.study.many import front, parallel
+from reports.study.many import front, parallel, pareto
 from reports.study.maps import verdict_map
 from reports.study.page import write_study
 from reports.study.regression import regression
@@ -318,6 +319,18 @@ def test_the_page_of_many_points_is_bounded_and_says_how(tmp_path, monkeypatch):
     few = columns_of(tmp_path / "few", points[:40])
     assert [row.position for row in few.rows] == list(range(40))
     assert not any("points are drawn" in caption for _, _, caption, _ in chosen(few))
+
+
+def test_a_legend_is_as_wide_as_its_picture_at_most():
+    """Five entries with large counts once ran over both edges."""
+    x = np.tile(np.arange(200.0), 200)
+    outcome = np.array(["pass", "undecided", "fail", "refused"] * 10_000)
+    least = Response(label="least margin (1 at the limit)", value=x + 1.0, low=x + 1.0, high=x + 1.0)
+    figure = pareto(x, least, outcome, np.arange(len(x)))
+    style.legend(figure, outcome, [(style.limit_handle(), least.label), (style.limit_handle(), "limit")])
+    figure.draw_without_rendering()
+    for legend in figure.legends:
+        assert 0.0 <= legend.get_window_extent().x0 < legend.get_window_extent().x1 <= figure.bbox.width
 
 
 def test_the_best_and_the_worst_are_those_of_all_points_sorted():
