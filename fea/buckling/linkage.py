@@ -4,7 +4,8 @@ Sway of the whole linkage is the lowest factor on all loads at which its linear 
 (``fea.nonlinear.stability.buckling_factor``). It leaves out how the frame moves before that, by which a toggle snaps
 through at a linear factor of 5.2 (same module): the lower end of its band. Where equilibrium was followed on
 the deformed shape (``fea.nonlinear.large_displacement``), as it is below a factor of 10, that answer rules and is the
-only outcome. A link that is no beam is a strip in the frame, and may buckle by itself before it does
+only outcome: the share of the load that is held, which is the limit-load factor up to 1, with its band. A link that is
+no beam is a strip in the frame, and may buckle by itself before it does
 (``fea.outcomes.solid_buckling``): then the lesser factor counts.
 """
 
@@ -15,19 +16,17 @@ from fea.beam.theory import BeamCheck
 from fea.buckling.buckling import NAME as BUCKLING
 from fea.buckling.buckling import beyond_strength
 from fea.common.band import Band
-from fea.common.scatter import compliance_scatter, load_scatter
-from fea.common.source import Source, SourceKind, distinct
+from fea.common.scatter import Scatter
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, CheckOutcome, Quantity, Verdict
 from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
 from fea.nonlinear.stability import SNAP, growth
-from loads.case.case import Case
 
 NAME = "large displacement"
 NO_EQUILIBRIUM = "the linkage gives way, so the number is that of the undeformed pose, which is no equilibrium"
 
 
 def linkage_outcomes(
-    case: Case,
     load_case: str,
     moved: LargeDisplacement,
     beams: Mapping[str, BeamCheck],
@@ -37,7 +36,6 @@ def linkage_outcomes(
 
     Parameters
     ----------
-    case : Case
     load_case : str
         Its name.
     moved : LargeDisplacement
@@ -61,13 +59,13 @@ def linkage_outcomes(
         yield found.left_open(_by_itself(weakest, own[0])) if soft else found
     elif value is not None and least is not None and own[0] < least:
         how = _by_itself(weakest, own[0])
-        found = by_linear_theory(case, load_case, own[0], max(own[0], min(value, own[1])), how)
+        found = by_linear_theory(load_case, own[0], max(own[0], min(value, own[1])), moved.scatter, how)
         yield found.because(found.reason + beyond_strength(beams))
     elif value is not None and least is not None and not (math.isinf(value) and least >= LEAST_FACTOR):
         how = f"the linkage becomes unstable at {value:.3g} times its load by linear theory"
         if least < value:
             how = f"{least:.3g} times its displacements by linear theory take the linkage to a dead point"
-        found = by_linear_theory(case, load_case, least, value, how)
+        found = by_linear_theory(load_case, least, value, moved.slack, how)
         yield found.because(found.reason + beyond_strength(beams))
 
 
@@ -76,21 +74,22 @@ def _by_itself(link: str, factor: float) -> str:
 
 
 def by_linear_theory(
-    case: Case, load_case: str, least: float, factor: float, how: str, remedy: str = "follow its deformed shape"
+    load_case: str, least: float, factor: float, slack: Scatter, how: str, remedy: str = "follow its deformed shape"
 ) -> CheckOutcome:
     """Return the outcome of the linkage by its linear frame.
 
-    The band goes from what a shallow toggle holds, with the largest stated compliance, to linear theory's factor.
+    The band goes from what a shallow toggle holds to linear theory's factor, each with what load over stiffness may be.
 
     Parameters
     ----------
-    case : Case
     load_case : str
         Its name.
     least : float
         The lesser of ``factor`` and the factor on the displacements that takes the linkage to a dead point.
     factor : float
         On all loads, at which the linear frame becomes unstable.
+    slack : Scatter
+        Of load over stiffness.
     how : str
         What happens at ``least``, for people.
     remedy : str, optional
@@ -100,18 +99,12 @@ def by_linear_theory(
     -------
     CheckOutcome
     """
-    compliances = [compliance_scatter(case.material_of(link)) for link in case.bending_links]
-    slack = max((compliance.high for compliance in compliances), default=1.0)
     band = Band(
         value=least,
-        low=least / SNAP / slack,
-        high=factor,
-        sources=(
-            *distinct(*(compliance.sources for compliance in compliances)),
-            Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high"),
-        ),
+        low=least / SNAP / slack.high,
+        high=factor / slack.low,
+        sources=(*slack.sources, Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high")),
     )
-    band = load_scatter(case, load_case).inverse.on(band)
     found = CheckOutcome.of(BUCKLING, LINKAGE, load_case, Quantity.BUCKLING_FACTOR, band, 1.0, how)
     if found.verdict is Verdict.FAIL:
         return found.because(f"{how}, so the linkage gives way")
@@ -155,7 +148,8 @@ def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
 
 def _followed(load_case: str, moved: LargeDisplacement, beyond: str) -> CheckOutcome:
     """Outcome of the linkage where its equilibrium was followed on the deformed shape: its one limit load."""
-    found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, moved.held_band, 1.0)
+    share = moved.held_share
+    found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, share, 1.0, share.without)
     open_end = f"; {found.reason}" if found.verdict is Verdict.UNDECIDED else ""
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
     informs = f"; the buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""

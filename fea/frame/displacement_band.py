@@ -25,6 +25,8 @@ from numpy.typing import NDArray
 
 from fea.beam.deflection import flexibility
 from fea.common.band import Band
+from fea.common.scatter import Scatter
+from fea.common.source import Source, SourceKind
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
@@ -263,7 +265,7 @@ def point_bounds(
     return Band(value=value, low=low, high=high)
 
 
-def compliance_range(case: Case, frame: LinkageFrame, solution: FrameSolution) -> tuple[float, float]:
+def compliance_range(case: Case, frame: LinkageFrame, solution: FrameSolution) -> Scatter:
     """Return how soft a linkage may be under its loads, over its frame of plain beams.
 
     Parameters
@@ -273,11 +275,14 @@ def compliance_range(case: Case, frame: LinkageFrame, solution: FrameSolution) -
 
     Returns
     -------
-    tuple of 2 float
+    Scatter
         Least and largest ratio of the work of all loads; 1 where they do none.
     """
     band = bounds(solution, solution, *_links(case, frame, ()))
-    return (max(band.low / band.value, STIFFEST), band.high / band.value) if band.value > 0.0 else (1.0, 1.0)
+    if band.value <= 0.0:
+        return Scatter()
+    low, high = max(band.low / band.value, STIFFEST), band.high / band.value
+    return Scatter(low=low, high=high, sources=(Source(kind=SourceKind.EYES),))
 
 
 def flexibility_ranges(case: Case, frame: LinkageFrame, solution: FrameSolution) -> dict[str, tuple[float, float]]:

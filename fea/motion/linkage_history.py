@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from fea.buckling.linkage import by_linear_theory
 from fea.check.linkage_numbers import limit_load_outcome, linkage_numbers
 from fea.common.band import Band
+from fea.common.scatter import Scatter
 from fea.common.source import distinct
 from fea.common.verdict import CheckOutcome, Verdict
 from fea.frame.build import build_frame
+from fea.frame.displacement_band import compliance_range
 from fea.frame.joint_forces import joint_forces
 from fea.frame.linear import solve_frame
-from fea.nonlinear.large_displacement import examine
+from fea.nonlinear.large_displacement import blind_link, examine, stated_scatter
 from fea.nonlinear.stability import dead_point_factor, linkage_factor
 from geometry.base.errors import CannotRunError, CaseError
 from loads.records.applied import chosen
@@ -74,6 +76,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
     case, motion = moved.case, moved.motion
     if case.large_displacement == "off":
         return
+    blind = blind_link(case)
     for load_case, acting in moved.loads.items():
         found = []
         for i in _worst(moved, load_case, evaluated):
@@ -81,17 +84,19 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
             try:
                 loads = [chosen(load, i) for load in acting]
                 frame = build_frame(case, pose, loads, held=moved.drive)
-                factor = linkage_factor(frame)
-                found.append((min(factor, dead_point_factor(frame, solve_frame(frame.model))), factor, i))
+                factor, solution = linkage_factor(frame), solve_frame(frame.model)
+                eyes = Scatter() if blind else compliance_range(case, frame, solution)
+                found.append((min(factor, dead_point_factor(frame, solution)), factor, i, eyes))
             except (CaseError, CannotRunError):
                 continue
         if not found:
             continue
-        least, factor, i = min(found)
+        least, factor, i, eyes = min(found, key=lambda one: one[0] / one[3].high)
         where = f"{motion.coordinate} = {np.degrees(motion.angles[i]):.5g} deg"
         how = f"at {where} linear theory finds it unstable or at a dead point at {least:.3g} times the load"
         remedy = "check that pose with alula check, which follows the deformed shape"
-        outcome = by_linear_theory(case, load_case, least, factor, how, remedy)
+        slack = stated_scatter(case, load_case).times(eyes)
+        outcome = by_linear_theory(load_case, least, factor, slack, how, remedy)
         if outcome.verdict is not Verdict.PASS:
             yield outcome
 

@@ -85,7 +85,7 @@ def outcomes(
         for link, result in links.items()
         if (own := solid_buckling(result)) is not None and not own.without
     }
-    return (*found, *linkage_outcomes(case, load_case, moved, beams, solids))
+    return (*found, *linkage_outcomes(load_case, moved, beams, solids))
 
 
 def _link(

@@ -18,7 +18,8 @@ from fea.common.source import Source, SourceKind, distinct
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.joint_forces import JointForces
-from fea.nonlinear.large_displacement import LARGE, LargeDisplacement, displaced
+from fea.nonlinear.large_displacement import LARGE, LargeDisplacement
+from fea.nonlinear.softened import displaced
 from fea.nonlinear.stability import SNAP, growth
 from fea.outcomes.point_shares import Shares, has_centre_line, shares_of
 from fea.outcomes.result import LinkResult, SolidResult

@@ -14,7 +14,6 @@ from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Verdict
 from fea.frame.joint_forces import JointForces, WayToHold
 from fea.nonlinear.large_displacement import LargeDisplacement
-from fea.nonlinear.limit_load import limit_load
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.opinion import SecondOpinion
 from fea.outcomes.pins import PinStress
@@ -226,10 +225,10 @@ class LinkageNumbers:
     forces: JointForces
     largest: Callable[[], tuple[Band, str]]
 
-    @cached_property
+    @property
     def limit_load(self) -> Band:
         """Factor on all loads at which the linkage gives way."""
-        return limit_load(self.case, self.moved)
+        return self.moved.limit_load
 
     @cached_property
     def displacement_and_place(self) -> tuple[Band, str]:

@@ -20,7 +20,7 @@ class Discretisation:
     Attributes
     ----------
     status : MeshStatus
-        "converged": within the accuracy on at least three meshes; "decided": not that narrow, but the verdict is clear;
+        "converged": within the accuracy on at least three meshes; "decided": not that narrow, but clear of every limit;
         "far": one mesh, every limit far away; "not reached": a limit of the run ended the refinement first. Without
         safety factor: "unresolved": the mesh is too coarse for any estimate; "edge": a sharp edge bears much and too
         few meshes tell whether its stress has a limit; "singular", "growing": the peak has no limit.
@@ -77,7 +77,7 @@ class Discretisation:
         if self.status == "far":
             return (
                 f"one mesh of {self.meshes[-1].elements:,} elements was enough: its error ({_percent(series.index)}, "
-                "with a fourfold margin) cannot change the verdict"
+                "with a fourfold margin) keeps clear of every limit"
             )
         order = "" if series.order is None else f", observed order {series.order:.1f}"
         meshes = "one mesh" if count == 1 else f"{count} meshes, the finest"
@@ -88,7 +88,7 @@ class Discretisation:
         if self.status == "converged":
             return f"{found}: converged"
         if self.status == "decided":
-            return f"{found}, more than the {_percent(self.accuracy)} aimed at, but the verdict is clear"
+            return f"{found}, more than the {_percent(self.accuracy)} aimed at, but no limit lies within it"
         return f"{found}, more than the {_percent(self.accuracy)} asked for: {self.stopped}"
 
     @property

@@ -1,10 +1,13 @@
 """Limit-load factor, largest displacement and the way to a dead point, beside closed forms."""
 
 import math
+from functools import partial
 
 import pytest
+from edited_cases import edited
 
 from fea.check.run import check_case
+from fea.common.verdict import LINKAGE, Verdict
 from fea.study.numbers import of_check, of_motion
 from loads.case.case_file import validate
 from loads.states.case_motion import solve_case_motion
@@ -48,9 +51,11 @@ def at(x, y=0.0):
     return [f"{x!r} mm", f"{y!r} mm"]
 
 
-@pytest.mark.parametrize("share", [0.2, 0.9])
-def test_a_shallow_truss_of_two_bars_snaps_through_at_the_load_of_its_closed_form(share):
-    """P(y) = 2 E A (1/L - 1/L0) y with L² = b² + y² is largest where L³ = L0 b² (von Mises truss)."""
+def truss(share):
+    """A shallow truss of two bars under that share of its limit load.
+
+    P(y) = 2 E A (1/L - 1/L0) y with L² = b² + y² is largest where L³ = L0 b² (von Mises truss).
+    """
     half, rise = 150.0, 8.0  # so shallow that no bar buckles before
     first = math.hypot(half, rise)
     now = (first * half**2) ** (1.0 / 3.0)
@@ -70,9 +75,49 @@ def test_a_shallow_truss_of_two_bars_snaps_through_at_the_load_of_its_closed_for
     limit = (
         2.0 * bar.material_of("left").youngs_modulus * area * (1.0 / now - 1.0 / first) * math.sqrt(now**2 - half**2)
     )
-    found = linkage(check_case(case(share * limit), fidelity="beam"), "push").limit_load
+    return case(share * limit)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.9])
+def test_a_shallow_truss_of_two_bars_snaps_through_at_the_load_of_its_closed_form(share):
+    found = linkage(check_case(truss(share), fidelity="beam"), "push").limit_load
     assert found.value == pytest.approx(1.0 / share, rel=0.02)
     assert found.low < 1.0 / share < found.high
+
+
+def wing(diameter):
+    return edited("owl-wing-static", [f'parts.tube.outer_diameter="{diameter} mm"'])
+
+
+def linear(share):
+    """The truss by linear theory alone."""
+    return truss(share).model_copy(update={"large_displacement": "off"})
+
+
+@pytest.mark.parametrize(
+    ("case", "verdict"),
+    [
+        (partial(truss, 0.5), "pass"),
+        (partial(truss, 0.95), "undecided"),
+        (partial(truss, 1.05), "undecided"),
+        (partial(truss, 1.5), "fail"),
+        (partial(linear, 0.3), "pass"),
+        (partial(linear, 0.4), "undecided"),
+        (partial(linear, 2.43), "undecided"),
+        (partial(linear, 5.0), "fail"),
+        (partial(wing, 7.0), "fail"),
+        (partial(wing, 7.5), "undecided"),
+        (partial(wing, 8.0), "pass"),
+    ],
+)
+def test_a_load_is_held_for_sure_where_the_limit_load_is_surely_above_it(case, verdict):
+    """The band of the share that is held once left out what the limit load's knew of eyes and bores."""
+    result = check_case(case(), name="owl-wing-static", fidelity="beam")
+    for found in result.load_cases.values():
+        factor, (check,) = found.linkage.limit_load, [c for c in found.checks if c.subject == LINKAGE]
+        assert check.verdict == verdict
+        assert (check.verdict is Verdict.PASS) is (factor.low >= 1.0)
+        assert (check.verdict is Verdict.FAIL) is (factor.high < 1.0)
 
 
 def test_a_strut_between_a_pin_and_a_slider_holds_its_euler_load():

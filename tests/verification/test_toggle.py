@@ -140,13 +140,15 @@ def test_the_limit_load_of_a_shallow_toggle_stands_at_three_root_three() -> None
 def test_a_toggle_fails_beyond_its_limit_load_and_passes_below(rise: float, bars: str) -> None:
     """Its stress is far below the limit, and its linear factor is five: above the three that sway asks for."""
     limit = limit_load(toggle(-1.0, rise, bars=bars), rise, bars)
-    verdict, moved, (found,) = linkage(toggle(-1.03 * limit, rise, bars=bars))
-    assert (verdict, moved.state, found.verdict) == (Verdict.FAIL, "no equilibrium", Verdict.FAIL)
-    assert moved.held == pytest.approx(1.0 / 1.03, abs=0.012)
-    assert moved.buckling == pytest.approx(SNAP, rel=0.1)
-    assert moved.dead_point == pytest.approx(SNAP, rel=0.1)
-    verdict, moved, (found,) = linkage(toggle(-0.95 * limit, rise, bars=bars))
-    assert (moved.state, found.verdict) == ("deformed", Verdict.PASS)
+    found = {}
+    for share in (0.65, 0.95, 1.03, 1.5):
+        _, moved, (found[share],) = linkage(toggle(-share * limit, rise, bars=bars))
+        assert moved.state == ("deformed" if share < 1.0 else "no equilibrium")
+        assert moved.held == pytest.approx(min(1.0, 1.0 / share), abs=0.012)
+        assert moved.buckling == pytest.approx(SNAP / share, rel=0.1)
+        assert moved.dead_point == pytest.approx(SNAP / share, rel=0.1)
+    # Near it stands what is not known of the lever's eyes.
+    assert [one.verdict for one in found.values()] == ["pass", "undecided", "undecided", "fail"]
 
 
 def test_the_toggle_at_three_newtons_gives_way() -> None:
@@ -162,7 +164,7 @@ def test_the_toggle_at_three_newtons_gives_way() -> None:
     assert found.value.value == pytest.approx(limit_load(case, 10.0) / 3.0, rel=0.01)
 
 
-@pytest.mark.parametrize(("share", "verdict"), [(1.02, Verdict.UNDECIDED), (0.95, Verdict.PASS)])
+@pytest.mark.parametrize(("share", "verdict"), [(0.95, Verdict.UNDECIDED), (0.65, Verdict.PASS)])
 def test_without_the_deformed_shape_a_toggle_passes_below_its_limit_load_alone(share: float, verdict: Verdict) -> None:
     limit = limit_load(toggle(-1.0, 5.0), 5.0)
     _, moved, (found,) = linkage(toggle(-share * limit, 5.0, way="off"))

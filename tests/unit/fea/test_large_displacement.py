@@ -17,7 +17,8 @@ from fea.frame.build import build_frame
 from fea.frame.joint_forces import joint_forces
 from fea.nonlinear.corotational import solve_large_displacement
 from fea.nonlinear.deformed_links import balanced, bent, in_slots
-from fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, PATH_SUBDIVISIONS, examine, span
+from fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, examine, span
+from fea.nonlinear.softened import PATH_SUBDIVISIONS
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.parts.part import Pin
 from loads.case.case_file import read_case

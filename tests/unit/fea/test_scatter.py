@@ -185,29 +185,35 @@ def test_repetitions_are_a_number(coupler, repetitions):
 
 
 @pytest.mark.parametrize(
-    ("state", "held", "shares", "ends"),
+    ("state", "held", "lost", "eyes", "ends"),
     [
-        ("no equilibrium", 0.9, {}, (0.9 / 1.25, 0.9 / 0.8)),
-        ("deformed", 1.0, {1.25: 0.85}, (0.85, 1.0)),
-        ("deformed", 1.0, {1.25: 1.0}, (1.0, 1.0)),
-        ("unstable", 0.7, {}, (0.7 / 1.25, 0.7 / 0.8)),
+        ("no equilibrium", 0.9, 0.92, Scatter(), (0.9 / 1.25, 1.0)),
+        ("unstable", 0.7, 0.72, Scatter(), (0.7 / 1.25, 0.72 / 0.8)),
+        ("unstable", 0.7, 0.72, Scatter(low=0.85, high=1.1), (0.7 / 1.25 / 1.1, 1.0)),
+        ("deformed", 1.2, 1.22, Scatter(), (1.2 / 1.25, 1.0)),
+        ("deformed", 1.3, 1.32, Scatter(), (1.0, 1.0)),
+        ("deformed", 1.3, 1.32, Scatter(low=0.85, high=1.1), (1.3 / 1.25 / 1.1, 1.0)),
     ],
 )
-def test_the_limit_load_holds_load_over_least_modulus(monkeypatch, state, held, shares, ends):
-    monkeypatch.setattr(large_displacement, "_holds", lambda frame, factor: shares[factor])
+def test_the_share_that_is_held_covers_load_over_least_stiffness(monkeypatch, state, held, lost, eyes, ends):
+    monkeypatch.setattr(large_displacement, "_end", lambda frame, reached: (held, lost))
     found = large_displacement.LargeDisplacement(
         state=state,
         span=1.0,
-        held=held,
+        held=min(held, 1.0),
+        lost=lost,
         buckling=math.inf,
+        dead_point=2.0,
         scatter=Scatter(low=0.8, high=1.25),
+        eyes=eyes,
         points={},
         links={},
         sentence="",
+        frame=object(),
     )
-    band = large_displacement._held_band(None, found)
-    assert (band.low, band.high) == pytest.approx(ends, abs=0.0)
-    [outcome] = linkage_outcomes(None, "lift", replace(found, held_band=band), {"link": _Idle()})
+    band = found.held_share
+    assert (band.low, band.high) == pytest.approx(ends, rel=1e-12)
+    [outcome] = linkage_outcomes("lift", found, {"link": _Idle()})
     expected = Verdict.PASS if band.low == 1.0 else Verdict.FAIL if band.high < 1.0 else Verdict.UNDECIDED
     assert outcome.verdict is expected
 

@@ -1,6 +1,7 @@
 """No picture, table or claim gives the peak of a mesh as a result where it is none."""
 
 from dataclasses import replace
+from typing import get_args
 
 import pytest
 from mesh_states import state
@@ -9,6 +10,7 @@ from rich.console import Console
 import fea.claims.data
 from fea.claims.data import case_tree
 from fea.outcomes.opinion import SecondOpinion
+from fea.refine.discretisation import MeshStatus
 from geometry.base.errors import CannotRunError
 from loads.case.case_file import read_case
 from reports.figures import figures
@@ -48,6 +50,12 @@ def test_a_peak_with_a_band_has_its_number(link, meshes):
     scene = figures.scene_of(replace(link, discretisation=meshes))
     assert "MPa (circles)" in figures.peak_lines(scene)[0]
     assert scene.top == link.stress.peak.value
+
+
+@pytest.mark.parametrize("status", get_args(MeshStatus))
+def test_what_meshes_leave_open_says_nothing_of_a_verdict(status):
+    """A check covers more than the mesh: one was undecided beside meshes with a verdict that was said to be clear."""
+    assert "verdict" not in state(status, 0.5 if status == "singular" else None).sentence
 
 
 def test_a_second_opinion_on_one_mesh_says_that_its_peak_is_no_result():
