@@ -196,7 +196,7 @@ class _Builder:
         if joint.pin_diameter is None or joint.type == "slider":
             self._stiff(root, end, z_axis=ALONG_X)
         else:
-            material, section = self.case.pin_material(name), ring(joint.pin_diameter, 0.0)
+            material, section = self.case.all_materials[joint.pin_material], ring(joint.pin_diameter, 0.0)
             section = section if twists else replace(section, torsion=STIFF_IN_TWIST * section.torsion)
             young, poisson = material.youngs_modulus, material.poissons_ratio
             self.elements.append(

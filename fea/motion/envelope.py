@@ -17,7 +17,7 @@ from fea.check.run import effort_of
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
-from fea.common.scatter import load_scatter
+from fea.common.scatter import Scatter, load_scatter
 from fea.common.threads import bounded, bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.elements.space import DisplacementSpace, displacement_space
@@ -25,6 +25,7 @@ from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
 from fea.motion.layer_envelope import layer_envelopes
+from fea.motion.layered import with_couples
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
@@ -55,11 +56,13 @@ class _Envelope:
     loaded: Mapping[str, tuple[LinkLoads, ...]]
     threads: int
     progress: Progress
+    shares: Mapping[tuple[str, str], Scatter] = field(default_factory=dict)
     ended: threading.Event = field(default_factory=threading.Event)
 
     @classmethod
     def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
-        case, loaded = moved.case, {}
+        layered = with_couples(moved, evaluated)
+        moved, case, loaded = layered.moved, moved.case, {}
         sizes = {load_case: stated_size(case, load_case) for load_case in case.load_cases}
         for link in case.checked_links:
             found = tuple(
@@ -69,7 +72,15 @@ class _Envelope:
             )
             if found:
                 loaded[link] = found
-        return cls(moved=moved, evaluated=evaluated, sizes=sizes, loaded=loaded, threads=threads, progress=progress)
+        return cls(
+            moved=moved,
+            evaluated=evaluated,
+            sizes=sizes,
+            loaded=loaded,
+            threads=threads,
+            progress=progress,
+            shares=layered.shares,
+        )
 
     @property
     def idle(self) -> tuple[str, ...]:
@@ -113,7 +124,10 @@ class _Envelope:
                 space = refined.solution.space
                 self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
                 motion = self._motion(link, space)
-            scatter = {load_case: load_scatter(case, load_case) for load_case in case.load_cases}
+            scatter = {
+                load_case: load_scatter(case, load_case).times(self.shares.get((load_case, link), Scatter()))
+                for load_case in case.load_cases
+            }
             found = motion.envelope(repetitions=repetitions, refined=refined, scatter=scatter)
             layers = layers_of(case, link)
             if layers is None or not found.worst.known:
@@ -202,6 +216,7 @@ def envelope_case(
     moved = solve_case_motion(case)
     evaluated = _some_poses(moved, growth)
     over = _Envelope.of(moved, evaluated, threads, progress)
+    moved = over.moved
     clock("motion")
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
     links = over.solved(start, effort or effort_of(case), repetitions)

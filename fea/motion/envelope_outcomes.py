@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,16 +15,18 @@ from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
+from fea.motion.layered import forces_at
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
 from fea.outcomes.layers import no_strength, without_shear
 from fea.outcomes.limits import layer_limit
-from fea.outcomes.pins import pin_outcome, stress_of
+from fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of
 from fea.outcomes.solid_buckling import undecided_buckling
 from geometry.materials.material import Fatigue, Material
 from loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck, SafetyFactorCheck
 from loads.states.case_motion import CaseMotion
+from loads.statics.joint_reaction import JointReaction
 
 BEYOND_CARD = "the material's card ends below the repetitions that are wanted"
 LEFT_OUT = "poses near a dead point of the driven link were left out, where its torque grows without bound"
@@ -180,20 +183,38 @@ def fatigue_outcomes(
 def _joints(
     moved: CaseMotion, name: str, check: PinCheck | BearingCheck, evaluated: NDArray[np.bool_]
 ) -> Iterator[CheckOutcome]:
-    """Outcome of every joint at the pose of its largest force: all its stresses are in proportion to that force."""
+    """Outcome of every joint at the pose of its largest force, to which in a plane all its stresses are in proportion.
+
+    Between layers a pin is judged where its own stress is largest.
+    """
     case = moved.case
     asked = case.bearing_joints if isinstance(check, BearingCheck) else case.pinned_joints
     for joint in check.joints or asked:
         for load_case, solved in moved.forces.items():
             size = np.where(evaluated, np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
+            between_layers = isinstance(check, PinCheck) and case.linkage.rise(joint) != 0.0
+            if between_layers:
+                at_poses = [_at(solved.joints[joint], i) for i in range(len(evaluated))]
+                found = zip(at_poses, evaluated, strict=True)
+                size = np.array(
+                    [stress_at(case, joint, r).equivalent.value if counts else -np.inf for r, counts in found]
+                )
             pose = first_largest(size)
-            force = float(size[pose])
+            force = float(np.linalg.norm(solved.forces[joint][pose]))
             if isinstance(check, BearingCheck):
                 outcome = bearing_outcome(case, load_case, name, check, joint, force)
+            elif between_layers:
+                shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
+                outcome = pin_outcome(case, load_case, name, check, joint, shared)
             else:
                 outcome = pin_outcome(case, load_case, name, check, joint, stress_of(case, joint, force))
             outcome = _complete(outcome, evaluated)
             yield outcome.because(f"under {force:.3g} N at {_when(moved, pose)}: {outcome.reason}")
+
+
+def _at(reaction: JointReaction, pose: int) -> JointReaction:
+    """Return a reaction at one pose."""
+    return replace(reaction, wrench=reaction.wrench[pose], arm=reaction.arm[pose])
 
 
 def column_outcomes(

@@ -14,7 +14,7 @@ how the pin sits and how the links are held, so that the moment is a band, from 
 * least: the force crosses the gap, where M changes by F g, so that |M| is F g/2 or more, whatever the bearing. Without
   a gap statics leaves nothing but shear. Both eyes bearing linearly alike, t thick without a gap, make 4/27 F t.
 
-Between layers the couple of each eye is known (``fea.outcomes.pin_between``), and which eye takes it is open only as
+Between layers the couple of each eye is known (``fea.beam.pin_between``), and which eye takes it is open only as
 far as ``fea.frame.sharing`` says.
 
 Moments about x and y that the joint carries besides (loads out of the plane) add to the largest; from the least they
@@ -30,13 +30,13 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from fea.beam.pin_between import largest_between
 from fea.common.band import Band
 from fea.common.scatter import Scatter, load_scatter, strength_scatter
 from fea.common.source import COUPLES, Source, SourceKind
 from fea.common.verdict import CheckOutcome, Quantity, Subject
 from fea.frame.joint_forces import JointForces
 from fea.outcomes.limits import least_safety_factor
-from fea.outcomes.pin_between import largest_between
 from geometry.base.errors import CaseError
 from geometry.bodies.features import Ring
 from loads.case.case import Case

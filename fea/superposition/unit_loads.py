@@ -18,6 +18,7 @@ from fea.common.link_loads import LinkLoads, PinLoad
 from fea.elements.quadrature import Quadrature, SurfaceQuadrature, surface_quadrature, volume_quadrature
 from fea.elements.space import DisplacementSpace
 from fea.elements.supports import rigid_motions
+from fea.superposition.couple_units import HEIGHTS, CoupleUnits, hats
 from fea.superposition.pin_units import HIGHEST_ORDER, PinUnits
 from fea.superposition.slot_units import SlotUnits, places_for, unit_pushes
 from fea.tractions.slot_traction import DEGREE
@@ -56,7 +57,11 @@ class UnitLoads:
     local : ndarray of bool, shape (units,)
         True for the pressure fields, which have no resultant.
     pins : mapping of str to PinUnits
+    couple_pins : mapping of str to CoupleUnits
+        The pins that bear couples about x and y as well.
     slots : mapping of str to SlotUnits
+    slot_tilts : mapping of str to int
+        Slot whose pin tilts -> number of its unit moment about x.
     couples : mapping of (str, Transfer) to int
         Pin and transfer -> number of its unit torque.
     ends : mapping of str to slice
@@ -72,7 +77,9 @@ class UnitLoads:
     wrenches: Real
     local: NDArray[np.bool_]
     pins: Mapping[str, PinUnits]
+    couple_pins: Mapping[str, CoupleUnits]
     slots: Mapping[str, SlotUnits]
+    slot_tilts: Mapping[str, int]
     couples: Mapping[tuple[str, Transfer], int]
     ends: Mapping[str, slice]
     lines: Mapping[tuple[float, float], slice]
@@ -123,12 +130,18 @@ class UnitLoads:
                 orders = units.cosine.stop - units.cosine.start
                 found[units.cosine], found[units.sine] = pressure[:orders], pressure[orders:]
                 found[units.force] = force
+            elif pin.name in self.couple_pins:
+                both = self.couple_pins[pin.name]
+                found[both.fields] = both.coefficients(pin.wrench, law)
+                found[both.wrench][:5] = pin.wrench[:, :5].T
             elif pin.name in self.slots:
                 slot = self.slots[pin.name]
                 pushed, rigid = slot.coefficients(pin.wrench[:, 1], pin.centre[:, 0], law)
                 for side, push in pushed.items():
                     found[slot.pushes[law.span, side]] = push
                 found[slot.rigid] = rigid
+                if pin.name in self.slot_tilts:
+                    found[self.slot_tilts[pin.name]] = pin.wrench[:, 3]
         for name, torque in _torques(loads).items():
             if np.any(torque != 0.0):
                 found[self.couples[name, transfer or TRANSFERS[0]]] += torque
@@ -178,12 +191,17 @@ def unit_loads(
         For a surface that the mesh lacks or meshes too coarsely.
     """
     build = _Builder(space)
-    pins, slots = {}, {}
+    pins, couple_pins, slots, slot_tilts = {}, {}, {}, {}
     for pin in body.pins:
         own = [load for history in histories for load in history.pins if load.name == pin.name]
-        if any(np.any(load.wrench[:, :2] != 0.0) for load in own):
+        if any(np.any(load.wrench[:, :5] != 0.0) for load in own):
+            tilts = any(np.any(load.wrench[:, 2:5] != 0.0) for load in own)
             if pin.slot > 0.0:
                 slots[pin.name] = build.slot(pin, own)
+                if tilts:
+                    slot_tilts[pin.name] = build.slot_tilt(pin)
+            elif tilts:
+                couple_pins[pin.name] = build.couple_pin(pin)
             else:
                 pins[pin.name] = build.pin(pin, highest)
     centres = {pin.name: np.array([pin.x, pin.y, 0.0]) for pin in body.pins}
@@ -205,7 +223,9 @@ def unit_loads(
         wrenches=np.asarray((vectors.T @ motions.T).T),
         local=np.array(build.local),
         pins=pins,
+        couple_pins=couple_pins,
         slots=slots,
+        slot_tilts=slot_tilts,
         couples=couples,
         ends=ends,
         lines=lines,
@@ -258,15 +278,8 @@ class _Builder:
 
     def pin(self, pin: Pin, highest: int) -> PinUnits:
         """Pressure fields of a pin without their resultants, and the tractions of unit forces."""
-        bore, axis = surface_quadrature(self._space, f"bore:{pin.name}"), np.array([pin.x, pin.y, 0.0])
-        centre = bore_middle(bore, axis)
-        arm = bore.x - centre
-        radius = float((bore.w * np.hypot(arm[..., 0], arm[..., 1])).sum() / bore.w.sum())
-        if not 0.9 < 2.0 * radius / pin.diameter < 1.1:
-            raise CannotRunError(
-                f"the hole at pin {pin.name} measures {2.0 * radius:.4g} mm on the mesh, not {pin.diameter:.4g} mm"
-            )
-        angle = np.arctan2(arm[..., 1], arm[..., 0])
+        bore, centre, _, lift = self._bore(pin)
+        angle = np.arctan2(bore.x[..., 1] - centre[1], bore.x[..., 0] - centre[0])
         rigid = np.array([self._vector(bore, wrench_density(bore, centre, unit)) for unit in np.eye(6)]).T
         fields = [np.cos(n * angle) for n in range(highest + 1)] + [np.sin(n * angle) for n in range(1, highest + 1)]
         densities = [-field[..., None] * bore.normals for field in fields]
@@ -276,10 +289,54 @@ class _Builder:
             pin=pin,
             cosine=self._add(*freed[: highest + 1], local=True),
             sine=self._add(*freed[highest + 1 :], local=True),
-            force=self._add(*(rigid @ shifted(unit, axis - centre) for unit in np.eye(6)[:2])),
+            force=self._add(*(rigid @ shifted(unit, np.array([0.0, 0.0, -lift])) for unit in np.eye(6)[:2])),
             wrench=wrench,
             wall=angle.ravel(),
         )
+
+    def _bore(self, pin: Pin) -> tuple[SurfaceQuadrature, Real, float, float]:
+        """Wall of a hole, the middle of its axis, its radius, and the middle's height above the plane of forces."""
+        bore, axis = surface_quadrature(self._space, f"bore:{pin.name}"), np.array([pin.x, pin.y, 0.0])
+        centre = bore_middle(bore, axis)
+        arm = bore.x - centre
+        radius = float((bore.w * np.hypot(arm[..., 0], arm[..., 1])).sum() / bore.w.sum())
+        if not 0.9 < 2.0 * radius / pin.diameter < 1.1:
+            raise CannotRunError(
+                f"the hole at pin {pin.name} measures {2.0 * radius:.4g} mm on the mesh, not {pin.diameter:.4g} mm"
+            )
+        return bore, centre, radius, float(centre[2] - axis[2])
+
+    def couple_pin(self, pin: Pin) -> CoupleUnits:
+        """Pressure fields of a pin at several heights without their resultants, and the tractions of a unit wrench."""
+        bore, centre, radius, lift = self._bore(pin)
+        arm = bore.x - centre
+        angle, z = np.arctan2(arm[..., 1], arm[..., 0]), arm[..., 2]
+        heights = np.linspace(float(z.min()), float(z.max()), HEIGHTS)
+        rigid = np.array([self._vector(bore, wrench_density(bore, centre, unit)) for unit in np.eye(6)]).T
+        waves = [np.cos(n * angle) for n in range(HIGHEST_ORDER + 1)]
+        waves += [np.sin(n * angle) for n in range(1, HIGHEST_ORDER + 1)]
+        freed = []
+        for hat in hats(heights, z):
+            for wave in waves:
+                density = -(hat * wave)[..., None] * bore.normals
+                freed.append(self._vector(bore, density) - rigid @ bore.wrench(density, centre))
+        around = 2.0 * np.pi * radius
+        return CoupleUnits(
+            pin=pin,
+            heights=heights,
+            length=float(bore.w.sum()) / around,
+            second=float((bore.w * z**2).sum()) / around,
+            lift=lift,
+            fields=self._add(*freed, local=True),
+            wrench=self._add(*(rigid @ shifted(unit, np.array([0.0, 0.0, -lift])) for unit in np.eye(6))),
+            wall=angle.ravel(),
+        )
+
+    def slot_tilt(self, pin: Pin) -> int:
+        """Unit moment about x of a pin that tilts between the flanks of its slot."""
+        wall, middle = surface_quadrature(self._space, f"bore:{pin.name}", degree=DEGREE), np.array([pin.x, pin.y, 0.0])
+        column: int = self._add(self._vector(wall, wrench_density(wall, middle, np.eye(6)[3]))).start
+        return column
 
     def slot(self, pin: Pin, loads: Sequence[PinLoad]) -> SlotUnits:
         """Pushes of a pin on the flanks of its slot without their resultants, and the tractions that deliver these."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fea.outcomes.pin_between import largest_between
+from fea.beam.pin_between import largest_between
 from geometry.bodies.features import Ring
 
 EYE = Ring(diameter=8.0, low=-2.0, high=2.0)

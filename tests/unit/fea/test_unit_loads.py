@@ -14,7 +14,7 @@ from fea.superposition.pin_units import fourier_coefficients
 from fea.superposition.unit_loads import TRANSFERS, unit_loads
 from fea.tractions.traction import pin_traction
 from geometry.base.errors import CannotRunError
-from loads.records.applied import PartMass
+from loads.records.applied import PartMass, shifted
 from loads.records.bearing import NARROW, WIDE
 
 ORIGIN = np.zeros(3)
@@ -75,6 +75,28 @@ def test_load_vectors_are_those_of_the_pressure_itself(space, units, law, least)
         pin = PinLoad(name="B", centre=np.array([L, 0, 0]), diameter=1.5, wrench=wrench)
         whole = bore.load_vector(pin_traction(bore, pin, law), len(space.nodes))
         assert np.linalg.norm(found[:, pose] - whole) < least * np.linalg.norm(whole)
+
+
+@pytest.mark.parametrize(("law", "least"), [(WIDE, 0.03), (NARROW, 0.06)])
+def test_a_couple_beside_the_force_is_one_pressure_with_it(space, law, least):
+    """Also where it turns over within the bore, and where its direction turns along it."""
+    bore, wrenches = surface_quadrature(space, "bore:B"), np.zeros((4, 6))
+    wrenches[:, 0], wrenches[:, 1] = [3.0, 3.0, 0.0, -1.0], [0.0, 1.0, 2.0, 0.0]
+    wrenches[:, 3], wrenches[:, 4] = [0.0, 2.0, -9.0, 1.5], [0.5, 1.0, 0.0, 0.0]
+    plain = history(space)
+    pins = tuple(replace(pin, wrench=wrenches if pin.name == "B" else np.zeros((4, 6))) for pin in plain.pins)
+    loads = replace(plain, pins=pins, couples=(), ends=(), lines=(), inertia=None)
+    made = unit_loads(space, BODY, [loads], density=RHO)
+    assert list(made.couple_pins) == ["B"]
+    coefficients = made.coefficients(loads, law, None)
+    found = made.vectors @ coefficients
+    assert np.abs(made.wrenches[:, made.local]).max() < 1e-12
+    for pose, wrench in enumerate(wrenches):
+        pin = PinLoad(name="B", centre=np.array([L, 0, 0]), diameter=1.5, wrench=wrench)
+        whole = bore.load_vector(pin_traction(bore, pin, law), len(space.nodes))
+        assert np.linalg.norm(found[:, pose] - whole) < least * np.linalg.norm(whole)
+        delivered = made.wrenches @ coefficients[:, pose]
+        assert delivered == pytest.approx(shifted(wrench, np.array([L, 0.0, 0.0])), abs=1e-10)
 
 
 def test_inertia_carries_the_stated_mass(space):

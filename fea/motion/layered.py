@@ -1,0 +1,111 @@
+"""Links in layers over a motion: the couples between layers at every pose, and how pins may share them.
+
+Equilibrium in the plane gives the joint forces of all poses at once. What acts out of it, F_z, M_x and M_y of every
+joint, is that of the spatial frame of each pose. The ways in which pins may share the couples (``fea.frame.sharing``)
+are tried where a link bears most, and widen its bands by what they change of its hand calculation there.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.cut_free import link_loads
+from fea.check.force_doubt import force_doubt
+from fea.common.scatter import Scatter
+from fea.frame.joint_forces import JointForces, joint_forces, solved_frame
+from loads.records.applied import chosen
+from loads.states.case_motion import CaseMotion
+from loads.states.dead_point_reach import pose_at
+from loads.states.kinetostatics import Kinetostatics
+from loads.statics.statics import Equilibrium
+
+
+@dataclass(frozen=True, kw_only=True)
+class LayeredMotion:
+    """A case over its motion, with the couples between layers.
+
+    Attributes
+    ----------
+    moved : CaseMotion
+        With all six components of the joint forces at the poses that count; as it was without layers.
+    shares : mapping of tuple of 2 str to Scatter
+        (load case, link) -> by what its stress may differ by how pins share the couples; empty without layers.
+    """
+
+    moved: CaseMotion
+    shares: Mapping[tuple[str, str], Scatter] = field(default_factory=dict)
+
+
+def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMotion:
+    """Return a motion with the couples between layers.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+
+    Returns
+    -------
+    LayeredMotion
+
+    Raises
+    ------
+    CannotRunError
+        Where the frame of a pose moves without strain.
+    """
+    case = moved.case
+    if not case.layered or not moved.forces:
+        return LayeredMotion(moved=moved)
+    forces: dict[str, Kinetostatics] = {}
+    shares: dict[tuple[str, str], Scatter] = {}
+    for name, solved in moved.forces.items():
+        wrenches = {joint: reaction.wrench.copy() for joint, reaction in solved.joints.items()}
+        for i in map(int, np.flatnonzero(evaluated)):
+            loads = [chosen(load, i) for load in moved.loads[name]]
+            frame, solution = solved_frame(case, pose_at(moved.motion, i), loads, moved.drive, bonded=False)
+            found = frame.reactions(solution.joint_wrenches, solution.residual)
+            for joint, wrench in wrenches.items():
+                wrench[i, 2:5] = found.joints[joint].wrench[2:5]
+        joints = {joint: replace(reaction, wrench=wrenches[joint]) for joint, reaction in solved.joints.items()}
+        forces[name] = replace(solved, joints=joints)
+        poses = _worst_poses(moved, name, forces[name], evaluated)
+        for pose in set(poses.values()):
+            loads = [chosen(load, pose) for load in moved.loads[name]]
+            doubt = force_doubt(case, name, forces_at(moved, name, pose), loads).stress
+            shares |= {(name, link): doubt[link] for link, own in poses.items() if own == pose and link in doubt}
+    return LayeredMotion(moved=replace(moved, forces=forces), shares=shares)
+
+
+@lru_cache(maxsize=64)
+def forces_at(moved: CaseMotion, load_case: str, pose: int) -> JointForces:
+    """Return the joint forces of one pose with all ways in which pins may share couples.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    load_case : str
+    pose : int
+        Its number.
+
+    Returns
+    -------
+    JointForces
+    """
+    loads = [chosen(load, pose) for load in moved.loads[load_case]]
+    return joint_forces(moved.case, pose_at(moved.motion, pose), loads)
+
+
+def _worst_poses(
+    moved: CaseMotion, load_case: str, forces: Equilibrium, evaluated: NDArray[np.bool_]
+) -> dict[str, int]:
+    """Link -> number of the pose in which the sum of all that acts on it is largest."""
+    case, found = moved.case, {}
+    for link in case.checked_links:
+        loads = link_loads(load_case, link, case.body(link), forces, moved.loads[load_case])
+        size = np.where(evaluated, loads.size(case.linkage.longest), -np.inf)
+        found[link] = int(np.argmax(size))
+    return found
