@@ -182,6 +182,8 @@ def uncalibrated(body: Body, nu: float) -> str:
         return f"no part of shape {body.part.shape} was measured"
     if any(pin.slot > 0.0 for pin in body.pins):
         return "it has a slot"
+    if any(pin.fork is not None for pin in body.pins):
+        return "it has a fork"
     if any(pin.ring is not None for pin in body.pins):
         return "it has an eye of sizes of its own"
     if body.part.unmeasured:

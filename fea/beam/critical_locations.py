@@ -134,7 +134,7 @@ def displacement_estimate(
     axis = max(float(np.linalg.norm(moved)) for moved in (*table[:, :3], *beyond))
     bending = max(section.half_y, section.half_z) * np.hypot(table[:, 4], table[:, 5])
     rings = {pin.name: body.ring(pin) for pin in body.pins}
-    corner = max((math.hypot(ring.diameter, ring.thickness) / 2.0 for ring in rings.values()), default=0.0)
+    corner = max((math.hypot(ring.diameter, ring.height) / 2.0 for ring in rings.values()), default=0.0)
     twist = corner * np.abs(table[:, 3])
     pinned = max((float(np.linalg.norm(p.wrench[:3])) / rings[p.name].thickness for p in loads.pins), default=0.0)
     return float(axis + (bending + twist).max() + pinned / young)
@@ -256,14 +256,16 @@ def _bore(
 
     Of the pin's push after Pilkey & Pilkey, 3rd ed., chart 4.67 (close-fitting pin in a strip, net section, d/D of 0.15
     to 0.75, clipped; it holds for an edge one width or more beyond the pin, and an eye has half a width, which the
-    calibration takes up), its moments taken as the force pair 6M/t of a linear pressure; of what passes through the
-    eye, with the factors of a hole in a plate: 3 in tension and in bending out of the plane, 2 in bending in the plane;
-    of a torque that the bore takes by shear.
+    calibration takes up), its moments taken as the force of their largest linear pressure, 6M/t; of what passes through
+    the eye, with the factors of a hole in a plate: 3 in tension and in bending out of the plane, 2 in bending in the
+    plane; of a torque that the bore takes by shear.
     """
-    wide, thick, hole = body.ring(pin).diameter, body.ring(pin).thickness, pin.diameter
+    ring, hole = body.ring(pin), pin.diameter
+    wide, thick = ring.diameter, ring.thickness
     h = min(max(hole / wide, 0.15), 0.75)
     factor = 12.882 - 52.714 * h + 89.762 * h**2 - 51.667 * h**3
-    push = float(np.linalg.norm(load.wrench[:3]) + 6.0 * np.linalg.norm(load.wrench[3:5]) / thick)
+    tilted = ring.thickness * max(ring.high - ring.middle, ring.middle - ring.low) / ring.second
+    push = float(np.linalg.norm(load.wrench[:3]) + tilted * np.linalg.norm(load.wrench[3:5]))
     pushed = factor * net_tension(push, wide, hole, thick)
     through = min(abs(before[0]), abs(after[0])) if before[0] * after[0] > 0.0 else 0.0
     n, m_z = 3.0 * through / ((wide - hole) * thick), max(abs(before[5]), abs(after[5]))

@@ -12,11 +12,15 @@ its warping is left out. Where that counts, flanks of h << t bend instead of twi
 
 An arm is a straight bar built in at the eye from which it starts, under the force of its pin alone.
 
+The cheeks of a fork are bars built in at the root of its gap. Each bears half of the pin's force and what a couple of
+the pin adds as a pressure linear along the walls, q = D z/I with D = ∫ z q dz; a thrust acts on one of them.
+
 A pin through the walls of a tube leaves the net section of ``fea.beam.holed_tube``.
 Lengths in mm, forces in N, moments in N·mm, stresses in MPa. The stress of a detail is given as that of its section:
 axial N/A of the net section, bending what comes on top at the worst fibre of a flank.
 """
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -30,6 +34,7 @@ from fea.beam.piecewise import Piecewise
 from fea.beam.section_stress import SectionStress, equivalent_stress, section_stress
 from fea.beam.theory import Floats
 from fea.common.link_loads import LinkLoads, PinLoad
+from geometry.bodies.body import extent
 from geometry.parts.part import Body, Pin, Section, rectangle
 
 _SAMPLES = 33
@@ -76,13 +81,16 @@ def details(body: Body, loads: LinkLoads, forces: Piecewise, poisson: float = 0.
     Returns
     -------
     tuple of Detail
-        One per slot, arm and pin through the walls of a tube; none of a part that is no beam.
+        One per slot, arm, fork and pin through the walls of a tube; none of a part that is no beam.
     """
     if not body.part.is_beam:
         return ()
     pushed = {load.name: load for load in loads.pins}
     found = [_slot(body, pin, pushed[pin.name], forces, poisson) for pin in body.pins if pin.slot > 0.0]
     found += [_arm(body, pin, pin.foot, pushed[pin.name], poisson) for pin in body.pins if pin.foot is not None]
+    torques = {couple.pin: float(couple.torque) for couple in loads.couples}
+    forks = [pin for pin in body.pins if pin.fork is not None]
+    found += [_fork(body, pin, pushed[pin.name], torques.get(pin.name, 0.0), poisson) for pin in forks]
     if body.part.section.round:
         found += [_through(body, pin, forces, poisson) for pin in body.pins if body.ring(pin).diameter == 0.0]
     return tuple(found)
@@ -226,6 +234,31 @@ def _inside(forces: Piecewise, x: float, side: str) -> NDArray[np.float64]:
     if x < first or x > last or (x == first and side == "before") or (x == last and side == "after"):
         return np.zeros(6)
     return np.asarray(forces.at(x, "before" if side == "before" else "after"))
+
+
+def _fork(body: Body, pin: Pin, load: PinLoad, torque: float, poisson: float) -> Detail:
+    assert pin.fork is not None
+    ring, wide = body.ring(pin), 2.0 * body.part.half_width(body, pin.x)
+    if pin.foot is None:
+        along = np.array([1.0 if pin.x > sum(extent(body)) / 2.0 else -1.0, 0.0, 0.0])
+    else:
+        wide, along = body.part.arm_section.width, np.array([pin.x - pin.foot[0], pin.y - pin.foot[1], 0.0])
+        along = along / np.linalg.norm(along)
+    axes = np.array([along, [-along[1], along[0], 0.0], [0.0, 0.0, 1.0]])
+    cheek = rectangle(wide, (body.part.section.height - pin.fork.gap) / 2.0)
+    tilt = np.array([load.wrench[4], -load.wrench[3], 0.0]) / ring.second
+    found = []
+    for (low, high), thrust in itertools.product(ring.walls, (0.0, 1.0)):
+        length, middle = high - low, (low + high) / 2.0
+        force = np.array([*load.wrench[:2], 0.0]) * length / ring.thickness + tilt * length * middle
+        force[2] = thrust * load.wrench[2]
+        own = np.cross([0.0, 0.0, 1.0], tilt * length**3 / 12.0)
+        own[2] = (load.wrench[5] + torque) * length / ring.thickness
+        moment = own + np.cross(along * pin.fork.depth, force)
+        found.append(section_stress(cheek, np.concatenate([axes @ force, axes @ moment]), poisson))
+    remark = "a cheek built in at the root of the gap, without the stress concentration there"
+    worst = max(found, key=lambda stress: stress.equivalent)
+    return Detail(name=f"the fork at {pin.name}", x=pin.x, stress=worst, remark=remark)
 
 
 def _arm(body: Body, pin: Pin, foot: tuple[float, float], load: PinLoad, poisson: float) -> Detail:

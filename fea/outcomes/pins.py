@@ -14,6 +14,14 @@ how the pin sits and how the links are held, so that the moment is a band, from 
 * least: the force crosses the gap, where M changes by F g, so that |M| is F g/2 or more, whatever the bearing. Without
   a gap statics leaves nothing but shear. Both eyes bearing linearly alike, t thick without a gap, make 4/27 F t.
 
+An eye of thickness h in the gap of a fork with cheeks t1 thick is in double shear: each cheek takes F/2.
+
+* largest: all bear evenly along the pin, as on a stiff one. The bending moment is that of F/2 from the middle of a
+  cheek to the middle of half the eye, M = F/2 (t1/2 + g + h/4), with g free on either side (Melcon & Hoblit, Product
+  Engineering 24, June 1953, 160-170). A moment that the joint carries besides is linear along the walls
+  (``fea.beam.pin_between``).
+* least: F/2 or more crosses one of the two gaps, where M changes by F g/2, so that |M| is F g/4 or more.
+
 Between layers the couple of each eye is known (``fea.beam.pin_between``), and which eye takes it is open only as
 far as ``fea.frame.sharing`` says.
 
@@ -40,6 +48,8 @@ from fea.outcomes.limits import least_safety_factor
 from geometry.base.errors import CaseError
 from geometry.bodies.features import Ring
 from loads.case.case import Case
+from loads.case.eyes import other_link
+from loads.case.forks import forked_link
 from loads.records.applied import shifted
 from loads.records.check_spec import PinCheck
 from loads.statics.joint_reaction import JointReaction
@@ -124,6 +134,49 @@ def pin_stress(
         moment=Band(value=most, low=least, high=most, sources=SOURCES),
         bending=Band(value=most * bent, low=least * bent, high=most * bent, sources=SOURCES),
         shear=shear_force * sheared,
+        equivalent=Band(value=high, low=low, high=high, sources=SOURCES),
+    )
+
+
+def fork_pin_stress(
+    force: float, diameter: float, fork: Ring, eye: Ring, *, moment: float = 0.0, poisson: float = 0.3
+) -> PinStress:
+    """Return the stresses of a pin that holds an eye in the middle of a fork's gap.
+
+    Parameters
+    ----------
+    force : float
+        Of the joint, across the pin [N].
+    diameter : float
+        [mm]
+    fork, eye : Ring
+        The hole of the fork, with its gap, and that in between.
+    moment : float
+        About x or y [N mm].
+    poisson : float
+
+    Returns
+    -------
+    PinStress
+        Its lever is that of half the force.
+    """
+    up = fork.middle - eye.middle
+    gaps = tuple((low + up, high + up) for low, high in eye.gaps)
+    eye = replace(eye, low=eye.low + up, high=eye.high + up, gaps=gaps)
+    cheek, (start, end) = fork.thickness / 2.0, fork.gaps[0]
+    free = (end - start - eye.height) / 2.0
+    wrench = np.array([force, 0.0, 0.0, 0.0, moment, 0.0])
+    wrench[4] += force * fork.middle
+    most, shear = largest_between((fork, eye), 0.0, -wrench, wrench)
+    bent, sheared = 32.0 / (math.pi * diameter**3), _shear_stress(1.0, diameter, poisson)
+    least = force * free / 4.0
+    low = max(least * bent, math.sqrt(3.0) * force / 2.0 * sheared)
+    high = max(most * bent, math.sqrt(3.0) * shear * sheared)
+    return PinStress(
+        lever=cheek / 2.0 + free + eye.height / 4.0,
+        moment=Band(value=most, low=least, high=most, sources=SOURCES),
+        bending=Band(value=most * bent, low=least * bent, high=most * bent, sources=SOURCES),
+        shear=shear * sheared,
         equivalent=Band(value=high, low=low, high=high, sources=SOURCES),
     )
 
@@ -296,7 +349,16 @@ def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinS
         For a pin without diameter.
     """
     diameter, poisson = _pin_of(case, joint)
-    gap = case.joints[joint].pin_gap
+    gap, fork = case.joints[joint].pin_gap, forked_link(case, joint)
+    if fork is not None:
+        outer, mate = eye_of(case, joint, fork), other_link(case.linkage, joint, fork)
+        if case.links[mate].part is not None:
+            inner = eye_of(case, joint, mate)
+        else:
+            (low, high), *_ = outer.gaps
+            half = (high - low) / 2.0 - gap
+            inner = Ring(diameter=0.0, low=outer.middle - half, high=outer.middle + half)
+        return fork_pin_stress(force, diameter, outer, inner, moment=moment, poisson=poisson)
     return pin_stress(force, diameter, eyes(case, joint), gap, moment=moment, poisson=poisson)
 
 

@@ -71,5 +71,5 @@ class LinkTask:
 
     @property
     def may_be_sharp(self) -> bool:
-        """True where the shape has re-entrant edges: at eyes without fillets."""
-        return self.body.part.may_be_sharp
+        """True where the shape has re-entrant edges, such as at eyes without fillets."""
+        return self.body.may_be_sharp

@@ -17,7 +17,7 @@ from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section
 from geometry.materials.printable import Printable
 
-Feature = Literal["slots", "arms", "rows of holes", "load points without a pin", "eyes of their own"]
+Feature = Literal["slots", "arms", "rows of holes", "load points without a pin", "eyes of their own", "forks"]
 ON_AXIS = 1e-9
 """Share of a size by which a place may lie off the link's axis."""
 FLAT_WALL = 0.75
@@ -363,6 +363,11 @@ class Body:
         cuts = self.cuts if self.part.is_beam else ()
         nearest = min(cuts, key=lambda cut: abs(cut.x - x)).plain if cuts else None
         return nearest or self.part.section
+
+    @property
+    def may_be_sharp(self) -> bool:
+        """Whether it may have re-entrant edges: those of its part, and at the roots of forks."""
+        return self.part.may_be_sharp or any(pin.fork is not None and pin.fork.radius == 0.0 for pin in self.pins)
 
     def ring(self, pin: Pin) -> Ring:
         """Return the flat ring about a hole.

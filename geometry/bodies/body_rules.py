@@ -9,6 +9,7 @@ from geometry.base.errors import CaseError
 from geometry.bodies.body import ON_AXIS, Body, apart, extent, patch_span
 from geometry.bodies.eyes import eye_reach
 from geometry.bodies.features import HoleRow, PlainEnd
+from geometry.bodies.forks import check_forks
 
 SLENDEREST = 1e6
 """Largest distance of any part of a link from its origin over the smaller size of its section. Measured: the kernel's
@@ -40,6 +41,7 @@ def check_body(body: Body) -> None:
     if body.part.is_beam:
         check_length(body)
     _check_pins(body)
+    check_forks(body)
     body.part.check(body)
     for end in () if body.part.patches_anywhere else body.ends:
         _check_end(body, end)
@@ -76,6 +78,7 @@ def _check_features(body: Body) -> None:
         "arms": [pin.name for pin in body.pins if pin.foot is not None],
         "rows of holes": ["holes"] if body.holes else [],
         "load points without a pin": [end.name for end in body.ends],
+        "forks": [pin.name for pin in body.pins if pin.fork is not None],
     }
     for feature, names in stated.items():
         if names and feature not in part.takes:

@@ -39,7 +39,7 @@ def flush(body: Body, pin: Pin) -> bool:
         False of tubes, and of thicker eyes of bars.
     """
     section = body.part.section if pin.foot is None else body.part.arm_section
-    return not section.round and body.ring(pin).thickness <= (1.0 + ROUNDING) * section.height
+    return not section.round and body.ring(pin).height <= (1.0 + ROUNDING) * section.height
 
 
 def plain_eye(body: Body, pin: Pin) -> bool:
@@ -80,7 +80,7 @@ def arm_angle(pin: Pin) -> float:
 
 
 def eye_reach(body: Body, pin: Pin) -> float:
-    """Return half the length of x that an eye with its fillet takes up on the part.
+    """Return half the length of x that an eye with its fillet, and the gap of a fork, take up on the part.
 
     The fillet's centre lies at the radii's sum from the pin and at one fillet radius off the surface. Where an arm
     starts, the fillet between its side and the bar's reaches further if the angle between them is small.
@@ -107,7 +107,8 @@ def eye_reach(body: Body, pin: Pin) -> float:
     corners = [
         (half + part.fillet_radius) / math.tan(arm_angle(arm) / 2.0) for arm in body.pins if arm.foot == (pin.x, pin.y)
     ]
-    return max([math.sqrt(max(radius**2 - across**2, 0.0)), *corners]) + pin.slot / 2.0
+    root = 0.0 if pin.fork is None else pin.fork.depth
+    return max([math.sqrt(max(radius**2 - across**2, 0.0)), root, *corners]) + pin.slot / 2.0
 
 
 def _shoulder(body: Body, pin: Pin, side: float) -> float:
@@ -146,7 +147,7 @@ def check_flat_eyes(body: Body) -> None:
     """
     shape, thick = body.part.shape, body.part.eye_thickness
     for pin in body.pins:
-        own = body.ring(pin).thickness
+        own = body.ring(pin).height
         if abs(own - thick) > ROUNDING * thick:
             raise CaseError(
                 f"the eye at {pin.name} is {own:.4g} mm thick, but an eye of a {shape} is as thick as the {shape}, "

@@ -65,6 +65,56 @@ class EyeSizes(CaseModel):
     """Outer diameter; the part's eye_diameter where it is left out."""
     thickness: Annotated[Length, POSITIVE] | None = None
     """Height along the pin; the part's eye_thickness where it is left out."""
+    fork: Annotated[Length, POSITIVE] | None = None
+    """Of a fork (clevis): the gap in the middle of its thickness, in which the other link's eye lies between two
+    cheeks. Of an imported part it tells that the gap of the file is one."""
+    fork_depth: Annotated[Length, POSITIVE] | None = None
+    """From the pin's axis to the root of that gap, an arc about the axis. Left out, it is 1.05 times the radius of the
+    larger of both eyes, and fork_radius."""
+    fork_radius: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Rounds the edges between the root of the gap and the cheeks; 0 leaves them sharp."""
+
+    @model_validator(mode="after")
+    def _fork(self) -> "EyeSizes":
+        if self.fork is None and self.model_fields_set & {"fork_depth", "fork_radius"}:
+            raise PydanticCustomError(
+                "no_fork", "fork_depth and fork_radius need a fork; state its gap, or leave them out"
+            )
+        return self
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fork:
+    """The gap of a fork end.
+
+    Attributes
+    ----------
+    gap : float
+        Its height along the pin, in the middle of the eye [mm].
+    depth : float
+        From the pin's axis to its root, an arc about the axis [mm].
+    radius : float
+        Of the fillets between root and cheeks [mm]; 0 where they are sharp.
+    """
+
+    gap: float
+    depth: float
+    radius: float
+
+    def scaled(self, s: Callable[[float], float]) -> "Fork":
+        """Return the fork with its lengths in another unit.
+
+        Parameters
+        ----------
+        s : callable
+            Takes a length to that unit.
+
+        Returns
+        -------
+        Fork
+            The fork.
+        """
+        return Fork(gap=s(self.gap), depth=s(self.depth), radius=s(self.radius))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,6 +208,8 @@ class Pin:
     ring : Ring, optional
         The flat ring about its hole; None for the one that the part's eye_diameter and eye_thickness make
         (``Body.ring`` gives the one that holds).
+    fork : Fork, optional
+        The gap that is cut into its eye, whose ring tells it as well; None where there is none.
     """
 
     name: str
@@ -168,6 +220,7 @@ class Pin:
     clearance: float = 0.0
     foot: tuple[float, float] | None = None
     ring: Ring | None = None
+    fork: Fork | None = None
 
     @property
     def span(self) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError
 from geometry.base.outline import Outline
-from geometry.bodies.features import Pin
+from geometry.bodies.features import Fork, Pin
 
 Entity = tuple[int, int]
 """Dimension and tag of something in the kernel."""
@@ -198,6 +198,28 @@ class Kernel:
         if pin.slot > 0.0:
             pieces.append((3, self.occ.addBox(pin.span[0], pin.y - diameter / 2.0, low, pin.slot, diameter, height)))
         return pieces
+
+    def fork_gap(self, pin: Pin, fork: Fork) -> Entity:
+        """Make what cuts the gap of a fork: a cylinder about its pin, whose rims are rounded as the root shall be.
+
+        Parameters
+        ----------
+        pin : Pin
+            The pin.
+        fork : Fork
+            The gap.
+
+        Returns
+        -------
+        Entity
+            The solid.
+        """
+        solid = self.cylinder((pin.x, pin.y, -fork.gap / 2.0), (0, 0, fork.gap), fork.depth)
+        if fork.radius == 0.0:
+            return solid
+        self.occ.synchronize()
+        flat = [f for f in self.model.getBoundary([solid], oriented=False) if self.model.getType(*f) == "Plane"]
+        return self.fillet(solid, [tag for _, tag in self.model.getBoundary(flat, oriented=False)], fork.radius)
 
     def fuse(self, pieces: list[Entity], *, unify: bool = False) -> Entity:
         """Unite solids that touch or overlap.

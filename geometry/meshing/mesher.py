@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from geometry.base.errors import CannotRunError, CoarseMeshError
 from geometry.bodies.body import Body
+from geometry.bodies.forks import fork_places
 from geometry.meshing.element_count import SAFETY, Sizes, estimated_elements
 from geometry.meshing.element_geometry import flatten, jacobian_coefficients, scaled_jacobians, triangle_areas
 from geometry.meshing.mesh_settings import MeshSettings
@@ -293,6 +294,7 @@ def size_formulas(body: Body, settings: MeshSettings) -> list[str]:
         for diameter, elements, distance in holes
     ]
     places += part.fine_places(body, general, settings.fillet_size)
+    places += fork_places(body, general, settings.fillet_size)
     return [f"{general:.12g}", *(f"{size:.12g}+{growth:g}*{distance}" for size, distance in places)]
 
 

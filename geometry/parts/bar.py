@@ -28,7 +28,7 @@ class Bar(Straight):
     """A flat bar with round eyes: width in the linkage's plane, thickness along the pins."""
 
     takes: ClassVar[frozenset[Feature]] = frozenset(
-        ("slots", "arms", "rows of holes", "load points without a pin", "eyes of their own")
+        ("slots", "arms", "rows of holes", "load points without a pin", "eyes of their own", "forks")
     )
 
     shape: Literal["bar"]

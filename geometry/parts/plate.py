@@ -36,7 +36,9 @@ class Plate(PartKind):
     stiffness, but for the flanks of a slot. Hand calculation does not decide on it.
     """
 
-    takes: ClassVar[frozenset[Feature]] = frozenset(("slots", "load points without a pin", "eyes of their own"))
+    takes: ClassVar[frozenset[Feature]] = frozenset(
+        ("slots", "load points without a pin", "eyes of their own", "forks")
+    )
     is_beam: ClassVar[bool] = False
     patches_anywhere: ClassVar[bool] = True
     by_hand: ClassVar[str] = (
@@ -243,6 +245,7 @@ class Plate(PartKind):
         beside += [(f"the patch of {e.name}", (e.x, e.y, e.patch / 2.0)) for e in body.ends]
         others = [(what, outline([circle])) for what, circle in beside] + list(cuts.items())
         others += [(f"the eye at {p.name}", _about(p, self.flat_diameter(body, p))) for p in body.pins]
+        others += [(f"the fork at {p.name}", _about(p, 2.0 * p.fork.depth)) for p in body.pins if p.fork is not None]
         return min([*found, *((what, gap(cut, other)) for what, other in others)], key=lambda entry: entry[1])
 
     def solid(self, kernel: Kernel, body: Body) -> Entity:

@@ -97,8 +97,13 @@ class Straight(PartKind):
                 pieces.append(Piece(start=pin.foot, angle=math.atan2(y, x), length=math.hypot(x, y)))
         return pieces
 
-    def rough_volume(self, body: Body) -> float:
-        """As ``PartKind.rough_volume``: pieces and eyes less their holes and what they share, without fillets."""
+    def rough_volume(self, body: Body) -> float | None:
+        """As ``PartKind.rough_volume``: pieces and eyes less their holes and what they share, without fillets.
+
+        None of a part with forks.
+        """
+        if any(pin.fork is not None for pin in body.pins):
+            return None
         section, pieces = self.section, self.pieces(body)
         axis, *arms = pieces
         widths = [2.0 * self.half_width(body, axis.start[0] + axis.length * (i + 0.5) / 100.0) for i in range(100)]
@@ -148,7 +153,7 @@ class Straight(PartKind):
         """As ``PartKind.check``: eyes and arms fit."""
         for pin in body.pins:
             if pin.ring is not None and pin.ring.diameter > 0.0:
-                sizes = {"eye_diameter": pin.ring.diameter, "eye_thickness": pin.ring.thickness}
+                sizes = {"eye_diameter": pin.ring.diameter, "eye_thickness": pin.ring.height}
                 try:
                     self.model_copy(update=sizes).check_sizes()
                 except PydanticCustomError as error:
@@ -164,7 +169,7 @@ class Straight(PartKind):
         for pin in body.pins:
             if pin in raised or pin.foot is not None or {*pin.span} & {*self.reach(body)}:  # else within the bar
                 diameter = body.ring(pin).diameter if pin in raised else part.section.width
-                solids += kernel.upright(pin, diameter, body.ring(pin).thickness)
+                solids += kernel.upright(pin, diameter, body.ring(pin).height)
         # Eye and bar of one thickness must share one flat face while the corners between them are filleted.
         solid = kernel.fuse(solids, unify=not part.section.round)
 

@@ -92,6 +92,7 @@ def scaled(body: Body, unit: float) -> Body:
                 clearance=s(p.clearance),
                 foot=None if p.foot is None else (s(p.foot[0]), s(p.foot[1])),
                 ring=None if p.ring is None else p.ring.scaled(s),
+                fork=None if p.fork is None else p.fork.scaled(s),
             )
             for p in body.pins
         ),
@@ -149,7 +150,7 @@ def build(gmsh: Any, body: Body) -> Solid:
             raise CaseError(
                 f"fillet_radius {part.fillet_radius:g} mm does not fit inside the {part.shape}; reduce it"
             ) from None
-        eyes = " and ".join(dict.fromkeys(f"{ring.diameter:g} mm by {ring.thickness:g} mm" for ring in rings))
+        eyes = " and ".join(dict.fromkeys(f"{ring.diameter:g} mm by {ring.height:g} mm" for ring in rings))
         raise CaseError(
             f"fillet_radius {part.fillet_radius:g} mm does not fit between the {part.shape} and its eyes of "
             f"{eyes}; reduce it, increase eye_diameter or "
@@ -157,6 +158,7 @@ def build(gmsh: Any, body: Body) -> Solid:
         ) from None
     for pin in () if part.has_holes else small.pins:
         tools += kernel.upright(pin, pin.diameter, 2.0 * small.ring(pin).height)
+        tools += [] if pin.fork is None else [kernel.fork_gap(pin, pin.fork)]
     tools += _hole_rows(kernel, small)  # one cut, since a second one works on all faces that the first one made
     solid = _imprint(kernel, small, kernel.cut(solid, tools))
     kernel.occ.synchronize()

@@ -9,6 +9,7 @@ from geometry.materials.laminate import ANISOTROPIC, is_laminate
 from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
+from loads.case.forks import check_fork
 from loads.case.friction_rules import check_friction
 from loads.case.layers import check_layers
 from loads.case.load_rules import check_loads, check_masses, check_place
@@ -74,6 +75,8 @@ def check_rules(case: CoreCase) -> None:
     check_springs(case)
     check_stops(case)
     check_equilibrium(case)
+    for name in case.joints:
+        check_fork(case, name)
     for i, mass in enumerate(case.carried):
         check_place(case, f"carried.{i}", mass)
     for name, load_case in case.load_cases.items():
@@ -288,7 +291,13 @@ def _check_eyes(case: CoreCase, link: str) -> None:
     pinned = list(dict.fromkeys(linkage.point_of(name, link) for name in linkage.joints_of(link)))
     for point in record.eyes:
         require(f"links.{link}.eyes", point, pinned, "is no point with a joint")
-        if isinstance(part, FilePart) or "eyes of their own" not in part.takes:
+        if isinstance(part, FilePart):
+            if record.eyes[point].model_fields_set - {"fork"}:
+                raise CaseError(
+                    f"links.{link}.eyes.{point}: a part of shape {part.shape} takes no eyes of their own, only what "
+                    "its file has; leave out all but fork"
+                )
+        elif "eyes of their own" not in part.takes:
             raise CaseError(
                 f"links.{link}.eyes.{point}: a part of shape {part.shape} takes no eyes of their own; leave them out"
             )

@@ -14,9 +14,10 @@ from geometry.bodies.features import FlatFace
 from geometry.linkage.linkage import Joint, Link, Linkage
 from geometry.linkage.pose import Pose, solve_pose
 from geometry.materials.material import Material, library
-from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd, Ring
+from geometry.parts.part import Body, FilePart, Part, Pin, PlainEnd
 from geometry.placement.fit import Wanted
 from geometry.placement.placed_body import faces_of, placed_body
+from loads.case.eyes import with_eye
 from loads.case.heights import heights
 from loads.case.places import check_point
 from loads.case.revisable import Revisable
@@ -453,14 +454,4 @@ def _pin(case: CoreCase, link: str, name: str, diameter: float) -> Pin:
     else:
         foot = record.arms.get(name)
         pin = Pin(name=name, x=x, y=y, diameter=diameter, foot=None if foot is None else record.points[foot])
-    return replace(pin, ring=_ring(case, link, pin))
-
-
-def _ring(case: CoreCase, link: str, pin: Pin) -> Ring | None:
-    """Return the ring about the pin hole at a point of a link, where the link states an eye there."""
-    record = case.links[link]
-    eye, part = record.eyes.get(pin.name), case.parts[record.part or ""]
-    if eye is None or isinstance(part, FilePart):
-        return None
-    half = (eye.thickness or part.eye_thickness) / 2.0
-    return Ring(diameter=eye.diameter or part.ring(pin).diameter, low=-half, high=half)
+    return with_eye(case.linkage, case.parts, case.body, link, pin)

@@ -2,6 +2,7 @@
 
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
+from loads.case.forks import forked_link
 from loads.case.heights import thickness
 
 
@@ -50,6 +51,7 @@ def check_layers(case: CoreCase) -> None:
                 f"{', '.join(joint.links)}"
             )
         for entry in ("tight_in",) if not layered else ("pin_gap",):
-            if entry in joint.model_fields_set:
+            in_fork = layered and forked_link(case, name) is not None  # both links lie in one layer
+            if entry in joint.model_fields_set and not in_fork:
                 why = "the layers tell the gap" if layered else "it has a meaning only where links lie in layers"
                 raise CaseError(f"joints.{name}.{entry}: {why}; leave it out")
