@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -192,6 +192,7 @@ def check_case(
     threads: int = 2,
     effort: Effort | None = None,
     frames: Mapping[str, LargeDisplacement] | None = None,
+    only: Collection[str] | None = None,
     progress: Progress = lambda message: None,
 ) -> CheckResult:
     """Check a case: every link under every load case, against every check.
@@ -210,6 +211,8 @@ def check_case(
         Accuracy of solid models and what it may cost; by default what the case says.
     frames : mapping of str to LargeDisplacement, optional
         Those of an earlier check of the very same case, which are solved anew otherwise.
+    only : collection of str, optional
+        Links that the model is wanted for; the others, and points, are left to beam theory. All when left out.
     progress : callable
         Called with a sentence before every stage that may take long.
 
@@ -242,7 +245,7 @@ def check_case(
         clock("frames of solids")
     by_load_case = {load_case: _LoadCase.of(statics, load_case, what) for load_case, what in moved.items()}
     clock("hand calculations")
-    decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, threads, progress)
+    decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:
         clock("solid models")
     motors: dict[str, list[CheckOutcome]] = {load_case: [] for load_case in by_load_case}
@@ -275,11 +278,13 @@ def _decided(
     effort: Effort | None,
     start: MeshSettings,
     first: Mapping[str, TaggedMesh],
+    only: Collection[str] | None,
     threads: int,
     progress: Progress,
 ) -> dict[str, DecidedLink]:
     """Decide every link on which something acts, by the model that was asked for."""
-    loaded = {link: [one.cut[link] for one in load_cases if one.acts_on(link)] for link in case.checked_links}
+    wanted_links = [link for link in case.checked_links if only is None or link in only]
+    loaded = {link: [one.cut[link] for one in load_cases if one.acts_on(link)] for link in wanted_links}
     tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
     beams = {link: {one.load_case: one.hands[link].check for one in load_cases} for link in tasks}
     if fidelity in BY_HAND:
@@ -289,7 +294,7 @@ def _decided(
             require_compressible(task.nu)  # before the first mesh
     effort, begun = effort or effort_of(case), time.perf_counter()
     decided = decide(tasks, beams, start, effort, fidelity=fidelity, first=first, threads=threads, progress=progress)
-    for _ in range(POINT_ROUNDS):
+    for _ in range(POINT_ROUNDS if only is None else 0):
         wanted = _wanted(load_cases, decided)
         left = max(effort.time_limit - (time.perf_counter() - begun), 0.0)
         spent = replace(effort, time_limit=left)

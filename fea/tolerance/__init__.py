@@ -1,4 +1,4 @@
-"""Tolerances: how likely every check passes when places, angles, loads and materials are a little off.
+"""Tolerances: how likely every check passes when places, angles, loads, materials and sizes are a little off.
 
 Hands on ``ToleranceResult``.
 """

@@ -1,6 +1,7 @@
 """Samples of a case's tolerances, and what their numbers say."""
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from fea.outcomes.result import CheckResult
 from fea.refine.refinement import Effort
 from fea.tolerance.numbers import Numbers, SampledCheck, covered
 from fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult, WorstCorner
+from fea.tolerance.sizes import size_ends
 from fea.tolerance.states import Sampler
 from geometry.base.errors import CannotRunError, CaseError
 from loads.case.case import Case
@@ -81,15 +83,18 @@ def tolerance_case(
         for load_case, forces in statics.forces.items()
     }
     _require(statics, frames)
+    ends = size_ends(case, variables, name)
     result = check_case(
         case, name=name, fidelity="solid", threads=threads, effort=effort, frames=frames, progress=progress
     )
     clock("nominal check")
     masses = part_masses(case) if needs_masses(case) else {}
-    sampler = Sampler(case=case, pose=result.pose, masses=masses, variables=variables)
+    reaches = {one.variable.tolerance: one.masses for one in ends} if masses else {}
+    sampler = Sampler(case=case, pose=result.pose, masses=masses, variables=variables, reaches=reaches)
     rng = np.random.default_rng(seed)
     progress("unit solutions of the links")
-    check = SampledCheck.of(result, sampler, _pilots(variables, rng), threads)
+    pilots = _pilots(variables, rng)
+    check = SampledCheck.of(result, sampler, pilots, ends=ends, effort=effort, threads=threads, progress=progress)
     clock("unit solutions")
     progress(f"{samples:,} samples")
     deviations = _drawn(variables, samples, rng)
@@ -330,10 +335,20 @@ def _notes(result: CheckResult, found: Numbers, left_out: Sequence[str]) -> tupl
             f"some samples compress {', '.join(sorted(found.pressed))}, which the nominal loads pull; their "
             "buckling is not covered"
         )
-    for count, what in (
-        (int(found.apart.sum()), "do not assemble on the branch of the nominal pose, not even when led there in steps"),
-        (int(found.dead.sum()), "are at a dead point of the drive, where joint forces grow without limit"),
+    return (*notes, *_fallen(result, found))
+
+
+def _fallen(result: CheckResult, found: Numbers) -> Iterator[str]:
+    """Say how many samples have no equilibrium, and why."""
+    ended, unit = np.isfinite(found.short), "mm" if result.pose.slides else "deg"
+    by = np.max(found.short[ended], initial=0.0) * (1.0 if result.pose.slides else math.degrees(1.0))
+    for which, what in (
+        (
+            ended,
+            f"cannot stand in the pose: {result.pose.coordinate} comes to a dead point up to {by:.2g} {unit} before it",
+        ),
+        (found.apart & ~ended, "do not assemble on the branch of the nominal pose, even when led there in steps"),
+        (found.dead, "are at a dead point of the drive, where joint forces grow without limit"),
     ):
-        if count:
-            notes.append(f"{count} of {len(found.apart)} samples {what}; they count as failed")
-    return tuple(notes)
+        if which.any():
+            yield f"{which.sum()} of {len(which)} samples {what}; they count as failed"

@@ -1,7 +1,7 @@
 """Pose and statics of n samples of a case at once."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from geometry.linkage.sampled import SampledPlacement, assemble_samples
 from loads.case.case import Case
 from loads.case.friction_rules import rubbing_joints
 from loads.case.toleranced import Variable
-from loads.records.applied import Load, PartMass, PointLoad
+from loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad
 from loads.records.load_case import LoadCase
 from loads.states.actions import acting_loads
 from loads.states.rubbing import WAYS, is_of
@@ -25,6 +25,8 @@ from loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_
 
 Real = NDArray[np.float64]
 
+Reach = tuple[float, Mapping[str, PartMass], Mapping[str, PartMass]]
+"""How far the ends of a size are from its nominal value [mm], and the masses of links at the low and the high end."""
 SUSPECT = 30.0
 """Growth of the largest joint force beyond the nominal one from which the distance to a dead point is looked at."""
 
@@ -54,6 +56,8 @@ class States:
     ----------
     apart : ndarray of bool, shape (N,)
         Samples that do not assemble on the nominal branch.
+    short : ndarray, shape (N,)
+        By how much the branch of such a sample ends at a dead point before the pose [rad, mm]; NaN where it does not.
     dead : ndarray of bool, shape (N,)
         Those at a dead point of the drive or locked by friction, where joint forces grow without limit.
     forces : mapping of str to SampledForces
@@ -63,6 +67,7 @@ class States:
     """
 
     apart: NDArray[np.bool_]
+    short: Real
     dead: NDArray[np.bool_]
     forces: Mapping[str, SampledForces]
     loads: Mapping[str, tuple[Load, ...]]
@@ -86,12 +91,15 @@ class Sampler:
         Nominal.
     variables : sequence of Variable
         The d columns of the samples.
+    reaches : mapping of str to Reach
+        Toleranced size -> its ends, between which masses of links are interpolated.
     """
 
     case: Case
     pose: Pose
     masses: Mapping[str, PartMass]
     variables: Sequence[Variable]
+    reaches: Mapping[str, Reach] = field(default_factory=dict)
 
     def shifts(self, deviations: Real) -> dict[tuple[str, str], NDArray[np.complex128]]:
         """Return the shifts of points in their links' frames.
@@ -150,7 +158,7 @@ class Sampler:
             (x for v, x in zip(self.variables, deviations.T, strict=True) if v.kind == "pose"),
             np.zeros(len(deviations)),
         )
-        place, assembled = assemble_samples(self.pose, self.shifts(deviations), angle)
+        place, assembled, short = assemble_samples(self.pose, self.shifts(deviations), angle)
         dead = np.zeros(len(deviations), dtype=np.bool_)
         drive = self.case.pinned_drive
         systems: dict[str, Any] = {}
@@ -181,7 +189,11 @@ class Sampler:
                 place=here,
             )
         return States(
-            apart=~assembled, dead=dead, forces=forces, loads={name: loads for name, (loads, _) in systems.items()}
+            apart=~assembled,
+            short=short,
+            dead=dead,
+            forces=forces,
+            loads={name: loads for name, (loads, _) in systems.items()},
         )
 
     def _rubbing(self, here: SampledPlacement, systems: Mapping[str, Any]) -> tuple[dict[str, Any], NDArray[np.bool_]]:
@@ -207,7 +219,20 @@ class Sampler:
                 number = int(variable.target[1])
                 for i in range(len(found)) if number < 0 else (number,):
                     found[i] = _changed(found[i], variable, column)
-        return tuple(found)
+        return tuple(self._weighing(load, deviations) if isinstance(load, BodyForce) else load for load in found)
+
+    def _weighing(self, load: BodyForce, deviations: Real) -> Load:
+        """Return weight and inertia of a link with the mass of each sample: by a parabola through three masses."""
+        own, more = self.masses.get(load.link), np.zeros(len(deviations))
+        if own is None or own is not load.mass:
+            return load
+        for variable, column in zip(self.variables, deviations.T, strict=True):
+            if variable.tolerance in self.reaches:
+                reach, *ends = self.reaches[variable.tolerance]
+                low, high = (masses[load.link].mass / own.mass - 1.0 for masses in ends)
+                t = column / reach
+                more += 0.5 * t * (high - low) + 0.5 * t**2 * (high + low)
+        return scaled(load, 1.0 + more) if more.any() else load
 
     def link_loads(self, states: States, deviations: Real, load_case: str, link: str) -> LinkLoads:
         """Return what acts on a link of each sample, moved to the places of its nominal body.
@@ -228,6 +253,11 @@ class Sampler:
         """
         forces, loads = states.forces[load_case], states.loads[load_case]
         found = link_loads(load_case, link, self.case.body(link), forces, loads)
+        own = self.masses.get(link)
+        if found.inertia is not None and own is not None and found.inertia.mass is not own:
+            share = found.inertia.mass.mass / own.mass  # of another size: the same force on another mass
+            spread = scaled(found.inertia, np.full(len(deviations), share))
+            found = replace(found, inertia=replace(spread, mass=own))
         shifts = self.shifts(deviations)
         pins = tuple(
             p if p.slotted else replace(p, wrench=_moved(p.wrench, shifts.get((link, p.name)))) for p in found.pins
@@ -261,17 +291,31 @@ def _holds(systems: Sequence[Any]) -> NDArray[np.bool_]:
     return found
 
 
+def scaled(load: AnyLoad, factor: Real) -> AnyLoad:
+    """Return loads times the factors of n samples.
+
+    Parameters
+    ----------
+    load : PointLoad, LineLoad or BodyForce
+        Of n samples.
+    factor : ndarray, shape (n,)
+
+    Returns
+    -------
+    PointLoad, LineLoad or BodyForce
+    """
+    found: Any = {}
+    for name in (*load.VECTORS, *load.SCALARS):
+        values = np.asarray(getattr(load, name))
+        found[name] = values * factor.reshape(-1, *[1] * (values.ndim - 1))
+    changed: AnyLoad = replace(load, **found)
+    return changed
+
+
 def _changed(load: Load, variable: Variable, column: Real) -> Load:
     """Return a load times 1 + its deviation, or with a component more."""
     if variable.kind == "load":
-        names = (*load.VECTORS, *load.SCALARS)
-        scaled: Any = {}
-        for name in names:
-            values = np.asarray(getattr(load, name))
-            scaled[name] = values * (1.0 + column).reshape(-1, *[1] * (values.ndim - 1))
-        changed: Any = load
-        found: Load = replace(changed, **scaled)
-        return found
+        return scaled(load, 1.0 + column)
     assert isinstance(load, PointLoad)
     wrench = load.wrench.copy()
     wrench[..., int(variable.target[2])] += column

@@ -12,6 +12,7 @@ from geometry.linkage.closure import LoopClosure
 from geometry.linkage.linkage import Linkage
 from geometry.linkage.placement import Placement
 from geometry.linkage.pose_record import CLOSED, Pose
+from geometry.linkage.sampled_dead_points import dead_points, own_dead_point
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -177,7 +178,7 @@ def _moved(linkage: Linkage, at: tuple[str, str]) -> Linkage:
     )
 
 
-def assemble_samples(pose: Pose, shifts: Shifts, value: Real) -> tuple[SampledPlacement, NDArray[np.bool_]]:
+def assemble_samples(pose: Pose, shifts: Shifts, value: Real) -> tuple[SampledPlacement, NDArray[np.bool_], Real]:
     """Assemble every sample on the branch of a nominal pose.
 
     Parameters
@@ -191,9 +192,9 @@ def assemble_samples(pose: Pose, shifts: Shifts, value: Real) -> tuple[SampledPl
 
     Returns
     -------
-    tuple of (SampledPlacement, ndarray of bool, shape (n,))
-        Where links stand, and which samples assemble: the others have no such assembly within reach of the nominal one,
-        or only beyond a dead point of the coordinate.
+    tuple of (SampledPlacement, ndarray of bool, shape (n,), ndarray, shape (n,))
+        Where links stand, which samples assemble, and by how much the branch of a sample that does not ends at a dead
+        point before its value of the coordinate [rad, mm]; NaN for all others.
     """
     closure = SampledClosure.of(pose.linkage, shifts)
     q, free = np.tile(pose.q, (len(value), 1)), np.ones(len(pose.q), dtype=np.bool_)
@@ -205,7 +206,11 @@ def assemble_samples(pose: Pose, shifts: Shifts, value: Real) -> tuple[SampledPl
     if not done.all():
         lost = np.flatnonzero(~done)
         found[lost], done[lost] = _led(pose, closure.chosen(lost), value[lost], free)
-    return SampledPlacement(closure=closure, q=found), done
+    short = np.full(len(value), np.nan)
+    if not done.all():
+        lost = np.flatnonzero(~done)
+        found[lost], done[lost], short[lost] = _at_dead_points(pose, closure.chosen(lost), value[lost], free)
+    return SampledPlacement(closure=closure, q=found), done, short
 
 
 def _newton(closure: SampledClosure, q: Real, free: NDArray[np.bool_]) -> tuple[Real, NDArray[np.bool_]]:
@@ -257,3 +262,18 @@ def _led(pose: Pose, closure: SampledClosure, value: Real, free: NDArray[np.bool
     done = np.zeros(len(value), dtype=np.bool_)
     done[left] = True
     return q, done
+
+
+def _at_dead_points(
+    pose: Pose, closure: SampledClosure, value: Real, free: NDArray[np.bool_]
+) -> tuple[Real, NDArray[np.bool_], Real]:
+    """Solve samples from their own dead points, which are near to that of the nominal linkage."""
+    q, there = np.tile(pose.q, (len(value), 1)), own_dead_point(pose)
+    if there is None:
+        return q, np.zeros(len(value), dtype=np.bool_), np.full(len(value), np.nan)
+    wanted = pose.q[pose.held_column] + value
+    points = dead_points(closure, np.tile(there, (len(value), 1)), pose.held_column)
+    short = points.short(wanted)
+    q, done = _newton(closure, points.beside(wanted, pose.q - there), free)
+    done &= (short <= 0.0) & _same_branch(pose, closure, q, free)
+    return q, done, np.where(done | ~(short > 0.0), np.nan, short)

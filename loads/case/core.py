@@ -84,7 +84,8 @@ class CoreCase(Revisable):
     solid: SolidSettings = SolidSettings()
     tolerances: TolerancesTable = {}
     """How far entries of the case may be off, by their path, such as "links.AE.points.E" = "0.2 mm"; pins stands for
-    every place of a pin in every link. For alula tolerance alone; no check counts them."""
+    every place of a pin in every link. A size of a part is one draw for all its links. For alula tolerance alone; no
+    check counts them."""
 
     @cached_property
     def linkage(self) -> Linkage:

@@ -1,6 +1,6 @@
 """Which numbers of a case its tolerances let vary: one independent variable for each."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,14 +12,14 @@ from loads.records.tolerances import Distribution, Tolerance
 from loads.text.explain import printable, require
 
 PINS = "pins"
-SIZES = ("parts", "joints")
 STRENGTHS = ("yield_strength", "ultimate_strength", "strength_across_layers")
 MODULUS = "youngs_modulus"
 KNOWN = (
-    "pins, links.NAME.points.NAME, pose.angle, pose.travel, load_cases.NAME, load_cases.NAME.forces.0 and "
-    "materials.NAME with yield_strength, ultimate_strength, strength_across_layers or youngs_modulus"
+    "pins, links.NAME.points.NAME, pose.angle, pose.travel, load_cases.NAME, load_cases.NAME.forces.0, "
+    "materials.NAME with yield_strength, ultimate_strength, strength_across_layers or youngs_modulus, and sizes: "
+    "a length of parts.NAME, joints.NAME.pin_diameter, links.NAME.eyes.NAME.diameter or links.NAME.holes.0.diameter"
 )
-Kind = Literal["place", "pose", "load", "force", "material"]
+Kind = Literal["place", "pose", "load", "force", "material", "size"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,12 +30,14 @@ class Variable:
     ----------
     tolerance : str
         The entry that is toleranced; both coordinates of a place share it.
-    kind : {"place", "pose", "load", "force", "material"}
+    kind : {"place", "pose", "load", "force", "material", "size"}
     target : tuple
         Place: link, point, axis. Load: load case, number among its stated loads (-1: all that acts). Force: load case,
-        number, component. Material: its name, entry.
+        number, component. Material: its name, entry. Size: the path of its entry.
     half : float
         Half the width: [mm, rad, N], of loads and materials a share.
+    nominal : float
+        Of a size, its value [mm].
     distribution : str
         As the case states it.
     """
@@ -44,6 +46,7 @@ class Variable:
     kind: Kind
     target: tuple[str | int, ...] = ()
     half: float
+    nominal: float = 0.0
     distribution: Distribution
 
 
@@ -118,11 +121,8 @@ def _entry(case: CoreCase, path: str, tolerance: Tolerance) -> Iterator[Variable
                 half=half,
                 distribution=tolerance.distribution,
             )
-        case [first, *_] if first in SIZES or (first == "links" and "points" not in path):
-            raise CaseError(
-                f"{entry}: tolerances of sizes are not covered, since the stress of another shape does not follow from "
-                "the nominal solid; vary it with alula study"
-            )
+        case ["parts", _, *_] | ["joints", _, "pin_diameter"] | ["links", _, "eyes" | "holes", *_]:
+            yield _size(case, entry, path, tolerance)
         case _:
             raise CaseError(f"{entry}: this entry cannot have a tolerance; choose one of {KNOWN}")
 
@@ -159,6 +159,26 @@ def _load(case: CoreCase, entry: str, path: str, load_case: str, rest: list[str]
             half = _half(entry, tolerance, "force", nominal)
             return make(kind="force", target=(load_case, number, int(component)), half=half)
     raise CaseError(f"{entry}: this entry cannot have a tolerance; choose one of {KNOWN}")
+
+
+def _size(case: CoreCase, entry: str, path: str, tolerance: Tolerance) -> Variable:
+    """Return the variable of a size of a part, a pin, an eye or a hole."""
+    value: object = case
+    for step in path.split("."):
+        if isinstance(value, Mapping):
+            value = value.get(step)
+        elif isinstance(value, tuple):
+            value = value[int(step)] if step.isdecimal() and int(step) < len(value) else None
+        else:
+            value = getattr(value, step, None) if step in getattr(type(value), "model_fields", ()) else None
+    if not isinstance(value, float) or value <= 0.0:
+        raise CaseError(f"{entry}: the case has no such size above zero; choose one of {KNOWN}")
+    half = _half(entry, tolerance, "length", value)
+    if half >= value:
+        raise CaseError(f"{entry}: it is as large as the size itself, {value:g} mm; state a smaller tolerance")
+    return Variable(
+        tolerance=path, kind="size", target=(path,), half=half, nominal=value, distribution=tolerance.distribution
+    )
 
 
 def _half(entry: str, tolerance: Tolerance, dimension: str | None, nominal: float) -> float:

@@ -39,7 +39,7 @@ def test_a_starter_is_sampled_printed_and_written(tmp_path: Path) -> None:
     [
         (("owl-wing-closed",), ["states none", "[tolerances]"]),
         (("owl-wing-closed", "--tolerance", "pins"), ["--tolerance", "entry="]),
-        (("owl-wing-closed", "--tolerance", "parts.tube.outer_diameter=0.1 mm"), ["sizes", "alula study"]),
+        (("owl-wing-closed", "--tolerance", "parts.tube.outer_diameter=5 mm"), ["as large as the size", "5 mm"]),
         (("owl-wing-closed", "--tolerance", "pins=0.1"), ["pins", "unit"]),
     ],
 )
