@@ -77,13 +77,13 @@ def tolerance_case(
     variables = _asked(case, samples)
     clock = Clock()
     statics = solve_case_statics(case, name)
-    case = statics.case
+    stated, case = case, statics.case
     frames = {
         load_case: examine(case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
     }
     _require(statics, frames)
-    ends = size_ends(case, variables, name)
+    ends = size_ends(stated, variables, name)
     result = check_case(
         case, name=name, fidelity="solid", threads=threads, effort=effort, frames=frames, progress=progress
     )
@@ -144,6 +144,11 @@ def _require(statics: CaseStatics, frames: Mapping[str, LargeDisplacement]) -> N
             raise CannotRunError(
                 f"tolerances: under load case {name} {forces.reason}, so the joint forces of samples do not "
                 "follow from equilibrium alone, which is not covered; vary entries with alula study"
+            )
+        if statics.standing[name].case is not statics.case:
+            raise CannotRunError(
+                f"tolerances: under load case {name} the linkage stands where all that acts on it balances or where a "
+                "stop holds it, so samples would stand elsewhere, which is not covered; vary entries with alula study"
             )
         if frames[name].gives_way:
             raise CannotRunError(

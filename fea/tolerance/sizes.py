@@ -85,6 +85,7 @@ def size_ends(case: Case, variables: Sequence[Variable], name: str = "") -> tupl
     Parameters
     ----------
     case : Case
+        As it was read.
     variables : sequence of Variable
     name : str, optional
         Path or built-in name of the case, for companion files.
@@ -137,6 +138,7 @@ def _end(case: Case, variable: Variable, by: float, name: str) -> SizeEnd:
     try:
         there = case.with_values({variable.tolerance: value})
         statics = solve_case_statics(there, name)
+        there = statics.case
     except AlulaError as error:
         raise type(error)(f"at {variable.nominal + by:.4g} mm, {error}") from None
     frames = {n: examine(there, n, forces, statics.loads[n]) for n, forces in statics.forces.items()}

@@ -20,6 +20,7 @@ from loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad
 from loads.records.load_case import LoadCase
 from loads.states.actions import acting_loads
 from loads.states.rubbing import WAYS, is_of
+from loads.states.springs import spring_loads
 from loads.statics.friction import solve_friction
 from loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_reactions
 
@@ -214,10 +215,11 @@ class Sampler:
             first, second = DrivenClosure(place.closure, self.pose.coordinate, self.pose.slides).coefficients(place.q)
             place = replace(place, qdot=load_case.speed * first, qddot=load_case.speed**2 * second)
         found = list(acting_loads(self.case, load_case, place, self.masses))
+        stated = len(found) - len(spring_loads(self.case, place))  # springs belong to no load case
         for variable, column in zip(self.variables, deviations.T, strict=True):
             if variable.kind in ("load", "force") and is_of(name, str(variable.target[0])):
                 number = int(variable.target[1])
-                for i in range(len(found)) if number < 0 else (number,):
+                for i in range(stated) if number < 0 else (number,):
                     found[i] = _changed(found[i], variable, column)
         return tuple(self._weighing(load, deviations) if isinstance(load, BodyForce) else load for load in found)
 

@@ -1,12 +1,15 @@
 """Tolerances: sampled poses, forces and stresses against direct ones, probabilities against closed forms."""
 
 import math
+import tomllib
 from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.stats import beta
+from sprung_cases import FOUR_BAR, HANG, case_of
+from sprung_cases import LEVER as LEVER_LET_GO
 
 from benchmarks.tolerances import direct_case
 from fea.check.case_statics import solve_case_statics
@@ -254,6 +257,44 @@ def test_a_case_without_tolerances_and_a_redundant_one_are_refused():
     across = {"push": {"forces": [{"link": "arm", "at": "P", "force": ["0 N", "0 N", "10 N"]}]}}
     with pytest.raises(CannotRunError, match="not covered"):
         tolerance_case(lever(load_cases=across, tolerances={"pins": "0.1 mm"}), samples=100, effort=ONE_MESH)
+
+
+def test_a_linkage_that_is_let_go_is_refused():
+    case = case_of(LEVER_LET_GO + HANG, tolerances={"links.lever.points.P": "0.1 mm"})
+    with pytest.raises(CannotRunError, match="stands where all that acts"):
+        tolerance_case(case, samples=100)
+
+
+def test_springs_pull_on_samples_as_in_direct_statics():
+    """Torques of a four-bar with a spring and tendons; a factor on its load case leaves them alone."""
+    line = tomllib.loads(FOUR_BAR)["springs"]["line"]  # the others state a force in the nominal pose
+    push = {"own": {"forces": [{"link": "rocker", "at": "C", "force": ["1 N", "-2 N"]}]}}
+    case = case_of(
+        FOUR_BAR, springs={"line": line}, load_cases=push, tolerances={"pins": "0.3 mm", "load_cases.own": "30 %"}
+    )
+    variables = toleranced(case)
+    rows = _drawn(variables, 4, np.random.default_rng(0))
+    sampler = Sampler(case=case, pose=case.stated_pose, masses={}, variables=variables)
+    torques = sampler.states(rows).forces["own"].drive_torque
+    for row, torque in zip(rows, torques.tolist(), strict=True):
+        shifts = {v.target: x for v, x in zip(variables, row.tolist(), strict=True) if v.kind == "place"}
+        links = {
+            name: link.model_copy(
+                update={
+                    "points": {
+                        at: tuple(c + shifts.get((name, at, axis), 0.0) for axis, c in enumerate(place))
+                        for at, place in link.points.items()
+                    }
+                }
+            )
+            for name, link in case.links.items()
+        }
+        force = tuple((1.0 + row[-1]) * c for c in (1.0, -2.0))
+        [stated] = case.load_cases["own"].forces
+        loaded = case.load_cases["own"].model_copy(update={"forces": (stated.model_copy(update={"force": force}),)})
+        drawn = case.model_copy(update={"links": links, "load_cases": {"own": loaded}, "tolerances": {}})
+        direct = solve_case_statics(drawn).reactions["own"].drive_torque
+        assert torque == pytest.approx(float(direct), rel=1e-9)
 
 
 def test_a_place_of_its_own_replaces_that_of_all_pins():

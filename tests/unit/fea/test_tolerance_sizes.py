@@ -173,6 +173,12 @@ def test_ends_are_a_tenth_off_where_the_rules_allow_that(lever):
     assert thick.joints == {"O"}
 
 
+def test_ends_of_a_case_with_friction_have_both_directions(lever):
+    case = lever.with_values({"joints.O.friction": 0.2, "tolerances": {"parts.bar.thickness": "0.1 mm"}})
+    [thick] = size_ends(case, toleranced(case))
+    assert set(thick.low.frames) == set(thick.low.case.load_cases) == {"pull forward", "pull backward"}
+
+
 @pytest.mark.parametrize(
     ("path", "half", "said"),
     [
