@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from geometry.base.errors import CaseError
 from geometry.base.units import POSITIVE, Length
 from geometry.bodies.body import Body, Feature, PartKind, extent
+from geometry.bodies.footprint import Footprint, strip
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
 
@@ -42,6 +43,11 @@ class Strip(PartKind):
         first, last = extent(body)
         corner = first - self.overhang, -self.width / 2.0, -self.thickness / 2.0
         return kernel.box(corner, (last - first + 2.0 * self.overhang, self.width, self.thickness))
+
+    def footprints(self, body: Body) -> tuple[Footprint, ...]:
+        first, last = extent(body)
+        length = last - first + 2.0 * self.overhang
+        return (strip((first - self.overhang, 0.0), 0.0, length, self.width, self.thickness),)
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
         return []

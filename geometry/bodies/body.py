@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 from geometry.bodies.cut_section import CutSection
 from geometry.bodies.features import HoleRow, Pin, PlainEnd, Ring
+from geometry.bodies.footprint import Footprint
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section
 from geometry.materials.printable import Printable
@@ -123,6 +124,21 @@ class PartKind(Printable):
         ------
         FilletError
             Where a fillet does not fit.
+        """
+
+    @abstractmethod
+    def footprints(self, body: "Body") -> tuple[Footprint, ...]:
+        """Return what the part covers as seen along its pins, pin holes included: what must not touch other links.
+
+        Parameters
+        ----------
+        body : Body
+            The body, of which this is the part.
+
+        Returns
+        -------
+        tuple of Footprint
+            Pieces in the link's frame, which may overlap; fillets of ``fillet_radius`` between them are left out.
         """
 
     def cavities(self, kernel: Kernel, body: "Body") -> list[Entity]:

@@ -15,11 +15,12 @@ from geometry.bodies.body import FLAT_WALL, ON_AXIS, Body, Feature, extent
 from geometry.bodies.cut_section import CutSection
 from geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
 from geometry.bodies.features import Pin, Ring
+from geometry.bodies.footprint import Footprint
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
 from geometry.parts.profile import Profile, profile, width_at
 from geometry.parts.straight import CLEAR_EYE, Piece, Straight
-from geometry.parts.widths import check_widths, widths_cuts, widths_places, widths_solid
+from geometry.parts.widths import check_widths, widths_cuts, widths_footprints, widths_places, widths_solid
 
 Station = tuple[Length, Annotated[Length, POSITIVE]]
 
@@ -225,6 +226,12 @@ class Bar(Straight):
         if not self.widths:
             return super().solid(kernel, body)
         return widths_solid(kernel, body, self.profile(body), round_ends=self.ends == "round")
+
+    def footprints(self, body: Body) -> tuple[Footprint, ...]:
+        """As ``PartKind.footprints``: of varying width, its outline and its eyes."""
+        if not self.widths:
+            return super().footprints(body)
+        return widths_footprints(body, self.profile(body), round_ends=self.ends == "round")
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
         """As ``PartKind.fine_places``: along the fillets of shoulders, too."""

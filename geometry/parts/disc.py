@@ -12,6 +12,7 @@ from geometry.base.model import Name
 from geometry.base.units import POSITIVE, Length
 from geometry.bodies.body import Body, Feature, PartKind, apart, extent
 from geometry.bodies.eyes import check_flat_eyes
+from geometry.bodies.footprint import Footprint
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
 
@@ -96,6 +97,11 @@ class Disc(PartKind):
     def solid(self, kernel: Kernel, body: Body) -> Entity:
         """As ``PartKind.solid``: a cylinder."""
         return kernel.cylinder((0, 0, -self.thickness / 2.0), (0, 0, self.thickness), self.diameter / 2.0)
+
+    def footprints(self, body: Body) -> tuple[Footprint, ...]:
+        """As ``PartKind.footprints``: a circle."""
+        half = self.thickness / 2.0
+        return (Footprint(corners=((0.0, 0.0),), radius=self.diameter / 2.0, low=-half, high=half),)
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
         """As ``PartKind.fine_places``: narrow rings keep their area only with elements as small as they are wide."""

@@ -48,6 +48,11 @@ class MeshedPart(ImportedPart):
     file_unit: float
     """Unit of length of the file [mm]."""
 
+    @property
+    def mesh_unit(self) -> float | None:
+        """As ``FilePart.mesh_unit``."""
+        return self.file_unit
+
     def solid(self, kernel: Kernel, body: Body) -> Entity:
         """As ``PartKind.solid``: there is none.
 

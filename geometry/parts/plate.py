@@ -13,6 +13,7 @@ from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import FLAT_WALL, Body, Feature, PartKind, apart, extent
 from geometry.bodies.eyes import check_flat_eyes
 from geometry.bodies.features import Pin, PlainEnd
+from geometry.bodies.footprint import Footprint, of_outlines
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
 from geometry.parts.pockets import Pocket, RoundHole
@@ -251,6 +252,10 @@ class Plate(PartKind):
     def solid(self, kernel: Kernel, body: Body) -> Entity:
         """As ``PartKind.solid``: the outline, extruded."""
         return kernel.slab(self.outline(body), self.thickness)
+
+    def footprints(self, body: Body) -> tuple[Footprint, ...]:
+        """As ``PartKind.footprints``: within its outline, less its lightening holes."""
+        return (of_outlines(self.outline(body), [hole.outline for hole in self.holes], self.thickness),)
 
     def cavities(self, kernel: Kernel, body: Body) -> list[Entity]:
         """As ``PartKind.cavities``: the lightening holes, and the pockets."""

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
+import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo
 
 from geometry.base.errors import CannotRunError
@@ -12,8 +13,11 @@ from geometry.base.model import Direction, Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import Body, Feature, PartKind
 from geometry.bodies.cut_section import CutSection
+from geometry.bodies.footprint import Footprint
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
+from geometry.imported.read import part_surface
+from geometry.parts.shadow import shadows
 from geometry.materials.printable import Printable
 
 Vector = tuple[float, float, float]
@@ -171,6 +175,16 @@ class ImportedPart(PartKind):
         if hashlib.sha256(Path(part.file).read_bytes()).hexdigest() != part.digest:
             raise CannotRunError(f"the file '{Path(part.file).name}' changed while it was used; run once more")
         return kernel.imported(part.file, 1.0 / part.unit, part.turn, part.shift)
+
+    @property
+    def mesh_unit(self) -> float | None:
+        """As ``FilePart.mesh_unit``."""
+        return None
+
+    def footprints(self, body: Body) -> tuple[Footprint, ...]:
+        """As ``PartKind.footprints``: its shadow, layer by layer between its flat faces."""
+        found = part_surface(Path(self.file), self.mesh_unit)
+        return shadows(found.points @ np.array(self.turn).T + np.array(self.shift), found.triangles)
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
         """As ``PartKind.fine_places``: none but holes and round surfaces, which the mesher finds."""

@@ -17,6 +17,7 @@ from geometry.base.errors import CaseError
 from geometry.bodies.body import FLAT_WALL, Body, PartKind, extent
 from geometry.bodies.eyes import check_eyes, flush, plain_eye
 from geometry.bodies.features import Pin
+from geometry.bodies.footprint import Footprint, eye, strip
 from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
 from geometry.parts.arms import check_arms
 
@@ -187,6 +188,18 @@ class Straight(PartKind):
         if part.fillet_radius == 0.0 or not (raised or len(pieces) > 1):
             return solid
         return kernel.fillet(solid, curves, part.fillet_radius)
+
+    def footprints(self, body: Body) -> tuple[Footprint, ...]:
+        """As ``PartKind.footprints``: pieces and eyes."""
+        wide, high = self.section.width, self.section.height
+        found = [strip(piece.start, piece.angle, piece.length, wide, high) for piece in self.pieces(body)]
+        for pin in body.pins:
+            ring, ends = body.ring(pin), {*pin.span} & {*self.reach(body)}
+            if ring.diameter > 0.0 and not plain_eye(body, pin):
+                found += eye(pin, ring, ring.diameter)
+            elif ring.diameter > 0.0 and (ends or pin.foot is not None):
+                found += eye(pin, ring, wide)
+        return tuple(found)
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
         """As ``PartKind.fine_places``: along fillets, or sharp junctions."""

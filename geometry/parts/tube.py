@@ -15,6 +15,7 @@ from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
 from geometry.bodies.body import Body, Feature, extent, patch_span
 from geometry.bodies.eyes import EYE_WIDTH, RIM, ROUNDING
 from geometry.bodies.features import Pin, Ring
+from geometry.bodies.footprint import Footprint, eye, strip
 from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
 from geometry.bodies.section import Section, rectangle, ring
 from geometry.parts.lugs import check_lugs, fine_at_lugs, with_lugs, without_lugs
@@ -202,6 +203,16 @@ class Tube(Straight):
             return with_lugs(kernel, body, super().solid(kernel, bare))
         tube = [entity for piece in self.pieces(bare) for entity in self.prism(kernel, bare, piece)]
         return with_lugs(kernel, body, kernel.fuse(tube))
+
+    def footprints(self, body: Body) -> tuple[Footprint, ...]:
+        """As ``PartKind.footprints``: as wide at every height as at its middle; and the arms."""
+        found, arm = [*super().footprints(without_lugs(body))], self.arm_section
+        for pin in body.pins:
+            if pin.foot is not None:
+                angle = math.copysign(math.pi / 2.0, pin.y)
+                found.append(strip(pin.foot, angle, abs(pin.y), arm.width, arm.height))
+                found += eye(pin, body.ring(pin), arm.width)
+        return tuple(found)
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:
         """As ``PartKind.fine_places``: as ``Straight.fine_places``, or at fillets of plugs and bushes; and at arms."""

@@ -14,6 +14,7 @@ from geometry.bodies.body import ON_AXIS, Body, extent, patch_span
 from geometry.bodies.cut_section import CutSection
 from geometry.bodies.eyes import PLAIN_EYE, ROUNDING, TOUCHING, check_flat_eyes
 from geometry.bodies.features import Pin
+from geometry.bodies.footprint import Footprint, eye, of_border
 from geometry.bodies.kernel import ON_SURFACE, Entity, Kernel
 from geometry.parts.profile import Profile
 from geometry.parts.straight import CLEAR_EYE
@@ -80,6 +81,32 @@ def widths_solid(kernel: Kernel, body: Body, side: Profile, *, round_ends: bool)
         )
 
     return kernel.fillet(solid, kernel.curves(to_fillet), fillet)
+
+
+def widths_footprints(body: Body, side: Profile, *, round_ends: bool) -> tuple[Footprint, ...]:
+    """Return what a bar of varying width covers.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    side : Profile
+        The bar's upper side.
+    round_ends : bool
+        Whether it has eyes.
+
+    Returns
+    -------
+    tuple of Footprint
+        Its outline, and the eyes that ``widths_solid`` builds.
+    """
+    found = [of_border(side.border, body.part.eye_thickness)]
+    for pin in body.pins if round_ends else ():
+        if raised(side, body, pin):
+            found += eye(pin, body.ring(pin), body.ring(pin).diameter)
+        elif pin.x in extent(body):
+            found += eye(pin, body.ring(pin), 2.0 * side.half(pin.x))
+    return tuple(found)
 
 
 def check_widths(body: Body, side: Profile, *, round_ends: bool) -> None:

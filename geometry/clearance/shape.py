@@ -1,0 +1,298 @@
+"""The outline of a link or a pin in the plane, in pieces between two heights, and the gap between two of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from geometry.bodies.body import Body
+from geometry.bodies.footprint import Footprint
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+TOUCHING = 1e-9
+"""Share of two heights' range by which slabs that lie on each other may overlap by rounding."""
+_SEGMENTS = 32
+"""Chords of a quarter turn where a circle must be a polygon."""
+_CHORD = 1.0 - np.cos(np.pi / (4.0 * _SEGMENTS))
+"""How far these lie off the circle, over its radius."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Core:
+    """All that lies within a radius of a geometry, between two heights.
+
+    Attributes
+    ----------
+    geometry : shapely geometry
+        Point, line or polygon in the frame of its link [mm].
+    radius : float
+        [mm]
+    low, high : float
+        z of the assembly between which it lies [mm].
+    error : float
+        How far its border may lie off that of the part [mm].
+    """
+
+    geometry: Any
+    radius: float
+    low: float
+    high: float
+    error: float
+
+    @property
+    def polygon(self) -> Any:
+        """The whole as a polygon."""
+        return self.geometry.buffer(self.radius, quad_segs=_SEGMENTS) if self.radius else self.geometry
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Shape:
+    """The outline of a link or a pin.
+
+    Attributes
+    ----------
+    name : str
+        ``link AE`` or ``pin B``.
+    cores : tuple of Core
+        Its pieces.
+    """
+
+    name: str
+    cores: tuple[Core, ...]
+
+    @cached_property
+    def circle(self) -> tuple[complex, float]:
+        """Centre and radius of a circle about all of it [mm]."""
+        corners = [(shapely.get_coordinates(core.geometry), core.radius) for core in self.cores]
+        low = np.min([at.min(axis=0) - radius for at, radius in corners], axis=0)
+        high = np.max([at.max(axis=0) + radius for at, radius in corners], axis=0)
+        middle = (low + high) / 2.0
+        reach = max(float(np.hypot(*(at - middle).T).max()) + radius for at, radius in corners)
+        return complex(*middle), reach
+
+    @property
+    def low(self) -> float:
+        """Its least z [mm]."""
+        return min(core.low for core in self.cores)
+
+    @property
+    def high(self) -> float:
+        """Its greatest z [mm]."""
+        return max(core.high for core in self.cores)
+
+    @cached_property
+    def polygon(self) -> Any:
+        """All of it as seen along the pins."""
+        return shapely.union_all([core.polygon for core in self.cores])
+
+
+def link_shape(name: str, body: Body, planes: Sequence[float]) -> Shape:
+    """Return the outline of a link.
+
+    Parameters
+    ----------
+    name : str
+        ``link AE``.
+    body : Body
+        Its body.
+    planes : sequence of float
+        z of its mid-plane; of both, where it is doubled [mm].
+
+    Returns
+    -------
+    Shape
+        In the frame of the link.
+    """
+    pieces = body.part.footprints(body)
+    cores = [
+        Core(
+            geometry=_geometry(piece),
+            radius=piece.radius,
+            low=plane + piece.low,
+            high=plane + piece.high,
+            error=piece.error,
+        )
+        for plane in planes
+        for piece in pieces
+    ]
+    if body.part.is_beam and body.part.fillet_radius > 0.0:
+        rounded = _fillets([_geometry(p).buffer(p.radius, quad_segs=_SEGMENTS) for p in pieces], body.part.fillet_radius)
+        low, high = pieces[0].low, pieces[0].high
+        error = _CHORD * (body.part.fillet_radius + max(piece.radius for piece in pieces))
+        cores += [
+            Core(geometry=corner, radius=0.0, low=plane + low, high=plane + high, error=error)
+            for plane in planes
+            for corner in rounded
+        ]
+    return Shape(name=name, cores=tuple(cores))
+
+
+def pin_shape(name: str, diameter: float, low: float, high: float) -> Shape:
+    """Return the outline of a pin, whose centre is the origin of its frame.
+
+    Parameters
+    ----------
+    name : str
+        ``pin B``.
+    diameter : float
+        [mm]
+    low, high : float
+        z of its ends [mm].
+
+    Returns
+    -------
+    Shape
+        A circle.
+    """
+    core = Core(geometry=shapely.Point(0.0, 0.0), radius=diameter / 2.0, low=low, high=high, error=0.0)
+    return Shape(name=name, cores=(core,))
+
+
+def _geometry(piece: Footprint) -> Any:
+    if len(piece.corners) == 1:
+        return shapely.Point(piece.corners[0])
+    if len(piece.corners) == 2:
+        return shapely.LineString(piece.corners)
+    found = shapely.Polygon(piece.corners, piece.holes)
+    return found if found.is_valid else found.buffer(0.0)
+
+
+def _fillets(pieces: Sequence[Any], radius: float) -> list[Any]:
+    """Return what a ball in the plane does not reach in the corners between pieces: their closing, less themselves."""
+    plain = shapely.union_all(pieces)
+    closed = plain.buffer(radius, quad_segs=_SEGMENTS).buffer(-radius, quad_segs=_SEGMENTS)
+    return [
+        corner
+        for corner in shapely.get_parts(closed.difference(plain))
+        if corner.geom_type == "Polygon" and corner.area > 1e-3 * radius**2
+    ]
+
+
+def meeting(one: Shape, other: Shape) -> list[tuple[Core, Core]]:
+    """Return the pieces of two outlines that lie at a height together.
+
+    Parameters
+    ----------
+    one, other : Shape
+        The outlines.
+
+    Returns
+    -------
+    list of (Core, Core)
+        Empty where the two pass over each other.
+    """
+    found = []
+    for a in one.cores:
+        for b in other.cores:
+            common = min(a.high, b.high) - max(a.low, b.low)
+            if common > TOUCHING * max(a.high - a.low, b.high - b.low):
+                found.append((a, b))
+    return found
+
+
+def gaps(pairs: Sequence[tuple[Core, Core]], turn: Complex, shift: Complex) -> Real:
+    """Return the gap between two outlines at n placements.
+
+    Parameters
+    ----------
+    pairs : sequence of (Core, Core)
+        Their pieces that may meet.
+    turn, shift : complex arrays (n,)
+        A point p of the second one's frame lies at turn p + shift in the first one's [mm].
+
+    Returns
+    -------
+    array (n,)
+        Least distance [mm]; negative where circles overlap, 0 where polygons do.
+    """
+    found = np.full(len(turn), np.inf)
+    for a, b in pairs:
+        apart = shapely.distance(a.geometry, _placed(b.geometry, turn, shift)) - a.radius - b.radius
+        found = np.minimum(found, apart)
+    return found
+
+
+def overlap(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -> tuple[float, complex]:
+    """Return how far two outlines lie in each other, and where.
+
+    Parameters
+    ----------
+    pairs : sequence of (Core, Core)
+        Their pieces that may meet.
+    turn, shift : complex
+        As of ``gaps``, at one placement.
+
+    Returns
+    -------
+    tuple of float and complex
+        Diameter of the largest circle that lies in both [mm], and its centre in the first one's frame; 0 where they are
+        apart. They are apart only after one has moved by that much or more.
+    """
+    found = (0.0, 0j)
+    for a, b in pairs:
+        [moved] = _placed(b.geometry, np.array([turn]), np.array([shift]))
+        common = a.polygon.intersection(moved.buffer(b.radius, quad_segs=_SEGMENTS) if b.radius else moved)
+        if common.area > 0.0:
+            line = shapely.maximum_inscribed_circle(common, tolerance=1e-3 * np.sqrt(common.area))
+            found = max(found, (2.0 * line.length, complex(*line.coords[0])), key=lambda entry: entry[0])
+    return found
+
+
+def nearest(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -> complex:
+    """Return the place between two outlines where they are nearest, or touch.
+
+    Parameters
+    ----------
+    pairs : sequence of (Core, Core)
+        Their pieces that may meet.
+    turn, shift : complex
+        As of ``gaps``, at one placement.
+
+    Returns
+    -------
+    complex
+        Middle of the gap in the first one's frame [mm].
+    """
+    best = (np.inf, 0j)
+    for a, b in pairs:
+        [moved] = _placed(b.geometry, np.array([turn]), np.array([shift]))
+        apart = shapely.distance(a.geometry, moved)
+        if apart - a.radius - b.radius >= best[0]:
+            continue
+        if apart > 0.0:
+            p, q = (complex(*end) for end in shapely.shortest_line(a.geometry, moved).coords)
+            place = p + (q - p) * (a.radius + apart - b.radius) / (2.0 * apart)
+        else:
+            place = complex(*a.geometry.intersection(moved).centroid.coords[0])
+        best = (apart - a.radius - b.radius, place)
+    return best[1]
+
+
+def _placed(geometry: Any, turn: Complex, shift: Complex) -> Any:
+    """Return a geometry at n placements, as an array of geometries."""
+    at = shapely.get_coordinates(geometry)
+    places = turn[:, None] * (at[:, 0] + 1j * at[:, 1]) + shift[:, None]
+    copies = np.full(len(turn), geometry, dtype=object)
+    return shapely.set_coordinates(copies, np.column_stack([places.real.ravel(), places.imag.ravel()]))
+
+
+def error_of(pairs: Sequence[tuple[Core, Core]]) -> float:
+    """Return how far the gap between two outlines may be off, since chords stand for arcs.
+
+    Parameters
+    ----------
+    pairs : sequence of (Core, Core)
+        Their pieces that may meet.
+
+    Returns
+    -------
+    float
+        [mm]
+    """
+    return max((a.error + b.error for a, b in pairs), default=0.0)
