@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LAYERS = {
     "geometry": (
         *("base", "materials", "imported", "bodies", "parts"),
-        *("linkage", "mechanisms", "solids", "meshing", "placement"),
+        *("linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
     "loads": ("text", "records", "statics", "sources", "case", "states", "plans"),
     "fea": (

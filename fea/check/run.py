@@ -28,6 +28,7 @@ from fea.common.verdict import CheckOutcome, overall
 from fea.frame.joint_forces import JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
+from fea.outcomes.clearance import clearance_outcomes
 from fea.outcomes.judge import outcomes
 from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.pins import PinStress, shared_stress
@@ -45,6 +46,7 @@ from geometry.meshing.mesh import MeshSettings
 from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.case.case import Case
 from loads.records.check_spec import BearingCheck, DisplacementCheck, MotorCheck, PinCheck
+from loads.states.clearance import clearance
 from loads.statics.statics import Reactions
 from loads.text.shares import parse_accuracy
 
@@ -233,6 +235,8 @@ def check_case(
     statics = solve_case_statics(case, name)
     case = statics.case
     clock("pose and statics")
+    apart = clearance(case)
+    clock("clearance")
     moved = frames or {
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
@@ -254,11 +258,15 @@ def check_case(
             for load_case, found in motor_outcomes(case, asked, check).items():
                 motors[load_case] += found
     load_cases = {load_case: one.judged(decided, motors[load_case]) for load_case, one in by_load_case.items()}
+    first_name = next(iter(load_cases))
+    kept = (*load_cases[first_name].checks, *clearance_outcomes(case, apart))
+    load_cases[first_name] = replace(load_cases[first_name], checks=kept)
     clock("stress")
     return CheckResult(
         name=name,
         case=case,
         pose=statics.pose,
+        clearance=apart,
         load_cases=load_cases,
         hand={calculation: _cantilever(case, calculation) for calculation in case.hand_calculations},
         audit=statics.audit,

@@ -26,6 +26,8 @@ class SourceKind(StrEnum):
     EYE_SHARING = "load sharing between the two eyes of a pin"
     COUPLES = "sharing of the couples between layers"
     FLYWHEEL = "energy that a flywheel stores"
+    POSES = "what lies between the poses that were looked at"
+    CHORDS = "chords in place of arcs"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -76,6 +76,8 @@ class Quantity(StrEnum):
     """Fatigue strength over stress."""
     FATIGUE_LIFE = "fatigue, life", "", Sense.AT_LEAST
     """Life over the repetitions that are wanted."""
+    CLEARANCE = "clearance", "mm", Sense.AT_LEAST
+    """Least gap between outlines that lie at one height; negative where they lie in each other."""
     DRIVE_POWER = "drive power", "W", Sense.AT_MOST
     DRIVE_SPEED = "drive speed", "rpm", Sense.AT_MOST
     DRIVE_TORQUE = "drive torque over time", "N·mm", Sense.AT_MOST
@@ -256,7 +258,7 @@ class CheckOutcome:
     @property
     def gives_way(self) -> bool:
         """True where it says that the linkage as a whole does not hold the load."""
-        asked = self.subject == LINKAGE and self.quantity is not Quantity.LIMIT_LOAD
+        asked = self.subject == LINKAGE and self.quantity not in (Quantity.LIMIT_LOAD, Quantity.CLEARANCE)
         return asked and self.verdict is Verdict.FAIL
 
     @property

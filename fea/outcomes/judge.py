@@ -19,6 +19,7 @@ from fea.refine.discretisation import Discretisation
 from loads.case.case import Case
 from loads.records.check_spec import (
     BearingCheck,
+    ClearanceCheck,
     DisplacementCheck,
     LimitLoadCheck,
     MotorCheck,
@@ -38,9 +39,10 @@ def outcomes(
     uneven: Mapping[str, Scatter] | None = None,
     forces: JointForces | None = None,
 ) -> tuple[CheckOutcome, ...]:
-    """Return the outcome of every check of a load case, but for motors, bearing, limit load and links' buckling.
+    """Return the outcome of every check of a load case, but for motors, bearing, clearance, limit load and buckling.
 
-    These are in ``fea.outcomes`` (``motor``, ``bearing``), ``fea.check.linkage_numbers`` and ``fea.buckling.buckling``.
+    These are in ``fea.outcomes`` (``motor``, ``bearing``, ``clearance``), ``fea.check.linkage_numbers`` and
+    ``fea.buckling.buckling``.
 
     Parameters
     ----------
@@ -76,7 +78,7 @@ def outcomes(
             ]
         elif isinstance(check, DisplacementCheck) and check.at is not None:
             found.append(point_outcome(case, name, check, load_case, moved, links, free, forces))
-        elif not isinstance(check, MotorCheck | BearingCheck | LimitLoadCheck):
+        elif not isinstance(check, MotorCheck | BearingCheck | LimitLoadCheck | ClearanceCheck):
             found += [_link(case, name, check, load_case, links[link]) for link in check.links or case.checked_links]
     beams = {link: result.beam for link, result in links.items()}
     found += layer_outcomes(case, load_case, links)

@@ -26,6 +26,7 @@ from geometry.materials.material import stress_measure
 from loads.case.case import Case
 from loads.records.applied import Load
 from loads.sources.published_statics import StaticsAudit
+from loads.states.clearance import Clearance
 from loads.states.rubbing import DriveWork
 from loads.states.standing import Standing
 from loads.statics.statics import Reactions
@@ -313,6 +314,8 @@ class CheckResult:
         What the case was called on the command line.
     case : Case
     pose : Pose
+    clearance : Clearance or None
+        The gaps between links over the motion, or in the pose; None where no layers are stated.
     load_cases : mapping of str to LoadCaseResult
     hand : mapping of str to CantileverCheck
         The case's own hand calculations.
@@ -331,6 +334,7 @@ class CheckResult:
     name: str
     case: Case
     pose: Pose
+    clearance: Clearance | None
     load_cases: Mapping[str, LoadCaseResult]
     hand: Mapping[str, CantileverCheck]
     audit: StaticsAudit | None

@@ -61,8 +61,15 @@ def margin_band(number: VariantNumber) -> tuple[float, float, float]:
         value, high, low = (number.limit / end if end > 0.0 else math.inf for end in ends)
         return value, low, high
     whole = number.limit if number.quantity == Quantity.LOAD_SHARE.value else math.inf
-    value, low, high = (end / number.limit if number.limit > 0.0 and end < whole else math.inf for end in ends)
+    value, low, high = (_share(end, number.limit) if end < whole else math.inf for end in ends)
     return value, low, high
+
+
+def _share(value: float, limit: float) -> float:
+    """Return by what factor a value keeps a least one; 0 where it is negative, infinite where any is enough."""
+    if value < 0.0:
+        return 0.0
+    return value / limit if limit > 0.0 else math.inf
 
 
 def least_margin(result: VariantResult) -> tuple[float, float, float]:

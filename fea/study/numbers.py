@@ -11,11 +11,13 @@ from fea.common.band import Band
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict, overall
 from fea.motion.envelope_result import EnvelopeResult
 from fea.motion.linkage_history import LinkageOverMotion, asked_over_motion, limit_load_outcomes
+from fea.outcomes.clearance import clearance_outcomes
 from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.result import CheckResult, LinkageNumbers
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
 from loads.states.case_motion import CaseMotion
+from loads.states.clearance import clearance
 from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
 from loads.states.masses import part_masses, rough_masses
 
@@ -222,7 +224,7 @@ def of_motion(result: CaseMotion, *, weighs: Weighs) -> tuple[Verdict | None, tu
         for outcome in outcomes
     ]
     linkage = asked_over_motion(result)
-    checked = [*motors, *limit_load_outcomes(result, linkage)]
+    checked = [*motors, *limit_load_outcomes(result, linkage), *clearance_outcomes(case, clearance(case))]
     verdict = overall(outcome.verdict for outcome in checked) if checked else None
     frames = (number for name, over in linkage.items() for number in _of_linkage(over, name))
     own = (*_of_motion(result), *frames, *_masses(case, weighs=weighs))

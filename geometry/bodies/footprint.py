@@ -168,5 +168,3 @@ def of_border(border: Border, height: float) -> Footprint:
         corners += arc((x, y), math.dist((x, y), start), first, sweep)[1:-1]
         largest = max(largest, math.dist((x, y), start))
     return Footprint(corners=tuple(corners), low=-height / 2.0, high=height / 2.0, error=_off(largest))
-
-

@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from geometry.bodies.body import Body
@@ -69,6 +68,8 @@ class Shape:
     @cached_property
     def circle(self) -> tuple[complex, float]:
         """Centre and radius of a circle about all of it [mm]."""
+        import shapely
+
         corners = [(shapely.get_coordinates(core.geometry), core.radius) for core in self.cores]
         low = np.min([at.min(axis=0) - radius for at, radius in corners], axis=0)
         high = np.max([at.max(axis=0) + radius for at, radius in corners], axis=0)
@@ -89,6 +90,8 @@ class Shape:
     @cached_property
     def polygon(self) -> Any:
         """All of it as seen along the pins."""
+        import shapely
+
         return shapely.union_all([core.polygon for core in self.cores])
 
 
@@ -122,7 +125,9 @@ def link_shape(name: str, body: Body, planes: Sequence[float]) -> Shape:
         for piece in pieces
     ]
     if body.part.is_beam and body.part.fillet_radius > 0.0:
-        rounded = _fillets([_geometry(p).buffer(p.radius, quad_segs=_SEGMENTS) for p in pieces], body.part.fillet_radius)
+        rounded = _fillets(
+            [_geometry(p).buffer(p.radius, quad_segs=_SEGMENTS) for p in pieces], body.part.fillet_radius
+        )
         low, high = pieces[0].low, pieces[0].high
         error = _CHORD * (body.part.fillet_radius + max(piece.radius for piece in pieces))
         cores += [
@@ -150,11 +155,15 @@ def pin_shape(name: str, diameter: float, low: float, high: float) -> Shape:
     Shape
         A circle.
     """
+    import shapely
+
     core = Core(geometry=shapely.Point(0.0, 0.0), radius=diameter / 2.0, low=low, high=high, error=0.0)
     return Shape(name=name, cores=(core,))
 
 
 def _geometry(piece: Footprint) -> Any:
+    import shapely
+
     if len(piece.corners) == 1:
         return shapely.Point(piece.corners[0])
     if len(piece.corners) == 2:
@@ -165,6 +174,8 @@ def _geometry(piece: Footprint) -> Any:
 
 def _fillets(pieces: Sequence[Any], radius: float) -> list[Any]:
     """Return what a ball in the plane does not reach in the corners between pieces: their closing, less themselves."""
+    import shapely
+
     plain = shapely.union_all(pieces)
     closed = plain.buffer(radius, quad_segs=_SEGMENTS).buffer(-radius, quad_segs=_SEGMENTS)
     return [
@@ -211,6 +222,8 @@ def gaps(pairs: Sequence[tuple[Core, Core]], turn: Complex, shift: Complex) -> R
     array (n,)
         Least distance [mm]; negative where circles overlap, 0 where polygons do.
     """
+    import shapely
+
     found = np.full(len(turn), np.inf)
     for a, b in pairs:
         apart = shapely.distance(a.geometry, _placed(b.geometry, turn, shift)) - a.radius - b.radius
@@ -234,6 +247,8 @@ def overlap(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -
         Diameter of the largest circle that lies in both [mm], and its centre in the first one's frame; 0 where they are
         apart. They are apart only after one has moved by that much or more.
     """
+    import shapely
+
     found = (0.0, 0j)
     for a, b in pairs:
         [moved] = _placed(b.geometry, np.array([turn]), np.array([shift]))
@@ -259,6 +274,8 @@ def nearest(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -
     complex
         Middle of the gap in the first one's frame [mm].
     """
+    import shapely
+
     best = (np.inf, 0j)
     for a, b in pairs:
         [moved] = _placed(b.geometry, np.array([turn]), np.array([shift]))
@@ -276,6 +293,8 @@ def nearest(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -
 
 def _placed(geometry: Any, turn: Complex, shift: Complex) -> Any:
     """Return a geometry at n placements, as an array of geometries."""
+    import shapely
+
     at = shapely.get_coordinates(geometry)
     places = turn[:, None] * (at[:, 0] + 1j * at[:, 1]) + shift[:, None]
     copies = np.full(len(turn), geometry, dtype=object)

@@ -1,5 +1,6 @@
 """What a solid of any shape covers as seen along z, from the triangles of its surface, layer by layer."""
 
+import itertools
 import math
 from typing import Any
 
@@ -15,6 +16,8 @@ _LAYERS = 16
 """At most; of more flat faces the largest divide the solid."""
 _LEVEL, _NEAR = 1e-6, 1e-4
 """Share of the solid's size by which a flat face may slope, and of a layer's height at which it is cut open."""
+_SLIVER = 1e-3
+"""Share of the solid's size: smaller pieces and holes are left by rounding."""
 _ROUND = 0.35
 """Angle between two edges of a border below which they are chords of one arc: triangles turn by 0.2 [rad]."""
 
@@ -50,9 +53,7 @@ def shadows(points: Real, triangles: Int) -> tuple[Footprint, ...]:
     inner = sorted(inner, key=lambda z: -levels[z])[: _LAYERS - 1]
     ends = [low, *sorted(inner), high]
     up = corners[normals[:, 2] > _LEVEL * areas]
-    return tuple(
-        piece for a, b in zip(ends[:-1], ends[1:], strict=True) for piece in _layer(corners, up, a, b, _LEVEL * size)
-    )
+    return tuple(piece for a, b in itertools.pairwise(ends) for piece in _layer(corners, up, a, b, _LEVEL * size))
 
 
 def _layer(corners: Real, up: Real, low: float, high: float, grid: float) -> list[Footprint]:
@@ -68,12 +69,12 @@ def _layer(corners: Real, up: Real, low: float, high: float, grid: float) -> lis
     pieces += [shapely.Polygon(p[:, :2]) for p in (_clipped(t, low_in, high_in) for t in crossing) if len(p) > 2]
     pieces.append(_cut(corners, high_in, grid))
     union = shapely.union_all([piece for piece in pieces if not piece.is_empty], grid_size=grid)
-    found = shapely.simplify(union, grid)
-    parts = [part for part in shapely.get_parts(found) if part.geom_type == "Polygon" and part.area > grid**2]
+    least = (_SLIVER / _LEVEL * grid) ** 2
+    parts = [part for part in shapely.get_parts(shapely.simplify(union, grid)) if part.area > least]
     return [
         Footprint(
             corners=_ring(part.exterior),
-            holes=tuple(_ring(hole) for hole in part.interiors),
+            holes=tuple(_ring(hole) for hole in part.interiors if shapely.Polygon(hole).area > least),
             low=low,
             high=high,
             error=2.0 * max(_chords(ring) for ring in (part.exterior, *part.interiors)),
@@ -117,17 +118,39 @@ def _cut(corners: Real, height: float, grid: float) -> Any:
     """Return the section of a closed surface across z as polygons."""
     import shapely
 
-    across = (corners[..., 2].min(axis=1) < height) & (corners[..., 2].max(axis=1) > height)
-    lines = []
-    for triangle in corners[across]:
-        ends = []
-        for p, q in ((triangle[0], triangle[1]), (triangle[1], triangle[2]), (triangle[2], triangle[0])):
-            p, q = (p, q) if tuple(p) < tuple(q) else (q, p)  # so that both triangles of an edge find the same place
-            if (p[2] - height) * (q[2] - height) < 0.0:
-                ends.append((p + (q - p) * (height - p[2]) / (q[2] - p[2]))[:2])
-        if len(ends) == 2:
-            lines.append(ends)
-    if not lines:
+    above = corners[..., 2] > height
+    across = corners[above.any(axis=1) & ~above.all(axis=1)]
+    if not len(across):
         return shapely.Polygon()
-    joined = shapely.union_all(shapely.linestrings(np.array(lines)), grid_size=grid)
-    return shapely.build_area(joined)
+    start, end = across, np.roll(across, -1, axis=1)
+    met = (start[..., 2] > height) != (end[..., 2] > height)  # two of the three edges of each triangle
+    p, q = start[met], end[met]
+    share = (height - p[:, 2]) / (q[:, 2] - p[:, 2])
+    ends = (p + share[:, None] * (q - p))[:, :2]
+    lines = _joined(ends, grid).reshape(-1, 2, 2)
+    lines = lines[np.abs(lines[:, 1] - lines[:, 0]).max(axis=1) > 0.0]
+    return shapely.build_area(shapely.union_all(shapely.linestrings(np.concatenate([lines, _missing(lines)]))))
+
+
+def _missing(lines: Real) -> Real:
+    """Return lines between loose ends, each to the nearest: of two faces the chords along a curve may differ."""
+    places, times = np.unique(lines.reshape(-1, 2), axis=0, return_counts=True)
+    loose = list(places[times % 2 == 1])
+    found = []
+    while len(loose) > 1:
+        end = loose.pop()
+        nearest = int(np.argmin([float(np.hypot(*(other - end))) for other in loose]))
+        found.append((end, loose.pop(nearest)))
+    return np.array(found).reshape(-1, 2, 2)
+
+
+def _joined(places: Real, near: float) -> Real:
+    """Return places with those that are one but for rounding made equal: triangles of two faces share no corners."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(places).query_pairs(near, output_type="ndarray")
+    links = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(places),) * 2)
+    groups = connected_components(links, directed=False)[1]
+    return np.asarray(places[np.unique(groups, return_index=True)[1]][groups])

@@ -17,8 +17,8 @@ from geometry.bodies.footprint import Footprint
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
 from geometry.imported.read import part_surface
-from geometry.parts.shadow import shadows
 from geometry.materials.printable import Printable
+from geometry.parts.shadow import shadows
 
 Vector = tuple[float, float, float]
 

@@ -206,12 +206,12 @@ class Tube(Straight):
 
     def footprints(self, body: Body) -> tuple[Footprint, ...]:
         """As ``PartKind.footprints``: as wide at every height as at its middle; and the arms."""
-        found, arm = [*super().footprints(without_lugs(body))], self.arm_section
+        found = [*super().footprints(without_lugs(body))]
         for pin in body.pins:
             if pin.foot is not None:
                 angle = math.copysign(math.pi / 2.0, pin.y)
-                found.append(strip(pin.foot, angle, abs(pin.y), arm.width, arm.height))
-                found += eye(pin, body.ring(pin), arm.width)
+                found.append(strip(pin.foot, angle, abs(pin.y), self.arm_width, self.arm_thickness))
+                found += eye(pin, body.ring(pin), self.arm_width)
         return tuple(found)
 
     def fine_places(self, body: Body, size: float, share: float) -> list[tuple[float, str]]:

@@ -19,6 +19,7 @@ from loads.case.toleranced import toleranced
 from loads.records.check_spec import (
     BearingCheck,
     Check,
+    ClearanceCheck,
     DisplacementCheck,
     LimitLoadCheck,
     MotorCheck,
@@ -216,6 +217,12 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
         _check_motor(case, name)
     elif isinstance(check, DisplacementCheck) and (check.at, check.link) != (None, None):
         _check_displaced(case, name, check)
+    elif isinstance(check, ClearanceCheck):
+        if not case.layered:
+            raise CaseError(
+                f"checks.{name}: a check of clearance needs to know which links lie at one height, but all lie in one "
+                'plane; give every link a layer or z, such as links.A.layer = 1 with layer_spacing = "7 mm"'
+            )
     elif isinstance(check, LimitLoadCheck):
         if not case.checked_links:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")

@@ -25,6 +25,7 @@ from loads.records.aero import AirForces, air_forces
 from loads.records.carried import Carried
 from loads.records.check_spec import (
     Check,
+    ClearanceCheck,
     DisplacementCheck,
     SafetyFactorCheck,
     SustainedCheck,
@@ -157,10 +158,14 @@ class CoreCase(Revisable):
 
     @property
     def all_checks(self) -> dict[str, Check]:
-        """The stated checks, or the safety factor of every link where none is; and, where loads stay, that they may."""
+        """The stated checks, or the safety factor of every link where none is; and what is checked without being asked:
+        that loads may stay as long as they do, and that links in layers do not touch.
+        """
         checks = dict(self.checks) or {"safety factor": SafetyFactorCheck(type="safety-factor")}
         if self.conditions.duration is not None and not any(isinstance(c, SustainedCheck) for c in checks.values()):
             checks["sustained load"] = SustainedCheck(type="sustained")
+        if self.layered and self.checked_links and not any(isinstance(c, ClearanceCheck) for c in checks.values()):
+            checks["clearance"] = ClearanceCheck(type="clearance")
         return checks
 
     def displaced_point(self, name: str, check: DisplacementCheck) -> tuple[str, str]:

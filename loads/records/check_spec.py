@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from geometry.base.model import CaseModel, Name, refusal
-from geometry.base.units import POSITIVE, AngularSpeed, Current, Length, Moment, Voltage
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, AngularSpeed, Current, Length, Moment, Voltage
 
 
 class SafetyFactorCheck(CaseModel):
@@ -112,7 +112,25 @@ class LimitLoadCheck(CaseModel):
     """The least limit-load factor; the deformed shape is followed to ten times the load."""
 
 
+class ClearanceCheck(CaseModel):
+    """Links that lie at one height, and pins and the links that they pass, must stay apart.
+
+    Over the [motion], or in the pose where none is stated. Links in layers are checked even if no check asks for it.
+    """
+
+    type: Literal["clearance"]
+    minimum: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """The least gap between their outlines in the plane."""
+
+
 Check = Annotated[
-    SafetyFactorCheck | DisplacementCheck | SustainedCheck | PinCheck | BearingCheck | LimitLoadCheck | MotorCheck,
+    SafetyFactorCheck
+    | DisplacementCheck
+    | SustainedCheck
+    | PinCheck
+    | BearingCheck
+    | LimitLoadCheck
+    | ClearanceCheck
+    | MotorCheck,
     Field(discriminator="type"),
 ]

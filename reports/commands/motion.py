@@ -14,8 +14,10 @@ from fea.motion.linkage_history import asked_over_motion
 from geometry.base.version import result_stamp
 from geometry.linkage.motion import Motion
 from loads.states.case_motion import CaseMotion, with_inertia
+from loads.states.clearance import clearance
 from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
 from reports.figures.joint_paths import moving_points, path_length
+from reports.tables.clearance import clearance_line, clearance_record
 from reports.tables.data import finite
 from reports.tables.frames import motion_linkage_line, motion_linkage_record
 from reports.tables.friction import motion_friction_lines, motion_friction_record
@@ -116,6 +118,7 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
         },
         "design": design_record(result.case),
         "load_cases": {load_case: _case_record(result, load_case) for load_case in result.torque},
+        "clearance": finite(clearance_record(clearance(result.case)), {}),
         "linkage": {
             n: finite(motion_linkage_record(result, over), {}) for n, over in asked_over_motion(result).items()
         },
@@ -199,6 +202,8 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         )
     if design := design_lines(result.case):
         print("\n" + "\n".join(design))
+    if (line := clearance_line(clearance(result.case))) is not None:
+        print("\n" + line)
     for load_case, row in data["load_cases"].items():
         speed = row.get("speed_mm_per_s", row.get("speed_rad_per_s"))
         at = f"{speed:.4g} mm/s" if result.motion.slides else f"{speed * 30.0 / math.pi:.4g} rpm"

@@ -173,7 +173,7 @@ def _reasons(result: CheckResult) -> list[str]:
     """Return the reason of each check; "" where its row says the same, so not where the reason names the model."""
     return [
         ""
-        if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.DISPLACEMENT)
+        if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.DISPLACEMENT, Quantity.CLEARANCE)
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
         else check.reason
         for check in checks_of(result)

@@ -13,6 +13,7 @@ from fea.outcomes.unchecked import unchecked
 from geometry.base.version import result_stamp
 from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions
+from reports.tables.clearance import clearance_record
 from reports.tables.data import check_records, data, entries, finite
 from reports.tables.frames import frame_record, reaction_records
 from reports.tables.friction import friction_record
@@ -60,6 +61,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "links": {name: _worst_link(result, name) for name in first.links},
         "checks": check_records(check for case in result.load_cases.values() for check in case.checks),
         "hand_calculations": [*_cantilevers(result), *_comparisons(result.load_cases.values())],
+        "clearance": clearance_record(result.clearance),
         "load_cases": {name: _load_case(result, name) for name in result.load_cases},
         "materials": {
             name: entries(result.case.all_materials[name], _MATERIAL)

@@ -214,7 +214,7 @@ def tightness(check: CheckOutcome) -> float:
     if check.value.unknowable:
         return -math.inf
     margin = check.value.low - check.limit if check.at_least else check.limit - check.value.high
-    return margin / check.limit
+    return margin / check.limit if check.limit > 0.0 else math.copysign(math.inf, margin)
 
 
 def tightest(checks: Sequence[CheckOutcome]) -> CheckOutcome:
@@ -308,7 +308,9 @@ def _named(check: CheckOutcome, *, long: bool = False) -> str:
 
 
 def _under(result: "CheckResult", check: CheckOutcome) -> str:
-    return f"under load case {check.load_case} " if len(result.load_cases) > 1 else ""
+    if check.quantity is Quantity.CLEARANCE or len(result.load_cases) == 1:
+        return ""
+    return f"under load case {check.load_case} "
 
 
 def _with_limit(result: "CheckResult", check: CheckOutcome) -> str:

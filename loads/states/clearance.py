@@ -1,0 +1,277 @@
+"""How far the links of a layered case stay from one another: at its pose, and over its motion."""
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base.errors import CaseError
+from geometry.clearance.least import Gap, Pair, Spot, gap_at, least_gap
+from geometry.clearance.shape import Shape, link_shape, pin_shape
+from geometry.linkage.motion import Motion, solve_motion
+from geometry.linkage.placement import Placement
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.case.layers import slab
+from loads.states.case_motion import drive_angles
+
+Real = NDArray[np.float64]
+
+_POSES = 181
+"""Poses of the motion to begin with."""
+_NEAR = 1e-4
+"""Share of the longest link to which the least gap over a motion is found."""
+_STEP = np.radians(0.01)
+"""Of an angle, to which the first contact is found [rad]; of a travel, over the longest link."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Assembly:
+    """The outlines of a layered case.
+
+    Attributes
+    ----------
+    case : Case
+        The case.
+    links : mapping of str to Shape
+        By link, of those that have a part, in their frames.
+    pins : mapping of str to Shape
+        By joint, of those that state a diameter.
+    """
+
+    case: Case
+    links: Mapping[str, Shape]
+    pins: Mapping[str, Shape]
+
+    def spot(self, joint: str) -> Spot:
+        """Return where the pin of a joint stands: in the second of its links.
+
+        Parameters
+        ----------
+        joint : str
+            Its name.
+
+        Returns
+        -------
+        Spot
+        """
+        return Spot(link=self.case.joints[joint].links[1], point=self.case.linkage.joint_points(joint)[1])
+
+    @cached_property
+    def holders(self) -> dict[str, set[str]]:
+        """Joint -> the links that its pin belongs to: those of all joints on one axis."""
+        groups: list[tuple[set[tuple[str, str]], set[str]]] = []
+        for name, joint in self.case.joints.items():
+            ends = list(zip(joint.links, self.case.linkage.joint_points(name), strict=True))
+            axis = set(ends if joint.type == "revolute" else ends[1:])  # a slot's own point is not where the pin is
+            held = set(joint.links)
+            for group in [group for group in groups if group[0] & axis]:
+                groups.remove(group)
+                axis, held = axis | group[0], held | group[1]
+            groups.append((axis, held))
+        return {name: next(held for axis, held in groups if self._end(name) in axis) for name in self.case.joints}
+
+    def _end(self, joint: str) -> tuple[str, str]:
+        spot = self.spot(joint)
+        assert spot.point is not None
+        return spot.link, spot.point
+
+    @cached_property
+    def pairs(self) -> tuple[Pair, ...]:
+        """All outlines that lie at one height and are not made to touch."""
+        return tuple(pair for pair in self._pairs() if pair is not None)
+
+    def _pairs(self) -> Iterator[Pair | None]:
+        guided = {frozenset(joint.links) for joint in self.case.joints.values() if joint.type == "slider"}
+        for one, other in itertools.combinations(self.links, 2):
+            if frozenset((one, other)) not in guided:
+                yield Pair.of((self.links[one], Spot(link=one)), (self.links[other], Spot(link=other)))
+        for joint, pin in self.pins.items():
+            for link in self.links.keys() - self.holders[joint]:
+                yield Pair.of((self.links[link], Spot(link=link)), (pin, self.spot(joint)))
+
+
+def assembly(case: Case) -> Assembly:
+    """Return the outlines of a case.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    Assembly
+        Of its links with a part and of its pins.
+    """
+    slabs = {link: slab(case, link) for link in case.links}
+    pins = {}
+    for name, joint in case.joints.items():
+        if joint.pin_diameter is not None and joint.type != "slider":
+            ends = [z for link in joint.links for z in slabs[link]]
+            pins[name] = pin_shape(f"pin {name}", joint.pin_diameter, min(ends), max(ends))
+    links = {link: link_shape(f"link {link}", case.body(link), [case.heights[link]]) for link in case.checked_links}
+    return Assembly(case=case, links=links, pins=pins)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Clearance:
+    """The gaps of an assembly.
+
+    Attributes
+    ----------
+    assembly : Assembly
+        The outlines.
+    pose : Pose
+        The stated one.
+    motion : Motion or None
+        Over which the gaps are; None where the case states none, and they are those of the pose.
+    gaps : tuple of Gap
+        By their size, the least first; those of pairs that stay further apart than any other are left out.
+    """
+
+    assembly: Assembly
+    pose: Pose
+    motion: Motion | None
+    gaps: tuple[Gap, ...]
+
+    @property
+    def least(self) -> Gap | None:
+        """The least gap; None where nothing lies at one height."""
+        return self.gaps[0] if self.gaps else None
+
+    @cached_property
+    def contact(self) -> Gap | None:
+        """The gap of the pair that touches first; None where none does."""
+        touching = [gap for gap in self.gaps if gap.touches and gap.at is not None]
+        if not touching or self.motion is None:
+            return None
+        start = float(self.motion.angles[0])
+        return min(touching, key=lambda gap: abs((gap.at or 0.0) - start))
+
+    @property
+    def shown(self) -> Gap | None:
+        """The gap that is worth a picture: the first contact, else the least."""
+        return self.contact or self.least
+
+    def placed(self, gap: Gap) -> Placement:
+        """Return the pose, as one of one, at which a gap was found.
+
+        Parameters
+        ----------
+        gap : Gap
+            One of the gaps.
+
+        Returns
+        -------
+        Placement
+        """
+        if gap.at is None or self.motion is None:
+            return _single(self.pose)
+        return _poses(self.motion)(np.array([gap.at]))
+
+    def where(self, gap: Gap) -> str:
+        """Say at which pose and place a gap was found.
+
+        Parameters
+        ----------
+        gap : Gap
+            One of the gaps.
+
+        Returns
+        -------
+        str
+        """
+        x, y = gap.place
+        at = "in the stated pose"
+        if gap.at is not None and self.motion is not None:
+            at = f"at {self.motion.coordinate} = {float(self.motion.told(gap.at)):.2f} {self.motion.unit}"
+        return f"{at}, x = {x:.4g}, y = {y:.4g} mm"
+
+
+def _single(pose: Pose) -> Placement:
+    return Placement(closure=pose.closure, q=pose.q[None])
+
+
+def _poses(motion: Motion) -> Callable[[Real], Placement]:
+    """Return what takes values of the coordinate to poses with rates by it."""
+
+    def at(values: Real) -> Placement:
+        q = motion.track.at(values)
+        first, second = motion.track.driven.coefficients(q)
+        return Placement(closure=motion.closure, q=q, qdot=first, qddot=second)
+
+    return at
+
+
+def clearance(case: Case) -> Clearance | None:
+    """Return the gaps of a case over its motion, or at its pose where it states none.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    Clearance or None
+        None where no layers are stated.
+
+    Raises
+    ------
+    CaseError
+        Where two links, or a link and a pin, lie in each other in the stated pose; where the motion does not exist.
+    """
+    if not case.layered:
+        return None
+    found, pose = assembly(case), case.solve_pose()
+    at_rest = _single(pose)
+    gaps = [gap_at(pair, at_rest) for pair in found.pairs]
+    for pair, gap in zip(found.pairs, gaps, strict=True):
+        if gap.high < 0.0:
+            raise CaseError(_through(case, pair, gap))
+    if case.motion is None:
+        return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(gaps))
+    motion = solve_motion(
+        pose, drive_angles(case, pose), coordinate=case.motion_coordinate, slides=case.motion.travel is not None
+    )
+    ends = float(motion.angles[0]), float(motion.angles[-1])
+    longest, start = case.linkage.longest, np.linspace(*ends, _POSES)
+    step, at = _STEP * (longest if motion.slides else 1.0), _poses(motion)
+    over: list[Gap] = []
+    order = sorted(zip(found.pairs, gaps, strict=True), key=lambda entry: entry[1].value)
+    for pair, _ in order:
+        enough = max(min((gap.value for gap in over), default=np.inf), 0.0)
+        gap = least_gap(pair, at, start, near=_NEAR * longest, step=step, enough=enough)
+        over += [] if gap is None else [gap]
+    return Clearance(assembly=found, pose=pose, motion=motion, gaps=_sorted(over))
+
+
+def _sorted(gaps: list[Gap]) -> tuple[Gap, ...]:
+    return tuple(sorted(gaps, key=lambda gap: gap.value))
+
+
+def _through(case: Case, pair: Pair, gap: Gap) -> str:
+    """Say that two outlines lie in each other in the stated pose, and what would part them."""
+    x, y = gap.place
+    one, other = sorted(pair.at, key=lambda spot: spot.point is not None)
+    if other.point is not None:
+        return (
+            f"links.{one.link}: {pair.other.name if pair.at[1].point else pair.one.name} goes through link {one.link}, "
+            f"which it does not belong to, in the stated pose at x = {x:.4g}, y = {y:.4g} mm; give link {one.link} a "
+            "layer that the pin does not cross, or move one of them"
+        )
+    shared = [name for name, joint in case.joints.items() if {one.link, other.link} == set(joint.links)]
+    entries = " and ".join(f"{_entry(case, spot.link)}" for spot in (one, other))
+    why = f"they share joint {shared[0]}, so their eyes lie in each other" if shared else (
+        f"they lie in each other in the stated pose at x = {x:.4g}, y = {y:.4g} mm"
+    )  # fmt: skip
+    return f"links.{one.link}, links.{other.link}: with {entries} {why}; give one of them another layer, or the layers more distance"
+
+
+def _entry(case: Case, link: str) -> str:
+    record = case.links[link]
+    return f"layer = {record.layer} of {link}" if record.layer is not None else f"z = {record.z or 0.0:g} mm of {link}"

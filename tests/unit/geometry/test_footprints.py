@@ -1,0 +1,174 @@
+"""What parts cover as seen along their pins, against volumes and surfaces of the geometry kernel."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from geometry.bodies.body import Body
+from geometry.bodies.features import Pin, Ring
+from geometry.bodies.footprint import Footprint
+from geometry.clearance.shape import gaps, link_shape, meeting, nearest, overlap, pin_shape
+from geometry.imported.read import part_facts, part_surface
+from geometry.meshing.mesh import mass_properties
+from geometry.parts.bar import Bar
+from geometry.parts.disc import Disc
+from geometry.parts.plate import Plate
+from geometry.parts.shadow import shadows
+from geometry.parts.tube import Tube
+
+DATA = Path(__file__).resolve().parents[2] / "data" / "step"
+FLAT: dict[str, tuple[Any, dict[str, Any], tuple[Pin, ...]]] = {
+    "bar with round eyes and an arm": (
+        Bar,
+        {"shape": "bar", "width": "8 mm", "thickness": "4 mm", "fillet_radius": "2 mm"},
+        (
+            Pin(name="A", x=0.0, y=0.0, diameter=3.0),
+            Pin(name="B", x=60.0, y=0.0, diameter=3.0),
+            Pin(name="C", x=70.0, y=40.0, diameter=3.0, foot=(60.0, 0.0)),
+        ),
+    ),
+    "bar with a slot, round as wide as itself": (
+        Bar,
+        {"shape": "bar", "width": "8 mm", "thickness": "4 mm", "fillet_radius": "0 mm", "eye_diameter": "8 mm"},
+        (Pin(name="A", x=0.0, y=0.0, diameter=3.0), Pin(name="S", x=40.0, y=0.0, diameter=3.2, slot=12.0)),
+    ),
+    "bar with square ends": (
+        Bar,
+        {
+            "shape": "bar",
+            "width": "8 mm",
+            "thickness": "4 mm",
+            "fillet_radius": "0 mm",
+            "ends": "square",
+            "overhang": "5 mm",
+        },
+        (Pin(name="A", x=0.0, y=0.0, diameter=3.0), Pin(name="B", x=60.0, y=0.0, diameter=3.0)),
+    ),
+    "bar of varying width": (
+        Bar,
+        {
+            "shape": "bar",
+            "widths": [["0 mm", "12 mm"], ["30 mm", "12 mm"], ["30 mm", "8 mm"], ["60 mm", "6 mm"]],
+            "shoulder_radius": "1 mm",
+            "thickness": "4 mm",
+            "fillet_radius": "1 mm",
+        },
+        (Pin(name="A", x=0.0, y=0.0, diameter=3.0), Pin(name="B", x=60.0, y=0.0, diameter=3.0)),
+    ),
+    "plate with concave sides and a hole": (
+        Plate,
+        {
+            "shape": "plate",
+            "thickness": "4 mm",
+            "eye_diameter": "12 mm",
+            "fillet_radius": "60 mm",
+            "holes": [{"x": "20 mm", "y": "12 mm", "diameter": "6 mm"}],
+        },
+        (
+            Pin(name="A", x=0.0, y=0.0, diameter=3.0),
+            Pin(name="B", x=50.0, y=0.0, diameter=3.0),
+            Pin(name="C", x=15.0, y=35.0, diameter=3.0),
+        ),
+    ),
+    "disc": (
+        Disc,
+        {"shape": "disc", "diameter": "40 mm", "thickness": "4 mm", "eye_diameter": "6 mm"},
+        (Pin(name="A", x=0.0, y=0.0, diameter=3.0), Pin(name="B", x=12.0, y=0.0, diameter=3.0)),
+    ),
+}
+
+
+def body_of(kind: Any, sizes: dict[str, Any], pins: tuple[Pin, ...]) -> Body:
+    part = kind.model_validate({"material": "pla-fdm-xy", **sizes})
+    return Body(part=part, pins=pins, ends=(), holes=())
+
+
+@pytest.mark.parametrize("name", FLAT)
+def test_a_flat_part_covers_its_volume_over_its_thickness(name):
+    body = body_of(*FLAT[name])
+    shape = link_shape("link", body, [0.0])
+    assert (shape.low, shape.high) == (-2.0, 2.0)
+    holes = sum(math.pi / 4.0 * pin.diameter**2 + pin.diameter * pin.slot for pin in body.pins)
+    assert 4.0 * (shape.polygon.area - holes) == pytest.approx(mass_properties(body).volume, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("eyes", "bounds", "half"),
+    # Eyes of 1.6 diameters, 2.5 fillets higher than the tube; without them it reaches a diameter past its pins.
+    [("round", (-4.8, -4.8, 64.8, 22.5), 4.25), ("none", (-6.0, -3.0, 66.0, 22.5), 3.0)],
+)
+def test_a_tube_covers_its_eyes_and_arms(eyes, bounds, half):
+    sizes = {"shape": "tube", "outer_diameter": "6 mm", "inner_diameter": "3 mm", "fillet_radius": "1 mm"}
+    pins = (
+        Pin(name="A", x=0.0, y=0.0, diameter=2.0),
+        Pin(name="B", x=60.0, y=0.0, diameter=2.0),
+        Pin(name="C", x=30.0, y=20.0, diameter=2.0, foot=(30.0, 0.0)),
+    )
+    body = body_of(Tube, {**sizes, "eyes": eyes, "arm_width": "5 mm", "arm_thickness": "3 mm"}, pins)
+    shape = link_shape("link", body, [10.0])
+    assert shape.polygon.bounds == pytest.approx(bounds)
+    assert (shape.low, shape.high) == (10.0 - half, 10.0 + half)
+    arm = [core for core in shape.cores if core.low == 8.5]
+    assert max(core.polygon.bounds[3] for core in arm) == pytest.approx(22.5)
+
+
+def test_a_fork_has_two_rounds_about_its_pin():
+    pins = (
+        Pin(name="A", x=0.0, y=0.0, diameter=2.0, ring=Ring(diameter=12.0, low=-6.0, high=6.0, gaps=((-2.0, 2.0),))),
+        Pin(name="B", x=60.0, y=0.0, diameter=2.0),
+    )
+    sizes = {"shape": "bar", "width": "8 mm", "thickness": "4 mm", "fillet_radius": "0 mm"}
+    found = body_of(Bar, sizes, pins)
+    rounds = [piece for piece in found.part.footprints(found) if piece.corners == ((0.0, 0.0),)]
+    assert [(piece.low, piece.high) for piece in rounds] == [(-6.0, -2.0), (2.0, 6.0)]
+
+
+def volume(pieces: tuple[Footprint, ...]) -> float:
+    return sum((piece.high - piece.low) * shapely.Polygon(piece.corners, piece.holes).area for piece in pieces)
+
+
+@pytest.mark.parametrize(
+    ("name", "axis", "levels"),
+    [
+        ("angle", 2, [0.0, 2.0, 10.0]),
+        ("bell_crank", 2, [0.0, 5.0, 12.0]),
+        ("fork", 1, [-10.0, -6.0, 2.0, 6.0]),
+        ("inch", 2, [-3.175, 3.175]),
+    ],
+)
+def test_layers_of_a_solid_between_its_flat_faces_make_up_its_volume(name, axis, levels):
+    """Seen along the direction in which they are extruded, where the shadow of a layer is its section."""
+    surface, facts = part_surface(DATA / f"{name}.step"), part_facts(DATA / f"{name}.step")
+    found = shadows(np.roll(surface.points, 2 - axis, axis=1), surface.triangles)
+    assert sorted({z for piece in found for z in (piece.low, piece.high)}) == pytest.approx(levels, abs=1e-3)
+    assert volume(found) == pytest.approx(facts.volume, rel=3e-4)
+
+
+def test_a_shadow_covers_every_point_of_a_solid_without_flat_faces():
+    surface = part_surface(DATA / "open_bores.step")
+    turn = np.linalg.qr(np.array([[1.0, 0.2, 0.3], [0.1, 1.0, 0.4], [0.5, 0.2, 1.0]]))[0]
+    points = surface.points @ turn.T * np.sign(np.linalg.det(turn))
+    [piece] = shadows(points, surface.triangles)
+    around = shapely.Polygon(piece.corners, piece.holes)
+    assert shapely.distance(shapely.points(points[:, :2]), around).max() < 0.02
+    hull = shapely.convex_hull(shapely.MultiPoint(points[:, :2]))
+    assert shapely.convex_hull(around).area == pytest.approx(hull.area, rel=1e-3)
+
+
+def test_two_discs_lie_apart_by_the_distance_of_their_centres_less_their_radii():
+    one, other = pin_shape("pin A", 10.0, 0.0, 5.0), pin_shape("pin B", 4.0, 4.0, 9.0)
+    pairs = meeting(one, other)
+    turn, shift = np.ones(3, dtype=complex), np.array([10.0 + 0j, 0.0 + 7.0j, 3.0 + 4.0j])
+    assert gaps(pairs, turn, shift) == pytest.approx([3.0, 0.0, -2.0])
+    assert nearest(pairs, 1.0 + 0j, 10.0 + 0j) == pytest.approx(6.5)
+    depth, centre = overlap(pairs, 1.0 + 0j, 3.0 + 4.0j)
+    assert depth == pytest.approx(2.0, rel=1e-2)
+    assert abs(centre) == pytest.approx(4.0, abs=0.05)  # the lens lies from 3 to 5 mm along the line of the centres
+
+
+def test_slabs_that_only_lie_on_each_other_do_not_meet():
+    assert meeting(pin_shape("pin A", 10.0, 0.0, 4.0), pin_shape("pin B", 4.0, 4.0, 9.0)) == []

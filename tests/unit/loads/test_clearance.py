@@ -1,0 +1,135 @@
+"""Gaps between links in layers: closed forms, the bound between poses, and what is refused."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
+
+from fea.common.verdict import Verdict
+from fea.outcomes.clearance import clearance_outcomes
+from geometry.base.errors import CaseError
+from geometry.clearance.shape import gaps
+from loads.states.clearance import _poses, clearance
+
+
+def test_two_parallel_bars_touch_where_their_distance_is_their_width():
+    """Bars along θ through (0, 0) and (100, 0) are 100 sin θ apart."""
+    found = clearance(parallel_bars())
+    assert found is not None
+    assert found.contact is not None
+    assert set(found.contact.names) == {"link crank", "link rocker"}
+    assert found.contact.at is not None
+    assert math.degrees(found.contact.at) == pytest.approx(math.degrees(math.asin(16.0 / 100.0)), abs=1e-3)
+    # At 5 degrees they would lie in each other by what is missing: the largest circle in both is as wide.
+    assert found.contact.value == pytest.approx(100.0 * math.sin(math.radians(5.0)) - 16.0, rel=1e-3)
+    x, y = found.contact.place
+    assert math.sin(found.contact.at) * x - math.cos(found.contact.at) * y == pytest.approx(8.0, abs=1e-2)
+    [outcome] = clearance_outcomes(found.assembly.case, found)
+    assert outcome.verdict is Verdict.FAIL
+    assert re.fullmatch(r"link crank and link rocker touch first at crank = 9\.21 deg, x = .*", outcome.reason)
+
+
+def test_the_least_gap_of_two_bars_that_do_not_touch():
+    """From 60 to 12 degrees the gap falls to 100 sin 12° - 16 mm; a limit inside of the band is left open."""
+    gap = 100.0 * math.sin(math.radians(12.0)) - 16.0
+    for limit, verdict in ((0.0, "pass"), (gap - 0.1, "pass"), (gap - 1e-4, "undecided"), (gap + 0.1, "fail")):
+        more = f'[checks.apart]\ntype = "clearance"\nminimum = "{limit} mm"\n'
+        case = four_bars((0, 1, 2, 1), (120.0, 100.0, 120.0, 100.0), start=60, end=12, near=(0, 60), more=more)
+        found = clearance(case)
+        assert found is not None
+        assert found.contact is None
+        least = found.least
+        assert least is not None
+        assert least.value == pytest.approx(gap, abs=1e-9)
+        assert least.low <= gap <= least.high
+        assert least.high - least.low < 0.1
+        [outcome] = clearance_outcomes(case, found)
+        assert (outcome.name, outcome.verdict.value) == ("apart", verdict)
+
+
+def test_a_link_touches_a_pin_that_passes_its_layer():
+    """The pin's centre is 100 sin θ off the crank's axis."""
+    found = clearance(bar_on_a_pin())
+    assert found is not None
+    assert found.contact is not None
+    assert found.contact.names == ("link crank", "pin D")
+    assert found.contact.at is not None
+    assert math.degrees(found.contact.at) == pytest.approx(math.degrees(math.asin(12.0 / 100.0)), abs=1e-3)
+
+
+def test_a_link_outside_the_layers_of_a_pin_passes_it():
+    found = clearance(bar_on_a_pin((1, 0, 3, 2)))
+    assert found is not None
+    assert found.contact is None
+    assert not any("pin D" in gap.names and "link crank" in gap.names for gap in found.gaps)
+
+
+@pytest.mark.parametrize("lengths", [(40.0, 120.0, 90.0, 110.0), (50.0, 95.0, 105.0, 100.0), (30.0, 80.0, 70.0, 60.0)])
+def test_no_pose_has_a_smaller_gap_than_the_bound(lengths):
+    """Every gap at 4,000 poses lies above the lower end of its band, and the least within the band's width of it."""
+    case = four_bars((0, 1, 2, 1), lengths, start=70.0, end=250.0, near=(20.0, 80.0), width=4.0, pin=2.0)
+    found = clearance(case)
+    assert found is not None
+    assert found.motion is not None
+    values = np.linspace(float(found.motion.angles[0]), float(found.motion.angles[-1]), 4001)
+    place = _poses(found.motion)(values)
+    by_names = {pair.names: pair for pair in found.assembly.pairs}
+    assert found.gaps
+    for gap in found.gaps:
+        dense = gaps(by_names[gap.names].cores, *by_names[gap.names].relative(place))
+        assert gap.low <= dense.min() <= gap.high + 1e-4 * case.linkage.longest
+        assert gap.high - gap.low < 3e-4 * case.linkage.longest
+
+
+def test_the_speed_bound_is_that_of_the_fastest_point():
+    """Against the movement of points of the smaller outline between two close poses, seen from the other's frame."""
+    case = four_bars((0, 1, 2, 1), (40.0, 120.0, 90.0, 110.0), start=70.0, end=200.0, near=(20.0, 80.0))
+    found = clearance(case)
+    assert found is not None
+    assert found.motion is not None
+    at, step = _poses(found.motion), 1e-6
+    values = np.linspace(math.radians(80.0), math.radians(190.0), 12)
+    for pair in found.assembly.pairs:
+        centre, reach = pair.other.circle
+        rim = centre + reach * np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 721))
+        (t0, d0), (t1, d1) = (pair.relative(at(values + s)) for s in (-step, step))
+        if pair.at[1].point is not None:
+            rim = np.array([0j])  # a pin that turns about its axis looks the same
+        moved = np.abs((t1[:, None] * rim + d1[:, None]) - (t0[:, None] * rim + d0[:, None])).max(axis=1) / (2.0 * step)
+        assert pair.speeds(at(values))[0] == pytest.approx(moved, rel=1e-4, abs=1e-4)
+
+
+def test_links_that_share_a_joint_and_a_layer_are_refused():
+    with pytest.raises(CaseError, match="with layer = 1 of crank and layer = 1 of coupler they share joint B"):
+        clearance(parallel_bars((0, 1, 1, 2)))
+
+
+def test_links_that_lie_in_each_other_in_the_stated_pose_are_refused():
+    with pytest.raises(CaseError, match="links.crank, links.rocker: .* they lie in each other in the stated pose at x"):
+        clearance(parallel_bars(start=8.0))
+
+
+def test_a_pin_through_a_foreign_link_in_the_stated_pose_is_refused():
+    case = four_bars((0, 1, 3, 2), (120.0, 80.0, 80.0, 100.0), start=5.0, end=60.0, near=(80.0, 60.0))
+    with pytest.raises(CaseError, match="links.crank: pin D goes through link crank, which it does not belong to"):
+        clearance(case)
+
+
+def test_without_layers_nothing_is_checked_and_a_check_is_refused():
+    assert clearance(parallel_bars((0, 0, 0, 0))) is None
+    with pytest.raises(CaseError, match="checks.gap: a check of clearance needs to know which links lie at one height"):
+        four_bars(
+            (0, 0, 0, 0),
+            (120.0, 100.0, 120.0, 100.0),
+            start=60,
+            end=12,
+            near=(0, 60),
+            more='[checks.gap]\ntype = "clearance"\n',
+        )
+
+
+def test_links_in_layers_are_checked_unasked():
+    assert "clearance" in parallel_bars().all_checks
+    assert "clearance" not in parallel_bars((0, 0, 0, 0)).all_checks
