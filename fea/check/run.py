@@ -12,6 +12,7 @@ from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.case_statics import CaseStatics, solve_case_statics
+from fea.check.clearance import clearance_outcomes
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
@@ -28,7 +29,6 @@ from fea.common.verdict import CheckOutcome, overall
 from fea.frame.joint_forces import JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
-from fea.outcomes.clearance import clearance_outcomes
 from fea.outcomes.judge import outcomes
 from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.pins import PinStress, shared_stress

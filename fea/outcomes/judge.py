@@ -41,7 +41,7 @@ def outcomes(
 ) -> tuple[CheckOutcome, ...]:
     """Return the outcome of every check of a load case, but for motors, bearing, clearance, limit load and buckling.
 
-    These are in ``fea.outcomes`` (``motor``, ``bearing``, ``clearance``), ``fea.check.linkage_numbers`` and
+    These are in ``fea.outcomes`` (``motor``, ``bearing``), ``fea.check`` (``clearance``, ``linkage_numbers``) and
     ``fea.buckling.buckling``.
 
     Parameters

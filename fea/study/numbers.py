@@ -7,11 +7,11 @@ from typing import Literal
 
 import numpy as np
 
+from fea.check.clearance import clearance_outcomes
 from fea.common.band import Band
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict, overall
 from fea.motion.envelope_result import EnvelopeResult
 from fea.motion.linkage_history import LinkageOverMotion, asked_over_motion, limit_load_outcomes
-from fea.outcomes.clearance import clearance_outcomes
 from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.result import CheckResult, LinkageNumbers
 from loads.case.case import Case

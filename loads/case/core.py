@@ -158,8 +158,9 @@ class CoreCase(Revisable):
 
     @property
     def all_checks(self) -> dict[str, Check]:
-        """The stated checks, or the safety factor of every link where none is; and what is checked without being asked:
-        that loads may stay as long as they do, and that links in layers do not touch.
+        """The stated checks, or the safety factor of every link where none is, and what is checked without being asked.
+
+        That is whether loads may stay as long as they do, and whether links in layers touch.
         """
         checks = dict(self.checks) or {"safety factor": SafetyFactorCheck(type="safety-factor")}
         if self.conditions.duration is not None and not any(isinstance(c, SustainedCheck) for c in checks.values()):

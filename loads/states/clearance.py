@@ -245,8 +245,8 @@ def clearance(case: Case) -> Clearance | None:
     order = sorted(zip(found.pairs, gaps, strict=True), key=lambda entry: entry[1].value)
     for pair, _ in order:
         enough = max(min((gap.value for gap in over), default=np.inf), 0.0)
-        gap = least_gap(pair, at, start, near=_NEAR * longest, step=step, enough=enough)
-        over += [] if gap is None else [gap]
+        least = least_gap(pair, at, start, near=_NEAR * longest, step=step, enough=enough)
+        over += [] if least is None else [least]
     return Clearance(assembly=found, pose=pose, motion=motion, gaps=_sorted(over))
 
 
@@ -269,7 +269,10 @@ def _through(case: Case, pair: Pair, gap: Gap) -> str:
     why = f"they share joint {shared[0]}, so their eyes lie in each other" if shared else (
         f"they lie in each other in the stated pose at x = {x:.4g}, y = {y:.4g} mm"
     )  # fmt: skip
-    return f"links.{one.link}, links.{other.link}: with {entries} {why}; give one of them another layer, or the layers more distance"
+    return (
+        f"links.{one.link}, links.{other.link}: with {entries} {why}; give one of them another layer, or the "
+        "layers more distance"
+    )
 
 
 def _entry(case: Case, link: str) -> str:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 
+from fea.check.clearance import clearance_outcomes
 from fea.common.verdict import Verdict
-from fea.outcomes.clearance import clearance_outcomes
 from geometry.base.errors import CaseError
 from geometry.clearance.shape import gaps
 from loads.states.clearance import _poses, clearance
@@ -102,24 +102,28 @@ def test_the_speed_bound_is_that_of_the_fastest_point():
 
 
 def test_links_that_share_a_joint_and_a_layer_are_refused():
-    with pytest.raises(CaseError, match="with layer = 1 of crank and layer = 1 of coupler they share joint B"):
+    with pytest.raises(CaseError, match=r"with layer = 1 of crank and layer = 1 of coupler they share joint B"):
         clearance(parallel_bars((0, 1, 1, 2)))
 
 
 def test_links_that_lie_in_each_other_in_the_stated_pose_are_refused():
-    with pytest.raises(CaseError, match="links.crank, links.rocker: .* they lie in each other in the stated pose at x"):
+    with pytest.raises(
+        CaseError, match=r"links.crank, links.rocker: .* they lie in each other in the stated"
+    ):
         clearance(parallel_bars(start=8.0))
 
 
 def test_a_pin_through_a_foreign_link_in_the_stated_pose_is_refused():
     case = four_bars((0, 1, 3, 2), (120.0, 80.0, 80.0, 100.0), start=5.0, end=60.0, near=(80.0, 60.0))
-    with pytest.raises(CaseError, match="links.crank: pin D goes through link crank, which it does not belong to"):
+    with pytest.raises(CaseError, match=r"links.crank: pin D goes through link crank, which it does not belong to"):
         clearance(case)
 
 
 def test_without_layers_nothing_is_checked_and_a_check_is_refused():
     assert clearance(parallel_bars((0, 0, 0, 0))) is None
-    with pytest.raises(CaseError, match="checks.gap: a check of clearance needs to know which links lie at one height"):
+    with pytest.raises(
+        CaseError, match=r"checks.gap: a check of clearance needs to know which links lie at"
+    ):
         four_bars(
             (0, 0, 0, 0),
             (120.0, 100.0, 120.0, 100.0),
