@@ -18,6 +18,7 @@ NAMED = {
     "link_bores",
     "link_slots",
     "linkage",
+    "clearance.heights",
 }
 """Keys whose own keys are names: by their last part, or by the whole."""
 SHAPES = {

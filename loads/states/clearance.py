@@ -157,6 +157,11 @@ class Clearance:
         """The gap that is worth a picture: the first contact, else the least."""
         return self.contact or self.least
 
+    @property
+    def stated(self) -> Placement:
+        """The stated pose, as one of one."""
+        return _single(self.pose)
+
     def placed(self, gap: Gap) -> Placement:
         """Return the pose, as one of one, at which a gap was found.
 
@@ -170,7 +175,7 @@ class Clearance:
         Placement
         """
         if gap.at is None or self.motion is None:
-            return _single(self.pose)
+            return self.stated
         return _poses(self.motion)(np.array([gap.at]))
 
     def where(self, gap: Gap) -> str:

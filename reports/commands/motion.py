@@ -39,12 +39,16 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
     name : str
         Of the case, as the command was given it.
     """
+    from reports.figures.assembly import contact_drawing
     from reports.figures.motion_animation import draw_animation
     from reports.figures.motion_figures import draw_figures
 
     (folder / "result.json").write_text(jsonlib.dumps(record(result, name), indent=2) + "\n", encoding="utf-8")
     write_tables(result, folder)
     draw_figures(result, folder)
+    apart = clearance(result.case)
+    if apart is not None and apart.shown is not None:
+        (folder / "clearance.png").write_bytes(contact_drawing(apart))
     draw_animation(result.motion, folder / "linkage.gif")
 
 

@@ -116,6 +116,44 @@ class CheckReport:
         pick(self.result.load_cases, name, "load case")
         return Picture(linkage_drawing(self.result, name))
 
+    def plot_assembly(self) -> Picture:
+        """Draw the links in their layers, from above and from the side.
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        CaseError
+            For a case without layers.
+        """
+        from reports.figures.assembly import assembly_drawing
+
+        if self.result.clearance is None:
+            raise CaseError(
+                "the case states no layers, so all links lie in one plane; state links.A.layer = 1 and so on"
+            )
+        return Picture(assembly_drawing(self.result.clearance))
+
+    def plot_clearance(self) -> Picture:
+        """Draw the two outlines that touch first over the motion, or come nearest.
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        CaseError
+            For a case without layers, and where nothing lies at one height.
+        """
+        from reports.figures.assembly import contact_drawing
+
+        if self.result.clearance is None or self.result.clearance.shown is None:
+            raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")
+        return Picture(contact_drawing(self.result.clearance))
+
     def plot_stress(self, link: str, load_case: str | None = None) -> Picture:
         """Draw the stress of a link on its deformed shape, and around its largest value.
 

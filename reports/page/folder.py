@@ -9,7 +9,7 @@ from pathlib import Path
 from fea.outcomes.result import CheckResult, SolidResult
 from loads.case.case import Case
 from reports.page.output import MARK, write_folder
-from reports.page.pictures import diagram_name, layers_name, linkage_name, stress_name
+from reports.page.pictures import ASSEMBLY, CONTACT, diagram_name, layers_name, linkage_name, stress_name
 from reports.tables.record import as_json, worst_load_case
 
 REPORT = "report.html"
@@ -29,7 +29,7 @@ def report_names(case: Case) -> set[str]:
     -------
     set[str]
     """
-    links, pictures = case.checked_links, set(map(linkage_name, case.load_cases))
+    links, pictures = case.checked_links, {*map(linkage_name, case.load_cases), ASSEMBLY, CONTACT}
     pictures |= {name(link) for link in links for name in (diagram_name, layers_name, stress_name)}
     return {
         REPORT,

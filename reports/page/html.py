@@ -13,8 +13,17 @@ from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.materials.material import Material
 from loads.case.case_file import built_in_cases
 from reports.page.coverage import not_covered
-from reports.page.pictures import diagram_name, governing_load_cases, layers_name, linkage_name, stress_name
+from reports.page.pictures import (
+    ASSEMBLY,
+    CONTACT,
+    diagram_name,
+    governing_load_cases,
+    layers_name,
+    linkage_name,
+    stress_name,
+)
 from reports.tables.claims import as_records, count
+from reports.tables.clearance import MOST, clearance_line, clearance_record
 from reports.tables.frames import AXES, linkage_line, shown_components
 from reports.tables.friction import friction_sentence
 from reports.tables.layers import BuildDirections, build_directions_of
@@ -115,6 +124,11 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         drawings=[
             (name, result.load_cases[name], figures.get(linkage_name(name))) for name in governing_load_cases(result)
         ],
+        assembly=figures.get(ASSEMBLY),
+        contact=figures.get(CONTACT),
+        clearance=clearance_record(result.clearance),
+        clearance_line=clearance_line(result.clearance),
+        most_gaps=MOST,
         dead_points=_dead_points(result),
         near_dead_point=NEAR_DEAD_POINT,
         anchors={name: anchor_record(case) for name, case in result.load_cases.items()},

@@ -23,6 +23,10 @@ def linkage_name(load_case: str) -> str:
     return f"linkage-{load_case}"
 
 
+ASSEMBLY, CONTACT = "assembly", "clearance"
+"""Names of the drawings of links in layers, and of two outlines where they touch or come nearest."""
+
+
 def diagram_name(link: str) -> str:
     """Return the name of a link's N, V and M diagram.
 
@@ -89,7 +93,7 @@ def draw_pictures(
 ) -> tuple[dict[str, bytes], tuple[str, ...]]:
     """Draw every picture of a report.
 
-    The linkage under every governing load case; internal forces and, for a solid, stress of every link under its
+    The linkage under every governing load case, and its links in layers; internal forces and, for a solid, stress of every link under its
     governing load case; of a printed link the safety factor of its layers over the direction of building.
 
     Parameters
@@ -103,6 +107,7 @@ def draw_pictures(
     tuple
         Name -> PNG, and warnings.
     """
+    from reports.figures.assembly import assembly_drawing, contact_drawing
     from reports.figures.build_map import build_map
     from reports.figures.diagrams import internal_force_diagram
     from reports.figures.drawings import linkage_drawing
@@ -115,6 +120,10 @@ def draw_pictures(
     with ThreadPoolExecutor(1) as beside:  # its work is that of a child process
         rendered = beside.submit(stress_plots, worst, points)
         pictures = {linkage_name(name): linkage_drawing(result, name) for name in governing_load_cases(result)}
+        if result.clearance is not None:
+            pictures[ASSEMBLY] = assembly_drawing(result.clearance)
+            if result.clearance.shown is not None:
+                pictures[CONTACT] = contact_drawing(result.clearance)
         pictures |= {
             diagram_name(link): internal_force_diagram(found.beam, stations[link])
             for link, found in worst.items()

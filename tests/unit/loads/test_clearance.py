@@ -107,9 +107,7 @@ def test_links_that_share_a_joint_and_a_layer_are_refused():
 
 
 def test_links_that_lie_in_each_other_in_the_stated_pose_are_refused():
-    with pytest.raises(
-        CaseError, match=r"links.crank, links.rocker: .* they lie in each other in the stated"
-    ):
+    with pytest.raises(CaseError, match=r"links.crank, links.rocker: .* they lie in each other in the stated"):
         clearance(parallel_bars(start=8.0))
 
 
@@ -121,9 +119,7 @@ def test_a_pin_through_a_foreign_link_in_the_stated_pose_is_refused():
 
 def test_without_layers_nothing_is_checked_and_a_check_is_refused():
     assert clearance(parallel_bars((0, 0, 0, 0))) is None
-    with pytest.raises(
-        CaseError, match=r"checks.gap: a check of clearance needs to know which links lie at"
-    ):
+    with pytest.raises(CaseError, match=r"checks.gap: a check of clearance needs to know which links lie at"):
         four_bars(
             (0, 0, 0, 0),
             (120.0, 100.0, 120.0, 100.0),

@@ -1,6 +1,7 @@
 """``docs/result.md`` and what the commands write name the same keys, of the same types."""
 
 import pytest
+from bars_in_layers import parallel_bars
 from result_paths import compare, documented
 from slotted_cases import piston_entries
 
@@ -20,7 +21,8 @@ def test_a_motion():
     wing = moved("flapping-wing-chosen", "motion.poses=19", "load_cases.held.own_weight=false")
     piston = motion_record(solve_case_motion(validate(piston_entries())), "piston")
     rubbed = moved("owl-wing-static", "motion.poses=19", "joints.A.friction=0.2")
-    compare("motion", wing, moved("owl-wing-static", "motion.poses=19"), piston, rubbed)
+    bars = motion_record(solve_case_motion(parallel_bars()), "bars")
+    compare("motion", wing, moved("owl-wing-static", "motion.poses=19"), piston, rubbed, bars)
 
 
 def test_a_synthesis():
