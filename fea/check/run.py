@@ -235,7 +235,7 @@ def check_case(
     statics = solve_case_statics(case, name)
     case = statics.case
     clock("pose and statics")
-    apart = clearance(case)
+    apart = clearance(case, statics.pose)
     clock("clearance")
     moved = frames or {
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])

@@ -85,7 +85,8 @@ class Assembly:
         return tuple(pair for pair in self._pairs() if pair is not None)
 
     def _pairs(self) -> Iterator[Pair | None]:
-        guided = {frozenset(joint.links) for joint in self.case.joints.values() if joint.type == "slider"}
+        joints = self.case.linkage.joints.values()
+        guided = {frozenset(joint.links) for joint in joints if joint.bears_moment}
         for one, other in itertools.combinations(self.links, 2):
             if frozenset((one, other)) not in guided:
                 yield Pair.of((self.links[one], Spot(link=one)), (self.links[other], Spot(link=other)))
@@ -194,7 +195,7 @@ class Clearance:
         at = "in the stated pose"
         if gap.at is not None and self.motion is not None:
             at = f"at {self.motion.coordinate} = {float(self.motion.told(gap.at)):.2f} {self.motion.unit}"
-        return f"{at}, x = {x:.4g}, y = {y:.4g} mm"
+        return f"{at}, x = {x:.4g}, y = {y:.4g} mm".replace("= -", "= −")
 
 
 def _single(pose: Pose) -> Placement:
@@ -212,13 +213,15 @@ def _poses(motion: Motion) -> Callable[[Real], Placement]:
     return at
 
 
-def clearance(case: Case) -> Clearance | None:
+def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
     """Return the gaps of a case over its motion, or at its pose where it states none.
 
     Parameters
     ----------
     case : Case
         The case.
+    pose : Pose, optional
+        The stated one, or where the linkage balances if it is let go; assembled anew when left out.
 
     Returns
     -------
@@ -232,7 +235,7 @@ def clearance(case: Case) -> Clearance | None:
     """
     if not case.layered:
         return None
-    found, pose = assembly(case), case.solve_pose()
+    found, pose = assembly(case), pose or case.solve_pose()
     at_rest = _single(pose)
     gaps = [gap_at(pair, at_rest) for pair in found.pairs]
     for pair, gap in zip(found.pairs, gaps, strict=True):

@@ -24,7 +24,7 @@ LAYERS = ("#0067a8", "#c8460b", "#00795a", "#8a5a00", "#6b4fa0", "#b0306a", "#4d
 _FILL, _PIN = 0.42, "#39434d"
 _TALLEST, _LOWEST = 430.0, 70.0
 """Height of the view from above at most, and of the view from the side at least [points]."""
-_RIGHT, _ABOVE, _BELOW, _LETTERS, _ROW = 8.0, 18.0, 40.0, 8.5, 13.0
+_RIGHT, _ABOVE, _BELOW, _LETTERS, _ROW = 16.0, 18.0, 40.0, 8.5, 13.0
 _MARGIN, _CLOSE = 0.04, 0.1
 """Room about the outlines, and half the width of a close-up, over the size of what is drawn."""
 _STRETCHES = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
@@ -280,6 +280,7 @@ def _plan(sheet: Canvas, axes: Axes, placed: Placed) -> None:
             obstacles += _bare(sheet, axes, placed, link)
     for pin in placed.pins.values():
         draw(sheet, axes, pin, "#ffffff", _PIN, 1.0)
+        obstacles.append(axes.at(_border(pin)))
     names = [(axes.at(placed.joint(name)[None]), name, INK) for name in case.joints]
     names += [(axes.at(_anchors(placed, link)), f"link {link}", _ink(placed, link)) for link in case.links]
     place_labels(sheet, axes.box, names, np.vstack(obstacles), size=_LETTERS)
@@ -459,6 +460,9 @@ def _pair(sheet: Canvas, axes: Axes, placed: Placed, gap: Gap, label_at: float) 
             inside = shown.representative_point().coords[0]
             labels.append((axes.at(np.array([inside])), name, _dark(colour)))
     axes.frame(sheet)
+    between = np.asarray(shapely.shortest_line(*(shapes[name] for name in gap.names)).coords)
+    if gap.value > 0.0 and abs(float(np.hypot(*(between[1] - between[0]))) - gap.value) < 0.01 * gap.value:
+        sheet.line(axes.at(between), JOINT_FORCE, 1.4)  # else pieces at other heights are nearer
     sheet.ring(axes.at(gap.place), 5.0, JOINT_FORCE, 1.4)
     place_labels(sheet, axes.box, labels, np.vstack(obstacles), size=_LETTERS)
 

@@ -131,9 +131,7 @@ class CheckReport:
         from reports.figures.assembly import assembly_drawing
 
         if self.result.clearance is None:
-            raise CaseError(
-                "the case states no layers, so all links lie in one plane; state links.A.layer = 1 and so on"
-            )
+            raise CaseError("the case states no layers, so all links lie in one plane; state links.A.layer = 1")
         return Picture(assembly_drawing(self.result.clearance))
 
     def plot_clearance(self) -> Picture:

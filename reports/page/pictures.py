@@ -93,8 +93,9 @@ def draw_pictures(
 ) -> tuple[dict[str, bytes], tuple[str, ...]]:
     """Draw every picture of a report.
 
-    The linkage under every governing load case, and its links in layers; internal forces and, for a solid, stress of every link under its
-    governing load case; of a printed link the safety factor of its layers over the direction of building.
+    The linkage under every governing load case, and its links in layers; internal forces and, for a solid, stress of
+    every link under its governing load case; of a printed link the safety factor of its layers over the direction of
+    building.
 
     Parameters
     ----------
