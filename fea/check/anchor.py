@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from fea.outcomes.result import LoadCaseResult
 from loads.records.applied import Load, shifted
+from loads.states.springs import spring_loads
 from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Reactions
 
@@ -25,7 +26,8 @@ class AnchorLoads:
     ----------
     joints : mapping of str to ndarray, shape (6,)
         Joint on the ground -> wrench on the ground about the joint [N, N mm], global axes. Where the drive's torque
-        reacts on the ground, that reaction is in the moment about z at the drive's joint.
+        reacts on the ground, that reaction is in the moment about z at the drive's joint. Springs and tendons that are
+        fastened to a point of the ground, in the undeformed pose, stand there as "springs at" that point.
     about : str
         The joint about which ``total`` is taken.
     total : ndarray, shape (6,)
@@ -66,6 +68,11 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
         travelled = reactions.joints[name].arm if reactions.joints[name].by == ground else np.zeros(3)
         places[name] = np.array([*point, 0.0]) + travelled
     about = next(iter(joints))
+    for load in spring_loads(case.standing.case, pose.placement):
+        if load.link == ground:
+            name = f"springs at {load.point}"
+            joints[name] = joints.get(name, np.zeros(6)) + load.wrench
+            places[name] = np.array([*pose.position(ground, load.point), 0.0])
     total = np.zeros(6)
     for name, wrench in joints.items():
         total += shifted(wrench, places[name] - places[about])

@@ -173,7 +173,7 @@ def of_check(result: CheckResult, *, weighs: Weighs) -> tuple[Verdict, tuple[Var
         found += map(VariantNumber.of, load_case.checks)
         reactions = load_case.large_displacement.reactions or load_case.forces.reactions
         largest = max((joint.magnitude for joint in reactions.joints.values()), default=0.0)
-        found.append(VariantNumber.exact("drive torque", "N·mm", reactions.drive_torque, "the drive", name))
+        found.append(VariantNumber.exact("drive torque", "N·mm", reactions.driving[0], "the drive", name))
         found.append(VariantNumber.exact("largest joint force", "N", largest, LINKED, name))
         found += _of_linkage(load_case.linkage, name)
     distance = next(iter(result.load_cases.values())).linkage.dead_point_distance

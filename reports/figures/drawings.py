@@ -1,5 +1,6 @@
 """The drawing of the linkage in its pose with joint forces, loads and drive torque, as PNG."""
 
+import itertools
 import math
 
 import numpy as np
@@ -8,12 +9,14 @@ from numpy.typing import NDArray
 from fea.outcomes.result import CheckResult, SolidResult
 from loads.records.aero import shares
 from loads.records.applied import LineLoad, PointLoad, in_axes
+from loads.records.springs import LineSpring
 from loads.states.actions import stated_loads
 from reports.figures.silhouette import silhouette
+from reports.figures.sprung import coil, spiral, stop_mark
 from reports.sheet.canvas import Canvas, extent
 from reports.sheet.labels import along, place_labels
 from reports.sheet.plot import Axes, ticks, widest
-from reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, TORQUE, WIDTH
+from reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
 from reports.words.wording import number, turning
 
 Real = NDArray[np.float64]
@@ -131,6 +134,10 @@ class _Drawing:
         axes.frame(sheet)
         obstacles = [*self._links(), *self._joints()]
         labels: list[tuple[Real, str, str]] = []
+        for text, line in self._springs():
+            sheet.line(at(line), SPRING, 1.1)
+            obstacles.append(np.vstack([along(a, b) for a, b in itertools.pairwise(line)]))
+            labels.append((at(line), text, SPRING))
         arrows = [(*entry, JOINT_FORCE) for entry in self._joint_forces()]
         arrows += [(*entry, LOAD) for entry in self._loads()]
         for text, place, force, colour in arrows:
@@ -202,6 +209,37 @@ class _Drawing:
             found.append(at[None])
         return found
 
+    def _springs(self) -> list[tuple[str, Real]]:
+        """(label, line) of every spring and tendon, and of every stop."""
+        case, standing, place = self.result.case, self.result.load_cases[self.name].standing, self.pose.placement
+        found = []
+        for state in standing.springs:
+            effort = float(state.effort)
+            if state.kind == "tendon":
+                route = [self.points[one.link, one.at] for one in case.tendons[state.name].through]
+                line = np.array(route)
+            elif isinstance(spring := case.springs[state.name], LineSpring):
+                start, end = (self.points[one.link, one.at] for one in spring.between)
+                line = coil(start, end, 0.016 * self.size)
+            else:
+                turned = self.pose.angles[case.joints[spring.joint].links[0]]
+                line = spiral(self._joint(spring.joint), turned, 0.035 * self.size)
+            told = f"{number(abs(effort), 3)} {'N·mm' if state.turns else 'N'}" if effort else "slack"
+            found.append((f"{state.name}: {told}", line))
+        for name, stop in case.stops.items():
+            first, second = case.joints[stop.joint].links
+            if stop.limit.slides:
+                way = place.direction(first) * np.exp(1j * case.joints[stop.joint].direction)
+                zero = place.position(first, self.linkage.joint_points(stop.joint)[0])
+                middle, behind = zero + stop.limit.value * way, -stop.sense * way
+            else:
+                reach = complex(*max(self.linkage.links[second].points.values(), key=lambda point: math.hypot(*point)))
+                way = place.direction(first) * np.exp(1j * stop.limit.value) * reach / abs(reach)
+                middle, behind = complex(*self._joint(stop.joint)) + 0.14 * self.size * way, -1j * stop.sense * way
+            line = stop_mark(np.array([middle.real, middle.imag]), float(np.angle(behind)), 0.05 * self.size)
+            found.append((f"stop {name}", line))
+        return found
+
     def _line(self, points: list[Real], width: float, dashes: tuple[float, float] | None = None) -> None:
         self.sheet.line(self.axes.at(points), GROUND, width, dashes)
 
@@ -252,8 +290,9 @@ class _Drawing:
         """(place, direction of its middle, moment, radius, label, colour) of the drive torque and of stated moments."""
         found = []
         drive, torque = self.reactions.drive, self.reactions.drive_torque
-        if drive is not None and torque != 0.0:
-            text = f"{number(abs(torque))} N·mm\n{turning(torque)} on {drive.link}"
+        if drive is not None and torque != 0.0 and not drive.idle:
+            what = f"stop {drive.stop}: " if drive.stop else ""
+            text = f"{what}{number(abs(torque))} N·mm\n{turning(torque)} on {drive.link}"
             found.append((self._joint(drive.joint), self.pose.angles[drive.link], torque, 0.075, text, TORQUE))
         for load in self.applied:
             if isinstance(load, PointLoad) and load.wrench[5] != 0.0:
@@ -277,8 +316,11 @@ class _Drawing:
         entries = [(JOINT_FORCE, f"joint force{scale}")]
         if self._loads() or any(colour == LOAD for *_, colour in self._moments()):
             entries.append((LOAD, "applied load"))
-        if self.reactions.drive is not None and self.reactions.drive_torque != 0.0:
-            entries.append((TORQUE, "drive torque"))
+        drive = self.reactions.drive
+        if drive is not None and self.reactions.drive_torque != 0.0 and not drive.idle:
+            entries.append((TORQUE, "moment of the stop" if drive.stop else "drive torque"))
+        if self._springs():
+            entries.append((SPRING, "springs and stops"))
         mark, gap, space = 19.0, 6.0, 16.0
         widths = [mark + gap + extent(text, _LETTERS)[0] for _, text in entries]
         x, y = (self.sheet.width - sum(widths) - space * (len(widths) - 1)) / 2.0, self.sheet.height - 12.0

@@ -69,7 +69,7 @@ class CheckReport:
     def drive_torques(self) -> Mapping[str, float]:
         """Drive torque of every load case in the undeformed pose, counter-clockwise [N·mm]; empty without a drive."""
         found = self.result.load_cases.items()
-        return {name: case.reactions.drive_torque for name, case in found if case.reactions.drive is not None}
+        return {name: case.reactions.driving[0] for name, case in found if case.reactions.drive is not None}
 
     def table(self, of: Literal["checks", "links", "joints"] = "checks") -> Table:
         """Return a table of the result.

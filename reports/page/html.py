@@ -31,6 +31,7 @@ from reports.tables.loads import air_record, anchor_record, weight_sentence
 from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
 from reports.tables.record import worst_load_case
+from reports.tables.springs import holding_sentence, spring_sentences
 from reports.words.wording import (
     agreement,
     apart,
@@ -138,6 +139,8 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         shown_components=shown_components,
         weight_sentence=weight_sentence,
         friction_sentence=friction_sentence,
+        holding_sentence=holding_sentence,
+        spring_sentences=spring_sentences,
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
         links=[_link(result, link, figures, layers) for link in first.links],
         agreement=agreement,
@@ -196,7 +199,7 @@ def _reasons(result: CheckResult) -> list[str]:
 
 def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
     """(what, link, distance from its dead point)."""
-    pose, drive = result.pose, result.case.pinned_drive
+    pose, drive = result.pose, None if result.case.pose.equilibrium else result.case.pinned_drive
     found = []
     if pose.coordinate is not None:
         distance = pose.dead_point_distance(pose.coordinate, slides=pose.slides)

@@ -10,6 +10,7 @@ GRID = "#e8ecef"
 JOINT_FORCE = "#c8460b"
 LOAD = "#0067a8"
 TORQUE = "#00795a"
+SPRING = "#8a5200"
 DPI = 200
 WIDTH = 7.4
 """Inches; fonts are in points, so this sets how large they read on the page."""

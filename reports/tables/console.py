@@ -12,6 +12,7 @@ from reports.tables.frames import frame_lines
 from reports.tables.friction import friction_sentence
 from reports.tables.layers import build_directions_of
 from reports.tables.second_opinion import say_opinions
+from reports.tables.springs import holding_sentence, spring_sentences
 from reports.words.terminal import KEPT, say, say_table
 from reports.words.wording import agreement, apart, band, fixed, headline, joined, number, percent, plain, turning
 
@@ -96,9 +97,12 @@ def _statics(case: LoadCaseResult) -> str:
     driven = "" if drive is None else f"\nDrive torque on {drive.link}: {number(torque)} N·mm ({turning(torque)})"
     if drive is not None and drive.pushes(case.reactions.pose.linkage):
         driven = f"\nDrive force on {drive.link}: {number(case.reactions.drive_force)} N along {drive.joint}"
+    if held := holding_sentence(case.standing):
+        driven = f"\n{held}."
     if case.work is not None:
         driven += f"\n{friction_sentence(case.work, case.reactions)}"
-    return f"Joint forces [N]: {forces}{driven}"
+    springs = "".join(f"\n{line}." for line in spring_sentences(case.standing))
+    return f"Joint forces [N]: {forces}{driven}{springs}"
 
 
 def _air(air: AirForces) -> str:

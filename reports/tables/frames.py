@@ -196,7 +196,8 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
             what = f"force on the deformed shape: {number(deformed.drive_force)} N"
             if not pushes:
                 what = f"torque on the deformed shape: {number(deformed.drive_torque)} N·mm"
-            lines.append(f"Drive {what}")
+            who = f"Stop '{deformed.drive.stop}'," if deformed.drive.stop else "Drive"
+            lines.append(f"{who} {what}")
     asked = result.case.ways_to_hold
     if asked is not None:
         ways = [

@@ -22,6 +22,7 @@ from reports.tables.loads import air_record, anchor_record
 from reports.tables.mechanism import design_record
 from reports.tables.meshes import discretisation_record, solver_record
 from reports.tables.second_opinion import opinion_records
+from reports.tables.springs import standing_record
 
 _MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sources status"
 
@@ -116,7 +117,7 @@ def _pose(result: CheckResult) -> dict[str, Any]:
     pose = result.pose
     angles = {link: math.degrees(angle) % 360.0 for link, angle in pose.angles.items()}
 
-    drive = result.case.pinned_drive
+    drive = None if result.case.pose.equilibrium else result.case.pinned_drive
     slides = pose.slides
 
     return {
@@ -146,12 +147,12 @@ def _statics(case: LoadCaseResult) -> dict[str, Any]:
 
 
 def _drive_torque(reactions: Reactions) -> float | None:
-    return None if reactions.drive is None else reactions.drive_torque
+    return None if reactions.drive is None else reactions.driving[0]
 
 
 def _drive_force(reactions: Reactions) -> float | None:
     drive = reactions.drive
-    return None if drive is None or not drive.pushes(reactions.pose.linkage) else reactions.drive_force
+    return None if drive is None or not drive.pushes(reactions.pose.linkage) else reactions.driving[1]
 
 
 def _reactions(case: LoadCaseResult) -> list[dict[str, Any]]:
@@ -214,6 +215,7 @@ def _load_case(result: CheckResult, name: str) -> dict[str, Any]:
         **({} if case.work is None else {"friction": friction_record(case.work, case.loads)}),
         "anchor": anchor_record(case),
         "air": air_record(result, name),
+        **standing_record(case.standing),
         **frame_record(case),
         "links": {link: _link(found) for link, found in case.links.items()},
     }

@@ -49,6 +49,8 @@ def without(record, *names):
     ({"pose": {"equilibrium": True}}, r"pose\.coordinate: "),
     ({"load_cases": {"a": {}, "b": {}}}, r"pose\.equilibrium: each of the 2 load cases has a balance of its own"),
     ({"load_cases": {"a": {"speed": "5 rpm"}}, "massless": ["lever"]}, r"load_cases\.a\.speed: .*at rest"),
+    ({"joints": {"O": {"links": ["base", "lever"], "pin_diameter": "3 mm", "friction": 0.1}}},
+     r"joints\.O\.friction: .* rests anywhere in a range"),
     ({"joint_model": "bonded"}, r"pose\.equilibrium: joint 'O' is bonded"),
 ])  # fmt: skip
 def test_what_does_not_fit_is_refused(tables, sentence):
