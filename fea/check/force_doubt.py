@@ -46,7 +46,8 @@ def force_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence
     if changes:
         found = _doubt(case, load_case, forces, loads, changes, _summed(forces.sources))
     if forces.sharings:
-        found = found.times(_doubt(case, load_case, forces, loads, forces.sharings, _widest))
+        shared = tuple(one.reactions for one in forces.sharings)
+        found = found.times(_doubt(case, load_case, forces, loads, shared, _widest))
     return found
 
 

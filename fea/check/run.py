@@ -137,7 +137,7 @@ class _LoadCase:
     @property
     def free(self) -> Mapping[str, LinkLoads]:
         """Loads of every link cut free; empty where equilibrium alone does not give the joint forces."""
-        return self.cut if self.forces.frame is None else {}
+        return self.cut if self.forces.by_equilibrium else {}
 
     @property
     def forces(self) -> JointForces:
@@ -318,7 +318,7 @@ def _wanted(load_cases: Sequence[_LoadCase], decided: Mapping[str, DecidedLink])
     found: dict[str, float] = {}
     for one in load_cases:
         if any(isinstance(check, DisplacementCheck) and check.at for check in one.case.checks.values()):
-            wanted = meshes_to_refine(one.case, one.load_case, one.moved, one.links(decided), one.free)
+            wanted = meshes_to_refine(one.case, one.load_case, one.moved, one.links(decided), one.free, one.forces)
             found |= {link: min(error, found.get(link, math.inf)) for link, error in wanted.items()}
     return found
 

@@ -74,8 +74,8 @@ class JointForces:
         Links that are condensed solids in the frame.
     deviations : tuple of Deviation
         What the stiffness of condensed solids leaves open; empty where no link is one.
-    sharings : tuple of Reactions
-        The same forces with pins that tilt in one of their links, so that the other bears the whole couple between
+    sharings : tuple of Deviation
+        The answers with pins that tilt in one of their links, so that the other bears the whole couple between
         their layers (``fea.frame.sharing``); empty without layers.
     """
 
@@ -86,12 +86,12 @@ class JointForces:
     solution: "FrameSolution | None" = None
     solids: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
-    sharings: tuple[Reactions, ...] = ()
+    sharings: tuple[Deviation, ...] = ()
 
     @property
     def by_equilibrium(self) -> bool:
-        """True where equilibrium alone gave them."""
-        return self.frame is None
+        """True where equilibrium alone gave them, or all of them that acts in the plane."""
+        return self.frame is None or self.model == LAYERED_FRAME
 
     @property
     def open_by(self) -> tuple[Deviation, ...]:

@@ -21,10 +21,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fea.common.source import COUPLES
+from fea.frame.joint_forces import Deviation
 from fea.frame.linear import FactorisedFrame
 from fea.frame.linkage_frame import LinkageFrame
 from geometry.linkage.linkage import Linkage
-from loads.statics.statics import Reactions
 
 SOFT = 1e6
 """Flexibility of a hinge, over the greatest of the frame in hinges' angles."""
@@ -72,8 +73,8 @@ def hinges_tried(linkage: Linkage, pins: tuple[str, ...]) -> Iterator[frozenset[
                 yield found
 
 
-def sharings(frame: LinkageFrame) -> tuple[Reactions, ...]:
-    """Return the joint forces of a linkage in layers with pins that tilt in one of their holes.
+def sharings(frame: LinkageFrame) -> tuple[Deviation, ...]:
+    """Return the answers of a linkage in layers with pins that tilt in one of their holes.
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ def sharings(frame: LinkageFrame) -> tuple[Reactions, ...]:
 
     Returns
     -------
-    tuple of Reactions
+    tuple of Deviation
         One for each set of ``hinges_tried``.
 
     Raises
@@ -108,5 +109,7 @@ def sharings(frame: LinkageFrame) -> tuple[Reactions, ...]:
         chosen = np.repeat(np.array([hinge in loose for hinge in hinges]), 2)
         moments = np.linalg.solve(np.eye(chosen.sum()) - soft * by_angle[np.ix_(chosen, chosen)], tight[chosen])
         answer = solved.solved(opened[:, chosen] @ (soft * moments))
-        found.append(frame.reactions(answer.joint_wrenches, answer.residual))
+        reactions = frame.reactions(answer.joint_wrenches, answer.residual)
+        points = frame.at_points(answer.displacements)
+        found.append(Deviation(source=COUPLES[0], reactions=reactions, points=points))
     return tuple(found)

@@ -310,7 +310,7 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
     if not forces.sharings or case.linkage.rise(joint) == 0.0:
         return found
     plain = stress_at(case, joint, forces.reactions.joints[joint])
-    others = [stress_at(case, joint, shared.joints[joint]) for shared in forces.sharings]
+    others = [stress_at(case, joint, shared.reactions.joints[joint]) for shared in forces.sharings]
 
     def widened(name: str) -> Band:
         value, sizes = getattr(found, name), [getattr(one, name).value for one in (plain, *others)]

@@ -44,6 +44,8 @@ class PointDisplacement:
         The frame's answer.
     shares : Shares
         What every link adds.
+    forces : JointForces or None
+        Joint forces.
     why : str
         Why nothing tells it; "" where something does.
     """
@@ -54,6 +56,7 @@ class PointDisplacement:
     point: str
     moved: LargeDisplacement
     shares: Shares
+    forces: JointForces | None = None
     why: str = ""
 
     @classmethod
@@ -100,7 +103,9 @@ class PointDisplacement:
                 far = f"moves it by {size:.3g} mm, above {100.0 * LARGE:g} % of the span"
                 what = f"may give way at {factor:.3g} times the load or less, below {SNAP:.3g}" if near else far
                 why = f"the linear frame {what}, so it is not valid; remove large_displacement = off from the case"
-        return cls(case=case, load_case=load_case, link=link, point=point, moved=moved, shares=shares, why=why)
+        return cls(
+            case=case, load_case=load_case, link=link, point=point, moved=moved, shares=shares, forces=forces, why=why
+        )
 
     @cached_property
     def value(self) -> Band:
@@ -140,7 +145,7 @@ class PointDisplacement:
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
         if shares.framed is None:
-            found = point_bounds(case, frame, moved.solution, link, point, solids, shares.carried)
+            found = self._shared(point_bounds(case, frame, moved.solution, link, point, solids, shares.carried))
         else:
             found = shares.framed.displaced(link, point, sunk=sunk)
         slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
@@ -163,6 +168,18 @@ class PointDisplacement:
             high=max(found.high * slack[1] * grown, value),
             sources=(*sources, grows),
         )
+
+    def _shared(self, found: Band) -> Band:
+        """Band with all ways in which pins may share couples between layers."""
+        moved, at = self.moved, (self.link, self.point)
+        assert moved.frame is not None
+        assert moved.solution is not None
+        if self.forces is None or not self.forces.sharings:
+            return found
+        plain = float(np.linalg.norm(moved.frame.at_points(moved.solution.displacements)[at]))
+        sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in self.forces.sharings)]
+        least, most = (end / plain if plain > 0.0 else 1.0 for end in (min(sizes), max(sizes)))
+        return Band(value=found.value, low=least * found.low, high=most * found.high, sources=found.sources)
 
     def _framed(self, found: Band, solids: Mapping[str, tuple[Band, ...]]) -> Band:
         """Band of the displacement without what the ground's part adds."""
@@ -290,12 +307,13 @@ def meshes_to_refine(
     moved: LargeDisplacement,
     links: Mapping[str, LinkResult],
     free: Mapping[str, LinkLoads],
+    forces: JointForces | None = None,
 ) -> dict[str, float]:
     """Return the error of displacements that links' meshes must keep to for the checks of points, the least of all.
 
     Parameters
     ----------
-    case, load_case, moved, links, free
+    case, load_case, moved, links, free, forces
         As of ``point_outcome``.
 
     Returns
@@ -306,7 +324,7 @@ def meshes_to_refine(
     found: dict[str, float] = {}
     for name, check in case.checks.items():
         if isinstance(check, DisplacementCheck) and check.at is not None:
-            told = PointDisplacement.of(case, case.displaced_point(name, check), load_case, moved, links, free)
+            told = PointDisplacement.of(case, case.displaced_point(name, check), load_case, moved, links, free, forces)
             for link, error in told.meshes_to_refine(check.maximum, links).items():
                 found[link] = min(error, found.get(link, math.inf))
     return found

@@ -11,13 +11,14 @@ from fea.beam.theory import internal_forces
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, Source, SourceKind, pin_sources
-from fea.frame.joint_forces import JointForces
+from fea.frame.joint_forces import JointForces, joint_forces
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.result import LinkResult, SolidResult
 from fea.solid.virtual_work import Work, virtual_work
+from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import PointLoad
-from loads.statics.statics import solve_statics
+from loads.statics.statics import Drive, Reactions, solve_statics
 
 NOTHING = 1e-9
 """Share of the unit load that is rounding: in what a link bears of it, and in what is left over of its balance."""
@@ -132,7 +133,7 @@ def shares_of(
     pose, held = moved.frame.pose, moved.frame.held
     longest = pose.linkage.longest
     units = [PointLoad(link=link, point=point, wrench=unit) for unit in np.eye(6)[:2]]
-    reactions = [solve_statics(pose, held, (unit,)) for unit in units]
+    reactions = [_virtual(case, pose, held, unit, forces) for unit in units]
     solids: dict[str, tuple[Work, ...]] = {}
     carried: dict[str, tuple[float, ...]] = {}
     beams: list[str] = []
@@ -159,6 +160,13 @@ def shares_of(
         solids[name] = virtual_work(result.solution, real, virtual, transfer=case.torque_transfer, error=error)
         driven = driven or any(loads.couples for loads in (real, *virtual))
     return Shares(solids=solids, carried=carried, beams=tuple(beams), unsolved=tuple(unsolved), driven=driven)
+
+
+def _virtual(case: Case, pose: Pose, held: Drive | None, unit: PointLoad, forces: JointForces | None) -> Reactions:
+    """Joint forces under a unit load: by equilibrium, which between layers is that of a frame."""
+    if forces is not None and forces.sharings:
+        return joint_forces(case, pose, (unit,)).reactions
+    return solve_statics(pose, held, (unit,))
 
 
 def has_centre_line(case: Case, link: str) -> bool:

@@ -84,7 +84,8 @@ def test_shear_of_the_pins_changes_little() -> None:
 def test_every_link_balances_however_pins_share_the_couples(layers: tuple[int, ...]) -> None:
     case = stacked(layers)
     frame, solution = solved(case)
-    every = (frame.reactions(solution.joint_wrenches, solution.residual), *sharings(frame))
+    every = [frame.reactions(solution.joint_wrenches, solution.residual)]
+    every += [shared.reactions for shared in sharings(frame)]
     for reactions in every:
         for link in LINKS[1:]:
             acting = link_loads("", link, case.body(link), reactions, frame.loads)
@@ -99,9 +100,9 @@ def test_a_pin_that_tilts_gives_no_couple_to_that_link() -> None:
     frame, _ = solved(stacked(FOUR))
     tried = list(hinges_tried(frame.pose.linkage, tuple(frame.pin_beams)))
     assert {len(hinges) for hinges in tried} == {1, 2, 3}
-    for hinges, reactions in zip(tried, sharings(frame), strict=True):
+    for hinges, shared in zip(tried, sharings(frame), strict=True):
         for name, link in hinges if len(hinges) == 1 else ():
-            joint = reactions.joints[name]
+            joint = shared.reactions.joints[name]
             about_second, rise = joint.wrench[3:5], frame.pose.linkage.rise(name)
             fx, fy = joint.wrench[:2]
             about_first = about_second + rise * np.array([-fy, fx])
