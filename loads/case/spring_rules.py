@@ -118,12 +118,6 @@ def check_equilibrium(case: CoreCase) -> None:
                 f"pose.equilibrium: joint '{name}' is bonded, so the linkage keeps the stated pose; remove one of the "
                 "two, or state the angle of the bond"
             )
-    for name, joint in case.joints.items():
-        if joint.friction:
-            raise CaseError(
-                f"joints.{name}.friction: with friction a linkage that is let go rests anywhere in a range about its "
-                "balance; leave out the friction, or pose.equilibrium"
-            )
     if len(case.load_cases) > 1:
         raise CaseError(
             f"pose.equilibrium: each of the {len(case.load_cases)} load cases has a balance of its own; keep one load "

@@ -50,7 +50,7 @@ def without(record, *names):
     ({"load_cases": {"a": {}, "b": {}}}, r"pose\.equilibrium: each of the 2 load cases has a balance of its own"),
     ({"load_cases": {"a": {"speed": "5 rpm"}}, "massless": ["lever"]}, r"load_cases\.a\.speed: .*at rest"),
     ({"joints": {"O": {"links": ["base", "lever"], "pin_diameter": "3 mm", "friction": 0.1}}},
-     r"joints\.O\.friction: .* rests anywhere in a range"),
+     r"joints\.O\.friction: .* stops anywhere about its balance"),
     ({"joint_model": "bonded"}, r"pose\.equilibrium: joint 'O' is bonded"),
 ])  # fmt: skip
 def test_what_does_not_fit_is_refused(tables, sentence):
