@@ -214,6 +214,9 @@ def envelope_case(
     clock = Clock()
     _require(case, repetitions)
     moved = solve_case_motion(case)
+    case = moved.case
+    if moved.locks:
+        raise CaseError(f"{moved.locks[0]}; shorten the motion, state less friction, or another direction or drive")
     evaluated = _some_poses(moved, growth)
     over = _Envelope.of(moved, evaluated, threads, progress)
     moved = over.moved

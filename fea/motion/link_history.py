@@ -34,10 +34,6 @@ def link_histories(moved: CaseMotion, link: str) -> tuple[LinkLoads, ...]:
             "envelope: the linkage is redundant, so its joint forces over a motion do not follow from equilibrium; "
             "remove redundant joints or links, or check single poses with alula check"
         )
-    if moved.rubbing:
-        raise CaseError(
-            "envelope: an envelope does not follow friction yet; leave it out, or check single poses with alula check"
-        )
     for name, loads in moved.loads.items():
         if out_of_plane([load for load in loads if load.link == link]):
             raise CaseError(

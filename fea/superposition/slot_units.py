@@ -8,7 +8,8 @@ References
 Hildebrand, Introduction to Numerical Analysis, 2nd ed., section 3.2.
 """
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,37 +43,39 @@ class SlotUnits:
     places : dict of Span to ndarray, shape (k,)
         Span of the law -> x, evenly spaced [mm].
     rigid : slice
-        Numbers of the tractions that deliver a unit force along y and a unit moment about the middle.
+        Numbers of the tractions that deliver a unit force along y, a unit moment about the middle and a unit force
+        along x.
+    rubs : dict of (Span, float) to slice
+        As ``pushes``, of a unit of friction along the flank; empty where nothing rubs.
     """
 
     pin: Pin
     pushes: dict[tuple[Span, float], slice]
     places: dict[Span, Real]
     rigid: slice
+    rubs: dict[tuple[Span, float], slice] = field(default_factory=dict)
 
-    def coefficients(self, force: Real, place: Real, law: PressureLaw) -> tuple[dict[float, Real], Real]:
-        """Return the coefficients of the pushes and of the tractions.
+    def coefficients(self, load: PinLoad, law: PressureLaw) -> Iterator[tuple[slice, Real]]:
+        """Yield the coefficients of the pushes, of friction and of the tractions.
 
         Parameters
         ----------
-        force : ndarray, shape (n,)
-            Along y, at n poses [N].
-        place : ndarray, shape (n,)
-            x of the pin [mm].
+        load : PinLoad
+            Of the pin at n poses.
         law : PressureLaw
 
-        Returns
-        -------
-        tuple of (dict of float to ndarray, shape (k, n), ndarray, shape (2, n))
-            Those of each side's pushes [N], and those of the tractions [N, N mm].
+        Yields
+        ------
+        tuple of (slice, ndarray, shape (k, n))
+            Numbers of unit loads, and their coefficients [N, N mm].
         """
+        force, place, friction = load.wrench[:, 1], load.centre[:, 0], np.broadcast_to(load.friction, len(load.wrench))
         weights = lagrange_weights(self.places[law.span], place)
-        pushed = {
-            side: weights * np.where(np.sign(force) == side, np.abs(force), 0.0)
-            for span, side in self.pushes
-            if span == law.span
-        }
-        return pushed, np.array([force, force * (place - self.pin.x)])
+        for units, sizes in ((self.pushes, np.abs(force)), (self.rubs, friction)):
+            for (span, side), numbers in units.items():
+                if span == law.span:
+                    yield numbers, weights * np.where(np.sign(force) == side, sizes, 0.0)
+        yield self.rigid, np.array([force, force * (place - self.pin.x) + load.rubbed, friction])
 
 
 def places_for(pin: Pin, law: PressureLaw, low: float, high: float) -> Real:
@@ -132,7 +135,9 @@ def lagrange_weights(places: Real, x: Real) -> Real:
     return found
 
 
-def unit_pushes(wall: SurfaceQuadrature, pin: Pin, law: PressureLaw, side: float, places: Real) -> list[Real]:
+def unit_pushes(
+    wall: SurfaceQuadrature, pin: Pin, law: PressureLaw, side: float, places: Real, friction: float = 0.0
+) -> list[Real]:
     """Return the tractions of a unit force of a pin on one flank of its slot, with the pin at each place.
 
     Parameters
@@ -145,13 +150,15 @@ def unit_pushes(wall: SurfaceQuadrature, pin: Pin, law: PressureLaw, side: float
         1 for the flank at y > 0, -1 for that at y < 0.
     places : ndarray, shape (k,)
         x of the pin [mm].
+    friction : float, optional
+        Along the flank, besides [N].
 
     Returns
     -------
     list of ndarray, shape (cells, points, 3)
         [MPa/N], one for each place.
     """
-    wrench = np.array([0.0, side, 0.0, 0.0, 0.0, 0.0])
+    wrench = np.array([friction, side, 0.0, 0.0, 0.0, -side * friction * pin.pin_diameter / 2.0])
     return [
         slot_traction(
             wall,
@@ -161,6 +168,7 @@ def unit_pushes(wall: SurfaceQuadrature, pin: Pin, law: PressureLaw, side: float
                 diameter=pin.pin_diameter,
                 wrench=wrench,
                 slotted=True,
+                friction=friction,
             ),
             law,
         )

@@ -135,16 +135,15 @@ class UnitLoads:
                 found[both.fields] = both.coefficients(pin.wrench, law)
                 found[both.wrench][:5] = pin.wrench[:, :5].T
             elif pin.name in self.slots:
-                slot = self.slots[pin.name]
-                pushed, rigid = slot.coefficients(pin.wrench[:, 1], pin.centre[:, 0], law)
-                for side, push in pushed.items():
-                    found[slot.pushes[law.span, side]] = push
-                found[slot.rigid] = rigid
+                for numbers, sizes in self.slots[pin.name].coefficients(pin, law):
+                    found[numbers] = sizes
                 if pin.name in self.slot_tilts:
                     found[self.slot_tilts[pin.name]] = pin.wrench[:, 3]
         for name, torque in _torques(loads).items():
             if np.any(torque != 0.0):
                 found[self.couples[name, transfer or TRANSFERS[0]]] += torque
+        for name, torque in _friction(loads).items():
+            found[self.couples[name, "bore-shear"]] += torque
         for end in loads.ends:
             found[self.ends[end.name]] += end.wrench[:, IN_PLANE].T
         for line in loads.lines:
@@ -209,6 +208,9 @@ def unit_loads(
     for name in dict.fromkeys(pin for h in histories for pin, torque in _torques(h).items() if np.any(torque != 0.0)):
         for transfer in TRANSFERS:
             couples[name, transfer] = build.couple(name, centres[name], transfer)
+    for name in dict.fromkeys(pin for h in histories for pin in _friction(h)):
+        if (name, "bore-shear") not in couples:
+            couples[name, "bore-shear"] = build.couple(name, centres[name], "bore-shear")
     points = {end.name: end.point for history in histories for end in history.ends}
     ends = {name: build.end(name, point) for name, point in points.items()}
     stations = dict.fromkeys((line.start, line.end) for h in histories for line in h.lines)
@@ -234,11 +236,16 @@ def unit_loads(
 
 
 def _torques(loads: LinkLoads) -> dict[str, Real]:
-    """All torques about pins (n,): of the drive, and of joints and loads that turn."""
-    found = {pin.name: pin.wrench[:, 5] for pin in loads.pins}
+    """All torques about pins (n,) but for friction: of the drive, and of joints and loads that turn."""
+    found = {pin.name: np.zeros(loads.poses) if pin.slotted else pin.torque for pin in loads.pins}
     for couple in loads.couples:
         found[couple.pin] = found[couple.pin] + couple.torque
     return found
+
+
+def _friction(loads: LinkLoads) -> dict[str, Real]:
+    """Torques of friction (n,) about the pins in bores that have any."""
+    return {pin.name: pin.friction for pin in loads.pins if not pin.slotted and np.any(pin.friction)}
 
 
 class _Builder:
@@ -343,19 +350,27 @@ class _Builder:
         wall, middle = surface_quadrature(self._space, f"bore:{pin.name}", degree=DEGREE), np.array([pin.x, pin.y, 0.0])
         forces = np.concatenate([load.wrench[:, 1] for load in loads])
         travel = np.concatenate([load.centre[:, 0] for load in loads])[forces != 0.0]
-        rigid = [self._vector(wall, wrench_density(wall, middle, np.eye(6)[i])) for i in (1, 5)]
-        pushes, places = {}, {}
+        rigid = [self._vector(wall, wrench_density(wall, middle, np.eye(6)[i])) for i in (1, 5, 0)]
+        pushes, places, rubs = {}, {}, {}
         for law in (WIDE, NARROW):
             places[law.span] = places_for(pin, law, float(travel.min()), float(travel.max()))
             for side in (float(s) for s in np.unique(np.sign(forces[forces != 0.0]))):
+                at = places[law.span]
+                plain = unit_pushes(wall, pin, law, side, at)
                 freed = [
                     self._vector(wall, push) - side * (rigid[0] + (x - pin.x) * rigid[1])
-                    for x, push in zip(
-                        places[law.span], unit_pushes(wall, pin, law, side, places[law.span]), strict=True
-                    )
+                    for x, push in zip(at, plain, strict=True)
                 ]
                 pushes[law.span, side] = self._add(*freed, local=True)
-        return SlotUnits(pin=pin, pushes=pushes, places=places, rigid=self._add(*rigid))
+                if any(np.any(load.friction) for load in loads):
+                    turning = -side * pin.pin_diameter / 2.0
+                    rubbed = unit_pushes(wall, pin, law, side, at, 1.0)
+                    freed = [
+                        self._vector(wall, push - other) - (rigid[2] + turning * rigid[1])
+                        for push, other in zip(rubbed, plain, strict=True)
+                    ]
+                    rubs[law.span, side] = self._add(*freed, local=True)
+        return SlotUnits(pin=pin, pushes=pushes, places=places, rigid=self._add(*rigid), rubs=rubs)
 
     def couple(self, name: str, centre: Real, transfer: Transfer) -> int:
         """Unit torque about a pin."""

@@ -60,7 +60,13 @@ def test_the_pin_travels_and_pushes_either_flank(history: LinkLoads) -> None:
     assert np.all(force[:, [0, 2, 4, 5]] == 0.0)
 
 
-def test_stress_at_every_place_of_the_pin_equals_a_direct_solution(case, history: LinkLoads) -> None:
+def test_stress_at_every_place_of_the_pin_equals_a_direct_solution() -> None:
+    """With friction, of the pin in its slot and of the one in its bore."""
+    case = read_case("ornithopter", ["motion.poses=61", "joints.slot-right.friction=0.3", "joints.R.friction=0.3"])
+    history = {h.name: h for h in link_histories(solve_case_motion(case), LINK)}["wings-12"]
+    slot = history.pins[0]
+    assert np.abs(slot.friction) == pytest.approx(0.3 * np.abs(slot.wrench[:, 1]))
+    assert np.array_equal(slot.wrench[:, 0], slot.friction)
     mesh = mesh_body(case.body(LINK), MeshSettings(halves=False).scaled(2.0))  # node by node, so that both are whole
     material, space = case.material_of(LINK), displacement_space(mesh)
     units = unit_loads(space, case.body(LINK), [history], density=material.density)

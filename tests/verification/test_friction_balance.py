@@ -248,7 +248,7 @@ def test_command_says_where_it_locks(tmp_path) -> None:
     assert "locks itself from" in ended.stderr
     [[low, high]] = record["locked"]
     assert low < 231.3 < high  # its dead point
-    with pytest.raises(CaseError, match="does not follow friction yet"):
+    with pytest.raises(CaseError, match="locks itself"):
         envelope_case(edited(str(path), [entry for entry in entries if entry != "--set"]))
     told = inside("statics", str(path), *entries[4:])
     assert "Friction, driven forward (the angle of crank grows): drive" in told.stdout

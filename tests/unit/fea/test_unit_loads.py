@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solid_meshes
-from turning_load import BODY, RHO, L, history
+from turning_load import BODY, POSES, RHO, L, history
 
 from fea.common.link_loads import PinLoad
 from fea.elements.quadrature import surface_quadrature
@@ -12,7 +12,8 @@ from fea.elements.space import displacement_space
 from fea.elements.supports import rigid_motions
 from fea.superposition.pin_units import fourier_coefficients
 from fea.superposition.unit_loads import TRANSFERS, unit_loads
-from fea.tractions.traction import pin_traction
+from fea.tractions.load_vectors import LoadVectors
+from fea.tractions.traction import couple_traction, pin_traction
 from geometry.base.errors import CannotRunError
 from loads.records.applied import PartMass, shifted
 from loads.records.bearing import NARROW, WIDE
@@ -97,6 +98,24 @@ def test_a_couple_beside_the_force_is_one_pressure_with_it(space, law, least):
         assert np.linalg.norm(found[:, pose] - whole) < least * np.linalg.norm(whole)
         delivered = made.wrenches @ coefficients[:, pose]
         assert delivered == pytest.approx(shifted(wrench, np.array([L, 0.0, 0.0])), abs=1e-10)
+
+
+def test_friction_is_shear_in_the_bore_however_the_drive_torque_enters(space):
+    loads = history(space, couples={"A": np.linspace(1.0, 2.0, POSES)})
+    pin = loads.pins[1]
+    turned = pin.wrench + np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.3])
+    rubbed = replace(loads, pins=(loads.pins[0], replace(pin, wrench=turned, friction=np.full(POSES, 0.3))))
+    made, bore = unit_loads(space, BODY, [rubbed], density=RHO), surface_quadrature(space, "bore:B")
+    expected = bore.load_vector(couple_traction(bore, np.array([L, 0.0, 0.0]), 0.3), len(space.nodes))
+    for transfer in TRANSFERS:
+        more = made.coefficients(rubbed, WIDE, transfer) - made.coefficients(loads, WIDE, transfer)
+        for column in (made.vectors @ more).T:
+            assert column == pytest.approx(expected, abs=1e-12)
+    vectors = LoadVectors(space, RHO)
+    for with_it, without in zip(
+        *(vectors.variants(one.chosen(3), [WIDE], TRANSFERS) for one in (rubbed, loads)), strict=True
+    ):
+        assert with_it.load - without.load == pytest.approx(expected, abs=1e-12)
 
 
 def test_inertia_carries_the_stated_mass(space):
