@@ -1,10 +1,11 @@
 """Pose and joint forces of every load case, and a published system beside them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fea.frame.joint_forces import JointForces, joint_forces
 from fea.frame.rubbing import with_friction
+from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.case_file import read_companion
@@ -88,7 +89,9 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
         for load_case, plain in forces.items():
             own = standing[load_case].case
             loads[load_case], forces[load_case] = with_friction(own, load_case, pose, loads[load_case], plain)
-            if not standing[load_case].stop:
+            if standing[load_case].stop:
+                standing[load_case] = _rubbed(standing[load_case], load_case, forces[load_case].reactions)
+            else:
                 work[load_case] = pose_work(own, load_case, pose, plain.reactions, forces[load_case].reactions)
     found = None
     if case.published_statics is not None:
@@ -103,3 +106,16 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     return CaseStatics(
         case=case, pose=pose, standing=standing, loads=loads, forces=forces, masses=masses, audit=found, work=work
     )
+
+
+def _rubbed(standing: Standing, load_case: str, reactions: Reactions) -> Standing:
+    """Return what holds a pose with what its stop bears as joints rub."""
+    drive = standing.case.pinned_drive
+    assert drive is not None
+    contact = drive.sign(standing.case.linkage) * float(reactions.drive_torque + reactions.drive_force)
+    if contact * standing.contact <= 0.0:
+        raise CaseError(
+            f"stops.{standing.stop}: under load case {load_case} friction alone holds the linkage there, so what the "
+            "stop bears is not known; leave the stop out, or state less friction"
+        )
+    return replace(standing, contact=contact)

@@ -222,6 +222,24 @@ def test_locked_stretches_are_found_and_named(tmp_path) -> None:
     assert f"locks itself from {low:.4g} to 158 mm of S" in coarse.locks[0]
 
 
+SPRUNG = [
+    *PINS,
+    *("load_cases.turning.speed=0 rpm", "stops.end.joint=O2", "stops.end.at_least=40 deg"),
+    *("springs.back.joint=O4", "springs.back.free_angle=90 deg"),
+]
+
+
+def test_a_stop_bears_what_the_drive_would() -> None:
+    stiffness = "springs.back.stiffness=5 N*mm/rad"
+    stopped = solve_case_statics(edited(STARTER, [*SPRUNG, stiffness]))
+    driven = solve_case_statics(edited(STARTER, [*SPRUNG, stiffness, "stops.end.at_least=39 deg"]))
+    assert not stopped.work
+    for name, standing in stopped.standing.items():
+        assert standing.contact == pytest.approx(driven.reactions[name].drive_torque, rel=1e-12)
+    with pytest.raises(CaseError, match=r"stops\.end: .* friction alone holds the linkage there"):
+        solve_case_statics(edited(STARTER, [*SPRUNG, "springs.back.stiffness=19 N*mm/rad"]))
+
+
 STUCK = "with friction the linkage locks itself in this pose, driven backward \\(the travel of S falls\\)"
 
 
