@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from fea.frame.model import FrameModel
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
-from loads.records.applied import LineLoad, Load, PointLoad, shifted
+from loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
 from loads.statics.joint_reaction import JointReaction, travelled
 from loads.statics.statics import Drive, Reactions, assemble
 
@@ -184,7 +184,7 @@ class LinkageFrame:
 
 
 def out_of_plane(loads: Sequence[Load]) -> bool:
-    """Return True if any load has a force along z or a moment about x or y.
+    """Return True if any load but friction has a force along z or a moment about x or y.
 
     Parameters
     ----------
@@ -197,6 +197,8 @@ def out_of_plane(loads: Sequence[Load]) -> bool:
         Whether any acts out of the linkage's plane.
     """
     for load in loads:
+        if isinstance(load, FrictionLoad):
+            continue  # between layers, which are a frame anyway
         if isinstance(load, PointLoad):
             found = load.wrench[..., 2:5]
         elif isinstance(load, LineLoad):

@@ -184,6 +184,8 @@ def friction_under(
 def friction_loads(place: Placement, wrenches: Mapping[str, Real]) -> tuple[FrictionLoad, ...]:
     """Return friction as loads on the links, in pairs that balance.
 
+    It acts at the height of the joint's first link, which has the slot or guide.
+
     Parameters
     ----------
     place : Placement
@@ -198,8 +200,9 @@ def friction_loads(place: Placement, wrenches: Mapping[str, Real]) -> tuple[Fric
     found = []
     for name, wrench in wrenches.items():
         points = zip(place.linkage.joints[name].links, place.linkage.joint_points(name), strict=True)
-        on_first = shifted(-wrench, travelled(place, name))
-        for (link, point), own in zip(points, (on_first, wrench), strict=True):
+        rise = np.array([0.0, 0.0, place.linkage.rise(name)])
+        on_first, on_second = shifted(-wrench, travelled(place, name) - rise), shifted(wrench, -rise)
+        for (link, point), own in zip(points, (on_first, on_second), strict=True):
             found.append(FrictionLoad(link=link, point=point, wrench=own, joint=name))
     return tuple(found)
 

@@ -16,6 +16,7 @@ from fea.check.run import check_case
 from fea.motion.envelope import envelope_case
 from fea.tolerance.states import Sampler
 from geometry.base.errors import CaseError
+from geometry.linkage.linkage import Link
 from loads.case.case import Case
 from loads.case.case_file import read_case, validate
 from loads.case.toleranced import toleranced
@@ -115,6 +116,24 @@ def test_ground_bears_the_applied_loads_whatever_rubs() -> None:
     assert list(result.load_cases) == ["turning forward", "turning backward"]
     for load_case in result.load_cases.values():
         assert anchor_loads(load_case).total == pytest.approx(plain, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("case", [slotted_cases.quick_return(), slotted_cases.slider_crank()], ids=["slot", "slider"])
+def test_links_in_layers_balance_with_friction(case: Case) -> None:
+    """All six components, with what rubs along a slot or guide at its height; the ground bears the load alone."""
+    links = {name: link.model_copy(update={"layer": i}) for i, (name, link) in enumerate(case.links.items())}
+    case = rubbing(case, 0.1).model_copy(update={"links": links, "layer_spacing": 6.0})
+    statics = solve_case_statics(case)
+    for name, reactions in statics.reactions.items():
+        for link in case.checked_links:
+            loads = link_loads(name, link, case.body(link), reactions, statics.loads[name])
+            assert np.abs(loads.resultant()).max() < 1e-9 * 5.0 * 100.0
+        planar = solve_case_statics(statics.case.model_copy(update={"links": case.links | flat(links)})).reactions[name]
+        assert reactions.drive_torque == pytest.approx(planar.drive_torque, rel=1e-9)
+
+
+def flat(links: dict[str, Link]) -> dict[str, Link]:
+    return {name: link.model_copy(update={"layer": 0}) for name, link in links.items()}
 
 
 def test_without_friction_and_with_none_all_is_the_same() -> None:
