@@ -13,7 +13,8 @@ beam, of which the frame's answer follows from one factorisation; with a hinge o
 where q0 are the moments at the hinges in the tight frame, and Q those that unit angles of the hinges make in it
 (Przemieniecki, Theory of Matrix Structural Analysis, 1968, chapter 8: structural modification by the force method). A
 finite f, far softer than all links, keeps a link from spinning freely that has hinges all about: it shares what must be
-borne evenly.
+borne evenly. Then the pins lie against their holes, tilted by no more than their play, so that such an answer tells
+forces and no displacements: the tight frame's stand for them.
 """
 
 import itertools
@@ -29,6 +30,8 @@ from geometry.linkage.linkage import Linkage
 
 SOFT = 1e6
 """Flexibility of a hinge, over the greatest of the frame in hinges' angles."""
+BORNE = 1e-3
+"""Share of the largest moment of the tight frame above which hinges bear what nothing else can."""
 MOST_PINS = 4
 """Pins of a link of which all combinations are tried; of more, all together and each alone."""
 _BENDING = {True: (1, 3), False: (2, 4)}
@@ -110,6 +113,7 @@ def sharings(frame: LinkageFrame) -> tuple[Deviation, ...]:
         moments = np.linalg.solve(np.eye(chosen.sum()) - soft * by_angle[np.ix_(chosen, chosen)], tight[chosen])
         answer = solved.solved(opened[:, chosen] @ (soft * moments))
         reactions = frame.reactions(answer.joint_wrenches, answer.residual)
-        points = frame.at_points(answer.displacements)
+        bears = np.abs(moments).max(initial=0.0) > BORNE * np.abs(tight).max()
+        points = frame.at_points((solved.solved() if bears else answer).displacements)
         found.append(Deviation(source=COUPLES[0], reactions=reactions, points=points))
     return tuple(found)
