@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from fea.check.run import check_case
 from fea.frame.joint_forces import BONDED_FRAME, BONDED_STATICS, joint_forces
@@ -66,6 +68,31 @@ def test_two_bonded_bars_are_one_cantilever():
     moved = check.large_displacement.points["second", "P"]
     assert moved[1] == pytest.approx(-(200.0**3) / (3.0 * young * second), rel=3e-3)
     assert check.links["first"].beam.worst.equivalent > 200.0 * 6.0 / (4.0 * 6.0**2)
+
+
+def test_two_bonded_bars_buckle_and_bend_far_as_one():
+    """Euler's column with a free end, and the elastica of a cantilever: EI θ'' = -F cos θ, θ(0) = 0, θ'(L) = 0."""
+    length, force = 200.0, 60.0
+    young = arm().material_of("first").youngs_modulus
+    stiffness, across = young * 72.0, young * 32.0  # the bar gives way across its plane, where it is thinner
+
+    def pushed(*at_end):
+        load = {"link": "second", "at": "P", "force": [f"{component} N" for component in at_end]}
+        return check_case(arm(load_cases={"push": {"forces": [load]}}), fidelity="beam").load_cases["push"]
+
+    factor = pushed(-50.0, 0.0).large_displacement.buckling
+    assert factor == pytest.approx(np.pi**2 * across / (4.0 * length**2) / 50.0, rel=1e-3)
+
+    def bent(start):
+        def slope(_, y):
+            return [y[1], -force / stiffness * np.cos(y[0]), np.cos(y[0]), np.sin(y[0])]
+
+        return solve_ivp(slope, (0.0, length), [0.0, start, 0.0, 0.0], rtol=1e-9, atol=1e-12).y[:, -1]
+
+    end = bent(brentq(lambda start: bent(start)[1], 0.0, 2.0 * force * length / stiffness))
+    moved = pushed(0.0, -force).large_displacement
+    assert moved.state == "deformed"
+    assert moved.points["second", "P"] == pytest.approx([end[2] - length, -end[3], 0.0], rel=3e-3)
 
 
 def test_a_bond_keeps_the_stated_angle():
