@@ -90,7 +90,8 @@ def tolerance_case(
     clock("nominal check")
     masses = part_masses(case) if needs_masses(case) else {}
     reaches = {one.variable.tolerance: one.masses for one in ends} if masses else {}
-    sampler = Sampler(case=case, pose=result.pose, masses=masses, variables=variables, reaches=reaches)
+    plane = case.in_one_plane() if case.layered else case
+    sampler = Sampler(case=plane, pose=plane.solve_pose(), masses=masses, variables=variables, reaches=reaches)
     rng = np.random.default_rng(seed)
     progress("unit solutions of the links")
     pilots = _pilots(variables, rng)
@@ -334,6 +335,11 @@ def _notes(result: CheckResult, found: Numbers, left_out: Sequence[str]) -> tupl
             f"load case{'s' if len(bent) > 1 else ''} {', '.join(bent)}: joint forces of the samples are those of the "
             "undeformed pose, in proportion to the nominal ones on the deformed shape; how deviations change the "
             "deformed shape is not covered"
+        )
+    if result.case.layered:
+        notes.append(
+            "links lie in layers: the couples between these are those of the nominal case, in proportion to what the "
+            "links and pins bear in one plane; how deviations change their shares is not covered"
         )
     if found.pressed:
         notes.append(

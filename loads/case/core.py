@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field
 
@@ -100,6 +100,13 @@ class CoreCase(Revisable):
     def heights(self) -> dict[str, float]:
         """Link -> z of its mid-plane [mm]; 0 where no layers are stated."""
         return heights(self.links, self.parts, self.layer_spacing, self.washer)
+
+    def in_one_plane(self) -> Self:
+        """Return the case with all links in one plane, whatever their layers."""
+        apart = {"layer": None, "z": None}
+        links = {name: link.model_copy(update=apart) for name, link in self.links.items()}
+        joints = {name: joint.model_copy(update={"tight_in": None}) for name, joint in self.joints.items()}
+        return self.model_copy(update={"links": links, "joints": joints, "layer_spacing": None, "washer": None})
 
     @property
     def layered(self) -> bool:
