@@ -9,11 +9,12 @@ from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.case_file import read_companion
-from loads.case.friction_rules import rubbing_joints
+from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import Load, PartMass
 from loads.sources.published_statics import StaticsAudit, audit
 from loads.states.actions import acting_loads, needs_masses, placed
 from loads.states.masses import part_masses
+from loads.states.play import play_of
 from loads.states.rubbing import DriveWork, each_direction, pose_work
 from loads.states.standing import Standing, stand
 from loads.statics.statics import Reactions
@@ -93,6 +94,9 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
                 standing[load_case] = _rubbed(standing[load_case], load_case, forces[load_case].reactions)
             else:
                 work[load_case] = pose_work(own, load_case, pose, plain.reactions, forces[load_case].reactions)
+    if not case.pose.equilibrium:
+        played = {x: play_of(standing[x].case, x, pose, masses) for x in loads}
+        forces = {x: replace(found, play=played[x]) for x, found in forces.items()}
     found = None
     if case.published_statics is not None:
         published = case.published_statics

@@ -63,7 +63,7 @@ def _doubt(
     for link in case.checked_links:
         body = case.body(link)
         plain, *others = (
-            _measures(case, link, link_loads(load_case, link, body, reactions, loads))
+            measures(case, link, link_loads(load_case, link, body, reactions, loads))
             for reactions in (forces.reactions, *changes)
         )
         stress[link] = around(plain[0], [one[0] for one in others])
@@ -75,8 +75,21 @@ def _doubt(
     return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
 
 
-def _measures(case: Case, link: str, loads: LinkLoads) -> tuple[float, float]:
-    """Stress and displacement by hand; the largest pin force for both of a link for which no beam stands."""
+def measures(case: Case, link: str, loads: LinkLoads) -> tuple[float, float]:
+    """Return stress and displacement by hand; the largest pin force for both of a link for which no beam stands.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    loads : LinkLoads
+        At one pose.
+
+    Returns
+    -------
+    tuple of (float, float)
+        [MPa], [mm]; twice [N] without beam.
+    """
     hand = link_by_hand(case, link, loads)
     if hand.check.without:
         largest = max(float(np.linalg.norm(pin.wrench[:3])) for pin in loads.pins)

@@ -104,6 +104,8 @@ def _largest(
 ) -> tuple[Band, str]:
     """Largest displacement of any place [mm], and that place."""
     sizes = {key: float(np.linalg.norm(d)) for key, d in moved.points.items()}
+    if forces.play is not None:
+        sizes = {key: size + forces.play.free_motion(*key) for key, size in sizes.items()}
     if not sizes or moved.frame is None or moved.solution is None:
         return Band.unknown(moved.sentence), ""
     places = {tuple(np.round(moved.points[key], 9)): key for key in sizes}  # the two links at a pin move alike

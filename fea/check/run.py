@@ -19,6 +19,7 @@ from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.link_result import link_result
 from fea.check.linkage_numbers import limit_load_outcomes, linkage_numbers
 from fea.check.load_growth import Growths, growths
+from fea.check.play_doubt import play_doubt, play_warnings, shaken
 from fea.check.point_solids import decide_point
 from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
@@ -119,9 +120,9 @@ class _LoadCase:
             moved=moved,
             cut=cut,
             hands=hands,
-            uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands).times(
-                force_doubt(case, load_case, statics.forces[load_case], loads)
-            ),
+            uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands)
+            .times(force_doubt(case, load_case, statics.forces[load_case], loads))
+            .times(play_doubt(case, load_case, statics.forces[load_case], loads)),
             size=load_size(loads, case.linkage.longest),
         )
 
@@ -241,13 +242,14 @@ def check_case(
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
     }
+    moved = {x: shaken(statics.standing[x].case, x, statics.forces[x], one) for x, one in moved.items()}
     clock("frames")
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
     first: Mapping[str, TaggedMesh] = {}
     if fidelity not in BY_HAND:
         statics, first = with_solids(statics, moved, start, always=fidelity == "solid", threads=threads)
         clock("frames of solids")
-    by_load_case = {load_case: _LoadCase.of(statics, load_case, what) for load_case, what in moved.items()}
+    by_load_case = {x: _LoadCase.of(statics, x, what) for x, what in moved.items()}
     clock("hand calculations")
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:
@@ -275,6 +277,7 @@ def check_case(
         warnings=(
             *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),
             *_warnings(case, statics, moved),
+            *play_warnings(moved, statics.forces),
         ),
     )
 

@@ -225,6 +225,7 @@ class _Linkage:
             solution=found.solution,
             solids=tuple(self.solids),
             deviations=tuple(self._deviations(found, pressed)),
+            play=self.plain.play,
         )
 
     def _answer(

@@ -67,7 +67,7 @@ class Scatter:
     @property
     def inverse(self) -> "Scatter":
         """The scatter of what goes with one over the number."""
-        return replace(self, low=1.0 / self.high, high=1.0 / self.low)
+        return replace(self, low=1.0 / self.high, high=1.0 / self.low if self.low > 0.0 else math.inf)
 
 
 def _product(end: float, factor: float) -> float:

@@ -1,5 +1,6 @@
 """What makes a number uncertain: the sources of error that a band covers."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -28,6 +29,7 @@ class SourceKind(StrEnum):
     FLYWHEEL = "energy that a flywheel stores"
     POSES = "what lies between the poses that were looked at"
     CHORDS = "chords in place of arcs"
+    PLAY = "play of pins"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,6 +73,23 @@ def pin_sources(*, driven: bool) -> tuple[Source, ...]:
     tuple of Source
     """
     return (PIN_PRESSURE, CONTACT, *((TORQUE_TRANSFER,) if driven else ()))
+
+
+def play_source(clearances: Mapping[str, float]) -> Source:
+    """Return the play of joints as a source of error.
+
+    Parameters
+    ----------
+    clearances : mapping of str to float
+        Joint -> its play [mm].
+
+    Returns
+    -------
+    Source
+    """
+    least, most = min(clearances.values()), max(clearances.values())
+    sizes = f"{least:.3g} mm" if least == most else f"{least:.3g} to {most:.3g} mm"
+    return Source(kind=SourceKind.PLAY, detail=f"{sizes} at {', '.join(clearances)}")
 
 
 def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:

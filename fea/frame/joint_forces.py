@@ -13,6 +13,7 @@ from fea.frame.linkage_frame import out_of_plane
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import Load
+from loads.states.play import Play, free_motion
 from loads.statics.statics import Drive, Reactions, assemble, refuse_dead_point, solve_statics
 
 if TYPE_CHECKING:
@@ -77,6 +78,8 @@ class JointForces:
     sharings : tuple of Deviation
         The answers with pins that tilt in one of their links, so that the other bears the whole couple between
         their layers (``fea.frame.sharing``); empty without layers.
+    play : Play or None
+        What the play of pins does under the load case; None where no joint has play.
     """
 
     reactions: Reactions
@@ -87,6 +90,7 @@ class JointForces:
     solids: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
     sharings: tuple[Deviation, ...] = ()
+    play: Play | None = None
 
     @property
     def by_equilibrium(self) -> bool:
@@ -247,10 +251,13 @@ class WayToHold:
         Of the way, for people.
     displacement : ndarray, shape (3,)
         Global axes [mm].
+    play : float
+        How far play lets the point go to either side beside that [mm].
     """
 
     name: str
     displacement: Real
+    play: float = 0.0
 
     @property
     def size(self) -> float:
@@ -295,5 +302,6 @@ def ways_to_hold(case: Case, pose: Pose, loads: Sequence[Load]) -> tuple[WayToHo
     for name, drive, bonded in ways:
         frame, solution = solved_frame(case, pose, loads, drive, bonded=bonded)
         moved = frame.at_points(solution.displacements)
-        found.append(WayToHold(name=name, displacement=moved[asked.link, asked.at]))
+        loose = 0.0 if bonded else free_motion(case, pose.placement, drive, asked.link, asked.at)
+        found.append(WayToHold(name=name, displacement=moved[asked.link, asked.at], play=loose))
     return tuple(found)

@@ -105,6 +105,12 @@ class LargeDisplacement:
         The undeformed one; None where there is no frame.
     solution : FrameSolution or None
         Linear, of that frame.
+    play : Source or None
+        The play of pins, where joints have some.
+    shaken : tuple of LargeDisplacement
+        What becomes of it where play brings the linkage nearest to a dead point, and furthest off.
+    passes : bool
+        True where play may take it through a dead point, so that no load is sure to be held.
     """
 
     state: State
@@ -124,6 +130,9 @@ class LargeDisplacement:
     sentence: str
     frame: LinkageFrame | None = None
     solution: FrameSolution | None = None
+    play: Source | None = None
+    shaken: tuple["LargeDisplacement", ...] = ()
+    passes: bool = False
 
     @property
     def share(self) -> float:
@@ -150,9 +159,23 @@ class LargeDisplacement:
         """Scatter of load over stiffness: what is stated, and what plain beams do not know."""
         return self.scatter.times(self.eyes)
 
-    @cached_property
+    @property
     def limit_load(self) -> Band:
-        """Factor on all loads at which the linkage gives way.
+        """Factor on all loads at which the linkage gives way, wherever its pins stand in their play."""
+        found = self._limit_load
+        if self.play is None or found.unknowable:
+            return found
+        every = [found, *(one.limit_load for one in self.shaken if not one.limit_load.unknowable)]
+        return replace(
+            found,
+            low=0.0 if self.passes else min(one.low for one in every),
+            high=max(one.high for one in every),
+            sources=distinct(found.sources, (self.play,)),
+        )
+
+    @cached_property
+    def _limit_load(self) -> Band:
+        """That with pins in the middle of their holes.
 
         Without upper end where it holds ``MOST`` times the load; not known where no frame tells.
         """

@@ -14,7 +14,7 @@ import numpy as np
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import compliance_scatter, load_scatter
-from fea.common.source import Source, SourceKind, distinct
+from fea.common.source import Source, SourceKind, distinct, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.joint_forces import JointForces
@@ -25,6 +25,7 @@ from fea.outcomes.point_shares import Shares, has_centre_line, shares_of
 from fea.outcomes.result import LinkResult, SolidResult
 from loads.case.case import Case
 from loads.records.check_spec import DisplacementCheck
+from loads.states.play import Play
 
 ROOM = 0.8
 """Share of the way to a limit that meshes may leave open, since a finer mesh moves the number as well."""
@@ -107,6 +108,11 @@ class PointDisplacement:
             case=case, load_case=load_case, link=link, point=point, moved=moved, shares=shares, forces=forces, why=why
         )
 
+    @property
+    def play(self) -> Play | None:
+        """What the play of pins does; None where no joint has play."""
+        return None if self.forces is None else self.forces.play
+
     @cached_property
     def value(self) -> Band:
         """The displacement [mm]."""
@@ -119,7 +125,41 @@ class PointDisplacement:
         return self.band(sunk=True).high - self.value.high if solved and not self.why else 0.0
 
     def band(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
-        """Return the band: what solids or beams leave open, the moduli, and the load.
+        """Return the band: that by which links give, and the play of pins beside it.
+
+        Parameters
+        ----------
+        meshes, sunk
+            As of ``elastic``.
+
+        Returns
+        -------
+        Band
+            [mm]; its value where pins rest under the load, its ends where they stand worst.
+        """
+        found, play = self.elastic(meshes=meshes, sunk=sunk), self.play
+        if play is None:
+            return found
+        moved = self.moved.points[self.link, self.point]
+        size = float(np.linalg.norm(moved))
+        plane, across = complex(*moved[:2]) / (size or 1.0), float(moved[2]) / (size or 1.0)
+
+        def told(elastic: float, in_plane: float) -> float:
+            return math.hypot(in_plane, elastic * across)
+
+        at_rest = abs(found.value * plane + complex(play.shift(self.link, self.point)))
+        least = play.loose.spread(self.link, self.point, found.low * plane)[0]
+        most = play.loose.spread(self.link, self.point, found.high * plane)[1] if found.high < math.inf else math.inf
+        value = told(found.value, at_rest)
+        return Band(
+            value=value,
+            low=min(told(found.low, least), value),
+            high=max(told(found.high, most), value),
+            sources=distinct(found.sources, (play_source(play.clearances),)),
+        )
+
+    def elastic(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
+        """Return the band without play: what solids or beams leave open, the moduli, and the load.
 
         The linear answer may grow as a toggle does (``fea.nonlinear.stability``); on the deformed shape equilibrium is
         sought again with the ends of load over stiffness, and with solids for the value: in a frame that is softer by
@@ -296,6 +336,11 @@ def point_outcome(
             "pins move as the mean of their bores; sinking into the sides that they press could add up to "
             f"{told.sinking:.2g} mm, which the band does not hold{' and which would miss the limit' if beyond else ''}"
         )
+    if told.play is not None:
+        alone = Quantity.DISPLACEMENT.sense.verdict(told.elastic(), check.maximum)
+        decides = f"; without play the verdict would be {alone.value}" if alone is not found.verdict else ""
+        loose = told.play.free_motion(told.link, told.point)
+        notes.append(f"play of pins lets it move by up to {loose:.3g} mm to either side{decides}")
     if found.verdict is Verdict.UNDECIDED:
         notes += _remedies(told, check.maximum, links)
     return found.because("; ".join([f"by {told.shares.model}, {shape}: {found.reason}", *notes]))

@@ -14,7 +14,7 @@ from geometry.linkage.placement import Placement
 from geometry.linkage.pose import Pose
 from geometry.linkage.sampled import SampledPlacement, assemble_samples
 from loads.case.case import Case
-from loads.case.friction_rules import rubbing_joints
+from loads.case.joint_rules import rubbing_joints
 from loads.case.toleranced import Variable
 from loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad
 from loads.records.load_case import LoadCase

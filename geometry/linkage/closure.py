@@ -14,7 +14,8 @@ handled at once.
 """
 
 from collections import deque
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -38,9 +39,13 @@ class LoopClosure:
     ----------
     linkage : Linkage
         The linkage.
+    offsets : mapping of str to complex
+        Joint -> where its second link's point stands off its first link's [mm], by play: in global axes at a revolute
+        joint, in the frame of the first link across a slot. Zero at the joints that are left out.
     """
 
     linkage: Linkage
+    offsets: Mapping[str, complex] = field(default_factory=dict, kw_only=True)
 
     @cached_property
     def slots(self) -> tuple[str, ...]:
@@ -88,8 +93,7 @@ class LoopClosure:
     @cached_property
     def _origins(self) -> dict[str, Complex]:
         """Row [C | D] of every link's origin."""
-        links, slots = len(self._index), len(self.slots)
-        rows: dict[str, Complex] = {self.linkage.ground: np.zeros(links + slots, dtype=complex)}
+        rows: dict[str, Complex] = {self.linkage.ground: np.zeros(len(self._index) + len(self.slots), dtype=complex)}
         for link, name in self._tree.items():
             joint = self.linkage.joints[name]
             here = joint.links.index(link)
@@ -98,12 +102,19 @@ class LoopClosure:
             row = rows[parent].copy()
             row[self._index[parent]] += self._local(parent, points[1 - here])
             row[self._index[link]] -= self._local(link, points[here])
-            if name in self.slots:
-                # The second link's point is the first link's point plus the travel along the slot.
-                along = np.exp(1j * joint.direction)
-                row[links + self.slots.index(name)] += along if here == 1 else -along
-            rows[link] = row
+            rows[link] = row + (self._apart(name) if here == 1 else -self._apart(name))
         return rows
+
+    def _apart(self, name: str) -> Complex:
+        """Row from a joint's point on its first link to that on its second: travel along a slot, and an offset."""
+        row = np.zeros(len(self._index) + len(self.slots), dtype=complex)
+        first = self.linkage.ground
+        if name in self.slots:
+            joint = self.linkage.joints[name]
+            first = joint.links[0]
+            row[len(self._index) + self.slots.index(name)] = np.exp(1j * joint.direction)
+        row[self._index[first]] += self.offsets.get(name, 0.0)
+        return row
 
     def _row(self, link: str, point: str) -> Complex:
         row = self._origins[link].copy()
@@ -150,9 +161,7 @@ class LoopClosure:
         for i, name in enumerate(self.loops):
             joint = self.linkage.joints[name]
             first, second = self.linkage.joint_points(name)
-            rows[i] = self._row(joint.links[0], first) - self._row(joint.links[1], second)
-            if name in self.slots:
-                rows[i, links + self.slots.index(name)] += np.exp(1j * joint.direction)
+            rows[i] = self._row(joint.links[0], first) + self._apart(name) - self._row(joint.links[1], second)
         return rows
 
     @cached_property
@@ -233,7 +242,7 @@ class LoopClosure:
         ndarray
             Velocities (..., points) [mm/s].
         """
-        return np.asarray((self._derivative(self._point_rows, q) @ qdot[..., None])[..., 0])
+        return np.asarray((self.point_rates(q) @ qdot[..., None])[..., 0])
 
     def accelerations(self, q: Real, qdot: Real, qddot: Real) -> Complex:
         """Acceleration of every point [mm/s²].
@@ -252,7 +261,7 @@ class LoopClosure:
         ndarray
             Accelerations (..., points) [mm/s²].
         """
-        linear = (self._derivative(self._point_rows, q) @ qddot[..., None])[..., 0]
+        linear = (self.point_rates(q) @ qddot[..., None])[..., 0]
         return np.asarray(linear + self._quadratic(self._point_rows, q, qdot))
 
     @cached_property
@@ -303,6 +312,44 @@ class LoopClosure:
             Accelerations of the origins (..., moving links) [mm/s²].
         """
         return self.origin_velocities(q, qddot) + self._quadratic(self._origin_rows, q, qdot)
+
+    def loosened(self, q: Real, name: str, offset: complex) -> tuple[Real, Complex]:
+        """Derivatives of ``residual`` and ``positions`` by a joint's offset, with the unknowns as they are.
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+        name : str
+            Name of the joint.
+        offset : complex
+            Direction of its offset, as in ``offsets``.
+
+        Returns
+        -------
+        tuple of ndarray
+            By mm of offset (..., equations), (..., points).
+        """
+        other = replace(self, offsets={**self.offsets, name: self.offsets.get(name, 0.0) + offset})
+        loops = self._evaluate(other._loop_rows - self._loop_rows, q)
+        fixed = np.zeros((*q.shape[:-1], len(self.angles_fixed)))
+        points = self._evaluate(other._point_rows - self._point_rows, q)
+        return np.concatenate([_split(loops), fixed], axis=-1), points
+
+    def point_rates(self, q: Real) -> Complex:
+        """Derivative of ``positions`` by the unknowns.
+
+        Parameters
+        ----------
+        q : ndarray
+            Unknowns (..., unknowns): angles of the moving links [rad], travels in the slots [mm].
+
+        Returns
+        -------
+        ndarray
+            (..., points, unknowns).
+        """
+        return self._derivative(self._point_rows, q)
 
     def residual(self, q: Real) -> Real:
         """Closure equations (..., equations): mm for loops, longest link times rad for fixed angles.

@@ -87,6 +87,9 @@ class Joint(CaseModel):
     guide_length: Annotated[Length, POSITIVE] | None = None
     """Length over which the guide holds a slider, half of it on either side of the second link's point. With it a
     moment on the slider presses its ends on the guide, and these rub; without it the normal force alone does."""
+    clearance: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Play of the pin: how much wider its hole is than the pin, which moves by up to half of it to any side. A pin in a
+    slot has the slot's clearance beside it."""
     direction: Angle = 0.0
     """Direction of the slot in the first link's frame (slider, pin-in-slot)."""
     angle: Angle = 0.0

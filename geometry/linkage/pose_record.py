@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -34,6 +34,8 @@ class Pose:
         Largest closure residual as a share of the longest link.
     slides : bool
         Whether the coordinate is a slider or slot, whose travel fixes the pose.
+    offsets : mapping of str to complex
+        Joint -> how far play sets its two points apart [mm], as ``LoopClosure`` has it.
     """
 
     linkage: Linkage
@@ -41,11 +43,12 @@ class Pose:
     coordinate: str | None
     residual: float
     slides: bool = False
+    offsets: Mapping[str, complex] = field(default_factory=dict)
 
     @cached_property
     def closure(self) -> LoopClosure:
         """The loop equations that the pose fulfils."""
-        return LoopClosure(self.linkage)
+        return LoopClosure(self.linkage, offsets=self.offsets)
 
     @cached_property
     def placement(self) -> Placement:

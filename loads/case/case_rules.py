@@ -10,7 +10,7 @@ from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
 from loads.case.forks import check_fork
-from loads.case.friction_rules import check_friction
+from loads.case.joint_rules import check_clearances, check_friction
 from loads.case.layers import check_layers
 from loads.case.load_rules import check_loads, check_masses, check_place
 from loads.case.places import check_moving, check_point
@@ -62,6 +62,7 @@ def check_rules(case: CoreCase) -> None:
         _check_material(case, f"parts.{name}.material", part.material)
     for name, joint in case.joints.items():
         _check_material(case, f"joints.{name}.pin_material", joint.pin_material)
+    check_clearances(case)
     for name, link in case.links.items():
         _check_held(case, name)
         if link.part is not None:

@@ -11,7 +11,7 @@ from geometry.base.errors import CaseError
 from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
-from loads.case.friction_rules import rubbing_joints
+from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import Load, PartMass
 from loads.records.load_case import LoadCase, gravity
 from loads.states.actions import acting_loads, inertia_loads, needs_masses, refuse_turning_bonds, stated_loads

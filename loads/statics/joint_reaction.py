@@ -21,8 +21,8 @@ class JointReaction:
     wrench : array (..., 6)
         Of ``by`` on ``on`` about the pin, global axes [N, N mm].
     arm : array (..., 3)
-        From the point of link ``by`` to the pin at the mid-plane of ``on`` [mm]: zero but in slots, along guides, and
-        between layers.
+        From the point of link ``by`` to the pin at the mid-plane of ``on`` [mm]: zero but in slots, along guides,
+        between layers and by play.
     """
 
     joint: str
@@ -55,11 +55,11 @@ def travelled(place: Placement, name: str) -> Real:
     Returns
     -------
     array (..., 3)
-        Zero at revolute joints within a layer [mm].
+        At revolute joints what play sets apart and the rise between layers [mm].
     """
     joint = place.linkage.joints[name]
     rise = np.array([0.0, 0.0, place.linkage.rise(name)])
     if joint.type == "revolute":
-        return np.asarray(np.zeros((*place.shape, 3)) + rise)
+        return np.asarray(vector(np.full(place.shape, place.closure.offsets.get(name, 0.0), dtype=complex)) + rise)
     first, second = (place.position(*at) for at in zip(joint.links, place.linkage.joint_points(name), strict=True))
     return np.asarray(vector(second - first) + rise)

@@ -10,8 +10,10 @@ from geometry.base.version import result_stamp
 from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Reactions
 from loads.statics.system import System
+from reports.tables.data import finite
 from reports.tables.frames import AXES, reaction_records, shown_components
 from reports.tables.friction import friction_record, friction_sentence
+from reports.tables.play import play_line, play_record, tips
 from reports.tables.springs import holding_sentence, spring_sentences, standing_record
 
 
@@ -68,6 +70,11 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
                 joint, force = reactions.joints[name], ", ".join(_column(x, largest).strip() for x in wrench[:2])
                 by = f"({force}) N, " if np.any(wrench[:2]) else ""
                 print(f"  {name:<{width}} {joint.by} rubs {joint.on} with {by}{wrench[5]:.4g} N·mm")
+        if (play := statics.forces[title].play) is not None:
+            print(f"  {play_line(play)}")
+            for link, point in tips(statics.case):
+                free = play.free_motion(link, point)
+                print(f"    {point} of {link}: {free:.4g} mm to either side, {2.0 * free:.4g} mm both ways")
         system = reactions.system
         print(f"  system {len(system.rows)}×{len(system.columns)}, condition number {system.condition:.4g} (scaled),")
         print(f"  residual {reactions.residual:.1e} of the load")
@@ -129,6 +136,7 @@ def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
                     if title in statics.work
                     else {}
                 ),
+                "play": finite(play_record(statics.forces[title].play), {}),
                 **({"system": _system(reactions.system)} if matrix else {}),
             }
             for title, reactions in statics.reactions.items()

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from fea.common.verdict import LINKAGE, Quantity, Subject
 from fea.outcomes.result import CheckResult, LinkResult, SolidResult
 from fea.solid.buckling_factor import MOST
-from loads.case.friction_rules import rubbing_joints
+from loads.case.joint_rules import clearances, rubbing_joints
 from reports.words.wording import joined
 
 STACKING = (
@@ -48,12 +48,16 @@ def not_covered(result: CheckResult) -> tuple[tuple[str, str], ...]:
 def _pins(result: CheckResult) -> str:
     checked = list(dict.fromkeys(joint for case in result.load_cases.values() for joint in case.pins))
     own = f"Checked pins: {joined(checked)}" if checked else "No pin was checked"
-    rubbing, case = rubbing_joints(result.case), result.case
+    rubbing, case, loose = rubbing_joints(result.case), result.case, clearances(result.case)
     smooth = [name for name in case.joints if name not in rubbing]
     left_out = "friction" if not rubbing else f"friction at {joined(smooth)}" if smooth else ""
-    found = (
-        f"Each pin is modelled as a pressure on its hole, without {joined(['clearance', *filter(None, [left_out])])}"
-    )
+    without = joined([*([] if loose else ["clearance"]), *filter(None, [left_out])])
+    found = f"Each pin is modelled as a pressure on its hole{', without ' if without else ''}{without}"
+    if loose:
+        found += (
+            f". The play at {joined(list(loose))} is in pose, forces and displacements, each pin standing anywhere in "
+            "its hole; impact where a pin changes sides, and a narrower contact in a wider hole, are not modelled"
+        )
     guided = [name for name in rubbing if case.joints[name].type == "slider" and case.joints[name].guide_length is None]
     if guided:
         found += f". The moments of {joined(guided)} add no friction, since no guide_length is stated"

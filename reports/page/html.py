@@ -30,6 +30,7 @@ from reports.tables.layers import BuildDirections, build_directions_of
 from reports.tables.loads import air_record, anchor_record, weight_sentence
 from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
+from reports.tables.play import play_line, tips
 from reports.tables.record import worst_load_case
 from reports.tables.springs import holding_sentence, spring_sentences
 from reports.words.wording import (
@@ -106,6 +107,8 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         "sentence": sentence,
         "capitalize_first": lambda text: text[:1].upper() + text[1:],
         "linkage_line": linkage_line,
+        "play_line": play_line,
+        "complex": complex,
         "solved": solver_sentence,
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
@@ -136,6 +139,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         air={name: found for name in result.load_cases if (found := air_record(result, name))},
         turning=turning,
         axes=AXES,
+        tips=tips(result.case),
         shown_components=shown_components,
         weight_sentence=weight_sentence,
         friction_sentence=friction_sentence,

@@ -7,6 +7,7 @@ import numpy as np
 
 from loads.statics.statics import Reactions
 from reports.tables.data import data, entries
+from reports.tables.play import play_line, play_record
 from reports.words.wording import band, fixed, limit_load, number
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
     Returns
     -------
     dict
-        ``joint_forces``, ``large_displacement``, ``linkage``, ``pins`` and ``ways_to_hold``.
+        ``joint_forces``, ``large_displacement``, ``linkage``, ``play``, ``pins`` and ``ways_to_hold``.
     """
     moved = case.large_displacement
     deformed = moved.reactions
@@ -93,8 +94,9 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
             "where": case.linkage.where or None,
             "dead_point_distance": case.linkage.dead_point_distance,
         },
+        "play": play_record(case.forces.play),
         "pins": [{"joint": joint} | entries(pin, "lever moment bending shear") for joint, pin in case.pins.items()],
-        "ways_to_hold": [entries(held, "name displacement size") for held in case.ways_to_hold],
+        "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
     }
 
 
@@ -187,6 +189,8 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     if not case.forces.by_equilibrium:
         lines.append(f"Joint forces by a {case.forces.model}: {case.forces.reason}.")
     lines.append(linkage_line(case))
+    if case.forces.play is not None:
+        lines.append(play_line(case.forces.play))
     deformed = case.large_displacement.reactions
     if deformed is not None:
         forces = "  ".join(f"{name} {number(joint.magnitude)}" for name, joint in deformed.joints.items())
@@ -202,6 +206,7 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     if asked is not None:
         ways = [
             f"{held.name}: {', '.join(fixed(float(x), 1) for x in held.displacement)}, total {number(held.size, 3)}"
+            f"{f', play {number(held.play, 3)} to either side' if held.play > 0.0 else ''}"
             for held in case.ways_to_hold
         ]
         if asked.published is not None and asked.load_case in (None, case.name):

@@ -1,0 +1,211 @@
+"""What play makes of the numbers of a check: stress through changed forces, and how much load the linkage holds."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.cut_free import link_loads
+from fea.check.force_doubt import measures
+from fea.check.load_growth import LEAST, Growths
+from fea.common.link_loads import LinkLoads
+from fea.common.scatter import Scatter
+from fea.common.source import Source, play_source
+from fea.frame.joint_forces import JointForces, joint_forces
+from fea.nonlinear.large_displacement import LargeDisplacement, examine
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.bodies.body import Body
+from loads.case.case import Case
+from loads.records.applied import Load
+from loads.states.play import Displaced, Play, Span
+from loads.statics.statics import Reactions
+
+Real = NDArray[np.float64]
+
+OUT_OF_PLANE = [2, 3, 4]
+"""Components of a wrench that equilibrium in the plane does not give."""
+
+
+def play_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[Load]) -> Growths:
+    """Return by how much stress, displacement of links and joint forces may differ by the play of pins.
+
+    A link's stress by hand is calculated with every joint with play at its end in x and in y. The sizes of these
+    slopes add up; it is calculated once more at the worst combination either way, and the outer of both counts.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    forces : JointForces
+    loads : sequence of Load
+        That act on the links without play.
+
+    Returns
+    -------
+    Growths
+        Empty without play.
+    """
+    play = forces.play
+    if play is None:
+        return Growths()
+    source = play_source(play.clearances)
+    joints = {name: _scatter(span, source) for name, span in play.forces.items()}
+    if play.through_dead_point or play.nominal is None:
+        lost = dict.fromkeys(case.checked_links, Scatter(low=0.0, high=np.inf, sources=(source,)))
+        return Growths(stress=lost, displacement=lost, joints=joints)
+    ends = {name: _ends(play, forces, name) for name in play.loose.radii}
+    nominal = _reactions(play, forces, play.nominal), play.nominal
+    stress: dict[str, Scatter] = {}
+    displacement: dict[str, Scatter] = {}
+    for link in case.checked_links:
+        body = case.body(link)
+        acting = link_loads(load_case, link, body, forces.reactions, loads)
+        told = partial(_told, case, load_case, link, body, acting)
+        plain = told(*nominal)
+        tried = {name: [told(*end) for end in each] for name, each in ends.items()}
+        for i, found in enumerate((stress, displacement)):
+            slopes = {name: np.array([end[i] - plain[i] for end in each]) for name, each in tried.items()}
+            worst = [told(*end)[i] for end in _worst(play, forces, slopes)]
+            slack = sum(float(np.linalg.norm(slope)) for slope in slopes.values())
+            low, high = min(plain[i] - slack, plain[i], *worst), max(plain[i] + slack, *worst)
+            found[link] = _scatter(Span(value=plain[i], low=max(low, 0.0), high=high), source)
+            if case.layered:  # couples between layers go with the forces of the link's pins
+                held = [joints[name] for name in case.linkage.joints_of(link)]
+                least, most = min(one.low for one in held), max(one.high for one in held)
+                found[link] = replace(found[link], low=min(found[link].low, least), high=max(found[link].high, most))
+    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
+
+
+def _told(
+    case: Case, load_case: str, link: str, body: Body, plain: LinkLoads, here: Reactions, at: Displaced
+) -> tuple[float, float]:
+    """Stress and displacement of a link by hand, with its joints at offsets.
+
+    Components out of the plane are those of the link ``plain``, in its own axes, since play changes none of them.
+    """
+    found = link_loads(load_case, link, body, here, at.loads)
+    pins = [
+        replace(pin, wrench=_across(pin.wrench, was.wrench)) for pin, was in zip(found.pins, plain.pins, strict=True)
+    ]
+    ends = [
+        replace(end, wrench=_across(end.wrench, was.wrench)) for end, was in zip(found.ends, plain.ends, strict=True)
+    ]
+    return measures(case, link, replace(found, pins=tuple(pins), ends=tuple(ends)))
+
+
+def _across(wrench: Real, plain: Real) -> Real:
+    found = wrench.copy()
+    found[OUT_OF_PLANE] = plain[OUT_OF_PLANE]
+    return found
+
+
+def _ends(play: Play, forces: JointForces, name: str) -> list[tuple[Reactions, Displaced]]:
+    """Forces with a joint at the end of its play, in each of its directions."""
+    ends = [play.at(play.loose.offsets({name: share})) for share in np.eye(2)[: len(play.loose.directions(name))]]
+    return [(_reactions(play, forces, end), end) for end in ends if end is not None]
+
+
+def _worst(play: Play, forces: JointForces, slopes: Mapping[str, Real]) -> Iterator[tuple[Reactions, Displaced]]:
+    """Forces where a number is largest and least, from what each joint makes of it in x and in y."""
+    for sign in (1.0, -1.0):
+        shares = {name: sign * slope / (float(np.linalg.norm(slope)) or 1.0) for name, slope in slopes.items()}
+        here = play.at(play.loose.offsets(shares))
+        if here is not None:
+            yield _reactions(play, forces, here), here
+
+
+def _reactions(play: Play, forces: JointForces, here: Displaced) -> Reactions:
+    """Return the joint reactions at offsets, in the plane."""
+    plain = forces.reactions
+    effort = float(here.effort)
+    pushes = plain.drive is not None and plain.drive.pushes(play.case.linkage)
+    return replace(
+        plain,
+        pose=play.pose(here, plain.pose),
+        joints=here.joints,
+        drive_torque=0.0 if pushes else effort,
+        drive_force=effort if pushes else 0.0,
+    )
+
+
+def _scatter(span: Span, source: Source) -> Scatter:
+    if not span.value > 0.0:
+        return Scatter()
+    return Scatter(low=span.low / span.value, high=span.high / span.value, sources=(source,))
+
+
+def _open(found: Mapping[str, Scatter]) -> dict[str, Scatter]:
+    return {name: one for name, one in found.items() if one.high - one.low > LEAST}
+
+
+def shaken(case: Case, load_case: str, forces: JointForces, moved: LargeDisplacement) -> LargeDisplacement:
+    """Return what became of a load case, with what does where play brings it nearest to a dead point and furthest off.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    forces : JointForces
+        Without play.
+    moved : LargeDisplacement
+        Without play.
+
+    Returns
+    -------
+    LargeDisplacement
+        The same where no joint has play.
+    """
+    play = forces.play
+    if play is None:
+        return moved
+    found = []
+    for here in () if moved.state in ("off", "unknown") else (play.nearest, play.furthest):
+        if here is not None:
+            pose = play.pose(here, forces.reactions.pose)
+            with suppress(CaseError, CannotRunError):
+                found.append(examine(case, load_case, joint_forces(case, pose, here.loads), here.loads))
+    source, passes = play_source(play.clearances), play.through_dead_point
+    return replace(moved, play=source, shaken=tuple(found), passes=passes)
+
+
+def play_warnings(
+    moved: Mapping[str, LargeDisplacement],
+    forces: Mapping[str, JointForces],
+) -> list[str]:
+    """Return what the reader must know about play, a sentence each.
+
+    Parameters
+    ----------
+    moved : mapping of str to LargeDisplacement
+        Load case -> from ``shaken``.
+    forces : mapping of str to JointForces
+
+    Returns
+    -------
+    list of str
+    """
+    found = []
+    for load_case, one in forces.items():
+        play = one.play
+        if play is None:
+            continue
+        if play.through_dead_point:
+            who = "the structure" if play.drive is None else f"the driven link {play.drive.link}"
+            found.append(
+                f"load case {load_case}: play of pins may take the linkage through a dead point of {who}, where joint "
+                "forces grow without bound, so no band that depends on them has an end"
+            )
+        elif play.settled is None:
+            found.append(
+                f"load case {load_case}: with play no single place was found where the linkage rests, since the force "
+                "of a joint turns round as its pin changes sides; bands hold every place"
+            )
+        worse = [what for what in moved[load_case].shaken if what.gives_way and not moved[load_case].gives_way]
+        if worse:
+            found.append(f"load case {load_case}: where play brings it nearest to a dead point, {worse[0].sentence}")
+    return found

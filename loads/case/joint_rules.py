@@ -1,0 +1,140 @@
+"""What friction and play of the joints need of a case."""
+
+import itertools
+import math
+
+from geometry.base.errors import CaseError
+from loads.case.core import CoreCase
+
+
+def rubbing_joints(case: CoreCase) -> tuple[str, ...]:
+    """Return the joints with friction.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(name for name, joint in case.joints.items() if joint.friction > 0.0)
+
+
+def check_friction(case: CoreCase) -> None:
+    """Check that friction has what it follows from: a pin's diameter, a joint that moves, a direction.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Raises
+    ------
+    CaseError
+        For the first rule that is broken.
+    """
+    for name, joint in case.joints.items():
+        if joint.guide_length is not None and joint.type != "slider":
+            raise CaseError(f"joints.{name}.guide_length: joint {name} is no slider and has no guide; leave it out")
+    rubbing = rubbing_joints(case)
+    for name in rubbing:
+        entry, joint = f"joints.{name}.friction: it is {case.joints[name].friction:g}", case.joints[name]
+        if joint.type == "revolute" and joint.pin_diameter is None:
+            raise CaseError(
+                f"{entry}, but the torque of friction needs the radius of the pin; add joints.{name}.pin_diameter"
+            )
+        if joint.bonded or (case.joint_model == "bonded" and joint.type == "revolute"):
+            raise CaseError(f"{entry}, but a bonded joint does not turn; leave friction out, or do not bond it")
+        if case.pose.equilibrium:
+            raise CaseError(
+                f"{entry}, with which a linkage that is let go stops anywhere about its balance; leave friction out, "
+                "or pose.equilibrium"
+            )
+        if case.drive is None or case.pose.coordinate is None:
+            raise CaseError(f"{entry}, but friction opposes a motion and nothing drives this linkage; leave it out")
+    for name in case.load_cases if rubbing else ():
+        for way in ("forward", "backward"):
+            if f"{name} {way}" in case.load_cases:
+                raise CaseError(
+                    f"load_cases.{name} {way}: with friction, load case '{name}' in one direction has this name as "
+                    "well; rename it"
+                )
+
+
+def clearances(case: CoreCase) -> dict[str, float]:
+    """Return the play of every joint that has some: of the pin in its hole, and of a pin in a slot across it as well.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    dict of str to float
+        Joint -> diametral play [mm]; empty where the linkage has more constraints than equilibrium has equations, or
+        is let go: play of slots is not followed there.
+    """
+    if _redundant(case) or case.pose.equilibrium:
+        return {}
+    found = {}
+    for name, joint in case.joints.items():
+        play = joint.clearance
+        if joint.type == "pin-in-slot":
+            slot = case.links[joint.links[0]].slots.get(case.linkage.joint_points(name)[0])
+            play += 0.0 if slot is None else slot.clearance
+        if play > 0.0:
+            found[name] = play
+    return found
+
+
+def check_clearances(case: CoreCase) -> None:
+    """Check that play is stated where a pin turns in a hole, and that the pin is larger.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Raises
+    ------
+    CaseError
+        For the first rule that is broken.
+    """
+    for name, joint in case.joints.items():
+        if joint.clearance == 0.0:
+            continue
+        entry = f"joints.{name}.clearance"
+        if joint.type == "slider":
+            raise CaseError(
+                f"{entry}: a slider has no pin with play, and play of its guide is not modelled; leave it out"
+            )
+        if case.linkage.joints[name].bonded:
+            raise CaseError(f"{entry}: a bonded joint has no play; leave it out, or let the joint turn")
+        if _redundant(case):
+            raise CaseError(
+                f"{entry}: the linkage has more constraints than equilibrium has equations, and how its forces are "
+                "shared with play is not modelled; leave it out or remove a redundant link"
+            )
+        if case.pose.equilibrium:
+            raise CaseError(
+                f"{entry}: play of a linkage that is let go is not modelled; leave it out, or state pose and drive"
+            )
+        size, what = _bound(case, name)
+        if joint.clearance >= size:
+            raise CaseError(f"{entry}: it is {joint.clearance:g} mm, but must stay below {what}, {size:g} mm")
+
+
+def _bound(case: CoreCase, name: str) -> tuple[float, str]:
+    """Return what the play of a joint must stay below, and its name: its pin, or the shortest of its links' pieces."""
+    joint = case.joints[name]
+    if joint.pin_diameter is not None:
+        return joint.pin_diameter, "the pin's diameter"
+    apart = [
+        math.dist(a, b) for link in joint.links for a, b in itertools.combinations(case.links[link].points.values(), 2)
+    ]
+    return min((d for d in apart if d > 0.0), default=math.inf), "the shortest distance between points of its links"
+
+
+def _redundant(case: CoreCase) -> bool:
+    """Whether equilibrium has fewer equations than unknowns."""
+    unknowns = sum(1 if j.type == "pin-in-slot" else 2 + j.bonded for j in case.linkage.joints.values())
+    return unknowns + bool(case.drive) > 3 * len(case.linkage.moving)

@@ -1,0 +1,477 @@
+"""What the play of pins does to a linkage under a load case: to its pose, joint forces, drive and dead point.
+
+A pin bears on the side of its hole at which its force pushes it. So at rest the second link's point stands off the
+first's by half of the play against the force F of the first link on the second, -c/2 F/|F|; as links move, forces
+turn, and both are repeated until they agree. In motion, or where loads reverse, each joint may stand anywhere in its
+play. The extremes are the sums over the joints of c/2 times the size of the gradient by the joint's offset, at their
+worst together; at one pose the linkage is then solved at that worst combination, and the outer of both counts.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.driven import DrivenClosure
+from geometry.linkage.placement import Placement
+from geometry.linkage.play import LooseJoints
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.case.joint_rules import clearances
+from loads.records.applied import Load, PartMass
+from loads.states.actions import acting_loads
+from loads.statics.joint_reaction import JointReaction
+from loads.statics.statics import NEARLY_SINGULAR, Drive, assemble, joint_reactions
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+STEP = 1e-5
+"""Offset, over the longest link, by which gradients are taken, to either side."""
+ROUNDS = 100
+"""In which the directions of forces are found."""
+SETTLED = 1e-9
+"""Change of the offsets, over half of the play, below which they agree with the forces."""
+NO_FORCE = 1e-9
+"""Share of the largest joint force below which a joint bears none, so that its pin rests nowhere in particular."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Span:
+    """A number and the ends between which play may bring it.
+
+    Attributes
+    ----------
+    value, low, high : float or array (n,)
+        Without play, and the ends.
+    """
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Displaced:
+    """The linkage with its joints at stated offsets, at one pose or at n.
+
+    Attributes
+    ----------
+    offsets : mapping of str to complex
+        Joint -> its offset, as ``LoopClosure`` has it [mm].
+    place : Placement
+        Where the links stand.
+    loads : tuple of Load
+        All that acts on them there.
+    joints : mapping of str to JointReaction
+    effort : array (...)
+        Drive torque [N mm], or force [N] where the drive pushes; 0 without drive.
+    distance : array (...)
+        From a dead point: the smallest singular value of the scaled equations.
+    """
+
+    offsets: Mapping[str, complex]
+    place: Placement
+    loads: tuple[Load, ...]
+    joints: Mapping[str, JointReaction]
+    effort: Real
+    distance: Real
+
+    def force(self, joint: str) -> Complex:
+        """Return the force of a joint's first link on its second.
+
+        Parameters
+        ----------
+        joint : str
+
+        Returns
+        -------
+        complex array (...)
+            Global axes [N].
+        """
+        wrench = self.joints[joint].wrench
+        return np.asarray(wrench[..., 0] + 1j * wrench[..., 1])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Play:
+    """The play of a linkage's joints under a load case, at one pose or at n poses of a motion.
+
+    Attributes
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    loose : LooseJoints
+        At the poses without play.
+    masses : mapping of str to PartMass
+        Of the parts.
+    rates : callable
+        Returns a placement with the rates that the load case gives it.
+    """
+
+    case: Case
+    load_case: str
+    loose: LooseJoints
+    masses: Mapping[str, PartMass]
+    rates: Callable[[Placement], Placement]
+
+    @property
+    def clearances(self) -> dict[str, float]:
+        """Joint -> its play [mm]."""
+        return {name: 2.0 * radius for name, radius in self.loose.radii.items()}
+
+    @property
+    def drive(self) -> Drive | None:
+        """What holds the linkage."""
+        return self.case.pinned_drive
+
+    def at(self, offsets: Mapping[str, complex]) -> Displaced | None:
+        """Solve the linkage with its joints at offsets.
+
+        Parameters
+        ----------
+        offsets : mapping of str to complex
+            As ``LoopClosure.offsets`` [mm].
+
+        Returns
+        -------
+        Displaced or None
+            None where a dead point lies on the way.
+        """
+        place, closed = self.loose.moved(offsets)
+        if not np.all(closed):
+            return None
+        place = self.rates(place)
+        loads = acting_loads(self.case, self.case.load_cases[self.load_case], place, self.masses)
+        system = assemble(place, self.drive, loads)
+        distance = system.singular_values[..., -1]
+        if np.any(distance < NEARLY_SINGULAR):
+            return None
+        unknowns, _ = system.solved()
+        value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
+        return Displaced(
+            offsets=offsets,
+            place=place,
+            loads=loads,
+            joints=joint_reactions(place, self.drive, value),
+            effort=np.asarray(value.get("T", value.get("P", np.zeros(place.shape)))),
+            distance=distance,
+        )
+
+    @cached_property
+    def nominal(self) -> Displaced | None:
+        """The linkage without play; None at a dead point."""
+        return self.at({})
+
+    @cached_property
+    def settled(self) -> Displaced | None:
+        """The linkage at rest under its load, every pin on the side of its force; of one pose.
+
+        None where forces and offsets do not agree, since a joint's force turns round as its pin changes sides.
+        """
+        here = self.nominal
+        for _ in range(ROUNDS):
+            if here is None:
+                return None
+            offsets = self._against_forces(here)
+            after = self.at(offsets)
+            if all(abs(offsets[n] - here.offsets.get(n, 0.0)) <= SETTLED * r for n, r in self.loose.radii.items()):
+                return after
+            here = after
+        return None
+
+    def _against_forces(self, here: Displaced) -> dict[str, complex]:
+        """Offsets of joints whose pins rest where their forces push them."""
+        found, least = {}, NO_FORCE * max(joint.magnitude for joint in here.joints.values())
+        for name, radius in self.loose.radii.items():
+            along, force = self.loose.directions(name), complex(here.force(name))
+            if len(along) == 1:  # across the slot, which turns with its link
+                across = along[0] * complex(here.place.direction(self.case.joints[name].links[0]))
+                force = along[0] * float((np.conj(across) * force).real)
+            found[name] = -radius * force / abs(force) if abs(force) > least else 0.0
+        return found
+
+    @cached_property
+    def gradients(self) -> Mapping[str, tuple[Mapping[str, Real | Complex], ...]]:
+        """Joint -> derivatives, by each of its offsets, of every joint's force, the effort and the distance.
+
+        The effort is at "effort", the distance at "distance"; by central differences. Empty at a dead point.
+        """
+        step, found = STEP * self.loose.place.linkage.longest, {}
+        for name in self.loose.radii:
+            each = []
+            for direction in self.loose.directions(name):
+                ends = [self.at({name: sign * step * direction}) for sign in (1.0, -1.0)]
+                if ends[0] is None or ends[1] is None:
+                    return {}
+                plus, minus = (self._numbers(end) for end in ends if end is not None)
+                each.append({key: (plus[key] - minus[key]) / (2.0 * step) for key in plus})
+            found[name] = tuple(each)
+        return found
+
+    def _numbers(self, here: Displaced) -> dict[str, Real | Complex]:
+        forces = {f"force {name}": here.force(name) for name in self.case.joints}
+        return {**forces, "effort": here.effort, "distance": here.distance}
+
+    def slack(self, key: str) -> Real:
+        """Return how far a real number of ``gradients`` may go to either side, to first order.
+
+        Parameters
+        ----------
+        key : str
+
+        Returns
+        -------
+        array (...)
+            Infinite at a dead point.
+        """
+        if not self.gradients:
+            return np.full(self.loose.place.shape, np.inf)
+        sizes = (
+            radius * np.sqrt(sum(np.abs(by[key]) ** 2 for by in self.gradients[name]))
+            for name, radius in self.loose.radii.items()
+        )
+        return np.asarray(sum(sizes, np.zeros(self.loose.place.shape)))
+
+    def _worst(self, key: str, sign: float) -> Displaced | None:
+        """The linkage where a real number is extreme, to first order; of one pose."""
+        shares = {}
+        for name, by in self.gradients.items():
+            gradient = np.array([float(one[key].real) for one in by])
+            shares[name] = sign * gradient / (np.linalg.norm(gradient) or 1.0)
+        return self.at(self.loose.offsets(shares))
+
+    @cached_property
+    def through_dead_point(self) -> bool:
+        """True where play may take the linkage through a dead point, or to where it does not close; of one pose."""
+        if self.nominal is None or not self.gradients:
+            return True
+        if float(self.nominal.distance) <= float(self.slack("distance")):
+            return True
+        ends = (self._worst(key, sign) for key in ("distance", "effort") for sign in (1.0, -1.0))
+        return any(end is None for end in ends)
+
+    @cached_property
+    def nearest(self) -> Displaced | None:
+        """The linkage where play brings it nearest to a dead point; None where it goes through one; of one pose."""
+        return None if self.through_dead_point else self._worst("distance", -1.0)
+
+    @cached_property
+    def furthest(self) -> Displaced | None:
+        """The linkage where play brings it furthest from a dead point; None where it goes through one; of one pose."""
+        return None if self.through_dead_point else self._worst("distance", 1.0)
+
+    @cached_property
+    def effort(self) -> Span:
+        """The drive's torque or force; of one pose. Without bounds where a dead point may be passed."""
+        return self._span("effort")
+
+    @cached_property
+    def distance(self) -> Span:
+        """The distance to a dead point; of one pose."""
+        return self._span("distance")
+
+    def _span(self, key: str) -> Span:
+        value = np.nan if self.nominal is None else float(self._numbers(self.nominal)[key].real)
+        if self.through_dead_point:
+            low, high = (0.0, np.inf) if key == "distance" else (-np.inf, np.inf)
+            return Span(value=value, low=low, high=high)
+        slack = float(self.slack(key))
+        solved = [float(self._numbers(end)[key].real) for s in (1.0, -1.0) if (end := self._worst(key, s)) is not None]
+        low, high = min(value - slack, *solved), max(value + slack, *solved)
+        return Span(value=value, low=max(low, 0.0) if key == "distance" else low, high=high)
+
+    @cached_property
+    def forces(self) -> Mapping[str, Span]:
+        """Joint -> size of its force [N]; of one pose."""
+        found = {}
+        for name in self.case.joints:
+            value = np.nan if self.nominal is None else abs(complex(self.nominal.force(name)))
+            if self.through_dead_point:
+                found[name] = Span(value=value, low=0.0, high=np.inf)
+                continue
+            assert self.nominal is not None
+            force, key = complex(self.nominal.force(name)), f"force {name}"
+            rates = {n: tuple(np.asarray(one[key], dtype=complex) for one in by) for n, by in self.gradients.items()}
+            reach = self.loose.reach_of(rates)
+            worst = self.at(self.loose.offsets(reach.shares(force)))
+            high = max(value, reach.largest(force), np.inf if worst is None else abs(complex(worst.force(name))))
+            found[name] = Span(value=value, low=min(value, reach.least(force)), high=high)
+        return found
+
+    def shift(self, link: str, point: str) -> Complex:
+        """Return how far a point stands off its place without play as the linkage rests under its load.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        complex
+            Global axes [mm]; zero where it rests in no single place.
+        """
+        if self.settled is None:
+            return np.asarray(0j)
+        return self.settled.place.position(link, point) - self.loose.place.position(link, point)
+
+    def free_motion(self, link: str, point: str) -> float:
+        """Return how far a point may go to either side with the drive held; of one pose.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        float
+            [mm]
+        """
+        return self.loose.spread(link, point)[1]
+
+    def pose(self, here: Displaced, nominal: Pose) -> Pose:
+        """Return the pose of the linkage at offsets.
+
+        Parameters
+        ----------
+        here : Displaced
+        nominal : Pose
+            Without play.
+
+        Returns
+        -------
+        Pose
+        """
+        return replace(nominal, q=here.place.q, offsets=here.offsets)
+
+
+def play_of(case: Case, load_case: str, pose: Pose, masses: Mapping[str, PartMass]) -> Play | None:
+    """Return what play does under a load case.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    pose : Pose
+        Without play.
+    masses : mapping of str to PartMass
+        Of the parts.
+
+    Returns
+    -------
+    Play or None
+        None where no joint has play.
+    """
+    speed = case.load_cases[load_case].speed
+    coordinate = pose.coordinate if speed != 0.0 else None
+    return play_at(case, load_case, pose.placement, masses, coordinate, pose.slides, speed)
+
+
+def play_at(
+    case: Case,
+    load_case: str,
+    place: Placement,
+    masses: Mapping[str, PartMass],
+    coordinate: str | None,
+    slides: bool,
+    speed: float | Real,
+    acceleration: float | Real = 0.0,
+) -> Play | None:
+    """Return what play does under a load case at poses.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    place : Placement
+        Without play.
+    masses : mapping of str to PartMass
+        Of the parts.
+    coordinate : str or None
+        Link, slider or slot that moves; None at rest.
+    slides : bool
+        Whether it is a slider or slot.
+    speed, acceleration : float or array (n,)
+        Of the coordinate.
+
+    Returns
+    -------
+    Play or None
+        None where no joint has play.
+    """
+    radii = {name: play / 2.0 for name, play in clearances(case).items()}
+    if not radii:
+        return None
+
+    def rates(place: Placement) -> Placement:
+        if coordinate is None:
+            return place
+        first, second = DrivenClosure(place.closure, coordinate, slides).coefficients(place.q)
+        rate, change = (np.asarray(x)[..., None] for x in (speed, acceleration))
+        return replace(place, qdot=rate * first, qddot=rate**2 * second + change * first)
+
+    loose = LooseJoints(place=place.at_rest, radii=radii, held=held_rows(place, case.pinned_drive))
+    return Play(case=case, load_case=load_case, loose=loose, masses=masses, rates=rates)
+
+
+def held_rows(place: Placement, drive: Drive | None) -> Real:
+    """Return what stays: the driven link's angle to the other link of its joint, or a slider's travel; bonded angles.
+
+    Parameters
+    ----------
+    place : Placement
+    drive : Drive or None
+
+    Returns
+    -------
+    array (k, unknowns)
+        Factors of the unknowns, a travel's over the longest link.
+    """
+    closure, linkage = place.closure, place.linkage
+    rows = [_turning(place, *j.links) for j in linkage.joints.values() if j.bonded and not j.fixes_angle]
+    if drive is not None and drive.pushes(linkage):
+        row = np.zeros(closure.unknowns)
+        row[len(linkage.moving) + closure.slots.index(drive.joint)] = 1.0 / linkage.longest
+        rows.append(row)
+    elif drive is not None:
+        rows.append(_turning(place, *linkage.joints[drive.joint].links))
+    return np.array(rows).reshape(-1, closure.unknowns)
+
+
+def _turning(place: Placement, first: str, second: str) -> Real:
+    """Row of the angle of one link to another."""
+    row, moving = np.zeros(place.closure.unknowns), place.linkage.moving
+    for link, sign in ((first, -1.0), (second, 1.0)):
+        if link in moving:
+            row[moving.index(link)] = sign
+    return row
+
+
+def free_motion(case: Case, place: Placement, drive: Drive | None, link: str, point: str) -> float:
+    """Return how far play lets a point go to either side with a drive held; of one pose.
+
+    Parameters
+    ----------
+    case : Case
+    place : Placement
+        Without play.
+    drive : Drive or None
+        What is held.
+    link, point : str
+        Their names.
+
+    Returns
+    -------
+    float
+        [mm]; 0 where no joint has play.
+    """
+    radii = {name: play / 2.0 for name, play in clearances(case).items()}
+    held = held_rows(place, drive)
+    return LooseJoints(place=place, radii=radii, held=held).spread(link, point)[1] if radii else 0.0

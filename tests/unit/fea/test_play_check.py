@@ -1,0 +1,146 @@
+"""Play of pins in a check: displacement, forces, stress, held load, and what is said of it."""
+
+import tomllib
+from functools import cache
+
+import pytest
+from edited_cases import edited
+from rocker_case import TOML
+
+from fea.check.run import check_case
+from fea.common.source import SourceKind
+from fea.common.verdict import Verdict
+from fea.outcomes.result import LoadCaseResult
+from loads.case.case_file import validate
+from reports.tables.play import play_line, play_record
+
+OWL = "owl-wing-closed"
+
+LEVER = """
+schema_version = 1
+title = "lever"
+links.base = { ground = true, points = { O = ["0 mm", "0 mm"], R = ["9 mm", "0 mm"] } }
+links.arm = { part = "bar", points = { O = ["0 mm", "0 mm"], P = ["60 mm", "0 mm"] } }
+joints.O = { links = ["base", "arm"], pin_diameter = "3 mm", clearance = "CLEARANCE" }
+pose = { coordinate = "arm", angle = "0 deg" }
+drive = { link = "arm", joint = "O" }
+load_cases.tip = { forces = [{ link = "arm", at = "P", force = ["0 N", "-2 N"] }] }
+checks.tip = { type = "displacement", at = "P", maximum = "0.6 mm" }
+parts.bar = { shape = "bar", material = "pvc-paredes-2018", width = "8 mm", thickness = "4 mm", fillet_radius = "2 mm" }
+"""
+
+
+@cache
+def lever(clearance: str) -> LoadCaseResult:
+    case = validate(tomllib.loads(LEVER.replace("CLEARANCE", clearance)))
+    return check_case(case, fidelity="beam").load_cases["tip"]
+
+
+@cache
+def rocker(clearance: str, coupler: str = "60 mm") -> LoadCaseResult:
+    """The four-bar of 20, 60, 40 and 60 mm with a force at its rocker's end, and play at B."""
+    data = tomllib.loads(TOML)
+    data["joints"]["B"]["clearance"] = clearance
+    data["links"]["coupler"]["points"]["B"] = [coupler, "0 mm"]
+    data["load_cases"]["turn"] = {"forces": [{"link": "rocker", "at": "P", "force": ["1 N", "-3 N"]}]}
+    return check_case(validate(data), fidelity="beam").load_cases["turn"]
+
+
+def test_a_lever_sags_by_half_of_its_play_more() -> None:
+    """Down with its load at rest; its pin may stand anywhere, so that both ends are half of the play off."""
+    plain, loose = lever("0 mm").checks[0], lever("0.4 mm").checks[0]
+    assert loose.value.value == pytest.approx(plain.value.value + 0.2, abs=1e-9)
+    assert loose.value.high == pytest.approx(plain.value.high + 0.2, rel=1e-5)
+    assert loose.value.low == pytest.approx(max(plain.value.low - 0.2, 0.0), abs=1e-5)
+    assert SourceKind.PLAY in {source.kind for source in loose.value.sources}
+    assert SourceKind.PLAY not in {source.kind for source in plain.value.sources}
+
+
+def test_the_reason_says_where_play_decides() -> None:
+    plain, loose = lever("0 mm").checks[0], lever("0.4 mm").checks[0]
+    assert plain.verdict is Verdict.PASS
+    assert loose.verdict is not Verdict.PASS
+    assert (
+        "play of pins lets it move by up to 0.2 mm to either side; without play the verdict would be pass"
+        in loose.reason
+    )
+    small = lever("0.01 mm").checks[0]
+    assert small.verdict is Verdict.PASS
+    assert "without play" not in small.reason
+
+
+def test_play_of_a_lever_changes_no_force() -> None:
+    plain, loose = lever("0 mm").links["arm"], lever("0.4 mm").links["arm"]
+    assert loose.safety_factor == plain.safety_factor
+
+
+def test_bands_hold_the_linkage_with_another_coupler() -> None:
+    """Play along the coupler is another length of it: safety factor, forces and torque of both lie in the bands."""
+    loose = rocker("0.8 mm")
+    play = loose.forces.play
+    assert play is not None
+    found = loose.links["rocker"].safety_factor
+    plain = rocker("0 mm").links["rocker"].safety_factor
+    assert found.value == plain.value
+    assert found.low < plain.low <= plain.high < found.high
+    for length in ("59.6 mm", "60.4 mm"):
+        other = rocker("0 mm", length)
+        factor = other.links["rocker"].safety_factor
+        assert found.low <= factor.low * (1.0 + 1e-3)
+        assert factor.high <= found.high * (1.0 + 1e-3)
+        numbers = [(play.effort, other.reactions.drive_torque)]
+        numbers += [(play.forces[name], joint.magnitude) for name, joint in other.reactions.joints.items()]
+        for span, value in numbers:
+            slack = 1e-3 * (span.high - span.low)  # what is left of third order
+            assert span.low - slack < value < span.high + slack
+    assert "O4 of rocker" not in play_line(play)
+    record = play_record(play)
+    assert record is not None
+    assert record["clearances"] == {"B": 0.8}
+    [tip] = [entry for entry in record["points"] if entry["point"] == "P"]
+    assert tip["free_motion"] == pytest.approx(play.free_motion("rocker", "P"))
+
+
+def test_play_that_reaches_a_dead_point_leaves_forces_without_end() -> None:
+    """The coupler of 60 mm in line with the rocker: at crank 180° they reach 80 mm of 100; play of 20 mm and more."""
+    data = tomllib.loads(TOML)
+    data["links"]["coupler"]["points"]["B"] = ["40.3 mm", "0 mm"]
+    data["pose"] = {"coordinate": "crank", "angle": "180 deg", "near": {"coupler": "5 deg", "rocker": "175 deg"}}
+    for joint in data["joints"].values():
+        joint["clearance"] = "0.4 mm"
+    result = check_case(validate(data), fidelity="beam")
+    assert any(
+        "play of pins may take the linkage through a dead point of the driven link crank" in w for w in result.warnings
+    )
+    found = result.load_cases["turn"].links["rocker"].safety_factor
+    assert found.low == 0.0
+
+
+def test_loads_out_of_the_plane() -> None:
+    """The frame's couples stay in balance where play turns the links."""
+    case = edited("owl-wing-flight", ['joints.C.clearance="0.5 mm"'])
+    case = case.model_copy(update={"load_cases": {"complete": case.load_cases["complete"]}, "checks": {}, "claims": ()})
+    found = check_case(case, fidelity="beam").load_cases["complete"]
+    plain = found.links["AE"].safety_factor
+    assert plain.low < plain.value < plain.high
+    assert SourceKind.PLAY in {source.kind for source in plain.sources}
+
+
+def test_the_limit_load_holds_that_of_the_linkage_with_other_lengths() -> None:
+    """Play at both ends of link ED is as if it were longer or shorter by half of both."""
+
+    def limit(*entries: str) -> LoadCaseResult:
+        return check_case(edited(OWL, entries), fidelity="beam").load_cases["weight"]
+
+    loose = limit('joints.D.clearance="0.1 mm"', 'joints.E.clearance="0.1 mm"').linkage.limit_load
+    assert SourceKind.PLAY in {source.kind for source in loose.sources}
+    other = limit('links.ED.points.D=["88.1 mm", "0 mm"]').linkage.limit_load
+    assert loose.low <= other.low * (1.0 + 5e-3)
+
+
+def test_ways_to_hold_tell_their_own_play() -> None:
+    wing = "owl-wing-static"
+    found = check_case(edited(wing, ['joints.C.clearance="0.1 mm"']), name=wing, fidelity="beam")
+    held = {way.name: way.play for way in found.load_cases["weight"].ways_to_hold}
+    assert held["pinned, held at AE"] > 0.05
+    assert held["bonded, A, G built in"] == 0.0
