@@ -11,9 +11,8 @@ from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Reactions
 from loads.statics.system import System
 from reports.tables.data import finite
-from reports.tables.frames import AXES, reaction_records, shown_components
+from reports.tables.frames import AXES, play_line, play_record, reaction_records, shown_components, tips
 from reports.tables.friction import friction_record, friction_sentence
-from reports.tables.play import play_line, play_record, tips
 from reports.tables.springs import holding_sentence, spring_sentences, standing_record
 
 

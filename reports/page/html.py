@@ -24,13 +24,12 @@ from reports.page.pictures import (
 )
 from reports.tables.claims import as_records, count
 from reports.tables.clearance import MOST, clearance_line, clearance_record
-from reports.tables.frames import AXES, linkage_line, shown_components
+from reports.tables.frames import AXES, linkage_line, play_line, shown_components, tips
 from reports.tables.friction import friction_sentence
 from reports.tables.layers import BuildDirections, build_directions_of
 from reports.tables.loads import air_record, anchor_record, weight_sentence
 from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
-from reports.tables.play import play_line, tips
 from reports.tables.record import worst_load_case
 from reports.tables.springs import holding_sentence, spring_sentences
 from reports.words.wording import (

@@ -12,7 +12,7 @@ from fea.common.source import SourceKind
 from fea.common.verdict import Verdict
 from fea.outcomes.result import LoadCaseResult
 from loads.case.case_file import validate
-from reports.tables.play import play_line, play_record
+from reports.tables.frames import play_line, play_record
 
 OWL = "owl-wing-closed"
 
