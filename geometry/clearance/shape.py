@@ -1,7 +1,8 @@
 """The outline of a link or a pin in the plane, in pieces between two heights, and the gap between two of them."""
 
+import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.bodies.body import Body
+from geometry.bodies.features import Fork, Pin
 from geometry.bodies.footprint import Footprint
 
 Real = NDArray[np.float64]
@@ -135,7 +137,28 @@ def link_shape(name: str, body: Body, planes: Sequence[float]) -> Shape:
             for plane in planes
             for corner in rounded
         ]
+    for plane, pin in itertools.product(planes, body.pins):
+        if pin.fork is not None:
+            cores = [piece for core in cores for piece in _forked(core, pin, pin.fork, plane)]
     return Shape(name=name, cores=tuple(cores))
+
+
+def _forked(core: Core, pin: Pin, fork: Fork, plane: float) -> list[Core]:
+    """Return a piece of a link at a height without the gap of a fork: cheeks, and what is left between them."""
+    import shapely
+
+    low, high = plane - fork.gap / 2.0, plane + fork.gap / 2.0
+    if not core.low < low < high < core.high:
+        return [core]
+    round_gap = shapely.Point(pin.x, pin.y).buffer(fork.depth, quad_segs=_SEGMENTS)
+    left = core.polygon.difference(round_gap)
+    error = core.error + _CHORD * (core.radius + fork.depth)
+    between = [
+        Core(geometry=part, radius=0.0, low=low, high=high, error=error)
+        for part in shapely.get_parts(left)
+        if part.geom_type == "Polygon" and not part.is_empty
+    ]
+    return [replace(core, high=low), replace(core, low=high), *between]
 
 
 def pin_shape(name: str, diameter: float, low: float, high: float) -> Shape:

@@ -12,6 +12,7 @@ from geometry.base.version import alula_version
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.materials.material import Material
 from loads.case.case_file import built_in_cases
+from loads.case.forks import forked_link
 from reports.page.coverage import not_covered
 from reports.page.pictures import (
     ASSEMBLY,
@@ -144,6 +145,8 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         friction_sentence=friction_sentence,
         holding_sentence=holding_sentence,
         spring_sentences=spring_sentences,
+        bonded=[name for name, joint in result.pose.linkage.joints.items() if joint.bonded],
+        forked=any(forked_link(result.case, name) is not None for name in result.case.joints),
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
         links=[_link(result, link, figures, layers) for link in first.links],
         agreement=agreement,

@@ -17,6 +17,7 @@ from geometry.bodies.features import Ring
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case_file import read_case, validate
 from loads.records.bearing import NARROW
+from loads.states.clearance import clearance
 from loads.states.masses import part_mass
 
 GAP, CHEEK, WIDTH, DEPTH, PIN = 3.0, 2.5, 10.0, 20.0, 4.0
@@ -29,35 +30,36 @@ def mm(x, y=0.0):
     return [f"{x} mm", f"{y} mm"]
 
 
-def clevis(*, part=BAR, other=THIN, joint=(), **fork):
+def entries(*, part=BAR, other=THIN, joint=(), **fork):
     """A bar of 60 mm on the ground with a fork at B, in which a thin one hangs, pulled by 100 N."""
     eye = {"fork": f"{GAP} mm"} | fork
-    return validate(
-        {
-            "schema_version": 1,
-            "title": "a clevis",
-            "links": {
-                "base": {"ground": True, "points": {"A": mm(0), "far": mm(1)}},
-                "arm": {
-                    "part": "arm",
-                    "points": {"A": mm(0), "B": mm(60)},
-                    "eyes": {"B": {key: size for key, size in eye.items() if size is not None}},
-                },
-                "tip": ({"part": "tip"} if other else {}) | {"points": {"B": mm(0), "P": mm(40)}},
+    return {
+        "schema_version": 1,
+        "title": "a clevis",
+        "links": {
+            "base": {"ground": True, "points": {"A": mm(0), "far": mm(1)}},
+            "arm": {
+                "part": "arm",
+                "points": {"A": mm(0), "B": mm(60)},
+                "eyes": {"B": {key: size for key, size in eye.items() if size is not None}},
             },
-            "joints": {
-                "A": {"links": ["base", "arm"], "pin_diameter": f"{PIN} mm"},
-                "B": {"links": ["arm", "tip"], "pin_diameter": f"{PIN} mm", "bonded": True, "angle": "0 deg"}
-                | dict(joint),
-            },
-            "pose": {"coordinate": "arm", "angle": "0 deg"},
-            "drive": {"link": "arm", "joint": "A"},
-            "parts": {"arm": part} | ({"tip": other} if other else {}),
-            "load_cases": {"pull": {"forces": [{"link": "tip", "at": "P", "force": ["100 N", "0 N"]}]}},
-            "large_displacement": "off",
-            "checks": {"pins": {"type": "pins", "minimum": 1.0}},
-        }
-    )
+            "tip": ({"part": "tip"} if other else {}) | {"points": {"B": mm(0), "P": mm(40)}},
+        },
+        "joints": {
+            "A": {"links": ["base", "arm"], "pin_diameter": f"{PIN} mm"},
+            "B": {"links": ["arm", "tip"], "pin_diameter": f"{PIN} mm", "bonded": True, "angle": "0 deg"} | dict(joint),
+        },
+        "pose": {"coordinate": "arm", "angle": "0 deg"},
+        "drive": {"link": "arm", "joint": "A"},
+        "parts": {"arm": part} | ({"tip": other} if other else {}),
+        "load_cases": {"pull": {"forces": [{"link": "tip", "at": "P", "force": ["100 N", "0 N"]}]}},
+        "large_displacement": "off",
+        "checks": {"pins": {"type": "pins", "minimum": 1.0}},
+    }
+
+
+def clevis(**changes):
+    return validate(entries(**changes))
 
 
 def wall(*gap, height=GAP + 2 * CHEEK):
@@ -117,6 +119,22 @@ def test_cheeks_share_the_force_and_a_couple_by_a_linear_pressure():
     assert couple / (2.0 * middle) * 0.9 < share < couple / (2.0 * middle)  # the lever law, for cheeks of no thickness
     for side in (1.0, -1.0):
         assert found["aside", side] == pytest.approx((force / 2.0 + side * share) / area, rel=0.02)
+
+
+def test_the_eye_in_the_gap_stays_clear_of_its_root():
+    """In one layer the two links pass through each other, but for the gap, whose root is 2 mm from the eye."""
+    layered = entries()
+    layered["joints"]["A"] |= {"bonded": True, "angle": "0 deg"}
+    del layered["joints"]["B"]["bonded"], layered["joints"]["B"]["angle"]
+    layered |= {"layer_spacing": "10 mm", "pose": {"coordinate": "tip"}, "drive": {"link": "tip", "joint": "B"}}
+    for link, layer in {"base": 0, "arm": 1, "tip": 1}.items():
+        layered["links"][link]["layer"] = layer
+    [gap] = [one for one in clearance(validate(layered)).gaps if set(one.names) == {"link arm", "link tip"}]
+    assert gap.value == pytest.approx(1.05 * 8.0 - 6.4, abs=0.01)
+    assert gap.low <= 1.05 * 8.0 - 6.4
+    layered["pose"]["angle"] = "150 deg"
+    with pytest.raises(CaseError, match="arm"):
+        clearance(validate(layered))
 
 
 def test_the_first_mesh_is_fine_where_the_gap_has_its_root():
