@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fea.frame.condensed import CondensedLink
+from fea.frame.spring import FrameSpring
 from geometry.base.errors import CannotRunError
 from geometry.parts.part import Section
 
@@ -208,6 +209,8 @@ class FrameModel:
         Of the nodes, for messages; their numbers where empty.
     condensed : tuple of CondensedLink
         Links that are no beams.
+    springs : tuple of FrameSpring
+        Between nodes, whose forces as the frame stands are among its loads; in small displacements they keep these.
 
     Raises
     ------
@@ -224,6 +227,7 @@ class FrameModel:
     loads: tuple[NodeLoad, ...] = ()
     names: tuple[str, ...] = ()
     condensed: tuple[CondensedLink, ...] = ()
+    springs: tuple[FrameSpring, ...] = ()
 
     def __post_init__(self) -> None:
         """Copy and check."""

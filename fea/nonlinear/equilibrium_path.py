@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.frame.model import FrameModel, Guide
+from fea.frame.spring import FrameSpring
 from fea.nonlinear.corotational_element import CorotationalElements, ElementResponse, guide_gap
 from fea.nonlinear.kinematic_chain import KinematicChain, Places
+from fea.nonlinear.springs import SpringForces
 from geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
@@ -50,6 +52,8 @@ class CorotationalSolution:
     stable : bool
         True where every small motion stores energy (on the symmetric part of the tangent): otherwise the frame has
         buckled on its way here, and this shape will not be seen.
+    springs : tuple of (FrameSpring, ndarray of shape (k, 6))
+        What each spring does to its k points more than as the frame stands [N, N·mm].
     """
 
     model: FrameModel
@@ -59,6 +63,7 @@ class CorotationalSolution:
     joint_wrenches: Floats
     residual: float
     stable: bool
+    springs: tuple[tuple[FrameSpring, Floats], ...] = ()
 
 
 class NoEquilibriumError(CannotRunError):
@@ -103,6 +108,7 @@ class EquilibriumPath:
         self.model = model
         self.chain = KinematicChain(model)
         self.elements = CorotationalElements(model)
+        self.springs = SpringForces(model.springs, self.chain)
         self.pairs = np.array([e.nodes for e in model.elements])
         guided = [[-1 if node is None else node for node in (g.carrier, g.pin)] for g in model.guides]
         self.size = self.chain.count + len(guided)
@@ -291,12 +297,21 @@ class EquilibriumPath:
             tangent[:, count:] += ways[:, :-1].T
             tangent[count:] += ways[:, :-1]
             residual[count:] = gaps
+
+        def push(node: int, wrench: Floats) -> None:
+            places = self.chain.translations[node]
+            np.add.at(residual, places[places >= 0], -wrench[:3][places >= 0])
+            numbers = [step.number for step in self.chain.nodes[node]]
+            np.add.at(residual, numbers, -(axes[numbers] @ wrench[3:]))
+            moments[node] -= wrench[3:]
+
         for load in model.loads:
-            places = self.chain.translations[load.node]
-            np.add.at(residual, places[places >= 0], -factor * load.wrench[:3][places >= 0])
-            numbers = [step.number for step in self.chain.nodes[load.node]]
-            np.add.at(residual, numbers, -factor * (axes[numbers] @ load.wrench[3:]))
-            moments[load.node] -= factor * load.wrench[3:]
+            push(load.node, factor * load.wrench)
+        for spring, wrenches in self.springs.changes(state.displacements, state.rotations, factor):
+            for node, wrench in zip(spring.nodes, wrenches, strict=True):
+                if node is not None:
+                    push(node, wrench)
+        tangent[:count, :count] += self.springs.tangent(state.displacements, axes, factor)
         pin, before, gain = self.chain.carried(axes, moments)
         np.add.at(tangent, (pin, before), gain)
         return residual, tangent
@@ -361,6 +376,11 @@ class EquilibriumPath:
         np.add.at(joints, self.pairs, ends)
         for load in model.loads:
             joints[load.node] -= load.wrench
+        changes = tuple(self.springs.changes(state.displacements, state.rotations, 1.0))
+        for spring, wrenches in changes:
+            for node, wrench in zip(spring.nodes, wrenches, strict=True):
+                if node is not None:
+                    joints[node] -= wrench
         return CorotationalSolution(
             model=model,
             displacements=state.displacements,
@@ -369,4 +389,5 @@ class EquilibriumPath:
             joint_wrenches=joints,
             residual=self._measure(residual),
             stable=self._stores_energy(tangent),
+            springs=changes,
         )

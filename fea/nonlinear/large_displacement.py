@@ -43,7 +43,7 @@ from fea.nonlinear.stability import SNAP, dead_point_factor, linkage_factor
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
-from loads.records.applied import Load
+from loads.records.applied import Load, PointLoad
 from loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
@@ -382,6 +382,14 @@ def _deformed(
     count = len(frame.model.nodes)
     reactions = frame.reactions(found.joint_wrenches[:count], found.residual, found.displacements[:count])
     moved = max((float(np.linalg.norm(d)) for d in points.values()), default=0.0)
+    acting = (
+        *loads,
+        *(
+            PointLoad(link=link, point=point, wrench=wrench)
+            for spring, wrenches in found.springs
+            for (link, point), wrench in zip(spring.ends, wrenches, strict=True)
+        ),
+    )
     return replace(
         small,
         state="deformed",
@@ -389,7 +397,7 @@ def _deformed(
         reactions=reactions,
         links={
             link: balanced(
-                on_deformed_shape(frame, found, reactions, link, title, case.body(link), loads),
+                on_deformed_shape(frame, found, reactions, link, title, case.body(link), acting),
                 frame.model.load_scale,
             )
             for link in case.bending_links

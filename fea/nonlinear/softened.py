@@ -65,8 +65,9 @@ def followed(frame: LinkageFrame, factor: float) -> CorotationalSolution:
         Where the path of stable equilibrium ends on the way.
     """
     elements = tuple(replace(element, young=element.young / factor) for element in frame.model.elements)
+    springs = tuple(spring.softened(factor) for spring in frame.model.springs)
     return solve_large_displacement(
-        replace(frame.model, elements=elements),
+        replace(frame.model, elements=elements, springs=springs),
         PATH_SUBDIVISIONS,
         least_step=LEAST_STEP,
         most_iterations=MOST_ITERATIONS,

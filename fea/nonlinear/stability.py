@@ -91,7 +91,12 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
     )
     K = path.free(path.assemble(path.respond(start, 0.0), start, 0.0)[1])
     loaded = replace(start, guide_forces=linear.guide_forces)
-    G = path.free(path.assemble(path.elements.geometric(natural), loaded, 1.0)[1])
+    bent = path.assemble(path.elements.geometric(natural), loaded, 1.0)[1]
+    if model.springs:
+        # Their stiffness is in K already; what their forces make of it is left.
+        elastic = path.springs.tangent(start.displacements, path.chain.axes(start.rotations), 0.0)
+        bent[: path.chain.count, : path.chain.count] -= elastic
+    G = path.free(bent)
     largest = float(eigh(-(G + G.T) / 2.0, (K + K.T) / 2.0, eigvals_only=True)[-1])
     return 1.0 / largest if largest > 1e-12 else np.inf
 
