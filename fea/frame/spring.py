@@ -1,7 +1,7 @@
 """Springs and tendons of a frame: what they do more, or less, once its points have moved.
 
-As the frame stands, their forces are among its loads. In large displacement they follow the points: with the length L of
-a spring's line through k points, in the linkage's plane, and its gradient g by their places (2 k), the pull is
+As the frame stands, their forces are among its loads. In large displacement they follow the points: with the length L
+of a spring's line through k points, in the linkage's plane, and its gradient g by their places (2 k), the pull is
 
     T = λ T0 + c (L - L0),    force -T g,    tangent c g gᵀ + T d²L
 

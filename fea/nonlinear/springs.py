@@ -78,9 +78,10 @@ class SpringForces:
                 found += spring.stiffness * np.outer(way, way)
             else:
                 stiffness = spring.pull(_moved(spring, displacements), factor)[2]
-                places = np.array([[-1, -1] if n is None else self.chain.translations[n][:2] for n in spring.nodes])
-                numbers, free = places.ravel(), places.ravel() >= 0
-                np.add.at(found, np.ix_(numbers[free], numbers[free]), stiffness[np.ix_(free, free)])
+                rows = [[-1, -1] if n is None else self.chain.translations[n][:2] for n in spring.nodes]
+                places = np.array(rows, dtype=np.int64).ravel()
+                free = np.flatnonzero(places >= 0)
+                np.add.at(found, np.ix_(places[free], places[free]), stiffness[np.ix_(free, free)])
         return found
 
 
