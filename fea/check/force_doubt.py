@@ -15,10 +15,10 @@ from fea.check.load_growth import LEAST, Growths
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
 from fea.common.source import COUPLES, Source
+from fea.frame.deviation import Deviation, Sharing
 from fea.frame.joint_forces import JointForces
 from loads.case.case import Case
 from loads.records.applied import Load
-from loads.statics.statics import Reactions
 
 _Around = Callable[[float, Sequence[float]], Scatter]
 """From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""
@@ -42,12 +42,10 @@ def force_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence
         Empty where the forces depend on neither, or where no link's stiffness is in doubt since none is a solid.
     """
     found = Growths()
-    changes = tuple(change.reactions for change in forces.open_by)
-    if changes:
-        found = _doubt(case, load_case, forces, loads, changes, _summed(forces.sources))
+    if forces.open_by:
+        found = _doubt(case, load_case, forces, loads, forces.open_by, _summed(forces.sources))
     if forces.sharings:
-        shared = tuple(one.reactions for one in forces.sharings)
-        found = found.times(_doubt(case, load_case, forces, loads, shared, _widest))
+        found = found.times(_doubt(case, load_case, forces, loads, forces.sharings, _widest))
     return found
 
 
@@ -56,7 +54,7 @@ def _doubt(
     load_case: str,
     forces: JointForces,
     loads: Sequence[Load],
-    changes: Sequence[Reactions],
+    changes: Sequence[Deviation],
     around: _Around,
 ) -> Growths:
     stress, displacement = {}, {}
@@ -64,15 +62,20 @@ def _doubt(
         body = case.body(link)
         plain, *others = (
             measures(case, link, link_loads(load_case, link, body, reactions, loads))
-            for reactions in (forces.reactions, *changes)
+            for reactions in (forces.reactions, *(one.reactions for one in changes if _concerns(one, case, link)))
         )
         stress[link] = around(plain[0], [one[0] for one in others])
         displacement[link] = around(plain[1], [one[1] for one in others])
     joints = {}
     for name, joint in forces.reactions.joints.items():
         along = joint.force / (joint.magnitude or 1.0)
-        joints[name] = around(joint.magnitude, [float(along @ change.joints[name].force) for change in changes])
+        joints[name] = around(joint.magnitude, [float(along @ one.reactions.joints[name].force) for one in changes])
     return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
+
+
+def _concerns(change: Deviation, case: Case, link: str) -> bool:
+    """Return whether a cause counts for a link: of pins that tilt, its own."""
+    return not isinstance(change, Sharing) or change.joints <= set(case.linkage.joints_of(link))
 
 
 def measures(case: Case, link: str, loads: LinkLoads) -> tuple[float, float]:

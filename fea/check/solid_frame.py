@@ -25,8 +25,9 @@ from fea.common.source import PIN_PRESSURE, Source, SourceKind
 from fea.elements.space import displacement_space
 from fea.frame.build import build_frame
 from fea.frame.condensed import LinkFlexibility
+from fea.frame.deviation import Deviation
 from fea.frame.displacement_band import flexibility_ranges
-from fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, Deviation, JointForces
+from fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.nonlinear.large_displacement import LargeDisplacement

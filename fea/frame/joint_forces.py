@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from fea.common.band import Band
 from fea.common.source import Source, distinct
+from fea.frame.deviation import Deviation, Sharing
 from fea.frame.linkage_frame import out_of_plane
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
@@ -37,25 +38,6 @@ OF_SOLIDS = {
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Deviation:
-    """The answer with one cause of doubt about the links' stiffness at its end.
-
-    Attributes
-    ----------
-    source : Source or None
-        The cause; None for a pin that sinks into its bore, which no band holds.
-    reactions : Reactions
-        Joint forces and drive torque.
-    points : mapping of tuple of 2 str to ndarray
-        (link, point) -> its displacement (3,) [mm].
-    """
-
-    source: Source | None
-    reactions: Reactions
-    points: Mapping[tuple[str, str], Real]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class JointForces:
     """Joint forces of one load case in the pose as it stands.
 
@@ -75,7 +57,7 @@ class JointForces:
         Links that are condensed solids in the frame.
     deviations : tuple of Deviation
         What the stiffness of condensed solids leaves open; empty where no link is one.
-    sharings : tuple of Deviation
+    sharings : tuple of Sharing
         The answers with pins that tilt in one of their links, so that the other bears the whole couple between
         their layers (``fea.frame.sharing``); empty without layers.
     play : Play or None
@@ -89,7 +71,7 @@ class JointForces:
     solution: "FrameSolution | None" = None
     solids: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
-    sharings: tuple[Deviation, ...] = ()
+    sharings: tuple[Sharing, ...] = ()
     play: Play | None = None
 
     @property

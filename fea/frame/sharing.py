@@ -23,7 +23,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from fea.common.source import COUPLES
-from fea.frame.joint_forces import Deviation
+from fea.frame.deviation import Sharing
 from fea.frame.linear import FactorisedFrame
 from fea.frame.linkage_frame import LinkageFrame
 from geometry.linkage.linkage import Linkage
@@ -76,7 +76,7 @@ def hinges_tried(linkage: Linkage, pins: tuple[str, ...]) -> Iterator[frozenset[
                 yield found
 
 
-def sharings(frame: LinkageFrame) -> tuple[Deviation, ...]:
+def sharings(frame: LinkageFrame) -> tuple[Sharing, ...]:
     """Return the answers of a linkage in layers with pins that tilt in one of their holes.
 
     Parameters
@@ -86,7 +86,7 @@ def sharings(frame: LinkageFrame) -> tuple[Deviation, ...]:
 
     Returns
     -------
-    tuple of Deviation
+    tuple of Sharing
         One for each set of ``hinges_tried``.
 
     Raises
@@ -115,5 +115,6 @@ def sharings(frame: LinkageFrame) -> tuple[Deviation, ...]:
         reactions = frame.reactions(answer.joint_wrenches, answer.residual)
         bears = np.abs(moments).max(initial=0.0) > BORNE * np.abs(tight).max()
         points = frame.at_points((solved.solved() if bears else answer).displacements)
-        found.append(Deviation(source=COUPLES[0], reactions=reactions, points=points))
+        names = frozenset(name for name, _ in loose)
+        found.append(Sharing(source=COUPLES[0], reactions=reactions, points=points, joints=names))
     return tuple(found)
