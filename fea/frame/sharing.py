@@ -34,6 +34,8 @@ BORNE = 1e-3
 """Share of the largest moment of the tight frame above which hinges bear what nothing else can."""
 MOST_PINS = 4
 """Pins of a link of which all combinations are tried; of more, all together and each alone."""
+_NOTHING = 1e-9
+"""Moment that a unit angle of a hinge makes, over E I/h of the pin, below which it makes none but by rounding."""
 _BENDING = {True: (1, 3), False: (2, 4)}
 """Natural rows of the bending of a pin at its root (True), and at its far end."""
 Hinge = tuple[str, str]
@@ -106,7 +108,11 @@ def sharings(frame: LinkageFrame) -> tuple[Sharing, ...]:
     solved = FactorisedFrame(frame.model)
     opened = solved.opened(rows)
     tight, by_angle = solved.natural_forces(rows, solved.own), solved.natural_forces(rows, opened)
-    soft = SOFT / float(np.abs(by_angle).max())
+    largest, pins = float(np.abs(by_angle).max()), [frame.model.elements[i] for i in beams.values()]
+    alone = max(pin.young * pin.section.i_y / abs(linkage.rise(name)) for name, pin in zip(beams, pins, strict=True))
+    if largest <= _NOTHING * alone:
+        return ()  # as of an open chain, whose pins bear what equilibrium says
+    soft = SOFT / largest
     found = []
     for loose in hinges_tried(linkage, tuple(beams)):
         chosen = np.repeat(np.array([hinge in loose for hinge in hinges]), 2)

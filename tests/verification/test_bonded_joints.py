@@ -257,3 +257,26 @@ def test_bonded_links_move_as_one():
 def test_bonds_that_cannot_be_are_refused(build, said):
     with pytest.raises(CaseError, match=said):
         build().solve_pose()
+
+
+def test_an_open_chain_beside_its_ground_shares_no_couple():
+    """Nothing but the pin of a lever holds it out of its plane; once its statics divided by zero."""
+    case = arm(
+        joints=joints({"A": "base first", "B": "first second"}, B={"bonded": True, "angle": "0 deg"}),
+        pose={"coordinate": "first"},
+        drive={"link": "first", "joint": "A"},
+        layer_spacing="10 mm",
+        links={
+            name: link | {"layer": 0 if name == "base" else 1}
+            for name, link in {
+                "base": {"ground": True, "points": {"A": mm(0), "far": mm(1)}},
+                "first": {"part": "bar", "points": {"A": mm(0), "B": mm(100)}},
+                "second": {"part": "bar", "points": {"B": mm(0), "P": mm(100)}},
+            }.items()
+        },
+    )
+    found = reactions(case)
+    assert found.sharings == ()
+    assert found.reactions.joints["A"].wrench == pytest.approx([0, 1, 0, 0, 0, 0], abs=1e-9)
+    assert found.reactions.joints["B"].wrench == pytest.approx([0, 1, 0, 0, 0, 100.0], abs=1e-9)
+    assert found.reactions.drive_torque == pytest.approx(200.0)
