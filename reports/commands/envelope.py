@@ -20,6 +20,7 @@ from reports.page.output import MARK, write_folder
 from reports.tables.console import say_checks, verdict_line
 from reports.tables.data import check_records, data, entries, finite
 from reports.tables.frames import motion_linkage_line, motion_linkage_record
+from reports.tables.friction import motion_friction_lines, motion_friction_record
 from reports.tables.meshes import solver_record
 from reports.words.terminal import say, say_table
 from reports.words.wording import band, fixed, not_checked, number
@@ -156,7 +157,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
     dict
         Angles in degrees; infinite and unknown numbers are None.
     """
-    motion = result.moved.motion
+    motion, rubbing = result.moved.motion, result.moved.rubbing
     envelope = {
         **result_stamp(),
         "case": result.name,
@@ -175,6 +176,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         },
         "links": {name: _link_record(result, link) for name, link in result.links.items()},
         "linkage": {name: motion_linkage_record(result.moved, over) for name, over in result.linkage.items()},
+        **({"friction": {n: motion_friction_record(result.moved, n) for n in rubbing}} if rubbing else {}),
         "idle_links": list(result.idle),
         "not_checked": list(unchecked(result.case, (SafetyFactorCheck,))),
         "checks": check_records(result.checks),
@@ -308,6 +310,8 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
             console,
             f"{f'Load case {name}: ' if len(result.linkage) > 1 else ''}{motion_linkage_line(result.moved, over)}",
         )
+    for name in result.moved.rubbing:
+        say(console, f"Load case {name}: {'; '.join(motion_friction_lines(result.moved, name))}.")
     say_checks(result.checks, console)
     if result.idle:
         say(console, f"Links without load: {', '.join(result.idle)}.")

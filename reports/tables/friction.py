@@ -118,7 +118,8 @@ def motion_friction_lines(moved: CaseMotion, load_case: str) -> list[str]:
     data, motion = motion_friction_record(moved, load_case), moved.motion
     without = moved.frictionless[load_case]
     way = told_direction(data["direction"], motion.coordinate, motion.slides)
-    found = [f"friction, driven {way}: drive {moved.effort[0]} without it {_range(without)} {moved.effort[1]}"]
+    what, unit, torque = *moved.effort, moved.torque[load_case]
+    found = [f"friction, driven {way}: drive {what} {_range(torque)} {unit}, without friction {_range(without)} {unit}"]
     if data["efficiency_smallest"] is not None:
         text = f"efficiency {_percent(data['efficiency_smallest'])} to {_percent(data['efficiency_largest'])} by pose"
         if data["efficiency_of_motion"] is not None:

@@ -37,6 +37,7 @@ _WORDS = {
     "override": (
         'pose.angle="30 deg"',
         'joints.A.pin_diameter="2 mm"',
+        "joints.A.friction=0.3",
         'load_cases.weight.forces.0.at="B"',
         "motion={turn=true}",
         "solid.mesh_size=2",
