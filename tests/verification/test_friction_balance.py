@@ -19,13 +19,14 @@ from geometry.base.errors import CaseError
 from geometry.linkage.linkage import Link
 from loads.case.case import Case
 from loads.case.case_file import read_case, validate
+from loads.case.friction_rules import check_friction
 from loads.case.toleranced import toleranced
-from loads.records.applied import at_poses
+from loads.records.applied import FrictionLoad, at_poses, shifted
 from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
 from loads.states.case_motion import solve_case_motion
 from loads.states.kinetostatics import torque_by_virtual_work
-from loads.states.rubbing import at_one_pose, each_direction
+from loads.states.rubbing import at_one_pose, each_direction, efficiency
 from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Drive
 
@@ -128,6 +129,12 @@ def test_links_in_layers_balance_with_friction(case: Case) -> None:
         for link in case.checked_links:
             loads = link_loads(name, link, case.body(link), reactions, statics.loads[name])
             assert np.abs(loads.resultant()).max() < 1e-9 * 5.0 * 100.0
+        total = np.zeros(6)
+        for load in statics.loads[name]:
+            if isinstance(load, FrictionLoad):
+                origin = np.array([*statics.pose.origins[load.link], statics.case.heights[load.link]])
+                total += shifted(load.resultant(statics.pose.placement), origin)
+        assert total == pytest.approx(np.zeros(6), abs=1e-9)
         planar = solve_case_statics(statics.case.model_copy(update={"links": case.links | flat(links)})).reactions[name]
         assert reactions.drive_torque == pytest.approx(planar.drive_torque, rel=1e-9)
 
@@ -304,6 +311,80 @@ REFUSED = {
 def test_what_is_refused(entry: str) -> None:
     with pytest.raises(CaseError, match=REFUSED[entry]):
         edited(STARTER, [*PINS, entry])
+
+
+def test_more_is_refused() -> None:
+    twice = parallel_cranks(0.2)
+    twice["load_cases"]["lift backward"] = twice["load_cases"]["lift"]
+    with pytest.raises(CaseError, match=r"load_cases\.lift backward: with friction, load case 'lift' in one direction"):
+        validate(twice)
+    moving = parallel_cranks(0.2) | {"motion": {"range": ["40 deg", "60 deg"]}}
+    with pytest.raises(CaseError, match=r"joints\.O0\.friction: the linkage is redundant"):
+        solve_case_motion(validate(moving))
+    with pytest.raises(CaseError, match=r"joints\.O2\.friction: it is 0.3, with which a linkage that is let go"):
+        edited(STARTER, [*PINS, "pose.equilibrium=true", "springs.back.joint=O4", "springs.back.stiffness=5 N*mm/rad",
+                         "springs.back.free_angle=90 deg", "load_cases.turning.speed=0 rpm"])  # fmt: skip
+    held = validate(parallel_cranks(0.2)).model_copy(update={"drive": None})
+    with pytest.raises(CaseError, match=r"joints\.O0\.friction: .* nothing drives this linkage"):
+        check_friction(held)
+
+
+def test_efficiency_is_work_out_over_work_in() -> None:
+    """Lifting, lowering by the load, lowering by the drive since the load does not, and where nothing is done."""
+    found = efficiency(np.array([2.0, -2.0, -2.0, 0.0]), np.array([4.0, -1.0, 1.0, 1.0]))
+    assert found[:3].tolist() == [0.5, 0.5, 0.0]
+    assert np.isnan(found[3])
+
+
+def test_a_weight_that_returns_leaves_the_work_that_was_rubbed() -> None:
+    moved = solve_case_motion(edited(STARTER, [*PINS, *TURN]))
+    for name in moved.rubbing:
+        work = moved.work(name)
+        assert (work.total_without, np.isnan(work.of_cycle)) == (0.0, True)
+        assert work.total == pytest.approx(float(np.trapezoid(work.power - work.power_without, TURNED)), rel=1e-9)
+
+
+TURNED = np.linspace(0.0, 2.0 * np.pi, 73)
+
+
+@pytest.mark.parametrize("degrees", [17.0, 33.7, 47.3, 61.9])
+def test_a_joint_that_does_not_move_does_not_rub(degrees: float) -> None:
+    """A crank pushes two blocks along one inclined guide; the rod between them turns by rounding alone."""
+    guide = {"type": "slider", "points": ["A", "B"], "direction": f"{degrees} deg"}
+    pins = {"pin_diameter": "8 mm", "friction": 1.0}
+    block = {"points": {"B": ["0 mm", "0 mm"], "Q": ["5 mm", "0 mm"]}}
+    rod = {"points": {"A": ["0 mm", "0 mm"], "C": ["110 mm", "0 mm"]}}
+    case = {
+        "schema_version": 1,
+        "title": "two blocks",
+        "links": {
+            "base": {"ground": True, "points": {"A": ["0 mm", "0 mm"], "G": ["9 mm", "0 mm"]}},
+            "crank": {"points": {"A": ["0 mm", "0 mm"], "B": ["40 mm", "0 mm"]}},
+            "pusher": rod,
+            "first": block,
+            "rod": rod,
+            "second": block,
+        },
+        "joints": {
+            "A": {"links": ["base", "crank"]},
+            "B": {"links": ["crank", "pusher"], "points": ["B", "A"]},
+            "C": {"links": ["pusher", "first"], "points": ["C", "B"]},
+            "S1": guide | {"links": ["base", "first"]},
+            "S2": guide | {"links": ["base", "second"]},
+            "D": {"links": ["first", "rod"], "points": ["B", "A"]} | pins,
+            "E": {"links": ["rod", "second"], "points": ["C", "B"]} | pins,
+        },
+        "pose": {
+            "coordinate": "crank",
+            "angle": f"{degrees + 50.0} deg",
+            "near": {"pusher": f"{degrees - 16.0} deg", "rod": f"{degrees} deg", "first": "0 deg", "second": "0 deg"},
+        },
+        "drive": {"link": "crank", "joint": "A"},
+        "load_cases": {"push": {"forces": [{"link": "second", "at": "B", "force": ["-3 N", "-8 N"]}]}},
+    }
+    statics = solve_case_statics(validate(case))
+    for loads in statics.loads.values():
+        assert [wrench.tolist() for wrench in friction_wrenches(loads).values()] == [[0.0] * 6] * 2
 
 
 def test_a_pin_without_size_has_no_friction() -> None:
