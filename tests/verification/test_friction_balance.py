@@ -19,7 +19,7 @@ from geometry.base.errors import CaseError
 from geometry.linkage.linkage import Link
 from loads.case.case import Case
 from loads.case.case_file import read_case, validate
-from loads.case.friction_rules import check_friction
+from loads.case.joint_rules import check_friction
 from loads.case.toleranced import toleranced
 from loads.records.applied import FrictionLoad, at_poses, shifted
 from loads.records.load_case import LoadCase
