@@ -25,8 +25,9 @@ from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
+from fea.common.source import COUPLES
 from fea.common.threads import bounded_run
-from fea.common.verdict import CheckOutcome, overall
+from fea.common.verdict import CheckOutcome, Verdict, overall
 from fea.frame.joint_forces import JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
@@ -54,6 +55,8 @@ from loads.text.shares import parse_accuracy
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
 BY_HAND = ("beam", "frame")
+TELLING = 1.05
+"""Growth of a link's stress by the sharing of couples above which it is told of, where a check is open."""
 POINT_ROUNDS = 4
 """At most, in which links are solved or refined for the displacement of a point."""
 
@@ -276,6 +279,7 @@ def check_case(
         timings=clock.stages,
         warnings=(
             *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),
+            *_shared_couples(list(by_load_case.values()), load_cases),
             *_warnings(case, statics, moved),
             *play_warnings(moved, statics.forces),
         ),
@@ -352,6 +356,23 @@ def _cantilever(case: Case, calculation: str) -> CantileverCheck:
 
 def _of(names: Sequence[str]) -> str:
     return f"load case{'s' if len(names) > 1 else ''} {', '.join(names)}"
+
+
+def _shared_couples(load_cases: Sequence[_LoadCase], results: Mapping[str, LoadCaseResult]) -> list[str]:
+    """Say of which links the sharing of couples between layers leaves the strength open, and what would tell."""
+    found = []
+    for one in load_cases:
+        open_links = {c.subject.name for c in results[one.load_case].checks if c.verdict is Verdict.UNDECIDED}
+        for link, growth in one.uneven.stress.items():
+            joints = [name for name in one.case.linkage.joints_of(link) if one.case.linkage.rise(name) != 0.0]
+            unknown = [name for name in joints if one.case.joints[name].tight_in is None]
+            if link in open_links and unknown and set(COUPLES) <= set(growth.sources) and growth.high > TELLING:
+                found.append(
+                    f"load case {one.load_case}: how pins share the couples between layers may make the stress of "
+                    f"{link} {growth.high:.3g} times as large; tight_in of joints {', '.join(unknown)} would narrow "
+                    "its band"
+                )
+    return found
 
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:

@@ -10,8 +10,12 @@ from loads.case.joint_rules import clearances, rubbing_joints
 from reports.words.wording import joined
 
 STACKING = (
-    "All links lie in one plane. In a real linkage they are stacked along the pins; the offset causes additional "
-    "bending and torsion."
+    "The case states no layers, so all links lie in one plane. In a real linkage they are stacked along the pins; the "
+    "offset causes additional bending and torsion."
+)
+LAYERS = (
+    "Pins between layers are beams from mid-plane to mid-plane; how they share couples is part of the bands. Washers, "
+    "heads and faces that touch take none of these."
 )
 IMPACT = "A sudden load causes higher stresses than the same load applied slowly."
 
@@ -32,7 +36,7 @@ def not_covered(result: CheckResult) -> tuple[tuple[str, str], ...]:
     return (
         ("Other poses", "Only this pose was checked; another pose can give higher stresses"
          + (". The command alula envelope checks all poses of the motion." if moves else ".")),
-        ("Stacking", STACKING),
+        ("Layers", LAYERS) if result.case.layered else ("Stacking", STACKING),
         ("Pins and contact", _pins(result)),
         ("Fatigue", "The loads are static. Repeated loads break parts at lower stresses"
          + (". The command alula envelope checks fatigue over the motion." if moves else ".")),

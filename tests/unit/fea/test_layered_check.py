@@ -1,0 +1,53 @@
+"""A check of links in layers: its bands, what narrows them, what its report says."""
+
+from functools import cache
+
+import pytest
+from edited_cases import edited
+
+from fea.check.run import check_case
+from fea.common.source import COUPLES
+from fea.outcomes.result import CheckResult
+from reports.page.coverage import not_covered
+
+LINKS = ("AG", "GF", "AE", "CF", "CH", "ED")
+OFF = ['layer_spacing="7.5 mm"', 'large_displacement="off"']
+LAYERS = [*OFF, *(f"links.{link}.layer={layer}" for link, layer in zip(LINKS, (-1, 0, 0, 1, 0, 1), strict=True))]
+FLAT = [*OFF, *(f"links.{link}.layer=0" for link in LINKS)]
+IN = ("AG", "CF", "CF", "ED", "ED", "CF", "AG")
+TIGHT = [f'joints.{joint}.tight_in="{link}"' for joint, link in zip("ABCDEFG", IN, strict=True)]
+
+
+@cache
+def checked(*further: str) -> CheckResult:
+    return check_case(edited("owl-wing-static", [*LAYERS, *further]), name="owl-wing-static", fidelity="beam")
+
+
+def test_bands_hold_how_pins_share_the_couples() -> None:
+    links = checked().load_cases["weight"].links
+    assert set(COUPLES) <= set(links["GF"].safety_factor.sources)
+    assert links["GF"].safety_factor.low < 0.5 * links["GF"].safety_factor.value
+
+
+def test_a_pin_that_is_stated_tight_in_one_link_narrows_them() -> None:
+    """GF's pins are tight in its neighbours, so that it bears no couple but by them."""
+    free, tight = (checked(*more).load_cases["weight"].links["GF"].safety_factor for more in ((), tuple(TIGHT)))
+    assert tight.low > 1.5 * free.low
+    assert tight.value == pytest.approx(free.value)
+
+
+def test_the_plane_has_the_forces_that_it_has_without_layers() -> None:
+    flat = check_case(edited("owl-wing-static", FLAT), name="owl-wing-static", fidelity="beam")
+    one, other = (result.load_cases["weight"].forces.reactions for result in (flat, checked()))
+    assert one.drive_torque == pytest.approx(other.drive_torque, rel=1e-9)
+    for name, joint in one.joints.items():
+        assert joint.wrench[:2] == pytest.approx(other.joints[name].wrench[:2], rel=1e-9, abs=1e-12)
+    assert all(not joint.wrench[2:5].any() for joint in one.joints.values())
+
+
+def test_the_report_says_what_would_narrow_an_open_check() -> None:
+    value = checked().load_cases["weight"].links["GF"].safety_factor.value
+    found = checked(f"checks.strength.minimum={value}").warnings
+    assert any("stress of GF" in text and "tight_in of joints F, G" in text for text in found)
+    assert not any("stress of GF" in text for text in checked().warnings)  # where it passes all the same
+    assert dict(not_covered(checked())).keys() >= {"Layers"}
