@@ -1,6 +1,8 @@
 """A four-bar linkage of plain bars in layers, crank at the origin, whose gaps have closed forms."""
 
 import tomllib
+from collections.abc import Mapping
+from types import MappingProxyType
 
 from loads.case.case import Case
 from loads.case.case_file import validate
@@ -68,10 +70,14 @@ def four_bars(
     width: float = 16.0,
     pin: float = 8.0,
     more: str = "",
+    edits: Mapping[str, str] = MappingProxyType({}),
 ) -> Case:
     """The linkage of base, crank, coupler and rocker in these layers; lengths of crank, coupler, rocker, base."""
     a, b, c, d = lengths
     text = TEXT.format(layers=layers, a=a, b=b, c=c, d=d, start=start, end=end, near=near, width=width, pin=pin)
+    for old, new in edits.items():
+        assert old in text
+        text = text.replace(old, new)
     return validate(tomllib.loads(text + more))
 
 

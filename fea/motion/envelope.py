@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.buckling.linkage import unless_it_gives_way
+from fea.check.clearance import clearance_outcomes
 from fea.check.run import effort_of
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
@@ -38,6 +39,7 @@ from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case
 from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.clearance import clearance
 
 Real = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -217,6 +219,7 @@ def envelope_case(
     case = moved.case
     if moved.locks:
         raise CaseError(f"{moved.locks[0]}; shorten the motion, state less friction, or another direction or drive")
+    apart = clearance(case)
     evaluated = _some_poses(moved, growth)
     over = _Envelope.of(moved, evaluated, threads, progress)
     moved = over.moved
@@ -226,7 +229,7 @@ def envelope_case(
     clock("solids")
     checks = over.outcomes(links)
     linkage = over_motion(moved, evaluated)
-    checks += limit_load_outcomes(moved, linkage)
+    checks += [*limit_load_outcomes(moved, linkage), *clearance_outcomes(case, apart)]
     clock("frames")
     idle = [nothing_acts(load_case, over.sizes[load_case]) for load_case in over.idle]
     return EnvelopeResult(
@@ -240,6 +243,7 @@ def envelope_case(
         links=links,
         idle=tuple(link for link in case.checked_links if link not in over.loaded),
         linkage=linkage,
+        clearance=apart,
         checks=tuple(checks),
         verdict=overall(check.verdict for check in checks),
         warnings=(*idle, *_warnings(case, moved, evaluated, growth)),

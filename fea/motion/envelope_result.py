@@ -16,6 +16,7 @@ from fea.tractions.traction import Transfer
 from loads.case.case import Case
 from loads.records.bearing import Span
 from loads.states.case_motion import CaseMotion
+from loads.states.clearance import Clearance
 from loads.statics.statics import Drive
 
 Real = NDArray[np.float64]
@@ -262,6 +263,8 @@ class EnvelopeResult:
         Links on which nothing acts.
     linkage : mapping of str to LinkageOverMotion
         Load case -> numbers of the linkage as a whole.
+    clearance : Clearance or None
+        The gaps between links; None where no layers are stated.
     checks : tuple of CheckOutcome
         For every link and load case.
     verdict : Verdict
@@ -282,6 +285,7 @@ class EnvelopeResult:
     links: Mapping[str, LinkEnvelope]
     idle: tuple[str, ...]
     linkage: Mapping[str, LinkageOverMotion]
+    clearance: Clearance | None
     checks: tuple[CheckOutcome, ...]
     verdict: Verdict
     warnings: tuple[str, ...]

@@ -1,6 +1,5 @@
 """The outline of a link or a pin in the plane, in pieces between two heights, and the gap between two of them."""
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -10,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.bodies.body import Body
-from geometry.bodies.features import Fork, Pin
 from geometry.bodies.footprint import Footprint
 
 Real = NDArray[np.float64]
@@ -114,51 +112,12 @@ def link_shape(name: str, body: Body, planes: Sequence[float]) -> Shape:
     Shape
         In the frame of the link.
     """
-    pieces = body.part.footprints(body)
-    cores = [
-        Core(
-            geometry=_geometry(piece),
-            radius=piece.radius,
-            low=plane + piece.low,
-            high=plane + piece.high,
-            error=piece.error,
-        )
-        for plane in planes
-        for piece in pieces
-    ]
+    solid = [_core(piece) for piece in body.part.footprints(body)]
     if body.part.is_beam and body.part.fillet_radius > 0.0:
-        rounded = _fillets(
-            [_geometry(p).buffer(p.radius, quad_segs=_SEGMENTS) for p in pieces], body.part.fillet_radius
-        )
-        low, high = pieces[0].low, pieces[0].high
-        error = _CHORD * (body.part.fillet_radius + max(piece.radius for piece in pieces))
-        cores += [
-            Core(geometry=corner, radius=0.0, low=plane + low, high=plane + high, error=error)
-            for plane in planes
-            for corner in rounded
-        ]
-    for plane, pin in itertools.product(planes, body.pins):
-        if pin.fork is not None:
-            cores = [piece for core in cores for piece in _forked(core, pin, pin.fork, plane)]
+        solid += _fillets(solid, body.part.fillet_radius)
+    forked = [core for piece in solid for core in _forked(piece, body)]
+    cores = [replace(core, low=plane + core.low, high=plane + core.high) for plane in planes for core in forked]
     return Shape(name=name, cores=tuple(cores))
-
-
-def _forked(core: Core, pin: Pin, fork: Fork, plane: float) -> list[Core]:
-    """Return a piece of a link at a height without the gap of a fork: cheeks, and what is left between them."""
-    import shapely
-
-    low, high = plane - fork.gap / 2.0, plane + fork.gap / 2.0
-    if not core.low < low < high < core.high:
-        return [core]
-    round_gap = shapely.Point(pin.x, pin.y).buffer(fork.depth, quad_segs=_SEGMENTS)
-    left = core.polygon.difference(round_gap)
-    error = core.error + _CHORD * (core.radius + fork.depth)
-    between = [
-        Core(geometry=part, radius=0.0, low=low, high=high, error=error)
-        for part in shapely.get_parts(left)
-        if part.geom_type == "Polygon" and not part.is_empty
-    ]
-    return [replace(core, high=low), replace(core, low=high), *between]
 
 
 def pin_shape(name: str, diameter: float, low: float, high: float) -> Shape:
@@ -184,6 +143,35 @@ def pin_shape(name: str, diameter: float, low: float, high: float) -> Shape:
     return Shape(name=name, cores=(core,))
 
 
+def _core(piece: Footprint) -> Core:
+    return Core(geometry=_geometry(piece), radius=piece.radius, low=piece.low, high=piece.high, error=piece.error)
+
+
+def _forked(core: Core, body: Body) -> list[Core]:
+    """Return a piece as the gaps of forks leave it; a gap ends where what rounds its root begins."""
+    import shapely
+
+    found = [core]
+    for pin in body.pins:
+        if pin.fork is None:
+            continue
+        half, cut = pin.fork.gap / 2.0, pin.fork.depth - pin.fork.radius
+        room = shapely.Point(pin.x, pin.y).buffer(cut, quad_segs=_SEGMENTS)
+        rest = []
+        for piece in found:
+            low, high = max(piece.low, -half), min(piece.high, half)
+            if low >= high or not room.intersects(piece.polygon):
+                rest.append(piece)
+                continue
+            ends = [(piece.low, low), (high, piece.high)]
+            rest += [replace(piece, low=a, high=b) for a, b in ends if b - a > TOUCHING * (piece.high - piece.low)]
+            left, error = piece.polygon.difference(room), piece.error + _CHORD * (piece.radius + cut)
+            if not left.is_empty:
+                rest.append(Core(geometry=left, radius=0.0, low=low, high=high, error=error))
+        found = rest
+    return found
+
+
 def _geometry(piece: Footprint) -> Any:
     import shapely
 
@@ -195,14 +183,19 @@ def _geometry(piece: Footprint) -> Any:
     return found if found.is_valid else found.buffer(0.0)
 
 
-def _fillets(pieces: Sequence[Any], radius: float) -> list[Any]:
-    """Return what a ball in the plane does not reach in the corners between pieces: their closing, less themselves."""
+def _fillets(pieces: Sequence[Core], radius: float) -> list[Core]:
+    """Return what a ball in the plane does not reach in the corners between pieces: their closing, less themselves.
+
+    It lies at the height of the first piece, the bar or tube.
+    """
     import shapely
 
-    plain = shapely.union_all(pieces)
+    plain = shapely.union_all([piece.polygon for piece in pieces])
     closed = plain.buffer(radius, quad_segs=_SEGMENTS).buffer(-radius, quad_segs=_SEGMENTS)
+    low, high = pieces[0].low, pieces[0].high
+    error = _CHORD * (radius + max(piece.radius for piece in pieces))
     return [
-        corner
+        Core(geometry=corner, radius=0.0, low=low, high=high, error=error)
         for corner in shapely.get_parts(closed.difference(plain))
         if corner.geom_type == "Polygon" and corner.area > 1e-3 * radius**2
     ]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.common.verdict import Quantity
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.unchecked import unchecked
@@ -23,7 +24,7 @@ from reports.tables.frames import motion_linkage_line, motion_linkage_record
 from reports.tables.friction import motion_friction_lines, motion_friction_record
 from reports.tables.meshes import solver_record
 from reports.words.terminal import say, say_table
-from reports.words.wording import band, fixed, not_checked, number
+from reports.words.wording import band, fixed, not_checked, number, sentence
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -313,6 +314,9 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
     for name in result.moved.rubbing:
         say(console, f"Load case {name}: {'; '.join(motion_friction_lines(result.moved, name))}.")
     say_checks(result.checks, console)
+    for check in result.checks:
+        if check.quantity is Quantity.CLEARANCE:
+            say(console, sentence(f"clearance: {check.reason}"))
     if result.idle:
         say(console, f"Links without load: {', '.join(result.idle)}.")
     for warning in result.warnings:

@@ -14,7 +14,19 @@ from reports.tables.layers import build_directions_of
 from reports.tables.second_opinion import say_opinions
 from reports.tables.springs import holding_sentence, spring_sentences
 from reports.words.terminal import KEPT, say, say_table
-from reports.words.wording import agreement, apart, band, fixed, headline, joined, number, percent, plain, turning
+from reports.words.wording import (
+    agreement,
+    apart,
+    band,
+    fixed,
+    headline,
+    joined,
+    number,
+    percent,
+    plain,
+    sentence,
+    turning,
+)
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -52,6 +64,8 @@ def print_result(result: CheckResult, console: "Console") -> None:
                 say(console, f"Motor: {check.reason}.")
             elif check.quantity is Quantity.DISPLACEMENT:
                 say(console, f"Displacement of {check.subject}: {check.reason}.")
+            elif check.quantity is Quantity.CLEARANCE:
+                say(console, sentence(f"clearance: {check.reason}"))
         for line in _hand(case):
             say(console, line)
     for layers in build_directions_of(result).values():

@@ -9,7 +9,7 @@ import pytest
 import shapely
 
 from geometry.bodies.body import Body
-from geometry.bodies.features import Pin, Ring
+from geometry.bodies.features import Fork, Pin
 from geometry.bodies.footprint import Footprint
 from geometry.clearance.shape import gaps, link_shape, meeting, nearest, overlap, pin_shape
 from geometry.imported.read import part_facts, part_surface
@@ -116,15 +116,23 @@ def test_a_tube_covers_its_eyes_and_arms(eyes, bounds, half):
     assert max(core.polygon.bounds[3] for core in arm) == pytest.approx(22.5)
 
 
-def test_a_fork_has_two_rounds_about_its_pin():
+def test_a_fork_is_open_between_its_cheeks():
+    """Piece by piece the volume of the kernel, holes included: the gap takes 3 mm within 9 mm of the axis."""
     pins = (
-        Pin(name="A", x=0.0, y=0.0, diameter=2.0, ring=Ring(diameter=12.0, low=-6.0, high=6.0, gaps=((-2.0, 2.0),))),
-        Pin(name="B", x=60.0, y=0.0, diameter=2.0),
+        Pin(name="A", x=0.0, y=0.0, diameter=2.0),
+        Pin(name="B", x=60.0, y=0.0, diameter=2.0, fork=Fork(gap=3.0, depth=9.0, radius=0.0)),
     )
-    sizes = {"shape": "bar", "width": "8 mm", "thickness": "4 mm", "fillet_radius": "0 mm"}
-    found = body_of(Bar, sizes, pins)
-    rounds = [piece for piece in found.part.footprints(found) if piece.corners == ((0.0, 0.0),)]
-    assert [(piece.low, piece.high) for piece in rounds] == [(-6.0, -2.0), (2.0, 6.0)]
+    sizes = {"shape": "bar", "width": "8 mm", "thickness": "6 mm", "fillet_radius": "0 mm", "eye_diameter": "12 mm"}
+    body = body_of(Bar, sizes, pins)
+    shape = link_shape("link", body, [0.0])
+    heights = sorted({z for core in shape.cores for z in (core.low, core.high)})
+    assert heights == [-3.0, -1.5, 1.5, 3.0]
+    layers = [shapely.union_all([c.polygon for c in shape.cores if c.low <= low < c.high]) for low in heights[:-1]]
+    areas = [layer.area for layer in layers]
+    assert areas[1] < areas[0] == pytest.approx(areas[2])
+    holes = math.pi * (6.0 + 3.0)
+    found = sum(area * (high - low) for area, low, high in zip(areas, heights[:-1], heights[1:], strict=True))
+    assert found - holes == pytest.approx(mass_properties(body).volume, rel=1e-3)
 
 
 def volume(pieces: tuple[Footprint, ...]) -> float:

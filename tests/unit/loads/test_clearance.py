@@ -101,6 +101,27 @@ def test_the_speed_bound_is_that_of_the_fastest_point():
         assert pair.speeds(at(values))[0] == pytest.approx(moved, rel=1e-4, abs=1e-4)
 
 
+def test_a_link_in_a_fork_touches_it_where_its_own_bar_meets_the_root():
+    """Of bars w wide, c from the pin to the root, at an angle of 2 asin(w / 2c) between both: 60 degrees."""
+    fork, end = 'eyes.B = { fork = "3 mm", fork_depth = "16 mm" }', '["120.0 mm", "0 mm"]\n[links.coupler]'
+    edits = {
+        'part = "bar"\npoints.B = ["0 mm"': 'part = "thin"\npoints.B = ["0 mm"',
+        end: end.replace("\n", f"\n{fork}\n"),
+    }
+    more = (
+        '[parts.thin]\nshape = "bar"\nmaterial = "pla-fdm-xy"\nwidth = "16 mm"\nthickness = "2 mm"\n'
+        'fillet_radius = "0 mm"\neye_diameter = "16 mm"\n'
+    )
+    lengths = (120.0, 100.0, 120.0, 100.0)
+    case = four_bars((0, 1, 1, 2), lengths, start=60, end=130, near=(0, 60), more=more, edits=edits)
+    found = clearance(case)
+    assert found is not None
+    assert found.contact is not None
+    assert set(found.contact.names) == {"link crank", "link coupler"}
+    assert found.contact.at is not None
+    assert math.degrees(found.contact.at) == pytest.approx(120.0, abs=0.05)
+
+
 def test_links_that_share_a_joint_and_a_layer_are_refused():
     with pytest.raises(CaseError, match=r"with layer = 1 of crank and layer = 1 of coupler they share joint B"):
         clearance(parallel_bars((0, 1, 1, 2)))
