@@ -11,7 +11,7 @@ from loads.records.aero import shares
 from loads.records.applied import LineLoad, PointLoad, in_axes
 from loads.records.springs import LineSpring
 from loads.states.actions import stated_loads
-from reports.figures.silhouette import silhouette
+from reports.figures.silhouette import curves, outlines, silhouette
 from reports.figures.sprung import coil, spiral, stop_mark
 from reports.sheet.canvas import Canvas, extent
 from reports.sheet.labels import along, place_labels
@@ -187,11 +187,11 @@ class _Drawing:
         space, place = found.stress.space, self.pose.placement
         places = place.origin(link) + place.direction(link) * (space.nodes[:, 0] + 1j * space.nodes[:, 1])
         flat = self.axes.at(np.column_stack([places.real, places.imag]))
-        triangles, edges = silhouette(space.nodes, space.boundary[:, :3])
-        for triangle in triangles:
-            self.sheet.area(flat[triangle], LINK, LINK, 0.3)
-        for edge in edges:
-            self.sheet.line(flat[edge], INK, 0.6)
+        triangles, edges = silhouette(space.nodes, space.boundary)
+        for triangle in outlines(flat[triangles]):
+            self.sheet.area(triangle, LINK, LINK, 0.3)
+        for edge in curves(flat[edges]):
+            self.sheet.line(edge, INK, 0.6)
         return np.column_stack([places.real, places.imag])[np.unique(edges)[::5]]
 
     def _joints(self) -> list[Real]:
@@ -246,7 +246,7 @@ class _Drawing:
     def _bar(self, a: Real, b: Real, thickness: float) -> None:
         """Draw a bar with round ends about its points."""
         angle = math.atan2(b[1] - a[1], b[0] - a[0])
-        turn = np.linspace(-0.5, 0.5, 13) * np.pi + angle
+        turn = np.linspace(-0.5, 0.5, 37) * np.pi + angle
         end = thickness * np.column_stack([np.cos(turn), np.sin(turn)])
         self.sheet.area(self.axes.at(np.vstack([b + end, a - end])), LINK, INK, 0.6)
 
@@ -272,7 +272,9 @@ class _Drawing:
         for step in np.linspace(-1.5, 1.5, 7):
             start = base + across * half * step
             self._line([start, start + (side * 0.6 - across * 0.4) * half], 0.7)
-        return np.vstack([along(at, base + side * half), along(base - across * 1.6 * half, base + across * 1.6 * half)])
+        rows = [(side * reach - across * 1.9 * half, side * reach + across * 1.6 * half) for reach in (0.0, 0.6 * half)]
+        lines = [(at, end) for end in triangle[1:]] + [(base + start, base + end) for start, end in rows]
+        return np.vstack([along(*line) for line in lines])
 
     def _guide(self, name: str, at: Real) -> Real:
         """Draw the two sides of the slot or guide that a pin or slider runs in; returns their points."""

@@ -256,3 +256,15 @@ def test_names_of_one_place_and_of_near_ones_are_not_written_over_each_other(res
     sheet = diagrams._sheet(check_beam(loads, section, 40.0), CROWD)
     assert {"A", "pin-left, pin-right", "next-to-it", "D"} <= written(sheet)
     assert_legible(sheet)
+
+
+def test_labels_keep_off_the_whole_symbol_of_a_support(result):
+    """Both slanted sides and the hatching were once open to labels, whose rims hid them."""
+    drawing = drawings._Drawing(result, "weight")
+    before = len(drawing.sheet.marks)
+    points = drawing._support(("AG",), np.array([0.0, 0.0]))
+    drawn = [mark.points for mark in drawing.sheet.marks[before:] if isinstance(mark, Stroke)]
+    kept = drawing.axes.at(points)
+    for line in drawn:
+        middle = line[:2].mean(axis=0)
+        assert np.hypot(*(kept - middle).T).min() < 4.0  # points on the sheet: less than half a letter is high
