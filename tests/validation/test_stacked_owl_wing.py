@@ -81,6 +81,26 @@ def test_shear_of_the_pins_changes_little() -> None:
 
 
 @pytest.mark.parametrize("layers", [TWO, FOUR])
+def test_the_load_does_the_work_that_links_and_pins_store(layers: tuple[int, ...]) -> None:
+    """Clapeyron: half the load times its way is ∫ N²/2EA + V²/2κGA + T²/2GJ + M²/2EI over all beams and pins."""
+    frame, solution = solved(stacked(layers))
+    points, weights = np.polynomial.legendre.leggauss(4)
+    stored = 0.0
+    for i, element in enumerate(frame.model.elements):
+        section, young = element.section, element.young
+        shear = young / (2.0 * (1.0 + element.poisson))
+        stiff = shear * section.area * section.shear_coefficient(element.poisson)
+        bent = (young * section.i_y, young * section.i_z)
+        over = np.array([young * section.area, stiff, stiff, shear * section.torsion, *bent])
+        length, forces = frame.model.length(i), solution.internal_forces(i)
+        for point, weight in zip(points, weights, strict=True):
+            found = np.array(forces.at(float(length * (1.0 + point) / 2.0)))
+            stored += weight * length / 2.0 * float((found**2 / over).sum()) / 2.0
+    moved = solution.displacements[frame.points["CH", "H"], 1]
+    assert stored == pytest.approx(0.5 * 0.25 * abs(moved), rel=1e-6)
+
+
+@pytest.mark.parametrize("layers", [TWO, FOUR])
 def test_every_link_balances_however_pins_share_the_couples(layers: tuple[int, ...]) -> None:
     case = stacked(layers)
     frame, solution = solved(case)
