@@ -120,6 +120,11 @@ class CoreCase(Revisable):
         return Drive(link=drive.link, joint=drive.joint, stop=drive.stop, idle=drive.idle) if drive else None
 
     @property
+    def sprung(self) -> bool:
+        """True where springs, tendons or stops are stated."""
+        return bool(self.springs or self.tendons or self.stops)
+
+    @property
     def torque_transfer(self) -> Literal["eye-faces", "bore-shear"]:
         """How a torque enters a part: as the drive's does; pins of a deformed shape, and sliders, need no drive."""
         return "eye-faces" if self.drive is None else self.drive.transfer

@@ -265,11 +265,13 @@ def _first(values: Real, found: Real, function: Callable[[Real], Real]) -> float
 
 
 def _unbalanced(way: _Way, load_case: str, end: float) -> str:
-    to = "" if way.ended is None else ", where it comes to a dead point"
+    to, other = "", "state another start"
+    if way.ended is not None:
+        to, other = ", where it comes to a dead point of its coordinate", "fix the pose by another link"
     return (
         f"pose.equilibrium: let go at {way.pose.coordinate} = {way.driven.told(way.pose.held)} under load case "
         f"'{load_case}', the linkage finds no balance and no stop as far as {way.driven.told(float(end))}{to}; add a "
-        "spring or a stop that holds it, or state another start"
+        f"spring or a stop that holds it, or {other}"
     )
 
 

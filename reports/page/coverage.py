@@ -17,6 +17,11 @@ LAYERS = (
     "Pins between layers are beams from mid-plane to mid-plane; how they share couples is part of the bands. Washers, "
     "heads and faces that touch take none of these."
 )
+SPRINGS = (
+    "Springs, tendons and stops have no mass, no friction and no give of their own but the stated stiffness. Where "
+    "stops, and the legs of springs about joints, touch the links is not modelled: their moment enters at the eye of "
+    "the joint."
+)
 IMPACT = "A sudden load causes higher stresses than the same load applied slowly."
 
 
@@ -33,11 +38,13 @@ def not_covered(result: CheckResult) -> tuple[tuple[str, str], ...]:
         Pairs (title, text).
     """
     moves = result.case.motion is not None
+    springs = (("Springs and stops", SPRINGS),) if result.case.sprung else ()
     return (
         ("Other poses", "Only this pose was checked; another pose can give higher stresses"
          + (". The command alula envelope checks all poses of the motion." if moves else ".")),
         ("Layers", LAYERS) if result.case.layered else ("Stacking", STACKING),
         ("Pins and contact", _pins(result)),
+        *springs,
         ("Fatigue", "The loads are static. Repeated loads break parts at lower stresses"
          + (". The command alula envelope checks fatigue over the motion." if moves else ".")),
         ("Creep, temperature, moisture, ageing", _conditions(result)),
@@ -100,6 +107,8 @@ def _large_displacement(result: CheckResult) -> str:
         )
         stated = [result.case.load_cases[name] for name in followed]
         axes = {force.axes for case in stated for force in case.forces}
+        if result.case.springs or result.case.tendons:
+            told.append("springs and tendons follow the points at which they are fastened")
         if "link" in axes | {spread.axes for case in stated for spread in case.spread}:
             told.append("a load in link axes turns with the pose of its link, but not with the deformation")
     text = "; ".join(told)

@@ -11,6 +11,7 @@ from fea.check.run import check_case
 from loads.case.case_file import read_case
 from reports.figures.drawings import linkage_drawing
 from reports.figures.sprung import coil, spiral, stop_mark
+from reports.page.coverage import not_covered
 from reports.page.html import render
 from reports.sheet.style import SPRING
 from reports.tables.record import result_record
@@ -43,6 +44,11 @@ def test_the_balance_is_told_with_its_stiffness(balanced):
     page = render(balanced, {})
     assert "The pose balances by itself at pedal = 85.44 deg" in page
     assert "Drive torque on pedal" not in page
+
+
+def test_what_is_not_covered_of_springs_is_said_where_there_are_some(balanced):
+    assert "no mass, no friction" in dict(not_covered(balanced))["Springs and stops"]
+    assert "Springs and stops" not in dict(not_covered(solved.by_hand("owl-wing-closed")))
 
 
 def test_a_stop_that_is_reached_is_named(stopped):
