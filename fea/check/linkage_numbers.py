@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 
+from fea.check.case_statics import CaseStatics
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
@@ -122,3 +123,31 @@ def _largest(
     if moved.linear > (1.0 + 1e-6) * linear > 0.0:  # between points, where stations of the links tell
         return found.times(moved.linear / linear), moved.where
     return found, where
+
+
+def left_stops(statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> Iterator[str]:
+    """Yield a sentence for every load case whose stop would have to pull on the deformed shape.
+
+    Parameters
+    ----------
+    statics : CaseStatics
+    moved : mapping of str to LargeDisplacement
+        Load case -> what became of it.
+
+    Yields
+    ------
+    str
+    """
+    for load_case, what in moved.items():
+        standing, reactions = statics.standing[load_case], what.reactions
+        if not standing.stop or reactions is None or reactions.drive is None:
+            continue
+        linkage = reactions.pose.linkage
+        slides = reactions.drive.pushes(linkage)
+        effort = float(reactions.drive_force if slides else reactions.drive_torque)
+        if effort * reactions.drive.sign(linkage) * standing.contact < 0.0:
+            yield (
+                f"load case {load_case}: on its deformed shape the linkage leaves stop '{standing.stop}', which would "
+                f"have to pull there with {abs(effort):.3g} {'N' if slides else 'N·mm'}; stiffen its links, or let it "
+                "balance beside the stop"
+            )

@@ -17,7 +17,7 @@ from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
 from fea.check.link_result import link_result
-from fea.check.linkage_numbers import limit_load_outcomes, linkage_numbers
+from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from fea.check.load_growth import Growths, growths
 from fea.check.play_doubt import play_doubt, play_warnings, shaken
 from fea.check.point_solids import decide_point
@@ -385,6 +385,7 @@ def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplac
     for sentence in said:
         names = [load_case for load_case, what in moved.items() if what.sentence == sentence]
         found.append(f"{_of(names)}: {sentence}")
+    found += left_stops(statics, moved)
     found += [
         f"load case {load_case}: {sentence}"
         for load_case in case.load_cases

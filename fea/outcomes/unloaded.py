@@ -19,6 +19,7 @@ from loads.case.case import Case
 from loads.records.applied import BodyForce, LineLoad, Load, PointLoad
 from loads.records.check_spec import SafetyFactorCheck
 from loads.states.actions import stated_loads
+from loads.states.springs import spring_loads
 
 Real = NDArray[np.float64]
 
@@ -188,7 +189,7 @@ def unloaded_links(case: Case, title: str) -> Iterator[CheckOutcome]:
 
 
 def stated_size(case: Case, title: str) -> float:
-    """Return ``load_size`` of what a load case states, whatever the pose.
+    """Return ``load_size`` of what a load case states, whatever the pose, and of springs in the stated one.
 
     Parameters
     ----------
@@ -201,4 +202,5 @@ def stated_size(case: Case, title: str) -> float:
     float
         [N]
     """
-    return load_size(stated_loads(case, case.load_cases[title]), case.linkage.longest)
+    springs = spring_loads(case, case.stated_pose.placement)
+    return load_size((*stated_loads(case, case.load_cases[title]), *springs), case.linkage.longest)

@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 from fea.check.case_statics import solve_case_statics
+from fea.check.linkage_numbers import left_stops
 from fea.frame.build import build_frame
 from fea.nonlinear.corotational import subdivide
 from fea.nonlinear.equilibrium_path import EquilibriumPath, State
@@ -217,3 +218,19 @@ def test_a_link_balances_on_the_deformed_shape():
     assert moved.reactions.joints["C"].wrench[5] == pytest.approx(
         0.0, abs=1e-6
     )  # the hinge's spring is no pin's moment
+
+
+@pytest.mark.parametrize(("preload", "leaves"), [("5000 N*mm", False), ("11900 N*mm", True)])
+def test_a_stop_that_would_have_to_pull_is_told(preload, leaves):
+    """60 N 200 mm are 12,000 N mm; the bent arm has less of a lever, so that 11,900 N mm lift it off its stop."""
+    spring = {"up": {"joint": "O", "stiffness": "1 N*mm/rad", "preload": preload}}
+    case = arm([0.0, -60.0], springs=spring, stops={"rest": {"joint": "O", "at_least": "0 deg"}})
+    statics = solve_case_statics(case)
+    assert statics.standing["tip"].stop == "rest"
+    moved = {"tip": examine(statics.standing["tip"].case, "tip", statics.forces["tip"], statics.loads["tip"])}
+    assert moved["tip"].state == "deformed"
+    said = list(left_stops(statics, moved))
+    assert bool(said) == leaves
+    if leaves:
+        lever = 200.0 + moved["tip"].points["arm", "P"][0]
+        assert f"pull there with {11900.0 - 60.0 * lever:.3g} N·mm" in said[0]
