@@ -191,7 +191,8 @@ class Clearance:
         -------
         str
         """
-        x, y = gap.place
+        tiny = 1e-6 * self.assembly.case.linkage.longest
+        x, y = (0.0 if abs(value) < tiny else value for value in gap.place)
         at = "in the stated pose"
         if gap.at is not None and self.motion is not None:
             at = f"at {self.motion.coordinate} = {float(self.motion.told(gap.at)):.2f} {self.motion.unit}"

@@ -327,10 +327,8 @@ def _side(sheet: Canvas, axes: Axes, placed: Placed, along: int) -> None:
     order = sorted(placed.links, key=lambda link: -away * placed.links[link].centroid.coords[0][across])
     for link in order:
         shape, spot = placed.assembly.links[link], Spot(link=link)
-        for core in sorted(shape.cores, key=lambda core: core.high - core.low):
-            bounds = placed.of(core.polygon, spot).bounds
-            u0, u1 = bounds[along], bounds[along + 2]
-            sheet.area(axes.at(_box(u0, core.low, u1, core.high)), faint(colours[link], _FILL), colours[link], 0.7)
+        for u0, low, u1, high in _slabs(placed, shape, spot, along):
+            sheet.area(axes.at(_box(u0, low, u1, high)), faint(colours[link], _FILL), colours[link], 0.7)
         bounds = placed.links[link].bounds
         middle = (shape.low + shape.high) / 2.0
         us = bounds[along] + np.array([0.5, 0.3, 0.7, 0.15, 0.85]) * (bounds[along + 2] - bounds[along])
@@ -348,6 +346,24 @@ def _side(sheet: Canvas, axes: Axes, placed: Placed, along: int) -> None:
         obstacles.append(_filled(box))
         labels.append((axes.at([(at, shape.high), (at, shape.low)]), name, INK))
     place_labels(sheet, axes.box, labels, np.vstack([*obstacles, np.zeros((0, 2))]), size=_LETTERS)
+
+
+def _slabs(placed: Placed, shape: Shape, spot: Spot, along: int) -> list[tuple[float, float, float, float]]:
+    """Return (u0, low, u1, high) of what is seen of a link from the side, thin ones first; pieces of one height join."""
+    found: dict[tuple[float, float], list[tuple[float, float]]] = {}
+    for core in shape.cores:
+        bounds = placed.of(core.polygon, spot).bounds
+        found.setdefault((core.low, core.high), []).append((bounds[along], bounds[along + 2]))
+    slabs = []
+    for (low, high), spans in found.items():
+        joined: list[tuple[float, float]] = []
+        for start, end in sorted(spans):
+            if joined and start <= joined[-1][1]:
+                joined[-1] = joined[-1][0], max(end, joined[-1][1])
+            else:
+                joined.append((start, end))
+        slabs += [(start, low, end, high) for start, end in joined]
+    return sorted(slabs, key=lambda slab: slab[3] - slab[1])
 
 
 def _box(x0: float, y0: float, x1: float, y1: float) -> list[tuple[float, float]]:
