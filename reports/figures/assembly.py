@@ -349,7 +349,7 @@ def _side(sheet: Canvas, axes: Axes, placed: Placed, along: int) -> None:
 
 
 def _slabs(placed: Placed, shape: Shape, spot: Spot, along: int) -> list[tuple[float, float, float, float]]:
-    """Return (u0, low, u1, high) of what is seen of a link from the side, thin ones first; pieces of one height join."""
+    """Return (u0, low, u1, high) of a link as seen from the side, thin ones first; pieces of one height are joined."""
     found: dict[tuple[float, float], list[tuple[float, float]]] = {}
     for core in shape.cores:
         bounds = placed.of(core.polygon, spot).bounds
