@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 
 _TOLERANCE = 1e-9
 _MOST_ROUNDING = 1e-6
+_ROUNDINGS = 128.0
+"""Roundings of one element's force that add up where Newton's method stagnates: some 110 on a four-bar in layers."""
 _LARGEST_TURN = 0.3
 _DIVERGED = 100.0
 _DENSE = 100
@@ -242,7 +244,7 @@ class EquilibriumPath:
         k = self.elements.stiffness
         stretched = k[:, 0, 0].max() * np.abs(state.displacements).max()
         bent = (k[:, [1, 3], [1, 3]].max(axis=1) / self.elements.lengths).max()
-        return min(8.0 * float(np.finfo(float).eps * (stretched + bent)) / self.scale, _MOST_ROUNDING)
+        return min(_ROUNDINGS * float(np.finfo(float).eps * (stretched + bent)) / self.scale, _MOST_ROUNDING)
 
     def _measure(self, residual: Floats) -> float:
         """Largest force left over, over the sum of the loads; or gap of a guide, over the frame's size or in rad."""

@@ -14,6 +14,7 @@ from fea.check.anchor import anchor_loads
 from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
 from fea.motion.envelope import envelope_case
+from fea.nonlinear.large_displacement import examine
 from fea.tolerance.states import Sampler
 from geometry.base.errors import CaseError
 from geometry.linkage.linkage import Link
@@ -137,6 +138,19 @@ def test_links_in_layers_balance_with_friction(case: Case) -> None:
         assert total == pytest.approx(np.zeros(6), abs=1e-9)
         planar = solve_case_statics(statics.case.model_copy(update={"links": case.links | flat(links)})).reactions[name]
         assert reactions.drive_torque == pytest.approx(planar.drive_torque, rel=1e-9)
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.2, 0.4])
+def test_the_path_of_a_stiff_frame_ends_where_rounding_does(friction: float) -> None:
+    """In layers, with couples at its pins, it ended at no load at all: Newton's method stagnates above one rounding."""
+    entries = [
+        *("load_cases.turning.speed=0 rpm", "layer_spacing=6 mm", "links.crank.layer=1", "links.coupler.layer=2"),
+        *("links.rocker.layer=1", "links.base.layer=0"),
+        'load_cases.turning.forces=[{link="rocker",at="P",force=["0 N","-5 N"]}]',
+    ]
+    statics = solve_case_statics(edited(STARTER, [*entries, *(pin.replace("0.3", str(friction)) for pin in PINS)]))
+    for name, forces in statics.forces.items():
+        assert examine(statics.case, name, forces, statics.loads[name]).state == "deformed"
 
 
 def flat(links: dict[str, Link]) -> dict[str, Link]:
