@@ -39,7 +39,7 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
     name : str
         Of the case, as the command was given it.
     """
-    from reports.figures.assembly import contact_drawing
+    from reports.figures.contact import contact_drawing
     from reports.figures.motion_animation import draw_animation
     from reports.figures.motion_figures import draw_figures
 

@@ -1,32 +1,34 @@
-"""The links in their layers, seen from above and from the side, and two outlines where they come nearest, as PNG."""
+"""The links in their layers, seen from above and from the side, as PNG."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from geometry.clearance.least import Gap, Spot
+from geometry.clearance.least import Spot
 from geometry.clearance.shape import Shape
 from geometry.linkage.placement import Placement
 from loads.case.case import Case
 from loads.states.clearance import Assembly, Clearance
-from reports.sheet.canvas import Canvas, extent, faint
+from reports.sheet.canvas import Canvas, faint
 from reports.sheet.labels import place_labels
 from reports.sheet.plot import Axes, ticks, widest
-from reports.sheet.style import GROUND, INK, JOINT_FORCE, WIDTH
-from reports.words.wording import number, plain
+from reports.sheet.style import GROUND, INK, WIDTH
+from reports.words.wording import plain
 
 Real = NDArray[np.float64]
 
 LAYERS = ("#0067a8", "#c8460b", "#00795a", "#8a5a00", "#6b4fa0", "#b0306a", "#4d6b1f", "#3b7d8c")
 """Colours of the layers, from the lowest up; they begin anew after the last."""
-_FILL, _PIN = 0.42, "#39434d"
+FILL = 0.42
+"""Share of its layer's colour in the filling of a link."""
+_PIN = "#39434d"
 _TALLEST, _LOWEST = 430.0, 70.0
 """Height of the view from above at most, and of the view from the side at least [points]."""
 _RIGHT, _ABOVE, _BELOW, _LETTERS, _ROW = 16.0, 18.0, 40.0, 8.5, 13.0
-_MARGIN, _CLOSE = 0.04, 0.1
-"""Room about the outlines, and half the width of a close-up, over the size of what is drawn."""
+_MARGIN = 0.04
+"""Room about the outlines over the size of what is drawn."""
 _STRETCHES = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 
@@ -44,22 +46,6 @@ def assembly_drawing(found: Clearance) -> bytes:
         A PNG.
     """
     return assembly_sheet(found).png()
-
-
-def contact_drawing(found: Clearance) -> bytes:
-    """Draw the two outlines that touch first, or come nearest, at that pose, with a close-up.
-
-    Parameters
-    ----------
-    found : Clearance
-        With a gap at least.
-
-    Returns
-    -------
-    bytes
-        A PNG.
-    """
-    return contact_sheet(found).png()
 
 
 class Placed:
@@ -274,13 +260,13 @@ def _plan(sheet: Canvas, axes: Axes, placed: Placed) -> None:
     obstacles: list[Real] = []
     for link in sorted(case.links, key=lambda name: case.heights[name]):
         if link in placed.links:
-            draw(sheet, axes, placed.links[link], faint(colours[link], _FILL), colours[link], 0.9)
-            obstacles.append(axes.at(_border(placed.links[link])))
+            draw(sheet, axes, placed.links[link], faint(colours[link], FILL), colours[link], 0.9)
+            obstacles.append(axes.at(border(placed.links[link])))
         else:
             obstacles += _bare(sheet, axes, placed, link)
     for pin in placed.pins.values():
         draw(sheet, axes, pin, "#ffffff", _PIN, 1.0)
-        obstacles.append(axes.at(_border(pin)))
+        obstacles.append(axes.at(border(pin)))
     names = [(axes.at(placed.joint(name)[None]), name, INK) for name in case.joints]
     names += [(axes.at(_anchors(placed, link)), f"link {link}", _ink(placed, link)) for link in case.links]
     place_labels(sheet, axes.box, names, np.vstack(obstacles), size=_LETTERS)
@@ -299,8 +285,18 @@ def _bare(sheet: Canvas, axes: Axes, placed: Placed, link: str) -> list[Real]:
     return found
 
 
-def _border(geometry: Any) -> Real:
-    """Points (n, 2) along the border of a geometry, close enough for labels to see them."""
+def border(geometry: Any) -> Real:
+    """Return points along the border of a geometry, close enough for labels to see them.
+
+    Parameters
+    ----------
+    geometry : shapely geometry
+        Polygons.
+
+    Returns
+    -------
+    array (n, 2)
+    """
     line = geometry.boundary
     count = 400
     return np.array([line.interpolate(share, normalized=True).coords[0] for share in np.linspace(0.0, 1.0, count)])
@@ -328,7 +324,7 @@ def _side(sheet: Canvas, axes: Axes, placed: Placed, along: int) -> None:
     for link in order:
         shape, spot = placed.assembly.links[link], Spot(link=link)
         for u0, low, u1, high in _slabs(placed, shape, spot, along):
-            sheet.area(axes.at(_box(u0, low, u1, high)), faint(colours[link], _FILL), colours[link], 0.7)
+            sheet.area(axes.at(_box(u0, low, u1, high)), faint(colours[link], FILL), colours[link], 0.7)
         bounds = placed.links[link].bounds
         middle = (shape.low + shape.high) / 2.0
         us = bounds[along] + np.array([0.5, 0.3, 0.7, 0.15, 0.85]) * (bounds[along + 2] - bounds[along])
@@ -379,11 +375,21 @@ def _filled(box: Real) -> Real:
 
 def _ink(placed: Placed, link: str) -> str:
     """Return the colour of a link's name."""
-    return _dark(layer_colours(placed.assembly.case)[link]) if link in placed.links else GROUND
+    return dark(layer_colours(placed.assembly.case)[link]) if link in placed.links else GROUND
 
 
-def _dark(colour: str) -> str:
-    """Return a colour mixed with black, for letters."""
+def dark(colour: str) -> str:
+    """Return a colour mixed with black, for letters.
+
+    Parameters
+    ----------
+    colour : str
+        As ``#rrggbb``.
+
+    Returns
+    -------
+    str
+    """
     parts = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
     return "#" + "".join(f"{round(0.75 * part):02x}" for part in parts)
 
@@ -406,97 +412,7 @@ def _legend(sheet: Canvas, rows: list[tuple[str, str]], left: float, top: float)
     for k, (colour, text) in enumerate(rows):
         y = top + _ROW * (k + 0.5)
         if colour:
-            sheet.area(_box(left, y - 4.0, left + 14.0, y + 4.0), faint(colour, _FILL), colour, 0.9)
+            sheet.area(_box(left, y - 4.0, left + 14.0, y + 4.0), faint(colour, FILL), colour, 0.9)
         else:
             sheet.line([(left, y), (left + 14.0, y)], GROUND, 0.9, (4.0, 2.0))
         sheet.write(text, (left + 20.0, y), anchor="left middle", size=_LETTERS)
-
-
-def contact_sheet(found: Clearance) -> Canvas:
-    """Return the sheet of ``contact_drawing``.
-
-    Parameters
-    ----------
-    found : Clearance
-        With a gap at least.
-
-    Returns
-    -------
-    Canvas
-    """
-    gap = found.shown
-    assert gap is not None
-    placed = Placed(found.assembly, found.placed(gap))
-    low, high = placed.bounds
-    margin = _MARGIN * float((high - low).max())
-    low, high = low - margin, high + margin
-    left = 34.0 + widest(ticks(float(low[1]), float(high[1]), most=7))
-    space = 52.0
-    wide = (72.0 * WIDTH - left - space - _RIGHT) / 2.0
-    tall = min(max(wide * (high - low)[1] / (high - low)[0], wide), 1.4 * wide)
-    sheet = Canvas(72.0 * WIDTH, _ABOVE + tall + _BELOW + 2.0 * _ROW)
-    size = float(max((high - low) / (wide, tall)))
-    x, y = gap.place
-    close = max(_CLOSE * float(np.hypot(*(high - low))), 1.5 * abs(gap.value)) / wide * 2.0
-    views = [
-        ("The whole linkage", left, (low + high) / 2.0, size),
-        ("Close-up", left + wide + space, np.array([x, y]), close),
-    ]
-    for title, at, centre, per_point in views:
-        half = per_point * np.array([wide, tall]) / 2.0
-        (x0, y0), (x1, y1) = centre - half, centre + half
-        axes = Axes(box=(at, _ABOVE, at + wide, _ABOVE + tall), x=(float(x0), float(x1)), y=(float(y0), float(y1)))
-        sheet.write(title, (at, _ABOVE - 4.0), anchor="left bottom")
-        _pair(sheet, axes, placed, gap, at - left + 12.0)
-    _told(sheet, found, gap, _ABOVE + tall + _BELOW)
-    return sheet
-
-
-def _pair(sheet: Canvas, axes: Axes, placed: Placed, gap: Gap, label_at: float) -> None:
-    """Draw two outlines within a window, the others as thin lines, and the place between them."""
-    import shapely
-
-    axes.scale_x(sheet, "x [mm]", most=5, grid=True)
-    axes.scale_y(sheet, "y [mm]", label_at=label_at, most=7, grid=True)
-    window = shapely.box(axes.x[0], axes.y[0], axes.x[1], axes.y[1])
-    shapes: Mapping[str, Any] = {
-        **{f"link {name}": shape for name, shape in placed.links.items()},
-        **{f"pin {name}": shape for name, shape in placed.pins.items()},
-    }
-    for name, shape in shapes.items():
-        if name not in gap.names:
-            draw(sheet, axes, shape.intersection(window), "", "#c3ccd4", 0.6)
-    obstacles, labels = [axes.at(_filled_around(gap.place, axes))], []
-    pair = sorted(gap.names, key=lambda name: -shapes[name].area)
-    for name, colour in zip(pair, (LAYERS[0], LAYERS[1]), strict=True):
-        shown = shapes[name].intersection(window)
-        draw(sheet, axes, shown, faint(colour, _FILL), colour, 0.9)
-        if not shown.is_empty:
-            obstacles.append(axes.at(_border(shown)))
-            inside = shown.representative_point().coords[0]
-            labels.append((axes.at(np.array([inside])), name, _dark(colour)))
-    axes.frame(sheet)
-    between = np.asarray(shapely.shortest_line(*(shapes[name] for name in gap.names)).coords)
-    if gap.value > 0.0 and abs(float(np.hypot(*(between[1] - between[0]))) - gap.value) < 0.01 * gap.value:
-        sheet.line(axes.at(between), JOINT_FORCE, 1.4)  # else pieces at other heights are nearer
-    sheet.ring(axes.at(gap.place), 5.0, JOINT_FORCE, 1.4)
-    place_labels(sheet, axes.box, labels, np.vstack(obstacles), size=_LETTERS)
-
-
-def _filled_around(place: ArrayLike, axes: Axes) -> Real:
-    """Points (n, 2) about a place, over which no label is to stand."""
-    per_point = (axes.x[1] - axes.x[0]) / (axes.box[2] - axes.box[0])
-    steps = per_point * np.linspace(-7.0, 7.0, 12)
-    x, y = np.meshgrid(steps, steps)
-    return np.asarray(place) + np.column_stack([x.ravel(), y.ravel()])
-
-
-def _told(sheet: Canvas, found: Clearance, gap: Gap, top: float) -> None:
-    """Say below what is shown."""
-    what = "first contact" if found.contact is not None else f"least gap, {number(gap.value, 3)} mm,"
-    text = f"{what} of {' and '.join(gap.names)}"
-    wide = extent(text, _LETTERS)[0]
-    left = (sheet.width - wide - 16.0) / 2.0
-    sheet.ring((left + 5.0, top + 0.5 * _ROW), 5.0, JOINT_FORCE, 1.4)
-    sheet.write(text, (left + 16.0, top + 0.5 * _ROW), anchor="left middle", size=_LETTERS)
-    sheet.write(found.where(gap), (sheet.width / 2.0, top + 1.5 * _ROW), size=_LETTERS)

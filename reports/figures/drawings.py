@@ -11,11 +11,11 @@ from loads.records.aero import shares
 from loads.records.applied import LineLoad, PointLoad, in_axes
 from loads.records.springs import LineSpring
 from loads.states.actions import stated_loads
-from reports.figures.silhouette import curves, outlines, silhouette
 from reports.figures.sprung import coil, spiral, stop_mark
 from reports.sheet.canvas import Canvas, extent
 from reports.sheet.labels import along, place_labels
 from reports.sheet.plot import Axes, ticks, widest
+from reports.sheet.silhouette import curves, outlines, silhouette
 from reports.sheet.style import GROUND, INK, JOINT_FORCE, LINK, LOAD, SPRING, TORQUE, WIDTH
 from reports.words.wording import number, turning
 

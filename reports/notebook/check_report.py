@@ -146,7 +146,7 @@ class CheckReport:
         CaseError
             For a case without layers, and where nothing lies at one height.
         """
-        from reports.figures.assembly import contact_drawing
+        from reports.figures.contact import contact_drawing
 
         if self.result.clearance is None or self.result.clearance.shown is None:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")

@@ -108,8 +108,9 @@ def draw_pictures(
     tuple
         Name -> PNG, and warnings.
     """
-    from reports.figures.assembly import assembly_drawing, contact_drawing
+    from reports.figures.assembly import assembly_drawing
     from reports.figures.build_map import build_map
+    from reports.figures.contact import contact_drawing
     from reports.figures.diagrams import internal_force_diagram
     from reports.figures.drawings import linkage_drawing
     from reports.figures.figures import stress_plots

@@ -7,7 +7,8 @@ from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 from legible import assert_legible, written
 
 from loads.states.clearance import clearance
-from reports.figures.assembly import LAYERS, Placed, assembly_sheet, contact_sheet, layer_colours
+from reports.figures.assembly import LAYERS, Placed, assembly_sheet, layer_colours
+from reports.figures.contact import contact_sheet
 from reports.sheet.canvas import faint
 from reports.sheet.marks import Area, Stroke
 

@@ -6,7 +6,7 @@ import pytest
 from fea.elements.space import displacement_space
 from geometry.meshing.mesh import COARSE, mesh_body
 from geometry.parts.part import Body, Disc, Pin
-from reports.figures.silhouette import curves, outlines, silhouette
+from reports.sheet.silhouette import curves, outlines, silhouette
 
 
 def test_a_disc_shows_its_face_and_the_circles_that_bound_it():
