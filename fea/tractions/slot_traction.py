@@ -55,9 +55,9 @@ def flank_pressure(wall: SurfaceQuadrature, centre: NDArray[np.float64], length:
 def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> Density:
     """Return the pressure of a pin in a slot that delivers its wrench, but for Fz.
 
-    The force Fy is even along the pin, and so is friction along the flank; the moment Mx about the slot's axis is that
-    of a tilted pin, which presses on one flank above the mid-plane and on the other below it, in proportion to the
-    height. Amplitude and slope along the slot are solved on the meshed flank, so that force and moment are exact. In a
+    The force Fy and the moment Mx about the slot's axis are one pressure that varies linearly along the pin, so that it
+    is on one flank up to a moment of Fy t/6, and beyond on both; friction along the flank is even along the pin.
+    Amplitude and slopes along slot and pin are solved on the meshed flank, so that force and moment are exact. In a
     slot whose middle lies off the link's plane of forces, heights count from its middle, and the force's moment about
     it is added. What else the wrench holds is rounding, or small on a deformed shape, and comes as a traction of the
     rigid-body fields.
@@ -95,18 +95,15 @@ def slot_traction(wall: SurfaceQuadrature, pin: PinLoad, law: PressureLaw) -> De
     # From -1 to 1 over the pressure's length, and over the height of the wall.
     arm = (wall.x - middle) / np.array([length / 2.0, 1.0, np.abs(wall.x[..., 2] - middle[2]).max()])
 
-    def flank(side: float) -> Density:
-        return flank_pressure(wall, middle, length, math.copysign(1.0, side))
-
     density = rubbed + wrench_density(wall, middle, np.array([fx, 0.0, 0.0, 0.0, my, mz]))
-    if fy != 0.0:
-        pushed = flank(fy)
-        density = density + _exact(wall, pin, middle, [pushed, arm[..., :1] * pushed, arm[..., 2:] * pushed], [fy, 0.0])
-    if mx != 0.0:
-        above = arm[..., 2:]
-        tilted = np.abs(above) * np.where(above > 0.0, flank(-mx), flank(mx))
-        density = density + _exact(wall, pin, middle, [tilted, arm[..., :1] * flank(mx), flank(mx)], [0.0, mx])
-    return density
+    if fy == 0.0 and mx == 0.0:
+        return density
+    half = float(np.ptp(wall.x[..., 2])) / 2.0
+    per_length = fy - 3.0 * mx / half * arm[..., 2:]
+    sides = [flank_pressure(wall, middle, length, side) for side in (1.0, -1.0)]
+    pushed = np.abs(per_length) * np.where(per_length > 0.0, *sides)
+    even = float(np.abs(per_length).max()) * sides[0 if (fy or -mx) > 0.0 else 1]
+    return density + _exact(wall, pin, middle, pushed, [even, arm[..., 2:] * even, arm[..., :1] * even], (fy, mx))
 
 
 def _rubbed(wall: SurfaceQuadrature, pin: PinLoad, middle: NDArray[np.float64], length: float) -> Density:
@@ -120,15 +117,25 @@ def _rubbed(wall: SurfaceQuadrature, pin: PinLoad, middle: NDArray[np.float64], 
 
 
 def _exact(
-    wall: SurfaceQuadrature, pin: PinLoad, middle: NDArray[np.float64], fields: list[Density], target: list[float]
+    wall: SurfaceQuadrature,
+    pin: PinLoad,
+    middle: NDArray[np.float64],
+    pushed: Density,
+    mended_by: list[Density],
+    target: tuple[float, float],
 ) -> Density:
-    """Return the sum of three fields along y that delivers Fy and Mx (``target``) about a pin's middle, and no Mz."""
-    columns = np.array([wall.wrench(field, middle)[[1, 3, 5]] for field in fields]).T
-    columns[1:] /= pin.diameter
-    if np.linalg.cond(columns) < 1e9:
-        factors = np.linalg.solve(columns, [target[0], target[1] / pin.diameter, 0.0])
-        if np.abs(factors[1:]).max() <= LARGEST_CORRECTION * abs(factors[0]):
-            return np.asarray(sum(factor * field for factor, field in zip(factors, fields, strict=True)))
+    """Return a pressure, scaled and mended by three fields along y so that it delivers Fy and Mx and no Mz."""
+
+    def delivered(field: Density) -> NDArray[np.float64]:
+        return np.asarray(wall.wrench(field, middle)[[1, 3, 5]] / [1.0, pin.diameter, pin.diameter])
+
+    wanted, got = np.array([target[0], target[1] / pin.diameter, 0.0]), delivered(pushed)
+    columns = np.array([delivered(field) for field in mended_by]).T
+    if got.any() and np.linalg.cond(columns) < 1e9:
+        scale = float(wanted @ got) / float(got @ got)
+        factors = np.linalg.solve(columns, wanted - scale * got)
+        if np.abs(factors).max() <= LARGEST_CORRECTION * scale:
+            return np.asarray(scale * pushed + sum(f * field for f, field in zip(factors, mended_by, strict=True)))
     raise CannotRunError(
         f"the slot at {pin.name} is meshed too coarsely at x = {pin.centre[0]:.4g} mm to carry the pin's pressure; "
         "refine it"

@@ -61,6 +61,14 @@ def test_in_a_slot_off_the_plane_of_forces_the_pin_tilts_about_its_middle(wall: 
     assert slot_traction(wall, pin(0.0, 3.0, 0.0, 6.0, 0.0, 0.0), WIDE) == pytest.approx(density, abs=1e-12)
 
 
+@pytest.mark.parametrize(("share", "both"), [(0.9, False), (2.0, True)])
+def test_force_and_moment_press_on_one_flank_up_to_a_sixth_of_the_wall(wall, share: float, both: bool) -> None:
+    force, height = 3.0, float(np.ptp(wall.x[..., 2]))
+    push = slot_traction(wall, pin(0.0, force, 0.0, share * force * height / 6.0, 0.0, 0.0), WIDE)[..., 1]
+    assert (push.min() < -0.1 * push.max()) == both
+    assert push.min() > -0.6 * push.max()
+
+
 @pytest.mark.parametrize("law", [WIDE, NARROW])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_it_pushes_one_flank_about_the_pin_alone(wall: SurfaceQuadrature, law: PressureLaw, side: float) -> None:
