@@ -22,6 +22,7 @@ from reports.tables.data import finite
 from reports.tables.frames import motion_linkage_line, motion_linkage_record
 from reports.tables.friction import motion_friction_lines, motion_friction_record
 from reports.tables.mechanism import design_lines, design_record
+from reports.tables.springs import motion_springs
 
 Real = NDArray[np.float64]
 
@@ -53,9 +54,9 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
 
 
 def write_tables(result: CaseMotion, folder: Path) -> None:
-    """Write ``links.csv``, ``points.csv``, ``torque.csv`` and ``joint-forces.csv``.
+    """Write ``links.csv``, ``points.csv``, ``torque.csv`` and ``joint-forces.csv``, with springs ``springs.csv``.
 
-    The last two have one load case below the other.
+    Torques and joint forces have one load case below the other.
 
     Parameters
     ----------
@@ -66,6 +67,8 @@ def write_tables(result: CaseMotion, folder: Path) -> None:
     motion = result.motion
     _write(folder / "links.csv", {**_base(motion), **_link_columns(motion)})
     _write(folder / "points.csv", {**_base(motion), **_point_columns(motion)})
+    if springs := motion_springs(result):
+        _write(folder / "springs.csv", {**_base(motion), **dict(springs)})
     _write_cases(folder / "torque.csv", motion, {n: _torque_columns(result, n) for n in result.torque})
     if result.forces:
         _write_cases(folder / "joint-forces.csv", motion, {n: _force_columns(result, n) for n in result.forces})
@@ -208,6 +211,11 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         print("\n" + "\n".join(design))
     if (line := clearance_line(clearance(result.case))) is not None:
         print("\n" + line)
+    for told, values in motion_springs(result):
+        ends = [float(f"{value:.4g}") for value in (values[0], values[-1], values.min(), values.max())]
+        print("\nSpring {}: {:g} -> {:g}; min {:g}, max {:g}".format(told, *ends), end="")
+    if result.case.springs or result.case.tendons:
+        print()
     for load_case, row in data["load_cases"].items():
         speed = row.get("speed_mm_per_s", row.get("speed_rad_per_s"))
         at = f"{speed:.4g} mm/s" if result.motion.slides else f"{speed * 30.0 / math.pi:.4g} rpm"

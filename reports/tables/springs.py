@@ -4,8 +4,12 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from loads.records.springs import TurnSpring
-from loads.states.springs import SpringState
+from loads.states.case_motion import CaseMotion
+from loads.states.springs import SpringState, spring_states
 from loads.states.standing import Standing
 from reports.words.wording import number, turning
 
@@ -83,6 +87,30 @@ def _effort(standing: Standing, state: SpringState) -> str:
     if effort == 0.0:
         return "slack" if state.kind == "tendon" else "neither pulls nor pushes"
     return f"{'pulls' if effort > 0.0 else 'pushes'} with {number(abs(effort))} N"
+
+
+def motion_springs(result: CaseMotion) -> list[tuple[str, NDArray[np.float64]]]:
+    """Return length and pull, or angle and moment, of every spring and tendon over a motion.
+
+    Parameters
+    ----------
+    result : CaseMotion
+        At n poses.
+
+    Returns
+    -------
+    list of tuple of str and ndarray, shape (n,)
+        Name with unit, and values.
+    """
+    found = []
+    for state in spring_states(result.case, result.motion.placement):
+        if state.turns:
+            found.append((f"{state.name} angle [deg]", np.degrees(state.size)))
+            found.append((f"{state.name} moment [N mm]", state.effort))
+        else:
+            found.append((f"{state.name} length [mm]", state.size))
+            found.append((f"{state.name} pull [N]", state.effort))
+    return found
 
 
 def standing_record(standing: Standing) -> dict[str, Any]:

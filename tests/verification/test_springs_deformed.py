@@ -94,6 +94,33 @@ ALL = {
 }  # fmt: skip
 
 
+def test_a_redundant_linkage_balances_by_virtual_work():
+    """Three parallel links of 50 mm carry one bar: k (90 deg - t) + 50 (-1 sin t - 10 cos t) = 0."""
+    links = {
+        "base": {"ground": True, "points": {p: [f"{x} mm", "0 mm"] for p, x in (("A", 0), ("B", 40), ("C", 80))}},
+        "top": {"part": "bar", "points": {p: [f"{x} mm", "0 mm"] for p, x in (("D", 0), ("E", 40), ("F", 80))}},
+    }
+    joints = {}
+    for one, foot, head in (("l1", "A", "D"), ("l2", "B", "E"), ("l3", "C", "F")):
+        links[one] = {"part": "bar", "points": {foot: ["0 mm", "0 mm"], head: ["50 mm", "0 mm"]}}
+        joints[foot] = {"links": ["base", one], "pin_diameter": "3 mm"}
+        joints[head] = {"links": [one, "top"], "pin_diameter": "3 mm"}
+    near = {"l2": "80 deg", "l3": "80 deg", "top": "0 deg"}
+    tables = {
+        "links": links,
+        "joints": joints,
+        "pose": {"coordinate": "l1", "angle": "80 deg", "near": near, "equilibrium": True},
+        "springs": {"s": {"joint": "A", "stiffness": "4000 N*mm/rad", "free_angle": "90 deg"}},
+        "load_cases": {"w": {"forces": [{"link": "top", "at": "E", "force": ["1 N", "-10 N"]}]}},
+    }
+    statics = solve_case_statics(validate({**{k: v for k, v in tomllib.loads(ARM).items() if k != "drive"}, **tables}))
+    angle = brentq(
+        lambda t: 4000.0 * (math.pi / 2.0 - t) - 50.0 * (math.sin(t) + 10.0 * math.cos(t)), 0.5, 2.0, xtol=1e-15
+    )
+    assert statics.pose.angles["l2"] == pytest.approx(angle, abs=1e-10)
+    assert statics.reactions["w"].drive_torque == pytest.approx(0.0, abs=1e-6)
+
+
 @pytest.mark.parametrize("factor", [0.0, 0.6])
 def test_the_tangent_is_the_derivative(factor):
     """Central differences of the out-of-balance forces in a bent state of a four-bar, whose hinge turns."""

@@ -9,6 +9,8 @@ from sprung_cases import CROWN, case_of, stands
 from fea.check.anchor import anchor_loads
 from fea.check.run import check_case
 from loads.case.case_file import read_case
+from loads.states.case_motion import solve_case_motion
+from reports.commands.motion import write_tables
 from reports.figures.drawings import linkage_drawing
 from reports.figures.sprung import coil, spiral, stop_mark
 from reports.page.coverage import not_covered
@@ -83,6 +85,17 @@ def test_the_drawing_shows_spring_and_stops(balanced, tmp_path):
     pixels = np.asarray(Image.open(path).convert("RGB")).astype(int)
     colour = np.array([int(SPRING[i : i + 2], 16) for i in (1, 3, 5)])
     assert np.count_nonzero(np.abs(pixels - colour).sum(axis=-1) < 12) > 500
+
+
+def test_a_motion_tells_its_springs(tmp_path):
+    moved = solve_case_motion(read_case(PEDAL, ["load_cases.foot.own_weight=false", "motion.poses=8"]))
+    write_tables(moved, tmp_path)
+    table = np.genfromtxt(tmp_path / "springs.csv", delimiter=",", names=True, deletechars="")
+    angle = np.radians(np.linspace(100.0, 65.0, 8))
+    length = np.hypot(80.0 * np.cos(angle) + 70.0, 80.0 * np.sin(angle) - 75.0)
+    assert list(table.dtype.names[-2:]) == ["return_length_[mm]", "return_pull_[N]"]
+    assert table["return_length_[mm]"] == pytest.approx(length, rel=1e-6)
+    assert table["return_pull_[N]"] == pytest.approx(0.8 * (length - 45.0), rel=1e-6)
 
 
 def test_lines_of_springs_end_where_they_should():
