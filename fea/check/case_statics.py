@@ -13,9 +13,10 @@ from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import Load, PartMass
 from loads.sources.published_statics import StaticsAudit, audit
 from loads.states.actions import acting_loads, needs_masses, placed
+from loads.states.drive_work import DriveWork, pose_work
 from loads.states.masses import part_masses
 from loads.states.play import play_of
-from loads.states.rubbing import DriveWork, each_direction, pose_work
+from loads.states.rubbing import each_direction
 from loads.states.standing import Standing, stand
 from loads.statics.statics import Reactions
 

@@ -27,7 +27,7 @@ from loads.case.case import Case
 from loads.records.applied import Load
 from loads.sources.published_statics import StaticsAudit
 from loads.states.clearance import Clearance
-from loads.states.rubbing import DriveWork
+from loads.states.drive_work import DriveWork
 from loads.states.standing import Standing
 from loads.statics.statics import Reactions
 

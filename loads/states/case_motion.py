@@ -15,6 +15,7 @@ from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import Load, PartMass
 from loads.records.load_case import LoadCase, gravity
 from loads.states.actions import acting_loads, inertia_loads, needs_masses, refuse_turning_bonds, stated_loads
+from loads.states.drive_work import DriveWork, drive_work
 from loads.states.kinetostatics import (
     Kinetostatics,
     Power,
@@ -25,7 +26,7 @@ from loads.states.kinetostatics import (
     torque_by_virtual_work,
 )
 from loads.states.masses import laden_masses, part_masses
-from loads.states.rubbing import DriveWork, Rubbing, drive_work, each_direction, lock_sentence, motion_friction
+from loads.states.rubbing import Rubbing, each_direction, lock_sentence, motion_friction
 from loads.states.springs import spring_loads
 from loads.states.standing import refuse_stops
 from loads.statics.statics import Drive

@@ -7,7 +7,7 @@ play. The extremes are the sums over the joints of c/2 times the size of the gra
 worst together; at one pose the linkage is then solved at that worst combination, and the outer of both counts.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,9 +19,11 @@ from geometry.linkage.placement import Placement
 from geometry.linkage.play import LooseJoints
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
-from loads.case.joint_rules import clearances
+from loads.case.joint_rules import clearances, rubbing_joints
 from loads.records.applied import Load, PartMass
 from loads.states.actions import acting_loads
+from loads.states.kinetostatics import is_determinate
+from loads.states.rubbing import WAYS, friction_at
 from loads.statics.joint_reaction import JointReaction
 from loads.statics.statics import NEARLY_SINGULAR, Drive, assemble, joint_reactions
 
@@ -110,6 +112,8 @@ class Play:
         Of the parts.
     rates : callable
         Returns a placement with the rates that the load case gives it.
+    friction : callable
+        Returns a placement's friction under loads, besides these; None where it locks the linkage.
     """
 
     case: Case
@@ -117,6 +121,7 @@ class Play:
     loose: LooseJoints
     masses: Mapping[str, PartMass]
     rates: Callable[[Placement], Placement]
+    friction: Callable[[Placement, Sequence[Load]], tuple[Load, ...] | None]
 
     @property
     def clearances(self) -> dict[str, float]:
@@ -139,13 +144,17 @@ class Play:
         Returns
         -------
         Displaced or None
-            None where a dead point lies on the way.
+            None where a dead point lies on the way, or friction locks the linkage.
         """
         place, closed = self.loose.moved(offsets)
         if not np.all(closed):
             return None
         place = self.rates(place)
         loads = acting_loads(self.case, self.case.load_cases[self.load_case], place, self.masses)
+        rubbed = self.friction(place, loads)
+        if rubbed is None:
+            return None
+        loads += rubbed
         system = assemble(place, self.drive, loads)
         distance = system.singular_values[..., -1]
         if np.any(distance < NEARLY_SINGULAR):
@@ -417,8 +426,15 @@ def play_at(
         rate, change = (np.asarray(x)[..., None] for x in (speed, acceleration))
         return replace(place, qdot=rate * first, qddot=rate**2 * second + change * first)
 
+    def friction(place: Placement, loads: Sequence[Load]) -> tuple[Load, ...] | None:
+        name, sense = coordinate or case.pose.coordinate, WAYS.get(case.load_cases[load_case].direction)
+        if not rubbing_joints(case) or name is None or sense is None or not is_determinate(case.linkage):
+            return ()
+        travels = slides if coordinate else case.pose.travel is not None
+        return friction_at(DrivenClosure(place.closure, name, travels), place, case.pinned_drive, loads, sense)
+
     loose = LooseJoints(place=place.at_rest, radii=radii, held=held_rows(place, case.pinned_drive))
-    return Play(case=case, load_case=load_case, loose=loose, masses=masses, rates=rates)
+    return Play(case=case, load_case=load_case, loose=loose, masses=masses, rates=rates, friction=friction)
 
 
 def held_rows(place: Placement, drive: Drive | None) -> Real:

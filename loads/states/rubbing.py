@@ -8,15 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CaseError
+from geometry.linkage.driven import DrivenClosure
 from geometry.linkage.motion import Motion, solve_motion
+from geometry.linkage.placement import Placement
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import Load, at_poses, chosen
 from loads.records.load_case import LoadCase
-from loads.states.kinetostatics import is_determinate, leverage, relative_motion
+from loads.states.kinetostatics import is_determinate, leverage
 from loads.statics.friction import Friction, friction_loads, solve_friction
-from loads.statics.statics import NEARLY_SINGULAR, Drive, Reactions
+from loads.statics.statics import NEARLY_SINGULAR, Drive
 
 Real = NDArray[np.float64]
 
@@ -123,6 +125,37 @@ def pose_friction(case: Case, load_case: str, pose: Pose, loads: Sequence[Load])
             "the pose or the drive, or state the direction of the load case if it never moves that way"
         )
     return tuple(chosen(load, 0) for load in found.loads)
+
+
+def friction_at(
+    driven: DrivenClosure, place: Placement, drive: Drive | None, loads: Sequence[Load], sense: float
+) -> tuple[Load, ...] | None:
+    """Return the friction at one pose or at n as loads.
+
+    Parameters
+    ----------
+    driven : DrivenClosure
+        The loops of the linkage, with what moves it.
+    place : Placement
+        Where the links stand.
+    drive : Drive or None
+    loads : sequence of Load
+        All else that acts.
+    sense : float
+        1 where the coordinate grows, -1 where it falls.
+
+    Returns
+    -------
+    tuple of Load or None
+        None where friction locks the linkage.
+    """
+    poses = place.q.reshape(-1, place.q.shape[-1])
+    moved = replace(place, q=poses, qdot=driven.coefficients(poses)[0], qddot=None)
+    acting = [at_poses(load, moved.shape) for load in loads]
+    found = solve_friction(moved, drive, acting, sense)
+    if found.locked.any():
+        return None
+    return found.loads if place.shape else tuple(chosen(load, 0) for load in found.loads)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -266,134 +299,3 @@ def told_direction(way: str, coordinate: str | None, slides: bool) -> str:
 
 def _percent(share: float) -> str:
     return f"{100.0 * share:.3g} %"
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class DriveWork:
-    """What the drive does with and without friction, at n poses.
-
-    Attributes
-    ----------
-    way : str
-        Direction of the motion, "forward" or "backward".
-    without, effort : array (n,)
-        Torque [N mm] or force [N] of the drive without friction, and with it.
-    power_without, power : array (n,)
-        Power per unit speed of the coordinate, in the direction of the motion [N mm].
-    angles : array (n,)
-        The coordinate [rad, mm].
-    """
-
-    way: str
-    without: Real
-    effort: Real
-    power_without: Real
-    power: Real
-    angles: Real
-
-    @property
-    def efficiency(self) -> Real:
-        """Work out over work in (n,): from 0 to 1; NaN where nothing is driven.
-
-        Where the drive moves the load, it is the power without friction over that with it; where the load moves the
-        drive, the inverse, and 0 where the load cannot.
-        """
-        return efficiency(self.power_without, self.power)
-
-    @property
-    def total_without(self) -> float:
-        """Work of the drive over all poses without friction [N mm]; zero where rounding alone is left."""
-        whole, sizes = (self._integral(power) for power in (self.power_without, np.abs(self.power_without)))
-        return 0.0 if abs(whole) <= 1e-9 * sizes else whole
-
-    @property
-    def total(self) -> float:
-        """Work of the drive over all poses with friction [N mm]; NaN where it is locked or at a dead point."""
-        return self._integral(self.power)
-
-    @property
-    def of_cycle(self) -> float:
-        """Work out over work in over all poses; NaN where no work is left over them without friction."""
-        return float(efficiency(self.total_without, self.total))
-
-    def _integral(self, power: Real) -> float:
-        return float(np.trapezoid(power, np.abs(self.angles - self.angles[0])))
-
-    @property
-    def holds_itself(self) -> NDArray[np.bool_]:
-        """True (n,) where the load would move the linkage without friction, and does not with it."""
-        rounding = 1e-12 * float(np.nanmax(np.abs(self.power_without), initial=0.0))
-        return np.asarray((self.power_without < -rounding) & (self.power >= 0.0))
-
-
-def efficiency(without: Real | float, power: Real | float) -> Real:
-    """Return work out over work in from the drive's work without friction and with it.
-
-    Parameters
-    ----------
-    without, power : float or array (...)
-        In the direction of the motion; negative where the load moves the drive. ``power`` is the larger of the two.
-
-    Returns
-    -------
-    array (...)
-        From 0 to 1; NaN where no work is done or it is not known.
-
-    References
-    ----------
-    Norton, Design of Machinery, 5th ed., chapter 6 (mechanical efficiency).
-    """
-    out, given = np.asarray(without, dtype=float), np.asarray(power, dtype=float)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(out > 0.0, out / given, np.maximum(np.where(out < 0.0, given / out, np.nan), 0.0))
-
-
-def drive_work(motion: Motion, drive: Drive, way: str, without: Real, effort: Real) -> DriveWork:
-    """Return what the drive does with and without friction.
-
-    Parameters
-    ----------
-    motion : Motion
-        The n poses.
-    drive : Drive
-    way : str
-        "forward" or "backward".
-    without, effort : array (n,)
-        Torque [N mm] or force [N] of the drive without friction, and with it.
-
-    Returns
-    -------
-    DriveWork
-    """
-    moved = WAYS[way] * relative_motion(motion, drive)
-    return DriveWork(
-        way=way,
-        without=without,
-        effort=effort,
-        power_without=without * moved,
-        power=effort * moved,
-        angles=motion.angles,
-    )
-
-
-def pose_work(case: Case, load_case: str, pose: Pose, without: Reactions, reactions: Reactions) -> DriveWork:
-    """Return what the drive does with and without friction at one pose.
-
-    Parameters
-    ----------
-    case : Case
-    load_case : str
-        Its name; it states its direction.
-    pose : Pose
-    without, reactions : Reactions
-        Without friction, and with it.
-
-    Returns
-    -------
-    DriveWork
-        At n = 1 pose.
-    """
-    drive = case.pinned_drive
-    assert drive is not None
-    efforts = (np.array([one.drive_torque + one.drive_force]) for one in (without, reactions))
-    return drive_work(at_one_pose(pose), drive, case.load_cases[load_case].direction, *efforts)

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from loads.records.applied import Load
 from loads.states.case_motion import CaseMotion
-from loads.states.rubbing import DriveWork, told_direction
+from loads.states.drive_work import DriveWork
+from loads.states.rubbing import told_direction
 from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Reactions
 from reports.words.wording import number

@@ -1,0 +1,146 @@
+"""What the drive does with and without friction: power, work, efficiency, and where the linkage holds itself."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.motion import Motion
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.states.kinetostatics import relative_motion
+from loads.states.rubbing import WAYS, at_one_pose
+from loads.statics.statics import Drive, Reactions
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DriveWork:
+    """What the drive does with and without friction, at n poses.
+
+    Attributes
+    ----------
+    way : str
+        Direction of the motion, "forward" or "backward".
+    without, effort : array (n,)
+        Torque [N mm] or force [N] of the drive without friction, and with it.
+    power_without, power : array (n,)
+        Power per unit speed of the coordinate, in the direction of the motion [N mm].
+    angles : array (n,)
+        The coordinate [rad, mm].
+    """
+
+    way: str
+    without: Real
+    effort: Real
+    power_without: Real
+    power: Real
+    angles: Real
+
+    @property
+    def efficiency(self) -> Real:
+        """Work out over work in (n,): from 0 to 1; NaN where nothing is driven.
+
+        Where the drive moves the load, it is the power without friction over that with it; where the load moves the
+        drive, the inverse, and 0 where the load cannot.
+        """
+        return efficiency(self.power_without, self.power)
+
+    @property
+    def total_without(self) -> float:
+        """Work of the drive over all poses without friction [N mm]; zero where rounding alone is left."""
+        whole, sizes = (self._integral(power) for power in (self.power_without, np.abs(self.power_without)))
+        return 0.0 if abs(whole) <= 1e-9 * sizes else whole
+
+    @property
+    def total(self) -> float:
+        """Work of the drive over all poses with friction [N mm]; NaN where it is locked or at a dead point."""
+        return self._integral(self.power)
+
+    @property
+    def of_cycle(self) -> float:
+        """Work out over work in over all poses; NaN where no work is left over them without friction."""
+        return float(efficiency(self.total_without, self.total))
+
+    def _integral(self, power: Real) -> float:
+        return float(np.trapezoid(power, np.abs(self.angles - self.angles[0])))
+
+    @property
+    def holds_itself(self) -> NDArray[np.bool_]:
+        """True (n,) where the load would move the linkage without friction, and does not with it."""
+        rounding = 1e-12 * float(np.nanmax(np.abs(self.power_without), initial=0.0))
+        return np.asarray((self.power_without < -rounding) & (self.power >= 0.0))
+
+
+def efficiency(without: Real | float, power: Real | float) -> Real:
+    """Return work out over work in from the drive's work without friction and with it.
+
+    Parameters
+    ----------
+    without, power : float or array (...)
+        In the direction of the motion; negative where the load moves the drive. ``power`` is the larger of the two.
+
+    Returns
+    -------
+    array (...)
+        From 0 to 1; NaN where no work is done or it is not known.
+
+    References
+    ----------
+    Norton, Design of Machinery, 5th ed., chapter 6 (mechanical efficiency).
+    """
+    out, given = np.asarray(without, dtype=float), np.asarray(power, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(out > 0.0, out / given, np.maximum(np.where(out < 0.0, given / out, np.nan), 0.0))
+
+
+def drive_work(motion: Motion, drive: Drive, way: str, without: Real, effort: Real) -> DriveWork:
+    """Return what the drive does with and without friction.
+
+    Parameters
+    ----------
+    motion : Motion
+        The n poses.
+    drive : Drive
+    way : str
+        "forward" or "backward".
+    without, effort : array (n,)
+        Torque [N mm] or force [N] of the drive without friction, and with it.
+
+    Returns
+    -------
+    DriveWork
+    """
+    moved = WAYS[way] * relative_motion(motion, drive)
+    return DriveWork(
+        way=way,
+        without=without,
+        effort=effort,
+        power_without=without * moved,
+        power=effort * moved,
+        angles=motion.angles,
+    )
+
+
+def pose_work(case: Case, load_case: str, pose: Pose, without: Reactions, reactions: Reactions) -> DriveWork:
+    """Return what the drive does with and without friction at one pose.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name; it states its direction.
+    pose : Pose
+    without, reactions : Reactions
+        Without friction, and with it.
+
+    Returns
+    -------
+    DriveWork
+        At n = 1 pose.
+    """
+    drive = case.pinned_drive
+    assert drive is not None
+    efforts = (np.array([one.drive_torque + one.drive_force]) for one in (without, reactions))
+    return drive_work(at_one_pose(pose), drive, case.load_cases[load_case].direction, *efforts)
