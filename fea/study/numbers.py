@@ -9,12 +9,13 @@ import numpy as np
 
 from fea.check.clearance import clearance_outcomes
 from fea.common.band import Band
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Verdict, overall
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, overall
 from fea.motion.envelope_result import EnvelopeResult
 from fea.motion.linkage_history import LinkageOverMotion, asked_over_motion, limit_load_outcomes
 from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.result import CheckResult, LinkageNumbers
 from loads.case.case import Case
+from loads.case.layers import pin_masses
 from loads.records.check_spec import MotorCheck
 from loads.states.case_motion import CaseMotion
 from loads.states.clearance import clearance
@@ -275,7 +276,8 @@ def _masses(case: Case, *, weighs: Weighs) -> Iterable[VariantNumber]:
         return ()
     rough = weighs == "rough"
     found = rough_masses(case) if rough else {link: mass.mass for link, mass in part_masses(case).items()}
-    masses: Mapping[str, float] = {link: 1e6 * mass for link, mass in found.items()}
+    pins = {str(Subject.pin(joint)): pin.mass for joint, pin in pin_masses(case).items()}
+    masses: Mapping[str, float] = {name: 1e6 * mass for name, mass in (found | pins).items()}
     numbers = [VariantNumber.exact("mass", "g", mass, link) for link, mass in masses.items()]
     numbers.append(VariantNumber.exact("mass", "g", sum(masses.values()), LINKED))
     return [replace(number, low=math.nan, high=math.nan) for number in numbers] if rough else numbers

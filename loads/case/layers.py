@@ -1,9 +1,12 @@
-"""Layers: how much of the height along the pins each link takes up, and what must fit together."""
+"""Layers: how much of the height along the pins links and pins take up, what pins weigh, and what must fit together."""
+
+import math
 
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
 from loads.case.forks import forked_link
 from loads.case.heights import thickness
+from loads.records.carried import CarriedBody
 
 
 def slab(case: CoreCase, name: str) -> tuple[float, float]:
@@ -27,6 +30,71 @@ def slab(case: CoreCase, name: str) -> tuple[float, float]:
         return level + min(ring.low for ring in rings), level + max(ring.high for ring in rings)
     half = (known or 0.0) / 2.0
     return level - half, level + half
+
+
+def on_one_axis(case: CoreCase) -> tuple[tuple[str, ...], ...]:
+    """Return the joints, those together whose pins stand in one hole of a link, and so are one pin.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    tuple of tuple of str
+        Every joint once.
+    """
+    groups: list[tuple[set[tuple[str, str]], tuple[str, ...]]] = []
+    for name, joint in case.joints.items():
+        ends = list(zip(joint.links, case.linkage.joint_points(name), strict=True))
+        axis = set(ends if joint.type == "revolute" else ends[1:])  # a slot's own point is not where the pin is
+        names: tuple[str, ...] = ()
+        for group in [group for group in groups if group[0] & axis]:
+            groups.remove(group)
+            axis, names = axis | group[0], names + group[1]
+        groups.append((axis, (*names, name)))
+    return tuple(names for _, names in groups)
+
+
+def pin_masses(case: CoreCase) -> dict[str, CarriedBody]:
+    """Return what the pins of a layered case weigh: cylinders from the lowest to the highest face of their links.
+
+    A pin moves with the link in which it is tight, else with the first one of its joint; one in a slot with the link
+    that slides. Pins on one axis of one diameter are one.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    dict of str to CarriedBody
+        First joint of a pin -> its mass, at the joint. Pins without diameter are left out, and those that stand in a
+        ground without part; there are none without layers.
+    """
+    found: dict[str, CarriedBody] = {}
+    for names in on_one_axis(case) if case.layered else ():
+        own = [name for name in names if case.joints[name].type != "slider"]
+        for diameter in dict.fromkeys(case.joints[name].pin_diameter for name in own):
+            alike = [name for name in own if case.joints[name].pin_diameter == diameter]
+            link, point = _standing_in(case, alike)
+            if diameter is None or (link == case.linkage.ground and case.links[link].part is None):
+                continue
+            faces = [z for name in alike for link_of in case.joints[name].links for z in slab(case, link_of)]
+            density = case.all_materials[case.joints[alike[0]].pin_material].density
+            mass = density * math.pi / 4.0 * diameter**2 * (max(faces) - min(faces))
+            if mass > 0.0:
+                found[alike[0]] = CarriedBody.model_construct(link=link, at=point, mass=mass)
+    return found
+
+
+def _standing_in(case: CoreCase, names: list[str]) -> tuple[str, str]:
+    """Return link and point with which the pin of joints on one axis moves."""
+    stated = [n for n in names if case.joints[n].tight_in is not None and case.joints[n].type == "revolute"]
+    name = (stated or names)[0]
+    joint = case.joints[name]
+    link = joint.links[1] if joint.type != "revolute" else joint.tight_in or joint.links[0]
+    return link, case.linkage.point_of(name, link)
 
 
 def check_layers(case: CoreCase) -> None:

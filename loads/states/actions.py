@@ -16,6 +16,7 @@ from loads.records.aero import air_loads
 from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad, at_poses, shifted
 from loads.records.carried import Carried, CarriedSpread, mass_of
 from loads.records.load_case import LoadCase, gravity, vector3
+from loads.states.masses import all_carried
 from loads.states.springs import spring_loads
 
 Real = NDArray[np.float64]
@@ -93,6 +94,8 @@ def refuse_turning_bonds(place: Placement) -> None:
 def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
     """Return all that acts on the links but the joint forces: stated loads, air, weight, inertia, springs and tendons.
 
+    In layers pins weigh too (``loads.case.layers.pin_masses``), in the mid-plane of the link that they stand in.
+
     Parameters
     ----------
     case : Case
@@ -112,8 +115,8 @@ def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapp
     if load_case.own_weight or place.qddot is not None:
         pull = gravity(load_case) if load_case.own_weight else np.zeros(3)
         loads += inertia_loads(place, masses, pull)
-        if load_case.carried:
-            loads += tuple(_carried_load(place, carried, pull) for carried in case.carried)
+        carried = all_carried(case, stated=load_case.carried)
+        loads += tuple(_carried_load(place, mass, pull) for mass in carried)
     loads += spring_loads(case, place)
     return tuple(at_poses(load, place.shape) for load in loads)
 

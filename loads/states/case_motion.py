@@ -196,7 +196,7 @@ def drive_effort(solved: Kinetostatics) -> Real:
 def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMass], friction: Sequence[Load]) -> Power:
     """Return the energies of a load case, where each link's part and what it carries count as one mass."""
     load_case, place = case.load_cases[name], motion.placement
-    laden = laden_masses(case, masses) if load_case.carried else masses
+    laden = laden_masses(case, masses, stated=load_case.carried)
     weights = inertia_loads(place.at_rest, laden, gravity(load_case)) if load_case.own_weight else ()
     others = (*stated_loads(case, load_case), *spring_loads(case, place))
     return energies(place, (*others, *weights, *friction), laden if with_inertia(case, name) else {})

@@ -15,7 +15,7 @@ from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.placement import Placement
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
-from loads.case.layers import slab
+from loads.case.layers import on_one_axis, slab
 from loads.states.case_motion import drive_angles
 
 Real = NDArray[np.float64]
@@ -63,21 +63,11 @@ class Assembly:
     @cached_property
     def holders(self) -> dict[str, set[str]]:
         """Joint -> the links that its pin belongs to: those of all joints on one axis."""
-        groups: list[tuple[set[tuple[str, str]], set[str]]] = []
-        for name, joint in self.case.joints.items():
-            ends = list(zip(joint.links, self.case.linkage.joint_points(name), strict=True))
-            axis = set(ends if joint.type == "revolute" else ends[1:])  # a slot's own point is not where the pin is
-            held = set(joint.links)
-            for group in [group for group in groups if group[0] & axis]:
-                groups.remove(group)
-                axis, held = axis | group[0], held | group[1]
-            groups.append((axis, held))
-        return {name: next(held for axis, held in groups if self._end(name) in axis) for name in self.case.joints}
-
-    def _end(self, joint: str) -> tuple[str, str]:
-        spot = self.spot(joint)
-        assert spot.point is not None
-        return spot.link, spot.point
+        found: dict[str, set[str]] = {}
+        for names in on_one_axis(self.case):
+            held = {link for name in names for link in self.case.joints[name].links}
+            found |= dict.fromkeys(names, held)
+        return found
 
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:

@@ -9,8 +9,9 @@ from geometry.base.errors import AlulaError
 from geometry.meshing.mesh import MassProperties, mass_properties
 from geometry.parts.part import Body
 from loads.case.case import Case
+from loads.case.layers import pin_masses
 from loads.records.applied import PartMass
-from loads.records.carried import mass_of
+from loads.records.carried import Carried, mass_of
 
 
 @lru_cache(maxsize=256)
@@ -84,7 +85,23 @@ def rough_masses(case: Case) -> dict[str, float]:
     return found
 
 
-def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMass]:
+def all_carried(case: Case, *, stated: bool = True) -> tuple[Carried, ...]:
+    """Return the masses that links carry besides their parts: the pins between layers, and what the case states.
+
+    Parameters
+    ----------
+    case : Case
+    stated : bool, optional
+        False where a load case leaves out what the case states; pins are always there.
+
+    Returns
+    -------
+    tuple of CarriedSpread or CarriedBody
+    """
+    return (*pin_masses(case).values(), *(case.carried if stated else ()))
+
+
+def laden_masses(case: Case, masses: Mapping[str, PartMass], *, stated: bool = True) -> dict[str, PartMass]:
     """Return the masses of the links, each of its part and what it carries.
 
     Parameters
@@ -92,6 +109,8 @@ def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMa
     case : Case
     masses : mapping of str to PartMass
         Of the parts alone, by link.
+    stated : bool, optional
+        As for ``all_carried``.
 
     Returns
     -------
@@ -99,7 +118,7 @@ def laden_masses(case: Case, masses: Mapping[str, PartMass]) -> dict[str, PartMa
         By link.
     """
     found = dict(masses)
-    for carried in case.carried:
+    for carried in all_carried(case, stated=stated):
         own, more = found.get(carried.link), mass_of(carried, case.links[carried.link].points)
         found[carried.link] = more if own is None else together(own, more)
     return found

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from fea.check.anchor import anchor_loads
 from fea.outcomes.result import CheckResult, LoadCaseResult
 from loads.case.case import Case
+from loads.case.layers import pin_masses
 from loads.records.aero import shares
 from loads.records.carried import CarriedSpread
 from reports.tables.data import entries
@@ -33,6 +34,9 @@ def weight_sentence(case: Case, name: str) -> str:
         return "The links are massless in this load case; weights are among the stated forces"
     kind = "weight" if load_case.speed == 0.0 else "weight and inertia" if load_case.own_weight else "inertia"
     told = [f"The links have {kind} from volume and density of their parts"]
+    if pins := pin_masses(case):
+        own = [f"{plain(float(f'{pin.mass * 1e6:.3g}'))} g at {joint} on {pin.link}" for joint, pin in pins.items()]
+        told.append(f"pins weigh {joined(own)}")
     if case.carried and load_case.carried:
         carried = [
             f"{mass.link} carries {plain(float(f'{mass.mass * 1e6:.4g}'))} g "
