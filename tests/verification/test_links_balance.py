@@ -15,6 +15,7 @@ CASES = {
     "owl-wing-static": [],
     "flapping-wing-chosen": [],
     "ornithopter": [],
+    "spring-pedal": [],
     "four-bar-synthesis": ["load_cases.weight.own_weight=true", "load_cases.weight.speed=300 rpm"],
 }
 
