@@ -11,7 +11,16 @@ from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Reactions
 from loads.statics.system import System
 from reports.tables.data import finite
-from reports.tables.frames import AXES, play_line, play_record, reaction_records, shown_components, tips
+from reports.tables.frames import (
+    AXES,
+    play_line,
+    play_record,
+    reaction_records,
+    shown_components,
+    thrust_line,
+    thrust_records,
+    tips,
+)
 from reports.tables.friction import friction_record, friction_sentence
 from reports.tables.springs import holding_sentence, spring_sentences, standing_record
 
@@ -53,6 +62,8 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
                 f"  {joint.joint:<{width}} {joint.by} pushes {joint.on} with ({force}) N, {size} N"
                 f"{turned}{' N·mm' if turned else ''}"
             )
+        if told := thrust_line(statics.forces[title]):
+            print(f"  {told}")
         standing = statics.standing[title]
         held = holding_sentence(standing)
         for line in (*filter(None, [held]), *spring_sentences(standing)):
@@ -127,6 +138,7 @@ def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
                 "reactions": reaction_records(reactions),
                 "drive_torque": reactions.driving[0],
                 "drive_force": reactions.driving[1],
+                "thrust": thrust_records(statics.forces[title]),
                 **standing_record(statics.standing[title]),
                 "residual": reactions.residual,
                 "condition": reactions.system.condition,

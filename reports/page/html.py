@@ -25,7 +25,7 @@ from reports.page.pictures import (
 )
 from reports.tables.claims import as_records, count
 from reports.tables.clearance import MOST, clearance_line, clearance_record
-from reports.tables.frames import AXES, linkage_line, play_line, shown_components, tips
+from reports.tables.frames import AXES, linkage_line, play_line, shown_components, thrust_line, tips
 from reports.tables.friction import friction_sentence
 from reports.tables.layers import BuildDirections, build_directions_of
 from reports.tables.loads import air_record, anchor_record, weight_sentence
@@ -107,6 +107,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         "sentence": sentence,
         "capitalize_first": lambda text: text[:1].upper() + text[1:],
         "linkage_line": linkage_line,
+        "thrust_line": thrust_line,
         "play_line": play_line,
         "complex": complex,
         "solved": solver_sentence,

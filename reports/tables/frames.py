@@ -7,6 +7,7 @@ import numpy as np
 
 from fea.common.band import Band
 from fea.common.source import play_source
+from fea.frame.thrust import thrusts
 from loads.case.case import Case
 from loads.records.check_spec import DisplacementCheck
 from loads.states.play import Play, Span
@@ -15,6 +16,7 @@ from reports.tables.data import data, entries
 from reports.words.wording import band, fixed, limit_load, number
 
 if TYPE_CHECKING:
+    from fea.frame.joint_forces import JointForces
     from fea.motion.linkage_history import LinkageOverMotion
     from fea.outcomes.result import CheckResult, LoadCaseResult
     from loads.states.case_motion import CaseMotion
@@ -76,7 +78,7 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
     Returns
     -------
     dict
-        ``joint_forces``, ``large_displacement``, ``linkage``, ``play``, ``pins`` and ``ways_to_hold``.
+        ``joint_forces``, ``large_displacement``, ``linkage``, ``play``, ``thrust``, ``pins`` and ``ways_to_hold``.
     """
     moved = case.large_displacement
     deformed = moved.reactions
@@ -99,6 +101,7 @@ def frame_record(case: "LoadCaseResult") -> dict[str, Any]:
             "dead_point_distance": case.linkage.dead_point_distance,
         },
         "play": play_record(case.forces.play),
+        "thrust": thrust_records(case.forces, deformed),
         "pins": [{"joint": joint} | entries(pin, "lever moment bending shear") for joint, pin in case.pins.items()],
         "ways_to_hold": [entries(held, "name displacement size play") for held in case.ways_to_hold],
     }
@@ -193,6 +196,7 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     if not case.forces.by_equilibrium:
         lines.append(f"Joint forces by a {case.forces.model}: {case.forces.reason}.")
     lines.append(linkage_line(case))
+    lines += filter(None, [thrust_line(case.forces, case.large_displacement.reactions)])
     if case.forces.play is not None:
         lines.append(play_line(case.forces.play))
     deformed = case.large_displacement.reactions
@@ -317,3 +321,37 @@ def play_line(play: Play) -> str:
         f"{told}. Drive {what} {band(_band(play, play.effort))} {unit}, distance to a dead point of {drive.link} "
         f"{band(_band(play, play.distance))}."
     )
+
+
+def thrust_records(forces: "JointForces", deformed: Reactions | None = None) -> list[dict[str, Any]]:
+    """Return the thrusts along pins as plain data.
+
+    Parameters
+    ----------
+    forces : JointForces
+    deformed : Reactions, optional
+        Those of the deformed shape, where that counts.
+
+    Returns
+    -------
+    list of dict
+        One entry per joint with thrust.
+    """
+    return [{"joint": joint, "force": data(thrust)} for joint, thrust in thrusts(forces, deformed).items()]
+
+
+def thrust_line(forces: "JointForces", deformed: Reactions | None = None) -> str:
+    """Return the thrusts along pins as one sentence; "" where there are none.
+
+    Parameters
+    ----------
+    forces : JointForces
+    deformed : Reactions, optional
+        Those of the deformed shape, where that counts.
+
+    Returns
+    -------
+    str
+    """
+    found = ", ".join(f"{name} {band(thrust)}" for name, thrust in thrusts(forces, deformed).items())
+    return found and f"Thrust along the pins [N], which heads, washers or rings must hold: {found}."

@@ -1,0 +1,88 @@
+"""Thrust along pins: of a link between layers by its equilibrium, of a load out of the plane, and none in one plane."""
+
+import tomllib
+
+import numpy as np
+import pytest
+from bars_in_layers import four_bars, parallel_bars
+
+from fea.check.case_statics import solve_case_statics
+from fea.frame.joint_forces import JointForces
+from fea.frame.thrust import thrusts
+from loads.case.case import Case
+from loads.case.case_file import validate
+from reports.tables.frames import thrust_line
+
+LEVER = """
+schema_version = 1
+title = "A lever"
+[links.base]
+ground = true
+points.A = ["0 mm", "0 mm"]
+points.D = ["50 mm", "0 mm"]
+[links.lever]
+part = "bar"
+points.A = ["0 mm", "0 mm"]
+points.B = ["80 mm", "0 mm"]
+[joints]
+A = { links = ["base", "lever"], pin_diameter = "4 mm" }
+[pose]
+coordinate = "lever"
+angle = "20 deg"
+[drive]
+link = "lever"
+joint = "A"
+[parts.bar]
+shape = "bar"
+material = "pla-fdm-xy"
+width = "12 mm"
+thickness = "6 mm"
+fillet_radius = "0 mm"
+eye_diameter = "12 mm"
+[load_cases.push]
+[[load_cases.push.forces]]
+link = "lever"
+at = "B"
+force = ["0 N", "-1 N", "2.5 N"]
+"""
+
+
+def forces_of(case: Case) -> JointForces:
+    return next(iter(solve_case_statics(case).forces.values()))
+
+
+def test_pins_on_either_side_of_a_bar_are_pushed_by_its_couple_over_its_length() -> None:
+    """The coupler bears P alone, 10 mm beside its mid-plane at either end; pins are tight in it and tilt elsewhere."""
+    bars = {"start": 60.0, "end": 50.0}
+    case = four_bars((0, 0, 1, 2), (60.0, 150.0, 120.0, 130.0), near=(15.0, 100.0), **bars)
+    tight = {name: case.joints[name].model_copy(update={"tight_in": "coupler"}) for name in "BC"}
+    forces = forces_of(case.model_copy(update={"joints": {**case.joints, **tight}}))
+    [both] = [one for one in forces.sharings if one.joints == {"B", "C"}]
+    pull = float(np.hypot(*both.reactions.joints["B"].wrench[:2]))
+    told = thrusts(forces)
+    for name in "BC":
+        thrust = abs(float(both.reactions.joints[name].wrench[2]))
+        assert thrust == pytest.approx(pull * (10.0 + 10.0) / 150.0, rel=1e-4)
+        assert told[name].low <= thrust * (1.0 + 1e-9)
+        assert thrust <= told[name].high * (1.0 + 1e-9)
+        alone = abs(float(forces.reactions.joints[name].wrench[2]))
+        assert told[name].value == pytest.approx(alone)
+        every = [abs(float(one.reactions.joints[name].wrench[2])) for one in forces.sharings]
+        assert told[name].high == pytest.approx(max(alone, *every), rel=1e-12)
+    assert thrust_line(forces).startswith("Thrust along the pins [N], which heads, washers or rings must hold: ")
+    assert "C " in thrust_line(forces)
+
+
+def test_a_load_out_of_the_plane_pushes_the_pin() -> None:
+    found = thrusts(forces_of(validate(tomllib.loads(LEVER))))
+    assert list(found) == ["A"]
+    assert (found["A"].value, found["A"].low, found["A"].high) == pytest.approx((2.5, 2.5, 2.5))
+
+
+def test_without_thrust_nothing_is_told() -> None:
+    flat = forces_of(parallel_bars().in_one_plane())
+    assert thrusts(flat) == {}
+    assert thrust_line(flat) == ""
+    bonded = validate(tomllib.loads(LEVER.replace('"4 mm" }', '"4 mm", bonded = true }').split("[drive]")[0]
+                                    + "[parts.bar]" + LEVER.split("[parts.bar]")[1]))  # fmt: skip
+    assert thrusts(forces_of(bonded)) == {}
