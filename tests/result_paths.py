@@ -19,6 +19,10 @@ NAMED = {
     "link_slots",
     "linkage",
     "clearance.heights",
+    "play.clearances",
+    "play.points",
+    "play.drive_torque",
+    "play.drive_force",
 }
 """Keys whose own keys are names: by their last part, or by the whole."""
 SHAPES = {

@@ -1,22 +1,25 @@
 """Whether a motor covers what the mechanism asks for over its motion: power, and speed and torque where it states them.
 
 A motor that turns evenly with a flywheel gives the mean of all power, for the flywheel lends what is above it and takes
-what is below, negative power too; a motor alone gives the peak. So the mean and the peak are the ends of a band.
+what is below, negative power too; a motor alone gives the peak. So the mean and the peak are the ends of a band. Play
+of pins moves both: each is taken with the drive torque at either end of what play makes of it, at all poses together.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
-from fea.common.source import Source, SourceKind
+from fea.common.source import Source, SourceKind, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
 from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.kinetostatics import relative_motion
+from loads.states.loose_motion import loose_motion
 
 Real = NDArray[np.float64]
 SOURCES = (Source(kind=SourceKind.FLYWHEEL, detail="from the mean over the motion to the peak"),)
@@ -125,6 +128,32 @@ def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[
     }
 
 
+def _band(moved: CaseMotion, title: str, of: Callable[[Real], tuple[float, float, float]]) -> Band:
+    """Return what is calculated from the drive torque: value, low and high, with the torque as play may change it."""
+    torque = moved.forces[title].drive_torque
+    sources: tuple[Source, ...] = SOURCES
+    value, low, high = of(torque)
+    if (loose := loose_motion(moved)) is not None:
+        (least, most), forwards = loose.effort(title), _rate(moved, title) > 0.0
+        curves = (
+            np.where(forwards, least, most),  # least power
+            np.where(forwards, most, least),
+            np.clip(0.0, least, most),  # least size
+            np.where(np.abs(least) > np.abs(most), least, most),
+        )
+        with np.errstate(invalid="ignore"):
+            ends = [of(np.asarray(curve)) for curve in curves]
+        low, high = min(low, *(end[1] for end in ends)), max(high, *(end[2] for end in ends))
+        low, high = (bound if math.isnan(end) else end for end, bound in ((low, 0.0), (high, math.inf)))
+        sources = (*SOURCES, play_source(loose.clearances))
+    return Band(value=value, low=low, high=high, sources=sources)
+
+
+def _rate(moved: CaseMotion, title: str) -> Real:
+    """Speed of the driven link against the other link of its joint [rad/s]."""
+    return relative_motion(moved.motion, moved.drive) * moved.forces[title].motion.speed
+
+
 def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iterator[CheckOutcome]:
     solved, times, link = moved.forces[title], _times(moved, title), moved.drive.link
     torque, speed = solved.drive_torque, solved.motion.angular_speed(link)
@@ -143,19 +172,28 @@ def _limits(name: str, check: MotorCheck, title: str, moved: CaseMotion) -> Iter
                 f"the drive needs at most {most:.3g} of the motor's torque at that speed, on average {mean:.3g} of its "
                 f"power; stall torque {check.stall_torque:.3g} N·mm, falling linearly to zero at {free:.4g} rpm"
             )
-            value = Band(value=most, low=mean, high=most, sources=SOURCES)
+            line = (check.stall_torque, check.no_load_speed)
+
+            def share(torque: Real) -> tuple[float, float, float]:
+                least, most = line_share(torque, speed, times, *line)
+                return most, least, most
+
+            value = _band(moved, title, share)
             yield outcome(Quantity.TORQUE_SHARE, value, 1.0, reason)
     if check.rated_torque is not None:
-        effective, mean = (
-            math.sqrt(_mean(torque**2, times)),
-            min(abs(_mean(torque, times)), float(np.abs(torque).max())),
-        )
+        effective, mean, _ = _effective(torque, times)
         reason = (
             f"the drive torque is {effective:.3g} N·mm (root mean square), with an ideal flywheel {mean:.3g} N·mm; the "
             f"rated torque is {check.rated_torque:.3g} N·mm"
         )
-        value = Band(value=effective, low=min(mean, effective), high=effective, sources=SOURCES)
+        value = _band(moved, title, lambda torque: _effective(torque, times))
         yield outcome(Quantity.DRIVE_TORQUE, value, check.rated_torque, reason)
+
+
+def _effective(torque: Real, times: Real) -> tuple[float, float, float]:
+    """Root mean square, size of the mean, and root mean square again."""
+    effective = math.sqrt(_mean(torque**2, times))
+    return effective, min(abs(_mean(torque, times)), effective), effective
 
 
 def _times(moved: CaseMotion, title: str) -> Real:
@@ -170,7 +208,13 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
     solved, times = laden.forces[title], _times(laden, title)
     found = demand(solved.drive_power, solved.drive_torque, times)
     limit = check.output_power
-    value = Band(value=found.peak_power, low=found.mean_power, high=found.peak_power, sources=SOURCES)
+    rate = _rate(laden, title)
+
+    def power(torque: Real) -> tuple[float, float, float]:
+        asked = demand(torque * rate, torque, times)
+        return asked.peak_power, asked.mean_power, asked.peak_power
+
+    value = _band(laden, title, power)
     outcome = CheckOutcome.of(name, Subject.link(laden.drive.link), title, Quantity.DRIVE_POWER, value, limit)
     side = {
         Verdict.PASS: "the motor's output covers the peak",

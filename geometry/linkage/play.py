@@ -214,6 +214,28 @@ class LooseJoints:
             axes[i, : len(rates[name])] = radius * np.array(rates[name])
         return Reach(joints=tuple(self.radii), axes=axes)
 
+    def outline(self, link: str, point: str) -> Complex:
+        """Return the outline of where a point may be, about its place without play, to first order.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        complex array (..., directions)
+            x + iy of the places that lie furthest in each of ``_DIRECTIONS`` [mm].
+        """
+        number = self.place.closure.point_names.index((link, point))
+        found = np.zeros((*self.place.shape, len(_DIRECTIONS)), dtype=complex)
+        for name, radius in self.radii.items():
+            rates = np.stack([rate[..., number, None] for rate in self.rates[name]])
+            along = (np.conj(_DIRECTIONS) * rates).real
+            size = np.sqrt((along**2).sum(axis=0))
+            found += radius * (rates * np.divide(along, size, out=np.zeros_like(along), where=size > 0.0)).sum(axis=0)
+        return found
+
     def spread(self, link: str, point: str, displacement: complex = 0.0) -> tuple[float, float]:
         """Return how far a point may stand at the least and at the most from its place without load and play.
 

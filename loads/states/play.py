@@ -113,7 +113,7 @@ class Play:
     rates : callable
         Returns a placement with the rates that the load case gives it.
     friction : callable
-        Returns a placement's friction under loads, besides these; None where it locks the linkage.
+        Returns a placement's friction under loads, besides these, and where it locks the linkage.
     """
 
     case: Case
@@ -121,7 +121,7 @@ class Play:
     loose: LooseJoints
     masses: Mapping[str, PartMass]
     rates: Callable[[Placement], Placement]
-    friction: Callable[[Placement, Sequence[Load]], tuple[Load, ...] | None]
+    friction: Callable[[Placement, Sequence[Load]], tuple[tuple[Load, ...], NDArray[np.bool_]]]
 
     @property
     def clearances(self) -> dict[str, float]:
@@ -146,22 +146,35 @@ class Play:
         Displaced or None
             None where a dead point lies on the way, or friction locks the linkage.
         """
+        here, sound = self.solved(offsets)
+        return here if np.all(sound) else None
+
+    def solved(self, offsets: Mapping[str, complex]) -> tuple[Displaced, NDArray[np.bool_]]:
+        """Solve the linkage with its joints at offsets, as far as it goes.
+
+        Parameters
+        ----------
+        offsets : mapping of str to complex
+            As ``LoopClosure.offsets`` [mm].
+
+        Returns
+        -------
+        tuple of (Displaced, bool array (...))
+            The second is false at poses where a dead point lies on the way, or friction locks the linkage: numbers mean
+            nothing there.
+        """
         place, closed = self.loose.moved(offsets)
-        if not np.all(closed):
-            return None
-        place = self.rates(place)
+        place = self.rates(replace(place, q=np.where(closed[..., None], place.q, self.loose.place.q)))
         loads = acting_loads(self.case, self.case.load_cases[self.load_case], place, self.masses)
-        rubbed = self.friction(place, loads)
-        if rubbed is None:
-            return None
+        rubbed, locked = self.friction(place, loads)
         loads += rubbed
         system = assemble(place, self.drive, loads)
         distance = system.singular_values[..., -1]
-        if np.any(distance < NEARLY_SINGULAR):
-            return None
-        unknowns, _ = system.solved()
+        sound = closed & (distance >= NEARLY_SINGULAR) & ~locked
+        regular = np.where(sound[..., None, None], system.matrix, np.eye(*system.matrix.shape[-2:]))
+        unknowns, _ = replace(system, matrix=regular).solved()
         value = dict(zip(system.columns, np.moveaxis(unknowns, -1, 0), strict=True))
-        return Displaced(
+        found = Displaced(
             offsets=offsets,
             place=place,
             loads=loads,
@@ -169,6 +182,7 @@ class Play:
             effort=np.asarray(value.get("T", value.get("P", np.zeros(place.shape)))),
             distance=distance,
         )
+        return found, sound
 
     @cached_property
     def nominal(self) -> Displaced | None:
@@ -207,17 +221,15 @@ class Play:
     def gradients(self) -> Mapping[str, tuple[Mapping[str, Real | Complex], ...]]:
         """Joint -> derivatives, by each of its offsets, of every joint's force, the effort and the distance.
 
-        The effort is at "effort", the distance at "distance"; by central differences. Empty at a dead point.
+        The effort is at "effort", the distance at "distance"; by central differences. Infinite at a dead point.
         """
         step, found = STEP * self.loose.place.linkage.longest, {}
         for name in self.loose.radii:
             each = []
             for direction in self.loose.directions(name):
-                ends = [self.at({name: sign * step * direction}) for sign in (1.0, -1.0)]
-                if ends[0] is None or ends[1] is None:
-                    return {}
-                plus, minus = (self._numbers(end) for end in ends if end is not None)
-                each.append({key: (plus[key] - minus[key]) / (2.0 * step) for key in plus})
+                ends = [self.solved({name: sign * step * direction}) for sign in (1.0, -1.0)]
+                (plus, minus), sound = (self._numbers(end) for end, _ in ends), ends[0][1] & ends[1][1]
+                each.append({k: np.where(sound, (plus[k] - minus[k]) / (2.0 * step), np.inf) for k in plus})
             found[name] = tuple(each)
         return found
 
@@ -237,8 +249,6 @@ class Play:
         array (...)
             Infinite at a dead point.
         """
-        if not self.gradients:
-            return np.full(self.loose.place.shape, np.inf)
         sizes = (
             radius * np.sqrt(sum(np.abs(by[key]) ** 2 for by in self.gradients[name]))
             for name, radius in self.loose.radii.items()
@@ -256,7 +266,7 @@ class Play:
     @cached_property
     def through_dead_point(self) -> bool:
         """True where play may take the linkage through a dead point, or to where it does not close; of one pose."""
-        if self.nominal is None or not self.gradients:
+        if self.nominal is None:
             return True
         if float(self.nominal.distance) <= float(self.slack("distance")):
             return True
@@ -404,7 +414,7 @@ def play_at(
     masses : mapping of str to PartMass
         Of the parts.
     coordinate : str or None
-        Link, slider or slot that moves; None at rest.
+        Link, slider or slot that moves; None for that of the pose, at rest.
     slides : bool
         Whether it is a slider or slot.
     speed, acceleration : float or array (n,)
@@ -420,16 +430,16 @@ def play_at(
         return None
 
     def rates(place: Placement) -> Placement:
-        if coordinate is None:
+        if coordinate is None or not (np.any(speed) or np.any(acceleration)):
             return place
         first, second = DrivenClosure(place.closure, coordinate, slides).coefficients(place.q)
         rate, change = (np.asarray(x)[..., None] for x in (speed, acceleration))
         return replace(place, qdot=rate * first, qddot=rate**2 * second + change * first)
 
-    def friction(place: Placement, loads: Sequence[Load]) -> tuple[Load, ...] | None:
+    def friction(place: Placement, loads: Sequence[Load]) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
         name, sense = coordinate or case.pose.coordinate, WAYS.get(case.load_cases[load_case].direction)
         if not rubbing_joints(case) or name is None or sense is None or not is_determinate(case.linkage):
-            return ()
+            return (), np.zeros(place.shape, dtype=np.bool_)
         travels = slides if coordinate else case.pose.travel is not None
         return friction_at(DrivenClosure(place.closure, name, travels), place, case.pinned_drive, loads, sense)
 

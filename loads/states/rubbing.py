@@ -129,8 +129,8 @@ def pose_friction(case: Case, load_case: str, pose: Pose, loads: Sequence[Load])
 
 def friction_at(
     driven: DrivenClosure, place: Placement, drive: Drive | None, loads: Sequence[Load], sense: float
-) -> tuple[Load, ...] | None:
-    """Return the friction at one pose or at n as loads.
+) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
+    """Return the friction at one pose or at n as loads, and where it locks the linkage.
 
     Parameters
     ----------
@@ -146,16 +146,15 @@ def friction_at(
 
     Returns
     -------
-    tuple of Load or None
-        None where friction locks the linkage.
+    tuple of (tuple of Load, bool array (...))
+        Loads mean nothing where the second is true.
     """
     poses = place.q.reshape(-1, place.q.shape[-1])
     moved = replace(place, q=poses, qdot=driven.coefficients(poses)[0], qddot=None)
     acting = [at_poses(load, moved.shape) for load in loads]
     found = solve_friction(moved, drive, acting, sense)
-    if found.locked.any():
-        return None
-    return found.loads if place.shape else tuple(chosen(load, 0) for load in found.loads)
+    loads = found.loads if place.shape else tuple(chosen(load, 0) for load in found.loads)
+    return loads, np.reshape(found.locked, place.shape)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -16,7 +16,8 @@ from geometry.linkage.motion import Motion
 from loads.states.case_motion import CaseMotion, with_inertia
 from loads.states.clearance import clearance
 from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
-from reports.figures.joint_paths import moving_points, path_length
+from reports.commands.motion_play import drive_line, drive_play, motion_play_record, play_lines, point_play
+from reports.figures.joint_paths import moving_points, owners, path_length
 from reports.tables.clearance import clearance_line, clearance_record
 from reports.tables.data import finite
 from reports.tables.frames import motion_linkage_line, motion_linkage_record
@@ -66,7 +67,7 @@ def write_tables(result: CaseMotion, folder: Path) -> None:
     """
     motion = result.motion
     _write(folder / "links.csv", {**_base(motion), **_link_columns(motion)})
-    _write(folder / "points.csv", {**_base(motion), **_point_columns(motion)})
+    _write(folder / "points.csv", {**_base(motion), **_point_columns(result)})
     if springs := motion_springs(result):
         _write(folder / "springs.csv", {**_base(motion), **dict(springs)})
     _write_cases(folder / "torque.csv", motion, {n: _torque_columns(result, n) for n in result.torque})
@@ -125,6 +126,7 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
         },
         "design": design_record(result.case),
         "load_cases": {load_case: _case_record(result, load_case) for load_case in result.torque},
+        "play": finite(motion_play_record(result), {}),
         "clearance": finite(clearance_record(clearance(result.case)), {}),
         "linkage": {
             n: finite(motion_linkage_record(result, over), {}) for n, over in asked_over_motion(result).items()
@@ -207,6 +209,9 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         print(
             f"\nNo dead point of {drive['link']} in the range, {beyond}; least distance {drive['least_distance']:.3g}"
         )
+    play = motion_play_record(result)
+    for told in () if play is None else play_lines(result, play):
+        print(told)
     if design := design_lines(result.case):
         print("\n" + "\n".join(design))
     if (line := clearance_line(clearance(result.case))) is not None:
@@ -226,6 +231,8 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
             print(f"  {motion_linkage_line(result, asked_over_motion(result)[load_case])}")
         told = _line(row[f"drive_{what}"], unit, motion["unit"])
         print(f"  drive {what} on {drive['link']} at {drive['joint']}: {told}")
+        if play is not None:
+            print(f"  {drive_line(result, play, load_case)}")
         for line in motion_friction_lines(result, load_case) if result.rubbing else ():
             print(f"  {line}")
         if row["joints"] is None:
@@ -280,18 +287,17 @@ def _link_columns(motion: Motion) -> dict[str, Real]:
     return columns
 
 
-def _point_columns(motion: Motion) -> dict[str, Real]:
-    columns: dict[str, Real] = {}
+def _point_columns(result: CaseMotion) -> dict[str, Real]:
+    motion, columns = result.motion, dict[str, Real]()
     fields = [("", "mm", motion.position)]
     if motion.times is not None:
         fields += [("v", "mm/s", motion.velocity), ("a", "mm/s^2", motion.linear_acceleration)]
     for label in moving_points(motion):
-        link, _, point = label.rpartition(".")
-        owner = link or next(n for n, p in motion.closure.point_names if p == point)
         for prefix, unit, of in fields:
-            values = of(owner, point)
+            values = of(*owners(motion, label)[0])
             columns[f"{label} {prefix}x [{unit}]"] = values[:, 0]
             columns[f"{label} {prefix}y [{unit}]"] = values[:, 1]
+        columns |= point_play(result, label)
     return columns
 
 
@@ -301,6 +307,7 @@ def _torque_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
     if result.rubbing:
         columns[f"{what} without friction [{unit.replace('·', ' ')}]"] = result.frictionless[load_case]
         columns["efficiency [1]"] = result.work(load_case).efficiency
+    columns |= drive_play(result, load_case)
     if any(np.any(solved.motion.speed) for solved in result.forces.values()):
         solved = result.forces[load_case]
         columns["drive power [N mm/s]"] = solved.drive_power

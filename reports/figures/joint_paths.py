@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.linkage.motion import Motion
+from loads.states.loose_motion import LooseMotion
 
 Real = NDArray[np.float64]
 _SAME = 1e-9
@@ -49,3 +50,43 @@ def path_length(xy: Real) -> float:
         In the unit of the path.
     """
     return float(np.sum(np.linalg.norm(np.diff(xy, axis=0), axis=1)))
+
+
+def owners(motion: Motion, label: str) -> tuple[tuple[str, str], ...]:
+    """Return the moving links and points that a path is of.
+
+    Parameters
+    ----------
+    motion : Motion
+    label : str
+        As ``moving_points`` has it.
+
+    Returns
+    -------
+    tuple of (str, str)
+        Links and points: several where links share a pin.
+    """
+    names = motion.closure.point_names
+    return tuple(
+        pair for pair in names if label in (pair[1], f"{pair[0]}.{pair[1]}") and pair[0] != motion.linkage.ground
+    )
+
+
+def loosest(loose: LooseMotion, label: str) -> tuple[str, str]:
+    """Return the link and point of a path that play lets move furthest.
+
+    Parameters
+    ----------
+    loose : LooseMotion
+    label : str
+        As ``moving_points`` has it.
+
+    Returns
+    -------
+    tuple of (str, str)
+    """
+    ends = {
+        pair: np.max(np.where(loose.passes, 0.0, loose.free_motion(*pair)))
+        for pair in owners(loose.moved.motion, label)
+    }
+    return max(ends, key=lambda pair: float(ends[pair]))

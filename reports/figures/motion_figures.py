@@ -3,17 +3,21 @@
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
+from itertools import pairwise
+from pathlib import Path as Folder
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from geometry.linkage.linkage import Linkage
 from geometry.linkage.motion import Motion
 from loads.states.case_motion import CaseMotion
-from reports.figures.joint_paths import moving_points
+from loads.states.loose_motion import LooseMotion, loose_motion
+from reports.figures.joint_paths import loosest, moving_points
 
 Real = NDArray[np.float64]
 
@@ -23,6 +27,8 @@ DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)))
 DPI = 130
 _SIZE = (8.0, 4.8)
 _POSES = 5
+_STRAY = 20
+"""Of how many directions one is drawn where play shades a path."""
 _CLIP, _HEADROOM = 4.0, 1.6
 """Beside a dead point of the drive the axis ends at these multiples of the median and of the ends' values."""
 
@@ -35,7 +41,7 @@ def quiet_glyphs() -> Iterator[None]:
         yield
 
 
-def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
+def draw_figures(result: CaseMotion, folder: Folder) -> list[Folder]:
     """Draw all figures of a motion as PNG files.
 
     Parameters
@@ -51,7 +57,7 @@ def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
     """
     figures = {
         "link-angles": angles_figure(result),
-        "paths": paths_figure(result.motion),
+        "paths": paths_figure(result.motion, loose_motion(result)),
         "torque": torque_figure(result),
     }
     for i, load_case in enumerate(result.forces):
@@ -88,6 +94,8 @@ def angles_figure(result: CaseMotion) -> Figure:
 def torque_figure(result: CaseMotion) -> Figure:
     """Draw drive torque or force over the coordinate, one line per load case, and dashed what it is without friction.
 
+    A shaded band tells what play of pins makes of it.
+
     Parameters
     ----------
     result : CaseMotion
@@ -100,6 +108,7 @@ def torque_figure(result: CaseMotion) -> Figure:
     figure, axes = _over_angle(motion, f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]")
     for i, (load_case, torque) in enumerate(result.torque.items()):
         _line(axes, motion, _broken(result, torque), load_case, i)
+    _with_play(axes, result)
     _without_friction(axes, result)
     axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     _clip(axes, result, list(result.torque.values()), symmetric=True)
@@ -107,6 +116,25 @@ def torque_figure(result: CaseMotion) -> Figure:
     _locked(axes, result)
     _legend(axes, "load case")
     return figure
+
+
+def _with_play(axes: Any, result: CaseMotion) -> None:
+    """Shade between the ends of the drive torque with play, and where it has none."""
+    loose, at = loose_motion(result), result.motion.told(result.motion.angles)
+    if loose is None:
+        return
+    for i, load_case in enumerate(result.torque):
+        ends = [np.where(np.isfinite(end), _broken(result, end), np.nan) for end in loose.effort(load_case)]
+        label = f"{load_case} with play of pins" if len(result.torque) > 1 else "with play of pins"
+        axes.fill_between(
+            at, *ends, color=COLOURS[i % len(COLOURS)], alpha=0.25, linewidth=0.0, label=label, zorder=1.5
+        )
+    if loose.passes.any():
+        style: dict[str, Any] = {"hatch": "xxx", "edgecolor": "0.75", "label": "no end: play may reach a dead point"}
+        inside = axes.get_xaxis_transform()
+        axes.fill_between(
+            at, 0, 1, where=loose.passes, transform=inside, facecolor="0.95", linewidth=0, zorder=0.5, **style
+        )
 
 
 def _without_friction(axes: Any, result: CaseMotion) -> None:
@@ -157,12 +185,16 @@ def forces_figure(result: CaseMotion, load_case: str) -> Figure:
     return figure
 
 
-def paths_figure(motion: Motion) -> Figure:
+def paths_figure(motion: Motion, loose: LooseMotion | None = None) -> Figure:
     """Draw the paths of the moving points and the linkage at a few poses, from light to dark.
+
+    With play of pins the paths are shaded as wide as it lets their points stray with the drive held.
 
     Parameters
     ----------
     motion : Motion
+    loose : LooseMotion, optional
+        The same with play.
 
     Returns
     -------
@@ -174,7 +206,9 @@ def paths_figure(motion: Motion) -> Figure:
         indices = np.unique(np.linspace(0, len(motion.angles) - 1, _POSES + 1).round().astype(int))[:-1]
     for i, (label, xy) in enumerate(moving_points(motion).items()):
         style = {"color": COLOURS[i % len(COLOURS)], "linestyle": DASHES[i // len(COLOURS) % len(DASHES)]}
-        axes.plot(*xy.T, linewidth=1.6, label=label, zorder=2, **style)
+        if loose is not None:
+            label += _stray(axes, loose, label, COLOURS[i % len(COLOURS)])
+        axes.plot(*xy.T, linewidth=1.6 if loose is None else 0.7, label=label, zorder=2, **style)
     for index, shade in zip(indices, np.linspace(0.78, 0.0, len(indices)), strict=True):
         colour = str(shade)
         for chain in chains(motion.linkage):
@@ -188,8 +222,26 @@ def paths_figure(motion: Motion) -> Figure:
         loc="left",
         fontsize=10,
     )
-    _legend(axes, "path of")
+    _legend(axes, "path of" if loose is None else "path of, with play")
     return figure
+
+
+def _stray(axes: Any, loose: LooseMotion, label: str, colour: str) -> str:
+    """Shade where play lets the point of a path be, from pose to pose, and tell how far that is at the most."""
+    from shapely import MultiPoint, unary_union
+
+    link, point = loosest(loose, label)
+    outline = loose.outline(link, point)[:, ::_STRAY] + loose.moved.motion.placement.position(link, point)[:, None]
+    rings = [np.column_stack([ring.real, ring.imag]) for ring in np.where(loose.passes[:, None], np.nan, outline)]
+    pairs = (np.vstack(pair) for pair in pairwise(rings))
+    area = unary_union([MultiPoint(pair).convex_hull for pair in pairs if np.isfinite(pair).all()])
+    for part in getattr(area, "geoms", [area]):
+        curves = [np.array(ring.coords) for ring in (part.exterior, *part.interiors)] if part.area > 0.0 else []
+        if curves:
+            path = Path.make_compound_path(*(Path(curve, closed=True) for curve in curves))
+            axes.add_patch(PathPatch(path, facecolor=colour, alpha=0.45, linewidth=0.0, zorder=1.8))
+    most, _ = loose.farthest(link, point)
+    return f" ± {most:.2g} mm" if np.isfinite(most) else ""
 
 
 def plane(motion: Motion, *, width: float) -> tuple[Figure, Any]:

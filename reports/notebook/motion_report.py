@@ -94,9 +94,10 @@ class MotionReport:
 
     def plot_linkage(self) -> Picture:
         """Draw the linkage at a few poses, with the paths of its points."""
+        from loads.states.loose_motion import loose_motion
         from reports.figures.motion_figures import paths_figure
 
-        return _picture(paths_figure(self.result.motion))
+        return _picture(paths_figure(self.result.motion, loose_motion(self.result)))
 
     def __str__(self) -> str:
         return str(self.table())

@@ -22,7 +22,11 @@ def test_a_motion():
     piston = motion_record(solve_case_motion(validate(piston_entries())), "piston")
     rubbed = moved("owl-wing-static", "motion.poses=19", "joints.A.friction=0.2")
     bars = motion_record(solve_case_motion(parallel_bars()), "bars")
-    compare("motion", wing, moved("owl-wing-static", "motion.poses=19"), piston, rubbed, bars)
+    loose = moved("owl-wing-static", "motion.poses=19", 'joints.C.clearance="0.1 mm"')
+    entries = piston_entries()
+    entries["joints"]["P"]["clearance"] = "0.1 mm"
+    pushed = motion_record(solve_case_motion(validate(entries)), "piston")
+    compare("motion", wing, loose, piston, pushed, rubbed, bars)
 
 
 def test_a_synthesis():

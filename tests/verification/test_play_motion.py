@@ -1,0 +1,196 @@
+"""Play of pins over a motion: against closed forms of the four-bar, and against linkages with other lengths."""
+
+import csv
+import json
+import math
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from edited_cases import edited
+from numpy.typing import NDArray
+
+from fea.common.source import SourceKind
+from fea.outcomes.motor import motor_outcomes
+from loads.case.case_file import validate
+from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.dead_point_reach import pose_at
+from loads.states.loose_motion import LooseMotion, loose_motion
+from reports.commands.motion import record, write_tables
+from reports.commands.motion_play import drive_line, motion_play_record, play_lines
+
+Real = NDArray[np.float64]
+A, B, C, D = 40.0, 120.0, 80.0, 100.0
+FORCE = complex(4.0, -7.0)
+
+
+@cache
+def moved(play: str = "0.4 mm", driven: str = "crank", ground: complex = D, **joints: str) -> CaseMotion:
+    """The four-bar of 40, 120, 80 and 100 mm with a force at its rocker's pin C and play at B, over a turn."""
+    pairs = {"A": ["base", "crank"], "B": ["crank", "coupler"], "C": ["coupler", "rocker"], "D": ["base", "rocker"]}
+    play_of = {"B": play, **joints}
+    data: dict[str, Any] = {
+        "schema_version": 1,
+        "title": "four-bar",
+        "links": {
+            "base": {
+                "ground": True,
+                "points": {"A": ["0 mm", "0 mm"], "D": [f"{ground.real} mm", f"{ground.imag} mm"]},
+            },
+            "crank": {"points": {"A": ["0 mm", "0 mm"], "B": [f"{A} mm", "0 mm"]}},
+            "coupler": {"points": {"B": ["0 mm", "0 mm"], "C": [f"{B} mm", "0 mm"]}},
+            "rocker": {"points": {"D": ["0 mm", "0 mm"], "C": [f"{C} mm", "0 mm"]}},
+        },
+        "joints": {n: {"links": pair, "clearance": play_of.get(n, "0 mm")} for n, pair in pairs.items()},
+        "pose": {"coordinate": "crank", "angle": "40 deg", "near": {"coupler": "20 deg", "rocker": "70 deg"}},
+        "drive": {"link": driven, "joint": "A" if driven == "crank" else "D"},
+        "motion": {"turn": True, "poses": 73},
+        "load_cases": {"load": {"forces": [{"link": "rocker", "at": "C", "force": ["4 N", "-7 N"]}]}},
+    }
+    return solve_case_motion(validate(data))
+
+
+def loose(of: CaseMotion) -> LooseMotion:
+    found = loose_motion(of)
+    assert found is not None
+    return found
+
+
+def place_of_c(pin: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Where two circles meet: about the coupler's pin with its length, about D with the rocker's."""
+    across = D - pin
+    far = np.abs(across)
+    along = (B**2 - C**2 + far**2) / (2.0 * far)
+    return pin + across / far * (along + 1j * np.sqrt(B**2 - along**2))
+
+
+def torque(crank: Real, offset: complex = 0.0) -> Real:
+    """The coupler bears a force along itself: the rocker's moments about D give it, those of the crank the torque."""
+    pin = A * np.exp(1j * crank) + offset
+    c = place_of_c(pin)
+    along = (c - pin) / B
+    tension = (np.conj(c - D) * FORCE).imag / (np.conj(c - D) * along).imag
+    return -tension * (np.conj(pin) * along).imag
+
+
+def test_drive_torque_at_all_poses() -> None:
+    """Play at B sets the coupler's pin beside the crank's."""
+    of = moved()
+    angles = of.motion.angles
+    assert of.torque["load"] == pytest.approx(torque(angles), rel=1e-9, abs=1e-9)
+    least, most = loose(of).effort("load")
+    slopes = [(torque(angles, 0.01 * way) - torque(angles, -0.01 * way)) / 0.02 for way in (1.0, 1j)]
+    assert (most - least) / 2.0 == pytest.approx(0.2 * np.hypot(*slopes), rel=1e-4, abs=1e-4)
+    value, pose = loose(of).extreme_effort("load", 1.0)
+    solved = max(torque(angles[pose], 0.2 * np.exp(1j * way)) for way in np.linspace(0.0, 2.0 * math.pi, 721))
+    assert value == pytest.approx(solved, rel=1e-5)
+    assert value >= most.max()
+
+
+def test_free_motion_at_all_poses() -> None:
+    """The rocker's end strays by half of the play over the sine of the transmission angle; B by half of it."""
+    of = moved()
+    to_c = place_of_c(A * np.exp(1j * of.motion.angles))
+    sine = np.abs(np.sin(np.angle((to_c - D) / (to_c - A * np.exp(1j * of.motion.angles)))))
+    assert loose(of).free_motion("rocker", "C") == pytest.approx(0.2 / sine, rel=1e-4)
+    assert np.all(loose(of).free_motion("crank", "B") == 0.0)
+    reach = np.abs(loose(of).outline("coupler", "B")).max(axis=-1)
+    assert reach == pytest.approx(np.full(73, 0.2), rel=1e-4)
+
+
+def test_distance_to_a_dead_point_at_all_poses() -> None:
+    """Without play it is that of the constraints' Jacobian; play at D is as if its pin stood elsewhere."""
+    of = moved("0 mm", D="0.2 mm")
+    value, least = loose(of).distance
+    expected = [of.drive.dead_point_distance(pose_at(of.motion, i)) for i in range(73)]
+    assert value == pytest.approx(expected, rel=1e-9)
+    tried = []
+    for way in np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 16, endpoint=False)):
+        other = moved("0 mm", ground=D + 0.1 * way)
+        tried.append([other.drive.dead_point_distance(pose_at(other.motion, i)) for i in range(73)])
+    changes = np.min(tried, axis=0) - value
+    assert np.all(least <= value + 0.99 * changes)
+    assert np.all(least >= value + 1.03 * changes)
+    nearest, pose = loose(of).nearest()
+    assert 0.0 < nearest <= least[pose] < value[pose]
+
+
+def test_at_a_dead_point_of_the_drive_nothing_has_an_end() -> None:
+    """The rocker drives: it turns back where crank and coupler are in line, twice in a turn."""
+    of = moved("2 mm", "rocker")
+    assert len(of.dead_points) == 2
+    least, most = loose(of).effort("load")
+    for angle in of.dead_points:
+        beside = np.argsort(np.abs(of.motion.angles - angle))[:2]
+        assert np.all(np.isinf(most[beside]))
+        assert np.all(np.isinf(least[beside]))
+    assert 4 <= int(loose(of).passes.sum()) < 40
+    found = motion_play_record(of)
+    assert found is not None
+    assert len(found["through_dead_point"]) == 2
+    assert found["dead_point_distance"]["smallest"] == 0.0
+    assert drive_line(of, found, "load") == "with play of pins the drive torque has no end next to a dead point"
+    assert any("through a dead point of rocker at" in line for line in play_lines(of, found))
+
+
+def test_the_whole_motion_agrees_with_single_poses() -> None:
+    of = moved("0.5 mm", A="0.2 mm", C="0.4 mm", D="0.3 mm")
+    least, most = loose(of).effort("load")
+    for pose in range(0, 73, 18):
+        play = loose(of).play("load", pose)
+        assert play is not None
+        single = play.effort
+        assert (least[pose], most[pose]) == pytest.approx((single.low, single.high), abs=0.02 * (most - least)[pose])
+        for link, point in (("coupler", "C"), ("rocker", "C")):
+            free = play.free_motion(link, point)
+            assert loose(of).free_motion(link, point)[pose] == pytest.approx(free, rel=0.02)
+
+
+def test_friction_is_solved_with_play() -> None:
+    """The torque without play that bands are about is that of the motion, friction and inertia included."""
+    for entries in (["joints.C.friction=0.3"], []):
+        case = edited("owl-wing-static", ["motion.poses=25", 'joints.B.clearance="0.1 mm"', *entries])
+        of = solve_case_motion(case)
+        for name, play in loose(of).plays.items():
+            here, sound = play.solved({})
+            assert sound.any()
+            assert here.effort[sound] == pytest.approx(of.torque[name][loose(of).poses][sound], rel=1e-9)
+
+
+def test_record_and_tables_tell_it(tmp_path: Path) -> None:
+    of = moved()
+    told = record(of, "")["play"]
+    assert json.loads(json.dumps(told)) == told
+    assert told["clearances"] == {"B": 0.4}
+    assert told["points"]["C"]["largest"] == pytest.approx(float(loose(of).free_motion("rocker", "C").max()), rel=2e-2)
+    write_tables(of, tmp_path)
+    with (tmp_path / "torque.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    least, most = loose(of).effort("load")
+    assert float(rows[5]["least torque with play [N mm]"]) == pytest.approx(least[5])
+    assert float(rows[5]["largest torque with play [N mm]"]) == pytest.approx(most[5])
+    assert "C play to either side [mm]" in (tmp_path / "points.csv").read_text(encoding="utf-8")
+    assert record(moved("0 mm"), "")["play"] is None
+
+
+def test_a_motor_covers_what_play_makes_of_the_torque() -> None:
+    """A lever's pivot that stands half of the play aside asks for no more than the bands, and for more than without."""
+    motor = ['checks.motor.rated_torque="0.002 N*mm"', 'checks.motor.no_load_speed="3500 rpm"']
+    motor.append('checks.motor.stall_torque="0.01 N*mm"')
+
+    def outcomes(entry: str) -> dict[str, Any]:
+        case = edited("ornithopter", [*motor, entry])
+        case = case.model_copy(update={"load_cases": {"wings-12": case.load_cases["wings-12"]}})
+        return {o.quantity.value: o.value for o in motor_outcomes(case, "motor", case.checks["motor"])["wings-12"]}
+
+    loose = outcomes('joints.R.clearance="0.1 mm"')
+    aside = [
+        outcomes(f'links.base.points.R=["{x!r} mm", "10 mm"]') for x in (7.06755709747 - 0.05, 7.06755709747 + 0.05)
+    ]
+    assert len(loose) == 4
+    for what in loose.keys() - {"drive speed"}:
+        assert loose[what].value < max(one[what].high for one in aside) <= loose[what].high
+        assert loose[what].low <= min(one[what].low for one in aside)
+        assert SourceKind.PLAY in {source.kind for source in loose[what].sources}
