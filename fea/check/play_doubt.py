@@ -29,7 +29,9 @@ OUT_OF_PLANE = [2, 3, 4]
 """Components of a wrench that equilibrium in the plane does not give."""
 
 
-def play_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[Load]) -> Growths:
+def play_doubt(
+    case: Case, load_case: str, forces: JointForces, loads: Sequence[Load], links: Sequence[str] | None = None
+) -> Growths:
     """Return by how much stress, displacement of links and joint forces may differ by the play of pins.
 
     A link's stress by hand is calculated with every joint with play at its end in x and in y. The sizes of these
@@ -43,6 +45,8 @@ def play_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[
     forces : JointForces
     loads : sequence of Load
         That act on the links without play.
+    links : sequence of str, optional
+        Which ones; by default all that have a part.
 
     Returns
     -------
@@ -52,16 +56,16 @@ def play_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[
     play = forces.play
     if play is None:
         return Growths()
-    source = play_source(play.clearances)
+    links, source = case.checked_links if links is None else links, play_source(play.clearances)
     joints = {name: _scatter(span, source) for name, span in play.forces.items()}
     if play.through_dead_point or play.nominal is None:
-        lost = dict.fromkeys(case.checked_links, Scatter(low=0.0, high=np.inf, sources=(source,)))
+        lost = dict.fromkeys(links, Scatter(low=0.0, high=np.inf, sources=(source,)))
         return Growths(stress=lost, displacement=lost, joints=joints)
     ends = {name: _ends(play, forces, name) for name in play.loose.radii}
     nominal = _reactions(play, forces, play.nominal), play.nominal
     stress: dict[str, Scatter] = {}
     displacement: dict[str, Scatter] = {}
-    for link in case.checked_links:
+    for link in links:
         body = case.body(link)
         acting = link_loads(load_case, link, body, forces.reactions, loads)
         told = partial(_told, case, load_case, link, body, acting)

@@ -16,6 +16,7 @@ from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.motion.layered import forces_at
+from fea.motion.loosened import joint_growth
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
@@ -200,14 +201,15 @@ def _joints(
                     [stress_at(case, joint, r).equivalent.value if counts else -np.inf for r, counts in found]
                 )
             pose = first_largest(size)
+            growth = joint_growth(moved, load_case, joint, evaluated)
             force = float(np.linalg.norm(solved.forces[joint][pose]))
             if isinstance(check, BearingCheck):
-                outcome = bearing_outcome(case, load_case, name, check, joint, force)
+                outcome = bearing_outcome(case, load_case, name, check, joint, force, growth)
             elif between_layers:
                 shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
-                outcome = pin_outcome(case, load_case, name, check, joint, shared)
+                outcome = pin_outcome(case, load_case, name, check, joint, shared, growth)
             else:
-                outcome = pin_outcome(case, load_case, name, check, joint, stress_of(case, joint, force))
+                outcome = pin_outcome(case, load_case, name, check, joint, stress_of(case, joint, force), growth)
             outcome = _complete(outcome, evaluated)
             yield outcome.because(f"under {force:.3g} N at {_when(moved, pose)}: {outcome.reason}")
 

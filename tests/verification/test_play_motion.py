@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import tomllib
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,17 @@ import numpy as np
 import pytest
 from edited_cases import edited
 from numpy.typing import NDArray
+from rocker_case import TOML
 
+from fea.beam.cut_free import link_loads
+from fea.check.force_doubt import measures
 from fea.common.source import SourceKind
+from fea.motion.envelope import envelope_case
+from fea.motion.loosened import joint_growth, loosened
 from fea.outcomes.motor import motor_outcomes
+from fea.refine.refinement import Effort
+from geometry.base.errors import CaseError
+from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.states.case_motion import CaseMotion, solve_case_motion
 from loads.states.dead_point_reach import pose_at
@@ -194,3 +203,50 @@ def test_a_motor_covers_what_play_makes_of_the_torque() -> None:
         assert loose[what].value < max(one[what].high for one in aside) <= loose[what].high
         assert loose[what].low <= min(one[what].low for one in aside)
         assert SourceKind.PLAY in {source.kind for source in loose[what].sources}
+
+
+def rocker(play: str, coupler: str = "60 mm", **more: Any) -> Case:
+    """The four-bar of 20, 60, 40 and 60 mm with a force at its rocker's end, over a sixth of a turn."""
+    data = tomllib.loads(TOML) | more
+    data["joints"]["B"]["clearance"] = play
+    data["links"]["coupler"]["points"]["B"] = [coupler, "0 mm"]
+    data["load_cases"] = {"push": {"forces": [{"link": "rocker", "at": "P", "force": ["1 N", "-3 N"]}]}}
+    data["checks"] = {"bearing": {"type": "bearing", "minimum": 2.0, "joints": ["B"]}} | data.get("checks", {})
+    return validate(data)
+
+
+def test_an_envelope_holds_the_linkage_with_another_coupler() -> None:
+    loose, plain = (envelope_case(rocker(c), threads=1, effort=Effort(max_meshes=1)) for c in ("0.8 mm", "0 mm"))
+    stress, without = (one.links["rocker"].load_cases["push"].stress for one in (loose, plain))
+    assert stress.value == pytest.approx(without.value)
+    assert SourceKind.PLAY in {source.kind for source in stress.sources}
+    assert SourceKind.PLAY not in {source.kind for source in without.sources}
+    [bearing], [joint] = ([c for c in one.checks if c.name == "bearing"] for one in (loose, plain))
+    assert bearing.value.low < joint.value.low
+
+    def greatest(case: Case) -> tuple[float, float]:
+        """Stress by hand and force at B, the most of all poses, of a linkage without play."""
+        of = solve_case_motion(case)
+        every = [link_loads("push", "rocker", case.body("rocker"), of.forces["push"], of.loads["push"])]
+        hands = [measures(case, "rocker", every[0].chosen(pose))[0] for pose in range(len(of.motion.angles))]
+        return max(hands), float(np.linalg.norm(of.forces["push"].forces["B"], axis=1).max())
+
+    of, every = solve_case_motion(rocker("0.8 mm")), np.ones(7, dtype=np.bool_)
+    shares = loosened(of, every)["push", "rocker"], joint_growth(of, "push", "B", every)
+    nominal = greatest(rocker("0 mm"))
+    for length in ("59.6 mm", "60.4 mm"):
+        for share, other, own in zip(shares, greatest(rocker("0 mm", length)), nominal, strict=True):
+            assert share.low * own <= other * (1.0 + 1e-3)
+            assert other <= share.high * own * (1.0 + 1e-3)
+    assert stress.high == pytest.approx(without.high * shares[0].high, rel=1e-6)
+
+
+def test_an_envelope_that_play_takes_through_a_dead_point_is_refused() -> None:
+    """The rocker drives; it turns back where crank and coupler are in line, and play of 2.9 mm takes it there."""
+    drive = {"link": "rocker", "joint": "O4"}
+    case = rocker("2.9 mm", drive=drive)
+    of = solve_case_motion(case)
+    with pytest.raises(
+        CaseError, match=r"joints\.B\.clearance: with 2\.9 mm play .* dead point of the driven link rocker"
+    ):
+        loosened(of, np.ones(7, dtype=np.bool_))
