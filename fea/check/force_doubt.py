@@ -2,7 +2,9 @@
 
 Each cause changes a joint force, and a link's stress by hand calculation, by some share of it. To first order the
 shares of stiffnesses add up, each upwards or downwards; all causes are taken at their worst together. How pins share
-the couples between layers is one cause, with several answers: the least and the greatest of them count.
+the couples between layers is one cause, with several answers: the least and the greatest of them count. A link in
+compression on pins that tilt bends out of the plane from the first newton, by the couples of its layers, and more than
+in the frame, whose pins keep its angles: the answers of sharing hold that growth (``fea.check.second_order``).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -12,6 +14,7 @@ import numpy as np
 from fea.beam.cut_free import link_loads
 from fea.check.link_by_hand import link_by_hand
 from fea.check.load_growth import LEAST, Growths
+from fea.check.second_order import on_tilting_pins
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
 from fea.common.source import COUPLES, Source
@@ -24,7 +27,9 @@ _Around = Callable[[float, Sequence[float]], Scatter]
 """From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""
 
 
-def force_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[Load]) -> Growths:
+def force_doubt(
+    case: Case, load_case: str, forces: JointForces, loads: Sequence[Load], *, grown: bool = False
+) -> Growths:
     """Return by how much stress, displacement and joint forces may differ since the links' stiffness is in doubt.
 
     Parameters
@@ -35,6 +40,8 @@ def force_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence
     forces : JointForces
     loads : sequence of Load
         That act on the links.
+    grown : bool, optional
+        True where the numbers that these shares multiply hold the growth on free pins already.
 
     Returns
     -------
@@ -45,7 +52,7 @@ def force_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence
     if forces.open_by:
         found = _doubt(case, load_case, forces, loads, forces.open_by, _summed(forces.sources))
     if forces.sharings:
-        found = found.times(_doubt(case, load_case, forces, loads, forces.sharings, _widest))
+        found = found.times(_doubt(case, load_case, forces, loads, forces.sharings, _widest, grown=grown))
     return found
 
 
@@ -56,13 +63,18 @@ def _doubt(
     loads: Sequence[Load],
     changes: Sequence[Deviation],
     around: _Around,
+    *,
+    grown: bool = False,
 ) -> Growths:
     stress, displacement = {}, {}
     for link in case.checked_links:
         body = case.body(link)
+        cases = [(forces.reactions, grown)]
+        cases += [(one.reactions, isinstance(one, Sharing)) for one in changes if _concerns(one, case, link)]
         plain, *others = (
-            measures(case, link, link_loads(load_case, link, body, reactions, loads))
-            for reactions in (forces.reactions, *(one.reactions for one in changes if _concerns(one, case, link)))
+            measures(case, link, on_tilting_pins(case, link, acting) if tilts else acting)
+            for reactions, tilts in cases
+            for acting in [link_loads(load_case, link, body, reactions, loads)]
         )
         stress[link] = around(plain[0], [one[0] for one in others])
         displacement[link] = around(plain[1], [one[1] for one in others])

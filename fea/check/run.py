@@ -116,6 +116,7 @@ class _LoadCase:
         reactions = statics.reactions[load_case]
         cut = {link: cut_link(case, link, load_case, moved, reactions, loads) for link in case.checked_links}
         hands = {link: link_by_hand(case, link, acting) for link, acting in cut.items()}
+        grown = moved.state in ("off", "unknown")  # where ``cut_link`` adds it
         return cls(
             case=case,
             statics=statics,
@@ -124,7 +125,7 @@ class _LoadCase:
             cut=cut,
             hands=hands,
             uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands)
-            .times(force_doubt(case, load_case, statics.forces[load_case], loads))
+            .times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=grown))
             .times(play_doubt(case, load_case, statics.forces[load_case], loads)),
             size=load_size(loads, case.linkage.longest),
         )

@@ -85,6 +85,35 @@ def second_order_loads(case: Case, link: str, loads: LinkLoads, *, stays: bool) 
     return on_its_pins(loads, forces, planes[0], planes[1], held, on_arms)
 
 
+def on_tilting_pins(case: Case, link: str, loads: LinkLoads) -> LinkLoads:
+    """Return the loads of a link between layers with its bending out of the plane, free to turn on its outermost pins.
+
+    Pins that tilt keep no angle, as those of the spatial frame do. In the plane the frame tells how bending grows.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    loads : LinkLoads
+        At one pose.
+
+    Returns
+    -------
+    LinkLoads
+        Unchanged where compression buckles the link.
+    """
+    body, material = case.body(link), case.material_of(link)
+    if no_beam(body):
+        return loads
+    forces = curving_forces(internal_forces(beam_loads(loads, body, material.density)), body.cuts)
+    if forces.largest(lambda f: -float(f[0]))[2] <= 0.0:
+        return loads
+    inertia, soft = columns(body, free=True)[1]
+    across = Bend(stiffness=material.youngs_modulus * inertia, stretches=soft)
+    on_arms = {pin.name for pin in body.pins if pin.foot is not None}
+    return on_its_pins(loads, forces, None, across, holding(case, link).outermost, on_arms)
+
+
 def between_stations(
     loads: LinkLoads, forces: Piecewise, in_plane: Bend, across: Bend, on_arms: Collection[str] = ()
 ) -> LinkLoads:
@@ -117,7 +146,7 @@ def between_stations(
 def on_its_pins(
     loads: LinkLoads,
     forces: Piecewise,
-    in_plane: Bend,
+    in_plane: Bend | None,
     across: Bend,
     held: Sequence[float],
     on_arms: Collection[str] = (),
@@ -130,7 +159,7 @@ def on_its_pins(
     Parameters
     ----------
     loads, forces, in_plane, across, on_arms
-        As for ``between_stations``.
+        As for ``between_stations``; without ``in_plane`` it bends out of the plane alone.
     held : sequence of float
         Stations along the axis [mm].
 
@@ -149,13 +178,15 @@ def _stations(loads: LinkLoads, on_arms: Collection[str]) -> list[float]:
 
 
 def _bowed(
-    loads: LinkLoads, forces: Piecewise, planes: tuple[Bend, Bend], marks: Sequence[float], held: Sequence[float]
+    loads: LinkLoads, forces: Piecewise, planes: tuple[Bend | None, Bend], marks: Sequence[float], held: Sequence[float]
 ) -> LinkLoads:
     if len(marks) < 2:
         return loads
-    nodes = _nodes(marks, [x for bend in planes for stretch in bend.stretches for x in (stretch.first, stretch.last)])
+    bends = {axis: bend for axis, bend in enumerate(planes, start=1) if bend is not None}
+    softer = [stretch for bend in bends.values() for stretch in bend.stretches]
+    nodes = _nodes(marks, [x for stretch in softer for x in (stretch.first, stretch.last)])
     intensity, point, left = np.zeros((len(nodes) - 1, 2, 3)), np.zeros((len(marks), 3)), np.zeros(3)
-    for axis, bend in enumerate(planes, start=1):
+    for axis, bend in bends.items():
         found = _transverse(forces, bend, _MOMENT[axis], nodes, marks, held)
         if found is None:
             return loads

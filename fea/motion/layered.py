@@ -75,7 +75,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         poses = _worst_poses(moved, name, forces[name], evaluated)
         for pose in set(poses.values()):
             loads = [chosen(load, pose) for load in moved.loads[name]]
-            doubt = force_doubt(case, name, forces_at(moved, name, pose), loads).stress
+            doubt = force_doubt(case, name, forces_at(moved, name, pose), loads, grown=True).stress
             shares |= {(name, link): doubt[link] for link, own in poses.items() if own == pose and link in doubt}
     return LayeredMotion(moved=replace(moved, forces=forces), shares=shares)
 
