@@ -62,7 +62,7 @@ def task_of(name: str, link: str) -> LinkTask:
     cut = []
     for load_case, loads in statics.loads.items():
         moved = examine(case, load_case, statics.forces[load_case], loads)
-        cut.append(cut_link(case, link, load_case, moved, statics.reactions[load_case], loads))
+        cut += cut_link(case, link, load_case, moved, statics.reactions[load_case], loads)
     return link_task(case, link, cut)
 
 

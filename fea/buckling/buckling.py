@@ -125,6 +125,25 @@ class Column:
     most: float
 
 
+def least_factor(case: Case, link: str, beam: BeamCheck) -> float:
+    """Return the buckling factor of a link in one pose.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    beam : BeamCheck
+        Its hand calculation.
+
+    Returns
+    -------
+    float
+        Infinite where nothing makes it buckle.
+    """
+    found = None if beam.without else column(case, link, beam)
+    return math.inf if found is None else found.value
+
+
 def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
     """Return the column that stands for a link in one pose; None where nothing makes it buckle.
 

@@ -16,11 +16,13 @@ from fea.check.link_by_hand import link_by_hand
 from fea.check.load_growth import LEAST, Growths
 from fea.check.second_order import on_tilting_pins
 from fea.common.link_loads import LinkLoads
+from fea.common.plates import plates
 from fea.common.scatter import Scatter
 from fea.common.source import COUPLES, Source
 from fea.frame.deviation import Deviation, Sharing
 from fea.frame.joint_forces import JointForces
 from loads.case.case import Case
+from loads.case.forks import apart
 from loads.records.applied import Load
 
 _Around = Callable[[float, Sequence[float]], Scatter]
@@ -72,9 +74,8 @@ def _doubt(
         cases = [(forces.reactions, grown)]
         cases += [(one.reactions, isinstance(one, Sharing)) for one in changes if _concerns(one, case, link)]
         plain, *others = (
-            measures(case, link, on_tilting_pins(case, link, acting) if tilts else acting)
+            measures(case, link, link_loads(load_case, link, body, reactions, loads), tilts=tilts)
             for reactions, tilts in cases
-            for acting in [link_loads(load_case, link, body, reactions, loads)]
         )
         stress[link] = around(plain[0], [one[0] for one in others])
         displacement[link] = around(plain[1], [one[1] for one in others])
@@ -90,7 +91,7 @@ def _concerns(change: Deviation, case: Case, link: str) -> bool:
     return not isinstance(change, Sharing) or change.joints <= set(case.linkage.joints_of(link))
 
 
-def measures(case: Case, link: str, loads: LinkLoads) -> tuple[float, float]:
+def measures(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> tuple[float, float]:
     """Return stress and displacement by hand; the largest pin force for both of a link for which no beam stands.
 
     Parameters
@@ -98,18 +99,22 @@ def measures(case: Case, link: str, loads: LinkLoads) -> tuple[float, float]:
     case : Case
     link : str
     loads : LinkLoads
-        At one pose.
+        At one pose; of a pair the numbers are those of its worse plate.
+    tilts : bool, optional
+        Whether its pins tilt, so that bending grows as ``on_tilting_pins`` says.
 
     Returns
     -------
     tuple of (float, float)
         [MPa], [mm]; twice [N] without beam.
     """
-    hand = link_by_hand(case, link, loads)
-    if hand.check.without:
-        largest = max(float(np.linalg.norm(pin.wrench[:3])) for pin in loads.pins)
+    borne = plates(loads, apart(case, link))
+    borne = tuple(on_tilting_pins(case, link, plate) for plate in borne) if tilts else borne
+    hands = [link_by_hand(case, link, plate) for plate in borne]
+    if hands[0].check.without:
+        largest = max(float(np.linalg.norm(pin.wrench[:3])) for plate in borne for pin in plate.pins)
         return largest, largest
-    return hand.worst[1].equivalent, hand.displacement
+    return max(hand.worst[1].equivalent for hand in hands), max(hand.displacement for hand in hands)
 
 
 def _summed(sources: tuple[Source, ...]) -> _Around:

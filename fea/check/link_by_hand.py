@@ -12,12 +12,15 @@ from fea.beam.flanks import flanks_of
 from fea.beam.loads import BeamLoads, PointLoad
 from fea.beam.section_stress import SectionStress
 from fea.beam.theory import BeamCheck, check_beam
+from fea.buckling.buckling import least_factor
 from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
+from fea.common.plates import plates
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.unloaded import load_size, without_rounding
 from geometry.bodies.body import hand_section, no_beam, reference_line
 from loads.case.case import Case
+from loads.case.forks import apart
 from loads.records.applied import Load
 from loads.statics.statics import Reactions
 
@@ -57,7 +60,7 @@ def cut_link(
     moved: LargeDisplacement,
     reactions: Reactions,
     loads: Sequence[Load],
-) -> LinkLoads:
+) -> tuple[LinkLoads, ...]:
     """Return what acts on a link, with the second-order bending that the frame does not contain.
 
     A frame on its deformed shape lacks the bending between loaded places. Where no frame tells, all second-order
@@ -77,14 +80,53 @@ def cut_link(
 
     Returns
     -------
-    LinkLoads
+    tuple of LinkLoads
+        One; of a pair whose plates bear differently, that of each plate (``fea.common.plates``).
     """
     deformed, longest = moved.links.get(link), case.linkage.longest
     found = deformed or link_loads(load_case, link, case.body(link), moved.reactions or reactions, loads)
     found = without_rounding(found, load_size(loads, longest), longest)
+    borne = plates(found, apart(case, link))
     if deformed is None and moved.state not in ("off", "unknown") and link != case.linkage.ground:
-        return found
-    return second_order_loads(case, link, found, stays=deformed is not None)
+        return borne
+    return tuple(second_order_loads(case, link, plate, stays=deformed is not None) for plate in borne)
+
+
+def plates_by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[tuple[LinkLoads, LinkByHand], ...]:
+    """Return what acts on a link, or on each of its plates, with its hand calculation.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    borne : sequence of LinkLoads
+        Of the link, or of each of its plates.
+
+    Returns
+    -------
+    tuple of tuple of (LinkLoads, LinkByHand)
+        First of the plate that bears more by hand; the loads of the other have a name of their own.
+    """
+    found = [(loads, link_by_hand(case, link, loads)) for loads in borne]
+    worse, *others = sorted(found, key=lambda plate: -plate[1].worst[1].equivalent)
+    return (worse, *((replace(loads, name=f"{loads.name}, other plate"), hand) for loads, hand in others))
+
+
+def slenderest(case: Case, link: str, plates_of: Sequence[tuple[LinkLoads, LinkByHand]]) -> BeamCheck:
+    """Return the hand calculation of a link, or of the plate of it that buckles first as a column.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    plates_of : sequence of (LinkLoads, LinkByHand)
+        As of ``plates_by_hand``.
+
+    Returns
+    -------
+    BeamCheck
+    """
+    return min((hand.check for _, hand in plates_of), key=lambda check: least_factor(case, link, check))
 
 
 def link_by_hand(case: Case, link: str, loads: LinkLoads) -> LinkByHand:

@@ -1,5 +1,7 @@
 """The result of a link under one load case, from the model that decided it, with all stated scatter in its bands."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +13,11 @@ from fea.check.solid_result import solid_result
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.common.ties import first_largest
-from fea.outcomes.result import HandResult, LinkResult
+from fea.outcomes.result import HandResult, LinkResult, SolidResult
 from fea.outcomes.solid_buckling import solid_buckling, solid_growth
 from geometry.materials.material import Material
 from loads.case.case import Case
+from loads.case.forks import of_pair
 
 BEAM_ALONE = "beam theory without stress concentration"
 NO_BEAM = "no beam stands for this link"
@@ -22,9 +25,16 @@ IDLE = DecidedLink(decision=Decision(model="beam", why="nothing acts on it", nex
 
 
 def link_result(
-    case: Case, link: str, load_case: str, hand: LinkByHand, decided: DecidedLink | None, uneven: Growths
+    case: Case,
+    link: str,
+    load_case: str,
+    hand: LinkByHand,
+    decided: DecidedLink | None,
+    uneven: Growths,
+    *,
+    name: str,
 ) -> LinkResult:
-    """Return what a load case does to a link.
+    """Return what a load case does to a link, or to one plate of it.
 
     Parameters
     ----------
@@ -37,6 +47,8 @@ def link_result(
         None where nothing acts on the link under any load case.
     uneven : Growths
         What grows out of proportion to the scattered load.
+    name : str
+        Of the loads on that plate; that of the load case, or one of their own.
 
     Returns
     -------
@@ -44,11 +56,11 @@ def link_result(
     """
     decided, material = decided or IDLE, case.material_of(link)
     result: LinkResult
-    if decided.solid is not None and any(one.load == load_case for one in decided.solid.solution.cases):
+    if decided.solid is not None and any(one.load == name for one in decided.solid.solution.cases):
         why, solid = decided.decision.why, decided.solid
-        result = solid_result(case, link, load_case, hand.check, solid, why=why, remarks=hand.remarks)
+        result = solid_result(case, link, name, hand.check, solid, why=why, remarks=hand.remarks)
     else:
-        bands = None if decided.solid is not None else decided.hands.get(load_case)
+        bands = None if decided.solid is not None else decided.hands.get(name)
         result = _hand_result(link, material, hand, bands, decided.decision)
     grown = solid_growth(solid_buckling(result))
     load = load_scatter(case, load_case).times(uneven.stress.get(link, Scatter())).times(grown)
@@ -60,11 +72,39 @@ def link_result(
     return replace(
         result,
         layers=layers,
+        notes=(*of_pair(case, link), *result.notes),
         von_mises_max=load.on(result.von_mises_max),
         principal_max=load.on(result.principal_max),
         safety_factor=strength_scatter(material).times(load.inverse).on(result.safety_factor),
         displacement_max=compliance_scatter(material).times(bent).on(result.displacement_max),
     )
+
+
+def worse_plate(plates: Sequence[LinkResult]) -> LinkResult:
+    """Return the result of a link from those of its plates: the worse one's, with the worst of all in its place.
+
+    Parameters
+    ----------
+    plates : sequence of LinkResult
+        One, or two of a pair whose plates bear differently.
+
+    Returns
+    -------
+    LinkResult
+    """
+    worse, *others = sorted(plates, key=lambda result: result.severity)
+    for other in others:
+        if other.displacement_max.unknowable or other.displacement_max.high > worse.displacement_max.high:
+            worse = replace(worse, displacement_max=other.displacement_max)
+        if worse.layers is not None and other.layers is not None:
+            both = worse.layers, other.layers
+            layers = min(both, key=lambda one: -math.inf if one.safety_factor.unknowable else one.safety_factor.low)
+            worse = replace(worse, layers=layers)
+        if isinstance(worse, SolidResult) and isinstance(other, SolidResult) and other.buckling is not None:
+            known = worse.buckling
+            if known is None or other.buckling.without or other.buckling.least < known.least:
+                worse = replace(worse, buckling=other.buckling)
+    return worse
 
 
 def _hand_result(

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
+from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind
 from fea.frame.joint_forces import joint_forces
@@ -144,7 +144,7 @@ def _at(
         if moved.gives_way:
             return None
         cut = {link: cut_link(soft, link, load_case, moved, reactions, loads) for link in soft.checked_links}
-        hands = {link: link_by_hand(soft, link, what) for link, what in cut.items()}
+        hands = {link: plates_by_hand(soft, link, borne)[0][1] for link, borne in cut.items()}
     except (CaseError, CannotRunError):
         return None
     return _numbers(hands, moved.reactions or reactions)

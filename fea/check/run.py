@@ -4,8 +4,8 @@ import math
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
-import numpy as np
 from pydantic_core import PydanticCustomError
 
 from fea.beam.theory import CantileverCheck, uniform_cantilever
@@ -15,8 +15,8 @@ from fea.check.case_statics import CaseStatics, solve_case_statics
 from fea.check.clearance import clearance_outcomes
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
-from fea.check.link_by_hand import LinkByHand, cut_link, link_by_hand
-from fea.check.link_result import link_result
+from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
+from fea.check.link_result import link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from fea.check.load_growth import Growths, growths
 from fea.check.play_doubt import play_doubt, play_warnings, shaken
@@ -99,14 +99,16 @@ def effort_of(
 
 @dataclass(frozen=True, kw_only=True)
 class _LoadCase:
-    """One load case by hand: what acts on every link cut free, its hand calculation, and what is out of proportion."""
+    """One load case by hand: what acts on every link cut free, its hand calculation, and what is out of proportion.
+
+    ``plates`` has one of every link; of a pair whose plates bear differently both, first the worse one by hand.
+    """
 
     case: Case
     statics: CaseStatics
     load_case: str
     moved: LargeDisplacement
-    cut: Mapping[str, LinkLoads]
-    hands: Mapping[str, LinkByHand]
+    plates: Mapping[str, Sequence[tuple[LinkLoads, LinkByHand]]]
     uneven: Growths
     size: float
 
@@ -114,16 +116,18 @@ class _LoadCase:
     def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement) -> "_LoadCase":
         case, loads = statics.standing[load_case].case, statics.loads[load_case]
         reactions = statics.reactions[load_case]
-        cut = {link: cut_link(case, link, load_case, moved, reactions, loads) for link in case.checked_links}
-        hands = {link: link_by_hand(case, link, acting) for link, acting in cut.items()}
+        plates = {
+            link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
+            for link in case.checked_links
+        }
+        hands = {link: found[0][1] for link, found in plates.items()}
         grown = moved.state in ("off", "unknown")  # where ``cut_link`` adds it
         return cls(
             case=case,
             statics=statics,
             load_case=load_case,
             moved=moved,
-            cut=cut,
-            hands=hands,
+            plates=plates,
             uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands)
             .times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=grown))
             .times(play_doubt(case, load_case, statics.forces[load_case], loads)),
@@ -133,6 +137,11 @@ class _LoadCase:
     def acts_on(self, link: str) -> bool:
         """Return True if anything acts on a link."""
         return acts(self.cut[link], self.size, self.case.linkage.longest)
+
+    @cached_property
+    def cut(self) -> Mapping[str, LinkLoads]:
+        """What acts on every link, or on its worse plate."""
+        return {link: found[0][0] for link, found in self.plates.items()}
 
     @property
     def idle(self) -> bool:
@@ -150,12 +159,14 @@ class _LoadCase:
         return self.statics.forces[self.load_case]
 
     def links(self, decided: Mapping[str, DecidedLink]) -> dict[str, LinkResult]:
-        """Return the results of links."""
-        case, load_case = self.case, self.load_case
-        return {
-            link: link_result(case, link, load_case, hand, decided.get(link), self.uneven)
-            for link, hand in self.hands.items()
-        }
+        """Return the results of links; of a pair, that of its worse plate."""
+        found = {}
+        for link, plates in self.plates.items():
+            own = self.case, link, self.load_case
+            found[link] = worse_plate(
+                [link_result(*own, hand, decided.get(link), self.uneven, name=loads.name) for loads, hand in plates]
+            )
+        return found
 
     def judged(self, decided: Mapping[str, DecidedLink], motors: Sequence[CheckOutcome]) -> LoadCaseResult:
         """Return the result, with the outcomes of ``motors`` after those of links, joints and linkage."""
@@ -165,8 +176,10 @@ class _LoadCase:
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
         found = (
             *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
-            *_bearing(case, load_case, reactions, self.uneven),
-            *buckling_outcomes(case, load_case, {link: hand.check for link, hand in self.hands.items()}, moved),
+            *_bearing(case, load_case, reactions, self.forces, self.uneven),
+            *buckling_outcomes(
+                case, load_case, {x: slenderest(case, x, found) for x, found in self.plates.items()}, moved
+            ),
             *solid_buckling_outcomes(case, load_case, {x: found for x, found in links.items() if self.acts_on(x)}),
             *limit_load_outcomes(case, load_case, linkage),
             *motors,
@@ -300,9 +313,11 @@ def _decided(
 ) -> dict[str, DecidedLink]:
     """Decide every link on which something acts, by the model that was asked for."""
     wanted_links = [link for link in case.checked_links if only is None or link in only]
-    loaded = {link: [one.cut[link] for one in load_cases if one.acts_on(link)] for link in wanted_links}
+    loaded = {
+        link: [cut for one in load_cases if one.acts_on(link) for cut, _ in one.plates[link]] for link in wanted_links
+    }
     tasks = {link: link_task(case, link, loads) for link, loads in loaded.items() if loads}
-    beams = {link: {one.load_case: one.hands[link].check for one in load_cases} for link in tasks}
+    beams = {link: {cut.name: hand.check for one in load_cases for cut, hand in one.plates[link]} for link in tasks}
     if fidelity in BY_HAND:
         return {link: by_hand(task, beams[link]) for link, task in tasks.items()}
     if fidelity == "solid":
@@ -338,13 +353,15 @@ def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, Pi
     return {joint: shared_stress(case, joint, reactions.joints[joint], forces) for joint in asked}
 
 
-def _bearing(case: Case, load_case: str, reactions: Reactions, uneven: Growths) -> Iterator[CheckOutcome]:
+def _bearing(
+    case: Case, load_case: str, reactions: Reactions, forces: JointForces, uneven: Growths
+) -> Iterator[CheckOutcome]:
     """Outcomes of the checks that ask for bearing."""
     for name, check in case.checks.items():
         if isinstance(check, BearingCheck):
             for joint in check.joints or case.bearing_joints:
-                force = float(np.hypot(*reactions.joints[joint].wrench[:2]))
-                yield bearing_outcome(case, load_case, name, check, joint, force, uneven.joints.get(joint))
+                every = [one.joints[joint].wrench for one in (reactions, *(way.reactions for way in forces.sharings))]
+                yield bearing_outcome(case, load_case, name, check, joint, every, uneven.joints.get(joint))
 
 
 def _cantilever(case: Case, calculation: str) -> CantileverCheck:

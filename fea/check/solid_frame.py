@@ -21,6 +21,7 @@ from fea.beam.calibration import uncalibrated
 from fea.beam.cut_free import link_loads
 from fea.check.case_statics import CaseStatics
 from fea.common.link_loads import LinkLoads
+from fea.common.plates import plates
 from fea.common.source import PIN_PRESSURE, Source, SourceKind
 from fea.elements.space import displacement_space
 from fea.frame.build import build_frame
@@ -38,6 +39,7 @@ from fea.solid.stress import stress_field
 from geometry.meshing.mesh import MeshSettings, mesh_bodies
 from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.case.case import Case
+from loads.case.forks import apart
 from loads.records.applied import Load
 from loads.statics.statics import Reactions
 
@@ -110,7 +112,10 @@ def with_solids(
         solids[link] = condense(
             displacement_space(meshes[link]),
             body,
-            [link_loads(name, link, body, forces[name].reactions, statics.loads[name]) for name in wanted],
+            [
+                plates(link_loads(name, link, body, forces[name].reactions, statics.loads[name]), apart(case, link))[0]
+                for name in wanted
+            ],
             E=material.youngs_modulus,
             nu=material.poissons_ratio,
             density=material.density,
@@ -235,13 +240,13 @@ class _Linkage:
         """Solve with pins that give along their forces, and links that are as many times as flexible."""
         softer, flexible = softer or {}, {}
         for link, solid in self.solids.items():
-            times = softer.get(link, 1.0)
-            matrix = times * solid.flexibility
+            times, count = softer.get(link, 1.0), self.case.links[link].count
+            matrix = times * solid.flexibility / count
             for k, name in enumerate(solid.places):
                 if (link, name) in gives:
                     force, give = gives[link, name]
                     along = force / np.linalg.norm(force)
-                    matrix[6 * k : 6 * k + 2, 6 * k : 6 * k + 2] += give * np.outer(along, along)
+                    matrix[6 * k : 6 * k + 2, 6 * k : 6 * k + 2] += give / count * np.outer(along, along)
             moved = times * solid.moved.get(self.load_case, np.zeros(len(matrix)))
             flexible[link] = LinkFlexibility(places=solid.places, flexibility=matrix, moved=moved)
         assert self.plain.frame is not None
@@ -256,7 +261,8 @@ class _Linkage:
         return _Answer(frame=frame, solution=solution, reactions=reactions)
 
     def _cut(self, link: str, reactions: Reactions) -> LinkLoads:
-        return link_loads(self.load_case, link, self.case.body(link), reactions, self.loads)
+        loads = link_loads(self.load_case, link, self.case.body(link), reactions, self.loads)
+        return plates(loads, apart(self.case, link))[0]
 
     def _bonded(self, link: str) -> set[str]:
         """Points of a link at which it is bonded to another."""

@@ -68,7 +68,9 @@ def solid_result(
     Parameters
     ----------
     case : Case
-    link, load_case : str
+    link : str
+    load_case : str
+        Its name, or that of the loads on one plate of a pair.
     beam : BeamCheck
         The hand calculation.
     refined : RefinedSolid

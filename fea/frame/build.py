@@ -330,7 +330,7 @@ class _Builder:
         for name, foot in record.arms.items():
             tip = self.points[link, name] = self._node(link, *record.points[name], name)
             ends = (self.points[link, foot], tip)
-            young, poisson = material.youngs_modulus, material.poissons_ratio
+            young, poisson = record.count * material.youngs_modulus, material.poissons_ratio
             reach = float(np.linalg.norm(self.places[tip] - self.places[ends[0]]))
             self.beams[len(self.elements)] = LinkBeam(link=link, start=0.0, end=reach, arm=name)
             arm = body.part.arm_section
@@ -356,7 +356,7 @@ class _Builder:
             FrameElement(
                 nodes=(a, b),
                 section=section,
-                young=material.youngs_modulus,
+                young=self.case.links[link].count * material.youngs_modulus,  # twice the section of a pair
                 poisson=material.poissons_ratio,
                 offsets=np.array([self.arms.get(node, np.zeros(3)) + aside for node in (a, b)]),
                 load_first=share * first,

@@ -330,7 +330,7 @@ def _links(
     gives = {}
     for link, body in bodies.items():
         material = case.material_of(link)
-        gives[link] = bore_gives(body, material.youngs_modulus, material.poissons_ratio)
+        gives[link] = bore_gives(body, case.links[link].count * material.youngs_modulus, material.poissons_ratio)
     bores: dict[int, Real] = {}
     for name, nodes in frame.pins.items():
         for link, point, node in zip(case.joints[name].links, case.linkage.joint_points(name), nodes, strict=True):

@@ -39,6 +39,7 @@ from fea.solid.solution import require_compressible
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case
+from loads.case.forks import of_pair
 from loads.states.case_motion import CaseMotion, solve_case_motion
 from loads.states.clearance import clearance
 
@@ -135,6 +136,7 @@ class _Envelope:
                 for load_case in case.load_cases
             }
             found = motion.envelope(repetitions=repetitions, refined=refined, scatter=scatter)
+            found = replace(found, notes=(*of_pair(case, link), *found.notes))
             layers = layers_of(case, link)
             if layers is None or not found.worst.known:
                 return found

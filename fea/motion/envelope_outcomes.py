@@ -17,7 +17,7 @@ from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.motion.layered import forces_at
 from fea.motion.loosened import joint_growth
-from fea.outcomes.bearing import bearing_outcome
+from fea.outcomes.bearing import bearing_outcome, pressing
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
 from fea.outcomes.layers import no_strength, without_shear
@@ -192,7 +192,10 @@ def _joints(
     asked = case.bearing_joints if isinstance(check, BearingCheck) else case.pinned_joints
     for joint in check.joints or asked:
         for load_case, solved in moved.forces.items():
-            size = np.where(evaluated, np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
+            wrenches = solved.joints[joint].wrench
+            bearing = isinstance(check, BearingCheck)
+            pressed = np.max([*pressing(case, joint, wrenches).values()], axis=0)
+            size = np.where(evaluated, pressed if bearing else np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
             between_layers = isinstance(check, PinCheck) and case.linkage.rise(joint) != 0.0
             if between_layers:
                 at_poses = [_at(solved.joints[joint], i) for i in range(len(evaluated))]
@@ -204,7 +207,10 @@ def _joints(
             growth = joint_growth(moved, load_case, joint, evaluated)
             force = float(np.linalg.norm(solved.forces[joint][pose]))
             if isinstance(check, BearingCheck):
-                outcome = bearing_outcome(case, load_case, name, check, joint, force, growth)
+                every = [wrenches[pose]]
+                if case.linkage.rise(joint) != 0.0 and any(case.links[x].count == 2 for x in case.joints[joint].links):
+                    every += [way.reactions.joints[joint].wrench for way in forces_at(moved, load_case, pose).sharings]
+                outcome = bearing_outcome(case, load_case, name, check, joint, every, growth)
             elif between_layers:
                 shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
                 outcome = pin_outcome(case, load_case, name, check, joint, shared, growth)
@@ -237,16 +243,21 @@ def column_outcomes(
     CheckOutcome
     """
     for link, histories in loaded.items():
-        for history in histories:
+        for load_case in dict.fromkeys(history.name for history in histories):
             if not moved.case.part_of(link).is_beam:
-                yield undecided_buckling(history.name, link, NOT_FOLLOWED)
+                yield undecided_buckling(load_case, link, NOT_FOLLOWED)
                 continue
-            factors = factors_over_motion(moved.case, link, history)
-            compression, _ = axial_compression(moved.case, link, history)
-            column = worst_column(moved.case, link, compression, factors, evaluated)
-            if column is not None:
+            found = []
+            for history in histories:  # of both plates of a pair
+                if history.name == load_case:
+                    factors = factors_over_motion(moved.case, link, history)
+                    compression, _ = axial_compression(moved.case, link, history)
+                    found.append(worst_column(moved.case, link, compression, factors, evaluated))
+            columns = [column for column in found if column is not None]
+            if columns:
+                column = min(columns, key=lambda one: one.value)
                 where = f" at {_when(moved, column.pose)}"
-                outcome = column_outcome(moved.case, history.name, link, column, where=where)
+                outcome = column_outcome(moved.case, load_case, link, column, where=where)
                 yield _complete(outcome, evaluated)
 
 

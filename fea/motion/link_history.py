@@ -2,13 +2,17 @@
 
 from fea.beam.cut_free import link_loads
 from fea.common.link_loads import LinkLoads
+from fea.common.plates import plates
 from fea.frame.linkage_frame import out_of_plane
 from geometry.base.errors import CannotRunError, CaseError
+from loads.case.forks import apart
 from loads.states.case_motion import CaseMotion
 
 
 def link_histories(moved: CaseMotion, link: str) -> tuple[LinkLoads, ...]:
     """Return the loads on a link over the motion, at all poses, one record per load case.
+
+    Of a pair whose plates bear differently, there are two of a load case.
 
     Parameters
     ----------
@@ -41,4 +45,5 @@ def link_histories(moved: CaseMotion, link: str) -> tuple[LinkLoads, ...]:
                 "a motion does not follow; leave it out, or check single poses with alula check"
             )
     body = case.body(link)
-    return tuple(link_loads(name, link, body, moved.forces[name], loads) for name, loads in moved.loads.items())
+    whole = [link_loads(name, link, body, moved.forces[name], loads) for name, loads in moved.loads.items()]
+    return tuple(plate for loads in whole for plate in plates(loads, apart(case, link)))

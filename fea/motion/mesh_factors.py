@@ -58,12 +58,14 @@ class MeshFactors:
         found.sources, found.without = (replace(source, detail=f"{source.detail}, at the worst pose"),), ""
         for number, judgement in zip(numbers, judgements, strict=True):
             case, precise, series = refined.solution.cases[number], refined.precision[number], judgement.stress
-            found._refined[case.span, case.transfer] = series.value
+            key = case.span, case.transfer
+            found._refined[key] = max(series.value, found._refined.get(key, 0.0))  # the worse plate of a pair
             found._size = min(found._size, series.sizes[0])
             if judgement.known and series.value > 0.0:
                 measure = STRESS[material.brittle]
                 ends = precise.low(measure) / series.value, precise.high(measure) / series.value
-                found.factors[case.span, case.transfer] = ends
+                others = found.factors.get(key, ends)
+                found.factors[key] = min(ends[0], others[0]), max(ends[1], others[1])
         return found
 
     def was_not_refined_for(self, variant: VariantCurve) -> bool:

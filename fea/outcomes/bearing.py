@@ -6,19 +6,53 @@ turn, 6.67 times as 14 CFR 23.657 asks of hinges that flight depends on. Both me
 for which the ultimate tensile strength of the card stands; that in bearing is rarely below it.
 """
 
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
 from fea.common.band import Band
 from fea.common.scatter import Scatter, load_scatter, strength_scatter
 from fea.common.verdict import CheckOutcome, Quantity, Subject
-from fea.outcomes.pins import eye_of
 from geometry.base.errors import CaseError
 from loads.case.case import Case
+from loads.case.forks import apart, eye_of
 from loads.records.bearing import bearing_stress
 from loads.records.check_spec import BearingCheck
+
+Real = NDArray[np.float64]
 
 WITHOUT = "the joint force of statics, evenly over the pin's projected area"
 
 
-def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) -> tuple[str, Band]:
+def pressing(case: Case, joint: str, wrench: Real) -> dict[str, Real]:
+    """Return the force that, spread evenly along a joint's eye, presses as hard as its pin does.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    wrench : ndarray, shape (..., 6)
+        What the first link does to the second, about the point of the second [N, N mm].
+
+    Returns
+    -------
+    dict of str to ndarray
+        Link -> force (...) [N]: that of the joint, but of a pair twice what its worse plate bears by the lever law.
+    """
+    force, rise = wrench[..., :2], case.linkage.rise(joint)
+    size = np.linalg.norm(force, axis=-1)
+    found = {}
+    for link, level in zip(case.joints[joint].links, (rise, 0.0), strict=True):
+        found[link], distance = size, apart(case, link)
+        if distance is not None:
+            along = np.stack([wrench[..., 4], -wrench[..., 3]], axis=-1) + level * force  # moment of the force along z
+            aside = 2.0 * along / distance
+            found[link] = np.maximum(*(np.linalg.norm(force + side * aside, axis=-1) for side in (1.0, -1.0)))
+    return found
+
+
+def weakest_eye(case: Case, name: str, joint: str, wrenches: Sequence[Real], load: Scatter) -> tuple[str, Band]:
     """Return the link whose eye or slot a joint's pin loads worst, and its safety factor.
 
     Parameters
@@ -27,8 +61,8 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
     name : str
         Of the check.
     joint : str
-    force : float
-        Across the pin [N].
+    wrenches : sequence of ndarray, shape (6,)
+        What the first link does to the second, in all ways in which pins may share couples [N, N mm].
     load : Scatter
         Of that force. The band holds it and, where the strength is that of the safety factor, the strength's.
 
@@ -47,12 +81,13 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
         raise CaseError(
             f'joints.{joint}.pin_diameter: checks.{name} needs it for bearing; state it, for example "1.5 mm"'
         )
-    factors = {}
+    factors, pressed = {}, [pressing(case, joint, wrench) for wrench in wrenches]
     # A pin in a slot shares its hole in the second link with others: that slot's force is not all that bears there.
     for link in record.links[:1] if record.type == "pin-in-slot" else record.links:
         if link in case.checked_links:
             material = case.material_of(link)
             strength = material.ultimate_strength or material.allowable
+            force = max(float(one[link]) for one in pressed)
             stress = bearing_stress(
                 force=force, diameter=record.pin_diameter, thickness=eye_of(case, joint, link).thickness
             )
@@ -63,7 +98,13 @@ def weakest_eye(case: Case, name: str, joint: str, force: float, load: Scatter) 
 
 
 def bearing_outcome(
-    case: Case, load_case: str, name: str, check: BearingCheck, joint: str, force: float, growth: Scatter | None = None
+    case: Case,
+    load_case: str,
+    name: str,
+    check: BearingCheck,
+    joint: str,
+    wrenches: Sequence[Real],
+    growth: Scatter | None = None,
 ) -> CheckOutcome:
     """Return the outcome of one joint: that of its softer or thinner eye.
 
@@ -76,8 +117,8 @@ def bearing_outcome(
         Of the check.
     check : BearingCheck
     joint : str
-    force : float
-        Across its pin [N].
+    wrenches : sequence of ndarray, shape (6,)
+        As of ``weakest_eye``.
     growth : Scatter, optional
         By which that force grows beside scattered loads (``fea.check.load_growth``).
 
@@ -91,6 +132,6 @@ def bearing_outcome(
         For a joint without pin diameter.
     """
     load = load_scatter(case, load_case).times(growth or Scatter())
-    eye, factor = weakest_eye(case, name, joint, force, load)
+    eye, factor = weakest_eye(case, name, joint, wrenches, load)
     found = CheckOutcome.of(name, Subject.pin(joint), load_case, Quantity.SAFETY_FACTOR, factor, check.limit)
     return found.because(f"bearing on the eye of {eye}: {found.reason}")

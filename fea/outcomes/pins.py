@@ -14,7 +14,8 @@ how the pin sits and how the links are held, so that the moment is a band, from 
 * least: the force crosses the gap, where M changes by F g, so that |M| is F g/2 or more, whatever the bearing. Without
   a gap statics leaves nothing but shear. Both eyes bearing linearly alike, t thick without a gap, make 4/27 F t.
 
-An eye of thickness h in the gap of a fork with cheeks t1 thick is in double shear: each cheek takes F/2.
+An eye of thickness h in the gap of a fork with cheeks t1 thick, or between a pair of plates, is in double shear: each
+cheek, or plate, takes F/2.
 
 * largest: all bear evenly along the pin, as on a stiff one. The bending moment is that of F/2 from the middle of a
   cheek to the middle of half the eye, M = F/2 (t1/2 + g + h/4), with g free on either side (Melcon & Hoblit, Product
@@ -49,7 +50,7 @@ from geometry.base.errors import CaseError
 from geometry.bodies.features import Ring
 from loads.case.case import Case
 from loads.case.eyes import other_link
-from loads.case.forks import forked_link
+from loads.case.forks import eye_of, outer_link
 from loads.records.applied import shifted
 from loads.records.check_spec import PinCheck
 from loads.statics.joint_reaction import JointReaction
@@ -203,26 +204,8 @@ def _taken(eye: Ring, lever: float) -> tuple[float, float]:
     return max(moments), max(shears)
 
 
-def eye_of(case: Case, joint: str, link: str) -> Ring:
-    """Return a joint's hole in one of its links.
-
-    Parameters
-    ----------
-    case : Case
-    joint, link : str
-        The link has a part.
-
-    Returns
-    -------
-    Ring
-        With its rims and walls.
-    """
-    body = case.body(link)
-    return body.ring(body.pin(case.linkage.point_of(joint, link)))
-
-
 def eyes(case: Case, joint: str) -> tuple[Ring, Ring]:
-    """Return a joint's holes in its two links; that of a link without part is like the other link's.
+    """Return a joint's holes in its two links; that of a link without part is like that of the other link's plate.
 
     Parameters
     ----------
@@ -239,11 +222,15 @@ def eyes(case: Case, joint: str) -> tuple[Ring, Ring]:
     CaseError
         Where neither link has a part.
     """
-    links = [link for link in case.joints[joint].links if case.links[link].part is not None]
-    found = [eye_of(case, joint, link) for link in links]
+    links = case.joints[joint].links
+    found = {link: eye_of(case, joint, link) for link in links if case.links[link].part is not None}
     if not found:
         raise CaseError(f"joints.{joint}: neither link has a part, so the pin's length is unknown; give one a part")
-    return found[0], found[-1]
+    if len(found) == 1:
+        [link] = found
+        body = case.body(link)
+        found[other_link(case.linkage, joint, link)] = body.ring(body.pin(case.linkage.point_of(joint, link)))
+    return found[links[0]], found[links[1]]
 
 
 def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
@@ -268,10 +255,8 @@ def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
     if rise == 0.0:
         return stress_of(case, joint, float(np.hypot(*wrench[:2])), float(np.hypot(*wrench[3:5])))
     diameter, poisson = _pin_of(case, joint)
-    own = eyes(case, joint)
-    parted = own if all(case.links[link].part for link in case.joints[joint].links) else (own[0], own[0])
     first = shifted(-wrench, np.array([0.0, 0.0, rise]))
-    moment, shear = largest_between(parted, rise, first, wrench)
+    moment, shear = largest_between(eyes(case, joint), rise, first, wrench)
     bent = 32.0 / (math.pi * diameter**3) * moment
     sheared = _shear_stress(shear, diameter, poisson)
     equivalent = max(bent, math.sqrt(3.0) * sheared)
@@ -349,7 +334,7 @@ def stress_of(case: Case, joint: str, force: float, moment: float = 0.0) -> PinS
         For a pin without diameter.
     """
     diameter, poisson = _pin_of(case, joint)
-    gap, fork = case.joints[joint].pin_gap, forked_link(case, joint)
+    gap, fork = case.joints[joint].pin_gap, outer_link(case, joint)
     if fork is not None:
         outer, mate = eye_of(case, joint, fork), other_link(case.linkage, joint, fork)
         if case.links[mate].part is not None:

@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from fea.beam.cut_free import link_loads
 from fea.common.link_loads import LinkLoads
+from fea.common.plates import plates
 from geometry.linkage.driven import DrivenClosure
 from geometry.linkage.placement import Placement
 from geometry.linkage.pose import Pose
 from geometry.linkage.sampled import SampledPlacement, assemble_samples
 from loads.case.case import Case
+from loads.case.forks import apart
 from loads.case.joint_rules import rubbing_joints
 from loads.case.toleranced import Variable
 from loads.records.applied import AnyLoad, BodyForce, Load, PartMass, PointLoad
@@ -237,7 +239,7 @@ class Sampler:
         return scaled(load, 1.0 + more) if more.any() else load
 
     def link_loads(self, states: States, deviations: Real, load_case: str, link: str) -> LinkLoads:
-        """Return what acts on a link of each sample, moved to the places of its nominal body.
+        """Return what acts on a link of each sample, or on one plate of it, moved to the places of its nominal body.
 
         A pin that is off its nominal place by δ presses there with its force F; about the nominal place this is F and
         the moment δ × F. So the loads balance on the nominal body as they do on the sample's.
@@ -265,7 +267,7 @@ class Sampler:
             p if p.slotted else replace(p, wrench=_moved(p.wrench, shifts.get((link, p.name)))) for p in found.pins
         )
         ends = tuple(replace(e, wrench=_moved(e.wrench, shifts.get((link, e.name)))) for e in found.ends)
-        return replace(found, pins=pins, ends=ends)
+        return plates(replace(found, pins=pins, ends=ends), apart(self.case, link))[0]
 
 
 def _moved(wrench: Real, shift: Any) -> Real:

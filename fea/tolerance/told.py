@@ -341,7 +341,7 @@ class Told:
                 if load_case in response.pilots:
                     own = self.check.sampler.link_loads(states, self.deviations, load_case, name)
                     work = response.work(own, self._loads(name, load_case))
-                    total += work / self._factor(name, "youngs_modulus")
+                    total += case.links[name].count * work / self._factor(name, "youngs_modulus")
             found.append(total)
         return np.hypot(*found)
 

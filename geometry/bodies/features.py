@@ -1,7 +1,8 @@
 """Pins, loaded ends and holes of a link, all along the x axis of its frame."""
 
+import itertools
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -169,6 +170,23 @@ class Ring:
     def off_plane(self) -> bool:
         """Whether the middle of the hole lies off the plane of the link's forces, z = 0."""
         return abs(self.middle) > OFF_PLANE * self.thickness
+
+    def doubled(self, apart: float) -> "Ring":
+        """Return the ring of a pair of plates, each with this one.
+
+        Parameters
+        ----------
+        apart : float
+            Distance of the plates' mid-planes, which lie evenly about z = 0 [mm].
+
+        Returns
+        -------
+        Ring
+            From the lower rim of the lower plate to the upper one of the upper.
+        """
+        walls = [(low + side, high + side) for side in (-apart / 2.0, apart / 2.0) for low, high in self.walls]
+        gaps = tuple((below[1], above[0]) for below, above in itertools.pairwise(walls))
+        return replace(self, low=walls[0][0], high=walls[-1][1], gaps=gaps)
 
     def scaled(self, s: Callable[[float], float]) -> "Ring":
         """Return the ring with its lengths in another unit.

@@ -47,7 +47,13 @@ class Link(CaseModel):
     z: Length | None = None
     """Height of the link's mid-plane along the pins, in place of a layer."""
     thickness: Annotated[Length, POSITIVE] | None = None
-    """Height along the pins that the link takes up, where its part does not tell."""
+    """Height along the pins that the link takes up, where its part does not tell; of a pair, that of one plate."""
+    count: Annotated[int, Field(ge=1, le=2)] = 1
+    """2 makes the link a pair of side plates: its part twice, one above the other, held together by pins alone. All
+    that acts on the link is shared by both plates."""
+    apart: Annotated[Length, POSITIVE] | None = None
+    """Of a pair: the distance of the mid-planes of its plates, evenly about the link's own height. Left out, it is
+    twice layer_spacing, so that the other link of a joint lies in between."""
 
     @property
     def pieces(self) -> tuple[tuple[Name, Name], ...]:

@@ -9,7 +9,7 @@ from geometry.materials.laminate import ANISOTROPIC, is_laminate
 from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
-from loads.case.forks import check_fork
+from loads.case.forks import check_fork, check_pair
 from loads.case.joint_rules import check_clearances, check_friction
 from loads.case.layers import check_layers
 from loads.case.load_rules import check_loads, check_masses, check_place
@@ -74,6 +74,7 @@ def check_rules(case: CoreCase) -> None:
             raise CaseError(
                 f"links.{name}.part: it is missing, but slots, arms and eyes are shapes of a part; name one"
             )
+        check_pair(case, name)
     check_springs(case)
     check_stops(case)
     check_equilibrium(case)

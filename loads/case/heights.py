@@ -80,7 +80,7 @@ def _levels(
 
 def _thickness_of(links: Links, parts: Parts) -> float:
     """Return the height along the pins of the thickest of the links of a layer."""
-    known = [found for link in links.values() if (found := thickness(link, parts)) is not None]
+    known = [found + (link.apart or 0.0) for link in links.values() if (found := thickness(link, parts)) is not None]
     if not known:
         raise CaseError(
             f"links.{next(iter(links))}.thickness: how high the link is along the pins does not follow from its part, "
@@ -90,7 +90,7 @@ def _thickness_of(links: Links, parts: Parts) -> float:
 
 
 def thickness(link: Link, parts: Parts) -> float | None:
-    """Return the height along the pins that a link takes up.
+    """Return the height along the pins that a link takes up; of a pair, that of one plate.
 
     Parameters
     ----------

@@ -4,13 +4,13 @@ import math
 
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
-from loads.case.forks import forked_link
+from loads.case.forks import levels, outer_link
 from loads.case.heights import thickness
 from loads.records.carried import CarriedBody
 
 
 def slab(case: CoreCase, name: str) -> tuple[float, float]:
-    """Return the heights between which the material of a link lies.
+    """Return the heights between which the material of a link lies; of a pair, that of both plates.
 
     Parameters
     ----------
@@ -23,13 +23,14 @@ def slab(case: CoreCase, name: str) -> tuple[float, float]:
     tuple of float
         Lowest and highest z [mm]; equal where its thickness is not known.
     """
-    level, known = case.heights[name], thickness(case.links[name], case.parts)
+    at, known = levels(case, name), thickness(case.links[name], case.parts)
+    lowest, highest = at[0], at[-1]
     if known is None and case.links[name].part is not None:
         body = case.body(name)
         rings = [body.ring(pin) for pin in body.pins]
-        return level + min(ring.low for ring in rings), level + max(ring.high for ring in rings)
+        return lowest + min(ring.low for ring in rings), highest + max(ring.high for ring in rings)
     half = (known or 0.0) / 2.0
-    return level - half, level + half
+    return lowest - half, highest + half
 
 
 def on_one_axis(case: CoreCase) -> tuple[tuple[str, ...], ...]:
@@ -119,7 +120,7 @@ def check_layers(case: CoreCase) -> None:
                 f"{', '.join(joint.links)}"
             )
         for entry in ("tight_in",) if not layered else ("pin_gap",):
-            in_fork = layered and forked_link(case, name) is not None  # both links lie in one layer
+            in_fork = layered and outer_link(case, name) is not None  # both links lie in one layer
             if entry in joint.model_fields_set and not in_fork:
                 why = "the layers tell the gap" if layered else "it has a meaning only where links lie in layers"
                 raise CaseError(f"joints.{name}.{entry}: {why}; leave it out")

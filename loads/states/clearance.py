@@ -15,6 +15,7 @@ from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.placement import Placement
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
+from loads.case.forks import levels
 from loads.case.layers import on_one_axis, slab
 from loads.states.case_motion import drive_angles
 
@@ -104,7 +105,7 @@ def assembly(case: Case) -> Assembly:
         if joint.pin_diameter is not None and joint.type != "slider":
             ends = [z for link in joint.links for z in slabs[link]]
             pins[name] = pin_shape(f"pin {name}", joint.pin_diameter, min(ends), max(ends))
-    links = {link: link_shape(f"link {link}", case.body(link), [case.heights[link]]) for link in case.checked_links}
+    links = {link: link_shape(f"link {link}", case.body(link), list(levels(case, link))) for link in case.checked_links}
     return Assembly(case=case, links=links, pins=pins)
 
 

@@ -21,7 +21,7 @@ def _measured(body: Body) -> MassProperties:
 
 
 def part_mass(case: Case, link: str) -> PartMass:
-    """Return mass, centroid and moment of inertia of a link's part, by the geometry kernel.
+    """Return mass, centroid and moment of inertia of a link's part, by the geometry kernel; of a pair, of both plates.
 
     Parameters
     ----------
@@ -43,10 +43,11 @@ def part_mass(case: Case, link: str) -> PartMass:
         solid, density = _measured(case.body(link)), case.material_of(link).density
     except AlulaError as error:
         raise type(error)(f"{link}: {error}") from None
+    weight = case.links[link].count * density
     return PartMass(
-        mass=solid.volume * density,
+        mass=solid.volume * weight,
         centroid=np.asarray(solid.centroid)[:2],
-        inertia=float(solid.inertia[2, 2]) * density,
+        inertia=float(solid.inertia[2, 2]) * weight,
     )
 
 
@@ -81,7 +82,8 @@ def rough_masses(case: Case) -> dict[str, float]:
     for link in case.checked_links:
         body = case.body(link)
         volume = body.part.rough_volume(body)
-        found[link] = part_mass(case, link).mass if volume is None else volume * case.material_of(link).density
+        weight = case.links[link].count * case.material_of(link).density
+        found[link] = part_mass(case, link).mass if volume is None else volume * weight
     return found
 
 

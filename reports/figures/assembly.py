@@ -10,6 +10,7 @@ from geometry.clearance.least import Spot
 from geometry.clearance.shape import Shape
 from geometry.linkage.placement import Placement
 from loads.case.case import Case
+from loads.case.forks import levels
 from loads.states.clearance import Assembly, Clearance
 from reports.sheet.canvas import Canvas, faint
 from reports.sheet.labels import place_labels
@@ -190,8 +191,8 @@ def layer_colours(case: Case) -> dict[str, str]:
     -------
     dict of str to str
     """
-    levels = sorted(set(case.heights.values()))
-    return {link: LAYERS[levels.index(z) % len(LAYERS)] for link, z in case.heights.items()}
+    every = sorted(set(case.heights.values()))
+    return {link: LAYERS[every.index(z) % len(LAYERS)] for link, z in case.heights.items()}
 
 
 def assembly_sheet(found: Clearance) -> Canvas:
@@ -258,7 +259,7 @@ def _plan(sheet: Canvas, axes: Axes, placed: Placed) -> None:
     axes.frame(sheet)
     case, colours = placed.assembly.case, layer_colours(placed.assembly.case)
     obstacles: list[Real] = []
-    for link in sorted(case.links, key=lambda name: case.heights[name]):
+    for link in sorted(case.links, key=lambda name: levels(case, name)[-1]):
         if link in placed.links:
             draw(sheet, axes, placed.links[link], faint(colours[link], FILL), colours[link], 0.9)
             obstacles.append(axes.at(border(placed.links[link])))

@@ -329,8 +329,8 @@ def test_pins_and_bearing_are_checked_at_the_pose_of_the_largest_force(path, mov
         for joint in ("B", "O4"):
             stress = stress_at(case, joint, reactions.joints[joint]).equivalent
             least["shear", f"pin {joint}"].append(stress.inverse(case.pin_material(joint).allowable))
-            force = reactions.joints[joint].magnitude
-            outcome = bearing_outcome(case, "push", "eyes", case.checks["eyes"], joint, force)
+            wrench = reactions.joints[joint].wrench
+            outcome = bearing_outcome(case, "push", "eyes", case.checks["eyes"], joint, [wrench])
             least["eyes", outcome.link].append(outcome.value)
     for key, bands in least.items():
         pose = int(np.argmin([band.value for band in bands]))
