@@ -17,6 +17,7 @@ such and therefore exact at every station.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -227,9 +228,14 @@ def check_beam(
     else:
         n, *_, m_y, m_z = np.transpose(rows)
         axial, bending = n / section.area, bending_stress(section, m_y, m_z)
-        x, side, _ = forces.largest(lambda f: equivalent_stress(section, f, poisson))
+
+        @cache  # the rows are samples that the search for the largest tries as well
+        def stress(row: bytes) -> float:
+            return equivalent_stress(section, np.frombuffer(row), poisson)
+
+        x, side, _ = forces.largest(lambda f: stress(f.tobytes()))
         worst = section_stress(section, forces.at(x, side), poisson)
-        equivalent = np.array([equivalent_stress(section, row, poisson) for row in rows])
+        equivalent = np.array([stress(row.tobytes()) for row in rows])
     n, v_y, v_z, t, m_y, m_z = np.transpose(rows)
     return BeamCheck(
         forces=forces,

@@ -73,9 +73,10 @@ def play_doubt(
         tried = {name: [told(*end) for end in each] for name, each in ends.items()}
         for i, found in enumerate((stress, displacement)):
             slopes = {name: np.array([end[i] - plain[i] for end in each]) for name, each in tried.items()}
-            worst = [told(*end)[i] for end in _worst(play, forces, slopes)]
             slack = sum(float(np.linalg.norm(slope)) for slope in slopes.values())
-            low, high = min(plain[i] - slack, plain[i], *worst), max(plain[i] + slack, *worst)
+            telling = 2.0 * slack > LEAST * plain[i]
+            worst = [told(*end)[i] for end in _worst(play, forces, slopes)] if telling else []
+            low, high = min(plain[i] - slack, *worst, plain[i]), max(plain[i] + slack, *worst, plain[i])
             found[link] = _scatter(Span(value=plain[i], low=max(low, 0.0), high=high), source)
             if case.layered:  # couples between layers go with the forces of the link's pins
                 held = [joints[name] for name in case.linkage.joints_of(link)]
