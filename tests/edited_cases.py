@@ -7,6 +7,9 @@ from typing import Any
 from loads.case.case import Case
 from loads.case.case_file import read_text, validate
 
+PLANAR = 'layer_spacing="0 mm"'
+"""Entry that puts all layers of a case in one plane: for tests of what has nothing to do with layers."""
+
 
 def edited(name: str, entries: Sequence[str]) -> Case:
     """Return a case with entries ``path=value`` as if its file had been edited: missing tables are added."""

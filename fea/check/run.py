@@ -28,7 +28,7 @@ from fea.common.link_loads import LinkLoads
 from fea.common.source import COUPLES
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, Verdict, overall
-from fea.frame.joint_forces import JointForces, ways_to_hold
+from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
@@ -395,7 +395,11 @@ def _shared_couples(load_cases: Sequence[_LoadCase], results: Mapping[str, LoadC
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
     found = unusual_materials(case)
-    by_frame = {load_case: (f.model, f.reason) for load_case, f in statics.forces.items() if not f.by_equilibrium}
+    by_frame = {
+        load_case: (forces.model, forces.reason)
+        for load_case, forces in statics.forces.items()
+        if not forces.by_equilibrium and forces.model != LAYERED_FRAME
+    }
     for model, reason in dict.fromkeys(by_frame.values()):
         names = [load_case for load_case, found_by in by_frame.items() if found_by == (model, reason)]
         found.append(f"{_of(names)}: {reason}, so the joint forces are those of a {model}")

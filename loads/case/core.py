@@ -8,7 +8,7 @@ from pydantic import Field
 
 from geometry.base.errors import CaseError
 from geometry.base.model import Name, Text
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Length
+from geometry.base.units import NOT_NEGATIVE, Length
 from geometry.bodies.body import PartKind
 from geometry.bodies.features import FlatFace
 from geometry.linkage.linkage import Joint, Link, Linkage
@@ -66,8 +66,8 @@ class CoreCase(Revisable):
     joint_model: Literal["pinned", "bonded"] = "pinned"
     """Whether pins turn freely, or are all bonded and carry moments about their own axis as well, as if every revolute
     joint stated bonded = true. Sliders and pins in slots slide all the same."""
-    layer_spacing: Annotated[Length, POSITIVE] | None = None
-    """Distance between the mid-planes of neighbouring layers in which links lie."""
+    layer_spacing: Annotated[Length, NOT_NEGATIVE] | None = None
+    """Distance between the mid-planes of neighbouring layers in which links lie; 0 mm puts all layers in one plane."""
     washer: Annotated[Length, NOT_NEGATIVE] | None = None
     """Thickness of the washers, or width of the gaps, between layers that are as thick as their links."""
     large_displacement: Literal["auto", "off"] = "auto"

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from edited_cases import edited
+from edited_cases import PLANAR, edited
 
 from fea.beam.cut_free import link_loads
 from fea.frame.joint_forces import joint_forces
@@ -32,5 +32,5 @@ def test_all_poses_balance_in_space_and_are_those_of_their_frames() -> None:
 
 
 def test_one_layer_is_left_as_it_was() -> None:
-    moved = solve_case_motion(edited("four-bar-synthesis", ["motion.poses=5"]))
+    moved = solve_case_motion(edited("four-bar-synthesis", ["motion.poses=5", PLANAR]))
     assert with_couples(moved, np.ones(5, dtype=bool)).moved is moved

@@ -3,10 +3,13 @@
 import re
 
 import pytest
-from edited_cases import edited
+from edited_cases import PLANAR, edited
 
+from fea.check.case_statics import solve_case_statics
 from geometry.base.errors import CaseError
+from loads.case.case_file import built_in_cases, read_case, read_text
 from loads.case.layers import slab
+from loads.states.clearance import clearance
 
 LINKS = ("AG", "GF", "AE", "CF", "CH", "ED")
 FOUR = [f"links.{name}.layer={layer}" for name, layer in zip(LINKS, (0, 0, 1, 2, 3, 2), strict=True)]
@@ -30,6 +33,35 @@ def test_washers_lie_between_layers_as_thick_as_their_thickest_link() -> None:
 def test_a_height_stands_for_a_layer() -> None:
     case = edited(WING, [f'links.{name}.z="{3 * i} mm"' for i, name in enumerate(LINKS)])
     assert case.heights["ED"] == 15.0
+
+
+def test_a_spacing_of_zero_puts_all_layers_in_one_plane() -> None:
+    """The joint forces are those of the same links without layers, from equilibrium alone."""
+    flat, plain = edited(WING, [*FOUR, PLANAR]), edited(WING, [])
+    assert not flat.layered
+    assert set(flat.heights.values()) == {0.0}
+    of_flat, of_plain = (solve_case_statics(case, WING).forces["weight"] for case in (flat, plain))
+    assert of_flat.by_equilibrium
+    for name, joint in of_plain.reactions.joints.items():
+        assert of_flat.reactions.joints[name].force == pytest.approx(joint.force, rel=1e-12, abs=1e-15)
+    with pytest.raises(CaseError, match="layer_spacing"):
+        edited(WING, [*FOUR, 'layer_spacing="-1 mm"'])
+
+
+BUILT_IN = {name: case for name in built_in_cases() if (case := read_case(name)).layered}
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_layers_of_built_in_cases_leave_room(name: str) -> None:
+    """Nothing touches over the motion, and each layer is marked as assumed."""
+    case = BUILT_IN[name]
+    found = clearance(case)
+    assert found is not None
+    assert all(gap.low > 0.0 for gap in found.gaps)
+    marked = [line for line in read_text(name)[0].splitlines() if line.startswith(("layer", "washer"))]
+    assert len(marked) == len(case.links) + 1
+    assert all("# assumed" in line for line in marked)
+    assert any(line.startswith("Layers ") for line in case.assumptions)
 
 
 def test_without_layers_all_lies_in_one_plane() -> None:

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import programs
 import pytest
+from edited_cases import PLANAR
 
-MOTION = ("study", "four-bar-synthesis", "--analysis", "motion", "--workers", "1")
+MOTION = ("study", "four-bar-synthesis", "--set", PLANAR, "--analysis", "motion", "--workers", "1")
 
 
 def test_a_study_of_motions_is_computed_and_shown(tmp_path: Path) -> None:

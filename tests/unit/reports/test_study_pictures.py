@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import programs
 import pytest
+from edited_cases import PLANAR
 from html_pages import Page, stands_alone
 
 from fea.common.verdict import Verdict
@@ -363,7 +364,7 @@ def test_mistakes_are_one_sentence(tmp_path):
 def test_the_command_draws_a_study_of_motions(tmp_path):
     """Without checks the first numbers that vary are drawn, or those that are asked for."""
     arguments = ("study", "four-bar-synthesis", "--analysis", "motion", "--workers", "1", "--set", "motion.poses=31",
-                 "--vary", "links.a.points.A.0=1.6 m..1.7 m/4", "-o", "out", "--pictures")  # fmt: skip
+                 "--set", PLANAR, "--vary", "links.a.points.A.0=1.6 m..1.7 m/4", "-o", "out", "--pictures")  # fmt: skip
     refused = programs.inside(*arguments, "out", folder=tmp_path)
     assert (refused.returncode, list(tmp_path.iterdir())) == (2, []), refused.stderr
     done = programs.inside(*arguments, "drawn", folder=tmp_path)
