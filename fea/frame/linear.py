@@ -250,7 +250,7 @@ class FactorisedFrame:
             # The matrix is symmetric, and so is its inverse.
             solve = self._factors.solve
             inverse = LinearOperator(self._matrix.shape, matvec=solve, rmatvec=solve, dtype=np.float64)
-            condition = float(abs(self._matrix).sum(axis=0).max() * onenormest(inverse))
+            condition = float(abs(self._matrix).sum(axis=0).max() * onenormest(inverse, t=1))
         q, u = unknowns[: self._size], unknowns[self._size :] * self._scale * self.system.unit
         found = _collect(self.system, q, u, condition)
         if not found.residual <= LARGEST_RESIDUAL:
