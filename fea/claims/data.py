@@ -119,7 +119,7 @@ def case_tree(
     Parameters
     ----------
     case : Case
-        The case.
+        The case. The sources calculate in one plane, so its layers are left out.
     name : str
         Its path or built-in name.
     fidelity : str, optional
@@ -134,6 +134,7 @@ def case_tree(
     Tree
         Its quantities, each computed when it is first asked for.
     """
+    case = case.in_one_plane() if case.layered else case
     frames = None if known is None or known.case != case else known.frames
     parts = Tree(
         statics=lambda: solve_case_statics(case, name),

@@ -28,7 +28,7 @@ from fea.frame.linear import FactorisedFrame
 from fea.frame.linkage_frame import LinkageFrame
 from geometry.linkage.linkage import Linkage
 
-SOFT = 1e6
+SOFT = 1e5
 """Flexibility of a hinge, over the greatest of the frame in hinges' angles."""
 BORNE = 1e-3
 """Share of the largest moment of the tight frame above which hinges bear what nothing else can."""

@@ -59,7 +59,7 @@ def _levels(
     links: Links, parts: Parts, layers: list[int], spacing: float | None, washer: float | None
 ) -> dict[int, float]:
     """Return layer -> its height."""
-    if spacing is not None and washer is not None:
+    if spacing is not None and spacing > 0.0 and washer is not None:
         raise CaseError("washer: layer_spacing is stated as well; leave one of them out")
     if spacing is not None:
         return {layer: layer * spacing for layer in layers}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from edited_cases import PLANAR
 
 from fea.common.link_loads import LinkLoads
 from fea.elements.space import displacement_space
@@ -24,7 +25,7 @@ EXACT = 5e-3
 
 @pytest.fixture(scope="module")
 def case():
-    return read_case("ornithopter", ["motion.poses=61"])
+    return read_case("ornithopter", [PLANAR, "motion.poses=61"])
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +63,9 @@ def test_the_pin_travels_and_pushes_either_flank(history: LinkLoads) -> None:
 
 def test_stress_at_every_place_of_the_pin_equals_a_direct_solution() -> None:
     """With friction, of the pin in its slot and of the one in its bore."""
-    case = read_case("ornithopter", ["motion.poses=61", "joints.slot-right.friction=0.3", "joints.R.friction=0.3"])
+    case = read_case(
+        "ornithopter", [PLANAR, "motion.poses=61", "joints.slot-right.friction=0.3", "joints.R.friction=0.3"]
+    )
     history = {h.name: h for h in link_histories(solve_case_motion(case), LINK)}["wings-12"]
     slot = history.pins[0]
     assert np.abs(slot.friction) == pytest.approx(0.3 * np.abs(slot.wrench[:, 1]))

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from edited_cases import PLANAR
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 from slotted_cases import (
@@ -86,7 +87,7 @@ def test_in_the_plane_the_frame_repeats_equilibrium(make: Callable[[], Case]) ->
 @pytest.mark.parametrize("angle", [90, 40, 200, -75])
 def test_so_it_does_for_the_ornithopter(angle: float) -> None:
     """Three half joints at one pin: the guide on the ground and a slot in each lever."""
-    case = read_case("ornithopter", [f'pose.angle="{angle} deg"'])
+    case = read_case("ornithopter", [PLANAR, f'pose.angle="{angle} deg"'])
     pose = case.solve_pose()
     loads = tuple(
         PointLoad(link=link, point="W", wrench=np.array([0.1, -0.3, 0, 0, 0, 0.4]))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from edited_cases import PLANAR
 
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import BeamCheck, check_beam, internal_forces
@@ -16,8 +17,8 @@ from loads.states.case_motion import solve_case_motion
 
 CASES = [
     ("owl-wing-static", ["motion.poses=7", 'motion.range=["228.15 deg", "200 deg"]']),
-    ("ornithopter", ["motion.poses=7"]),
-    ("flapping-wing-chosen", ["motion.poses=7"]),
+    ("ornithopter", [PLANAR, "motion.poses=7"]),
+    ("flapping-wing-chosen", [PLANAR, "motion.poses=7"]),
 ]
 
 
@@ -50,7 +51,7 @@ def test_every_pose_has_the_factor_of_its_own_beam(name: str, overrides: list[st
 
 def test_compression_is_that_of_the_internal_forces() -> None:
     """The largest within an interval, where turning mass makes the force a parabola."""
-    case = read_case("ornithopter", ["motion.poses=5"])
+    case = read_case("ornithopter", [PLANAR, "motion.poses=5"])
     moved = solve_case_motion(case)
     histories = link_histories(moved, "rod")
     assert [history.name for history in histories] == list(case.load_cases)
