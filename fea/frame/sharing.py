@@ -65,8 +65,7 @@ def hinges_tried(linkage: Linkage, pins: tuple[str, ...]) -> Iterator[frozenset[
         choices = []
         for name in own:
             joint = linkage.joints[name]
-            loose = [other for other in joint.links if other != joint.tight_in]
-            choices.append([(name, other) for other in (loose if joint.tight_in is not None else joint.links)])
+            choices.append([(name, other) for other in joint.links if other != joint.tight_in])
         if len(own) <= MOST_PINS:
             tried = [frozenset(found) for found in itertools.product(*choices)]
         else:
@@ -113,6 +112,7 @@ def sharings(frame: LinkageFrame) -> tuple[Sharing, ...]:
     if largest <= _NOTHING * alone:
         return ()  # as of an open chain, whose pins bear what equilibrium says
     soft = SOFT / largest
+    on_tight_pins = frame.at_points(solved.solved().displacements)
     found = []
     for loose in hinges_tried(linkage, tuple(beams)):
         chosen = np.repeat(np.array([hinge in loose for hinge in hinges]), 2)
@@ -120,7 +120,7 @@ def sharings(frame: LinkageFrame) -> tuple[Sharing, ...]:
         answer = solved.solved(opened[:, chosen] @ (soft * moments))
         reactions = frame.reactions(answer.joint_wrenches, answer.residual)
         bears = np.abs(moments).max(initial=0.0) > BORNE * np.abs(tight).max()
-        points = frame.at_points((solved.solved() if bears else answer).displacements)
+        points = on_tight_pins if bears else frame.at_points(answer.displacements)
         names = frozenset(name for name, _ in loose)
         found.append(Sharing(source=COUPLES[0], reactions=reactions, points=points, joints=names))
     return tuple(found)

@@ -16,7 +16,7 @@ from fea.beam.cut_free import link_loads
 from fea.check.force_doubt import force_doubt
 from fea.common.scatter import Scatter
 from fea.frame.joint_forces import JointForces, joint_forces, solved_frame
-from loads.records.applied import chosen
+from loads.records.applied import Load, chosen
 from loads.states.case_motion import CaseMotion
 from loads.states.dead_point_reach import pose_at
 from loads.states.kinetostatics import Kinetostatics
@@ -65,7 +65,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
     for name, solved in moved.forces.items():
         wrenches = {joint: reaction.wrench.copy() for joint, reaction in solved.joints.items()}
         for i in map(int, np.flatnonzero(evaluated)):
-            loads = [chosen(load, i) for load in moved.loads[name]]
+            loads = _loads_at(moved, name, i)
             frame, solution = solved_frame(case, pose_at(moved.motion, i), loads, moved.drive, bonded=False)
             found = frame.reactions(solution.joint_wrenches, solution.residual)
             for joint, wrench in wrenches.items():
@@ -74,7 +74,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         forces[name] = replace(solved, joints=joints)
         poses = _worst_poses(moved, name, forces[name], evaluated)
         for pose in set(poses.values()):
-            loads = [chosen(load, pose) for load in moved.loads[name]]
+            loads = _loads_at(moved, name, pose)
             doubt = force_doubt(case, name, forces_at(moved, name, pose), loads, grown=True).stress
             shares |= {(name, link): doubt[link] for link, own in poses.items() if own == pose and link in doubt}
     return LayeredMotion(moved=replace(moved, forces=forces), shares=shares)
@@ -95,8 +95,11 @@ def forces_at(moved: CaseMotion, load_case: str, pose: int) -> JointForces:
     -------
     JointForces
     """
-    loads = [chosen(load, pose) for load in moved.loads[load_case]]
-    return joint_forces(moved.case, pose_at(moved.motion, pose), loads)
+    return joint_forces(moved.case, pose_at(moved.motion, pose), _loads_at(moved, load_case, pose))
+
+
+def _loads_at(moved: CaseMotion, load_case: str, pose: int) -> list[Load]:
+    return [chosen(load, pose) for load in moved.loads[load_case]]
 
 
 def _worst_poses(
