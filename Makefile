@@ -11,7 +11,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo test lint tests verify bench fuzz golden clean distclean
+.PHONY: help setup libraries demo docs test lint tests verify bench fuzz golden clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -24,6 +24,10 @@ demo: setup ## check the built-in owl wing, all links as solids, and say where i
 	  0|1|3) echo "The report: $(CURDIR)/$(DEMO)/report.html" ;; \
 	  *) exit $$status ;; \
 	esac
+
+docs: setup ## the site: tutorial, how-to, reference, theory, gallery; needs no network
+	$(ONE_THREAD) $(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --doctree-dir out/site-cache docs out/site
+	@echo "The site: $(CURDIR)/out/site/index.html"
 
 # The types are checked beside the tests: by themselves they would keep one core alone busy.
 test: setup ## lint, types and every test but the converged studies
@@ -55,7 +59,7 @@ fuzz: setup ## a million hostile inputs for all that reads a case (FUZZ="--share
 	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m fuzz --output out/fuzz $(FUZZ)
 
 clean: ## remove results and caches
-	rm -rf out build dist alula.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf out build dist docs/generated alula.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
 
 distclean: clean ## remove .venv as well

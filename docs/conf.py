@@ -1,0 +1,39 @@
+"""How Sphinx makes the site (`make docs`): pages of this folder, and those made from models and docstrings."""
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from geometry.base.version import alula_version  # noqa: E402 - the path comes first
+
+project = "alula"
+author = "the alula developers"
+project_copyright = "the alula developers, GPL-3.0-or-later"
+version = release = alula_version()
+language = "en"
+
+extensions = [
+    "docs.extensions.pages",
+    "docs.extensions.mathml",
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "numpydoc",
+]
+exclude_patterns = ["gallery"]
+suppress_warnings = ["config.cache"]
+
+myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
+myst_heading_anchors = 4  # a link to a heading works as in a repository browser
+
+autodoc_typehints = "none"  # numpydoc's sections state the types
+numpydoc_show_class_members = False
+
+html_theme = "furo"
+html_title = "alula"
+html_math_renderer = "mathml"
+html_static_path = ["style"]
+html_css_files = ["site.css"]
+html_copy_source = False
+html_show_sphinx = False

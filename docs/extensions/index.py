@@ -1,0 +1,74 @@
+"""The contents of the site: `docs/index.md` lists every page under the heading of its section, once.
+
+The list is plain Markdown, so that it serves in a repository browser as well. The tables of contents are made from it.
+"""
+
+import re
+from dataclasses import dataclass
+
+GENERATED_PAGES = {
+    "Reference": (
+        ("The case file", "generated/case-file/index.md", "every entry with type, unit, default, rule and example."),
+        ("The command line", "generated/commands.md", "every command with its options."),
+        ("Python", "generated/python.md", "the functions of `alula` and what they return."),
+    )
+}
+"""Section -> title, path and description of the pages that exist in the site alone."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """One section of the index.
+
+    Attributes
+    ----------
+    title : str
+        Its heading.
+    pages : tuple of str
+        Paths of its pages, as the index states them.
+    """
+
+    title: str
+    pages: tuple[str, ...]
+
+
+def sections(index: str) -> list[Section]:
+    """Read the sections of the index.
+
+    Parameters
+    ----------
+    index : str
+        Text of `docs/index.md`.
+
+    Returns
+    -------
+    list of Section
+        In the order of the text.
+    """
+    parts = re.split(r"^## +(.+)\n", index, flags=re.M)
+    pages = [tuple(re.findall(r"^\* +\[[^\]]+\]\(([^)#]+\.md)\)", text, re.M)) for text in parts[2::2]]
+    return [Section(title=title, pages=found) for title, found in zip(parts[1::2], pages, strict=True)]
+
+
+def with_contents(index: str) -> str:
+    """Add the generated pages and the tables of contents to the index.
+
+    Parameters
+    ----------
+    index : str
+        Its text, with links as the site has them.
+
+    Returns
+    -------
+    str
+        For Sphinx.
+    """
+    for title, pages in GENERATED_PAGES.items():
+        lines = "".join(f"* [{name}]({path}): {text}\n" for name, path, text in pages)
+        index = index.replace(f"## {title}\n\n", f"## {title}\n\n{lines}", 1)
+    trees = [
+        "\n".join(["```{toctree}", ":hidden:", f":caption: {section.title}", "", *section.pages, "```"])
+        for section in sections(index)
+        if section.pages
+    ]
+    return "\n\n".join([index, *trees]) + "\n"

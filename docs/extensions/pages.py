@@ -1,0 +1,30 @@
+"""Sphinx's hooks: pages are generated before it reads any, and links are turned while it reads."""
+
+from typing import Any
+
+from sphinx.application import Sphinx
+
+from docs.extensions import commands, index, links, python
+
+
+def _generate(app: Sphinx) -> None:
+    """Write the pages that are made from the program and from files outside of docs/."""
+    links.copy_outside_pages()
+    links.write_changed(links.GENERATED / "commands.md", commands.page())
+    links.write_changed(links.GENERATED / "python.md", python.page())
+
+
+def _turn_links(app: Sphinx, name: str, source: list[str]) -> None:
+    """Turn links to pages outside of docs/ to their copies."""
+    file = app.env.doc2path(name)
+    if file.suffix == ".md" and links.GENERATED not in file.parents:
+        source[0] = links.moved(source[0], file.parent, file.parent)
+    if name == app.config.root_doc:
+        source[0] = index.with_contents(source[0])
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Connect the hooks."""
+    app.connect("builder-inited", _generate)
+    app.connect("source-read", _turn_links)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
