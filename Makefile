@@ -25,8 +25,8 @@ demo: setup ## check the built-in owl wing, all links as solids, and say where i
 	  *) exit $$status ;; \
 	esac
 
-docs: setup ## the site: tutorial, how-to, reference, theory, gallery; needs no network
-	$(ONE_THREAD) $(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --doctree-dir out/site-cache docs out/site
+docs: setup ## the site in out/site, without network (GALLERY=all: slow examples are run, too)
+	@GALLERY=$(GALLERY) $(ONE_THREAD) $(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --doctree-dir out/site-cache docs out/site
 	@echo "The site: $(CURDIR)/out/site/index.html"
 
 # The types are checked beside the tests: by themselves they would keep one core alone busy.

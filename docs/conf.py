@@ -6,7 +6,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from geometry.base.version import alula_version  # noqa: E402 - the path comes first
+from docs.extensions.gallery import not_run, run_pattern  # noqa: E402 - the path comes first
+from geometry.base.version import alula_version  # noqa: E402
 
 project = "alula"
 author = "the alula developers"
@@ -20,6 +21,7 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "numpydoc",
+    "sphinx_gallery.gen_gallery",
 ]
 exclude_patterns = ["gallery"]
 suppress_warnings = ["config.cache"]
@@ -29,6 +31,18 @@ myst_heading_anchors = 4  # a link to a heading works as in a repository browser
 
 autodoc_typehints = "none"  # numpydoc's sections state the types
 numpydoc_show_class_members = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "generated/gallery",
+    "filename_pattern": run_pattern(not_run()),
+    "within_subsection_order": "FileNameSortKey",
+    "image_scrapers": ("docs.extensions.gallery.pictures",),
+    "reset_modules": (),  # no script changes settings of a library
+    "download_all_examples": False,
+    "show_signature": False,
+    "write_computation_times": False,
+}
 
 html_theme = "furo"
 html_title = "alula"

@@ -8,6 +8,7 @@ from pathlib import Path
 import programs
 import pytest
 
+from docs.extensions import gallery
 from docs.extensions.index import sections
 from docs.extensions.links import OUTSIDE, moved
 
@@ -17,7 +18,7 @@ INDEX = (DOCS / "index.md").read_text(encoding="utf-8")
 
 def test_the_index_lists_every_page_once() -> None:
     listed = [page for section in sections(INDEX) for page in section.pages]
-    pages = {file.relative_to(DOCS).as_posix() for file in DOCS.rglob("*.md")}
+    pages = {file.relative_to(DOCS).as_posix() for file in DOCS.rglob("*") if file.suffix in (".md", ".rst")}
     inside = {page for page in pages if not page.startswith("generated/")} - {"index.md"}
     assert sorted(listed) == sorted(inside | {f"../{file.relative_to(programs.ROOT)}" for file in OUTSIDE})
 
@@ -28,6 +29,22 @@ def test_links_follow_a_page_to_where_the_site_has_it() -> None:
     assert moved(text, source, target) == (
         "[a](../../parts.md#forks) ![b](../../images/fork.png) [c](changelog.md) [d](https://example.org) [e](#here)"
     )
+
+
+def test_slow_examples_are_not_run_unless_asked_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "quick.py").write_text("import alula\n", encoding="utf-8")
+    (tmp_path / "long.py").write_text("# slow: an hour\nimport alula\n", encoding="utf-8")
+    monkeypatch.setattr(gallery, "FOLDER", tmp_path)
+    pattern = gallery.run_pattern(gallery.not_run())
+    assert re.search(pattern, "/docs/gallery/quick.py")
+    assert re.search(pattern, "/docs/gallery/not_so_long.py")
+    assert not re.search(pattern, "/docs/gallery/long.py")
+    page = gallery.GENERATED / "gallery/long.rst"
+    told = gallery.with_note(page, "\nLong\n====\n\nText.\n", gallery.not_run())
+    assert told.startswith("\nLong\n====\n\n.. note::")
+    assert told.endswith("\n\nText.\n")
+    monkeypatch.setenv("GALLERY", "all")
+    assert re.search(gallery.run_pattern(gallery.not_run()), "/docs/gallery/long.py")
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 GENERATED_PAGES = {
     "Reference": (
-        ("The case file", "generated/case-file/index.md", "every entry with type, unit, default, rule and example."),
         ("The command line", "generated/commands.md", "every command with its options."),
         ("Python", "generated/python.md", "the functions of `alula` and what they return."),
     )
@@ -46,7 +45,7 @@ def sections(index: str) -> list[Section]:
         In the order of the text.
     """
     parts = re.split(r"^## +(.+)\n", index, flags=re.M)
-    pages = [tuple(re.findall(r"^\* +\[[^\]]+\]\(([^)#]+\.md)\)", text, re.M)) for text in parts[2::2]]
+    pages = [tuple(re.findall(r"^\* +\[[^\]]+\]\(([^)#]+\.(?:md|rst))\)", text, re.M)) for text in parts[2::2]]
     return [Section(title=title, pages=found) for title, found in zip(parts[1::2], pages, strict=True)]
 
 

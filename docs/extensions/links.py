@@ -14,6 +14,7 @@ OUTSIDE = {
     ROOT / "CHANGELOG.md": GENERATED / "project/changelog.md",
 }
 """Page of the repository outside of docs/ -> its copy in the site."""
+_TURNED = OUTSIDE | {DOCS / "gallery/README.rst": GENERATED / "gallery/index.rst"}
 _LINK = re.compile(r"(?<=\]\()(?!\w+:|#)(?P<path>[^)#\s]+)")
 
 
@@ -37,7 +38,7 @@ def moved(text: str, source: Path, target: Path) -> str:
 
     def turn(link: re.Match[str]) -> str:
         place = Path(os.path.normpath(source / link["path"]))
-        return Path(os.path.relpath(OUTSIDE.get(place, place), target)).as_posix()
+        return Path(os.path.relpath(_TURNED.get(place, place), target)).as_posix()
 
     return _LINK.sub(turn, text)
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-from docs.extensions import commands, index, links, python
+from docs.extensions import commands, gallery, index, links, python
 
 
 def _generate(app: Sphinx) -> None:
@@ -19,6 +19,7 @@ def _turn_links(app: Sphinx, name: str, source: list[str]) -> None:
     file = app.env.doc2path(name)
     if file.suffix == ".md" and links.GENERATED not in file.parents:
         source[0] = links.moved(source[0], file.parent, file.parent)
+    source[0] = gallery.with_note(file, source[0], gallery.not_run())
     if name == app.config.root_doc:
         source[0] = index.with_contents(source[0])
 
