@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -57,9 +58,6 @@ class JointForces:
         Links that are condensed solids in the frame.
     deviations : tuple of Deviation
         What the stiffness of condensed solids leaves open; empty where no link is one.
-    sharings : tuple of Sharing
-        The answers with pins that tilt in one of their links, so that the other bears the whole couple between
-        their layers (``fea.frame.sharing``); empty without layers.
     play : Play or None
         What the play of pins does under the load case; None where no joint has play.
     """
@@ -71,8 +69,18 @@ class JointForces:
     solution: "FrameSolution | None" = None
     solids: tuple[str, ...] = ()
     deviations: tuple[Deviation, ...] = ()
-    sharings: tuple[Sharing, ...] = ()
     play: Play | None = None
+
+    @cached_property
+    def sharings(self) -> tuple[Sharing, ...]:
+        """The answers with pins that tilt in one of their links, so that the other bears the whole couple between them.
+
+        Empty without layers, and where links are condensed solids. Solved where they are asked for, since they are
+        dozens.
+        """
+        from fea.frame.sharing import sharings
+
+        return () if self.frame is None or self.solids else sharings(self.frame)
 
     @property
     def by_equilibrium(self) -> bool:
@@ -163,8 +171,6 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
             reason=f"the case says that {which}; {reason}" if bonded else reason,
         )
     refuse_dead_point(assemble(pose.placement, case.pinned_drive, ()), case.pinned_drive)
-    from fea.frame.sharing import sharings
-
     frame, solution = solved_frame(case, pose, loads, case.pinned_drive)
     return JointForces(
         reactions=frame.reactions(solution.joint_wrenches, solution.residual),
@@ -172,7 +178,6 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
         reason="; ".join([reason, *frame.notes]),
         frame=frame,
         solution=solution,
-        sharings=sharings(frame) if frame.pin_beams else (),
     )
 
 

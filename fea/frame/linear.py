@@ -16,6 +16,7 @@ treated exactly, so that one element per link is enough.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,7 +107,14 @@ class FrameSolution:
         Piecewise
             Signs and axes as in ``fea.beam.theory``.
         """
-        return internal_forces(self.beam_loads(i))
+        if i not in self._internal:
+            self._internal[i] = internal_forces(self.beam_loads(i))
+        return self._internal[i]
+
+    @cached_property
+    def _internal(self) -> dict[int, Piecewise]:
+        """Internal forces of elements that were asked for already: of the work at every point of a linkage, again."""
+        return {}
 
     def axis_displacements(self, i: int, stations: Floats) -> Floats:
         """Return the displacements of the axis of an element.
