@@ -42,7 +42,7 @@ ONE_MESH = Effort(max_meshes=1)
 
 def starter() -> Case:
     """Return the starter case with tolerances."""
-    text = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
+    text = files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
     path = Path(tempfile.mkdtemp()) / "starter.toml"
     path.write_text(text, encoding="utf-8")
     return read_case(str(path)).with_values({"tolerances": TOLERANCES})

@@ -1,10 +1,13 @@
 """``alula cases``, ``alula new`` and ``alula schema``: what a case of one's own starts from."""
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+STARTER = "four-bar"
+"""The built-in case that ``alula new`` writes where none is named."""
 app = typer.Typer()
 
 
@@ -33,24 +36,122 @@ def schema(
 
 @app.command()
 def new(
-    path: Annotated[Path, typer.Argument(help="The file to write.", show_default=False)],
+    path: Annotated[Path | None, typer.Argument(help="The file to write.", show_default=False)] = None,
+    start: Annotated[
+        str | None,
+        typer.Option("--from", metavar="NAME", help="The built-in case to start from.", show_default=STARTER),
+    ] = None,
+    listed: Annotated[bool, typer.Option("--list", help="List the built-in cases to start from.")] = False,
     study: Annotated[bool, typer.Option("--study", help="Write the plan of a study instead.")] = False,
 ) -> None:
-    """Write a commented starter case: a four-bar linkage."""
+    """Write a commented case to start from: a four-bar linkage, or any built-in case with the files that it names."""
+    from geometry.base.errors import CaseError
+    from reports.words.wording import joined
+
+    if listed:
+        if path is not None or start is not None or study:
+            raise CaseError("--list: it lists the built-in cases and writes nothing; leave out all else")
+        cases()
+        return
+    if path is None:
+        raise CaseError("PATH: it is missing; name the file to write, for example: alula new my-case.toml")
+    if study and start is not None:
+        raise CaseError(
+            "--from: it names a built-in case, but --study writes the plan of a study; leave out one of them"
+        )
+    contents = {path: _text("loads.plans", "starter-study.toml.txt")} if study else case_files(start or STARTER, path)
+    write_new(contents)
+    command = "study" if study else "check"
+    print(
+        f"Wrote {joined([str(file) for file in contents])}. "
+        f"{command.capitalize()} it with: alula {command} {path} -o out"
+    )
+
+
+def case_files(name: str, path: Path) -> dict[Path, bytes]:
+    """Return what a case of one's own starts from: a built-in case, and beside it the files that it names.
+
+    Parameters
+    ----------
+    name : str
+        Of the built-in case.
+    path : Path
+        Where the case is to stand.
+
+    Returns
+    -------
+    dict of Path to bytes
+        The case first.
+
+    Raises
+    ------
+    CaseError
+        For a name that is no built-in case, and for a path with the name of a file that the case names.
+    """
     from importlib.resources import files
 
+    from geometry.base.errors import CaseError
+    from loads.case.case_file import built_in_cases, read_tables
+    from loads.text.entries import alike
+    from loads.text.explain import printable
+
+    if name not in built_in_cases():
+        meant = alike(name, built_in_cases()) or "; alula new --list shows the names"
+        raise CaseError(f"--from: there is no built-in case '{printable(name)}'{meant}")
+    shipped = {file.name for file in files("loads.cases").iterdir()}
+    beside = [text for text in _texts(read_tables(name)) if text in shipped]
+    if path.name in beside:
+        raise CaseError(f"PATH: '{printable(path.name)}' is a file that the case names; choose another name")
+    return {path: _text("loads.cases", f"{name}.toml")} | {
+        path.parent / file: _text("loads.cases", file) for file in beside
+    }
+
+
+def _texts(entry: object) -> Iterator[str]:
+    """Yield all texts in the tables of a case."""
+    if isinstance(entry, str):
+        yield entry
+    elif isinstance(entry, Mapping):
+        yield from _texts(list(entry.values()))
+    elif isinstance(entry, list):
+        for part in entry:
+            yield from _texts(part)
+
+
+def _text(package: str, name: str) -> bytes:
+    from importlib.resources import files
+
+    return files(package).joinpath(name).read_bytes()
+
+
+def write_new(contents: Mapping[Path, bytes]) -> None:
+    """Write files that are not there yet: all of them, or none.
+
+    Parameters
+    ----------
+    contents : mapping of Path to bytes
+        By where they go.
+
+    Raises
+    ------
+    CaseError
+        Where one of them exists.
+    CannotRunError
+        Where the disk refuses.
+    """
     from geometry.base.errors import CannotRunError, CaseError
 
-    source = files("loads.plans" if study else "loads.cases")
-    text = source.joinpath("starter-study.toml.txt" if study else "starter.toml.txt").read_text(encoding="utf-8")
+    begun: list[Path] = []
     try:
-        with path.open("x", encoding="utf-8") as stream:
-            stream.write(text)
-    except FileExistsError:
-        raise CaseError(f"'{path}' exists, and existing files are not overwritten; choose another name") from None
-    except OSError as error:
-        if path.is_file():
-            path.unlink()  # half of it
-        raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
-    command = "study" if study else "check"
-    print(f"Wrote {path}. {command.capitalize()} it with: alula {command} {path} -o out")
+        for path, content in contents.items():
+            with path.open("xb") as stream:
+                begun.append(path)
+                stream.write(content)
+    except BaseException as error:
+        for half in begun:
+            half.unlink(missing_ok=True)
+        if isinstance(error, FileExistsError):
+            raise CaseError(f"'{path}' exists, and existing files are not overwritten; choose another place") from None
+        if isinstance(error, OSError):
+            raise CannotRunError(f"'{path}' cannot be written ({error.strerror}); choose another place") from None
+        raise

@@ -140,7 +140,7 @@ def test_a_report_killed_at_any_time_is_whole_or_not_there(tmp_path: Path) -> No
 
 def starter(folder: Path) -> str:
     """Write the starter case, the smallest that ships, and return its path."""
-    text = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
+    text = files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
     (folder / "case.toml").write_text(text, encoding="utf-8")
     return str(folder / "case.toml")
 

@@ -82,7 +82,7 @@ def test_the_ends_of_what_is_read_are_borne_by_all_that_solves(changes: dict[str
 
 def _starter(changes: dict[str, str]) -> dict[str, Any]:
     """Tables of the starter with a material of its own and a motion under inertia; the changes by their paths."""
-    tables = tomllib.loads(files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8"))
+    tables = tomllib.loads(files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
     card = tomllib.loads(files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))[
         "pla-fdm-xy"
     ]
@@ -136,7 +136,7 @@ def test_load_cases_times_links() -> None:
 
 def _row_of_four_bars(count: int) -> dict[str, Any]:
     """Tables of so many four-bars on one base, bonded, so that no drive is needed: three moving links each."""
-    tables = tomllib.loads(files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8"))
+    tables = tomllib.loads(files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
     links, joints = {"base": tables["links"]["base"]}, {}
     for i in range(count):
         names = {name: f"{name}{i}" for name in ("crank", "coupler", "rocker")} | {"base": "base"}
@@ -144,7 +144,7 @@ def _row_of_four_bars(count: int) -> dict[str, Any]:
         for name, joint in tables["joints"].items():
             own = {"links": [names[link] for link in joint["links"]], "points": [name, name]}
             joints[f"{name}{i}"] = joint | own
-    del tables["drive"], tables["pose"], tables["checks"]
+    del tables["drive"], tables["pose"], tables["motion"], tables["checks"]
     return tables | {
         "links": links, "joints": joints, "joint_model": "bonded", "load_cases": {"weight": {"own_weight": True}}
     }  # fmt: skip

@@ -194,7 +194,7 @@ minimum = 3.0
 
 def test_the_rocker_of_the_starter_in_warm_pvc_does_not_buckle():
     """80 mm between its pins and 40 mm beyond them; pushed more between them than beyond."""
-    tables = tomllib.loads(files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8"))
+    tables = tomllib.loads(files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8"))
     tables["parts"]["bar"]["material"] = "pvc-u"
     tables["conditions"] = {"duration": "10000 h", "temperature": "35 degC"}
     tables["large_displacement"] = "off"

@@ -315,7 +315,7 @@ def test_command_says_where_it_locks(tmp_path) -> None:
     for pin in PINS:
         entries += ["--set", pin]
     inside("new", str(path))
-    path.write_text(path.read_text() + "\n[motion]\nturn = true\nposes = 91\n")
+    entries += ["--set", "motion.poses=91"]
     ended = inside("motion", str(path), *entries, "--json")
     record = json.loads(ended.stdout)["load_cases"]["lift backward"]["friction"]
     assert ended.returncode == 3

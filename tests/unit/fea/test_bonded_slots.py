@@ -12,7 +12,7 @@ from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 from loads.states.actions import acting_loads
 
-STARTER = files("loads") / "cases" / "starter.toml.txt"
+STARTER = files("loads") / "cases" / "four-bar.toml"
 LENGTH = 200.0
 POST = {
     "shape": "bar",

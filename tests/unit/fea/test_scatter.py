@@ -27,7 +27,7 @@ from geometry.materials.material import library
 from loads.states.case_motion import solve_case_motion
 from loads.text.shares import parse_scatter
 
-STARTER = files("loads") / "cases" / "starter.toml.txt"
+STARTER = files("loads") / "cases" / "four-bar.toml"
 PLA = library()["pla-fdm-xy"]
 FIXED = [  # a material without any range
     "materials.own.title=plastic", f'materials.own.density="{PLA.density * 1e12:.9g} kg/m^3"',
@@ -146,7 +146,7 @@ def test_hand_calculation_decides_in_its_calibrated_bands(path):
         assert outcome.verdict is verdict
 
 
-MOTION = ['motion.range=["0 deg","360 deg"]', "motion.poses=7"]
+MOTION = ["motion.poses=7"]
 
 
 @pytest.fixture(scope="module")

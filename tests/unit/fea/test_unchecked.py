@@ -21,7 +21,7 @@ NO_PINS = "pins (no check)"
 
 def starter(checks, *bare):
     """The starter case with these checks, some links without part."""
-    data = tomllib.loads((files("loads") / "cases" / "starter.toml.txt").read_text(encoding="utf-8"))
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     for link in bare:
         del data["links"][link]["part"]
     data["load_cases"]["lift"]["own_weight"] = False

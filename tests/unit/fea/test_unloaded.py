@@ -10,7 +10,7 @@ from fea.common.verdict import Verdict
 from fea.motion.envelope import envelope_case
 from geometry.base.errors import CaseError
 
-STARTER = files("loads") / "cases" / "starter.toml.txt"
+STARTER = files("loads") / "cases" / "four-bar.toml"
 MOTION = ["motion.turn=true", "motion.poses=13"]
 PINS = 'checks.pins={type="pins", minimum=2.0}'
 

@@ -37,7 +37,7 @@ def test_strict_passes_where_nothing_is_refuted(tmp_path):
         source = "Someone (2000)"
     """
     path = tmp_path / "case.toml"
-    starter = files("loads.cases").joinpath("starter.toml.txt").read_text(encoding="utf-8")
+    starter = files("loads.cases").joinpath("four-bar.toml").read_text(encoding="utf-8")
     path.write_text(starter + claims, encoding="utf-8")
     found = run(str(path), "--strict")
     assert found.exit_code == 0, found.output

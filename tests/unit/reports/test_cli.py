@@ -9,11 +9,7 @@ from pathlib import Path
 import programs
 import pytest
 
-
-def test_cases_lists_the_owl_wing() -> None:
-    done = programs.inside("cases")
-    assert done.returncode == 0
-    assert "owl-wing-static" in done.stdout
+from loads.case.case_file import built_in_cases, read_case, read_companion
 
 
 def test_schema_is_a_json_schema() -> None:
@@ -51,6 +47,43 @@ def test_new_writes_a_case_that_checks_and_overwrites_nothing(tmp_path: Path) ->
     assert "exists" in again.stderr
 
 
+@pytest.mark.parametrize("name", built_in_cases())
+def test_a_case_starts_from_any_built_in_one_with_the_files_that_it_names(name: str, tmp_path: Path) -> None:
+    """The copy says what the built-in case says; what is in the way of its files is left, and nothing added."""
+    path = tmp_path / "my-case.toml"
+    done = programs.inside("new", "--from", name, str(path))
+    written = sorted(file.name for file in tmp_path.iterdir())
+    assert done.returncode == 0
+    assert done.stdout.startswith(f"Wrote {path}")
+    assert all(file in done.stdout for file in written)
+    case, original = read_case(str(path)), read_case(name)
+    imported = {part: str(tmp_path / Path(kind.file).name) for part, kind in case.parts.items() if kind.shape == "step"}
+    assert case == original.model_copy(  # but for the place of what it imports
+        update={
+            "parts": {
+                k: v.model_copy(update={"file": imported[k]} if k in imported else {})
+                for k, v in original.parts.items()
+            }
+        }
+    )
+    if case.published_statics is not None:
+        assert read_companion(str(path), case.published_statics.exact)
+    for number, file in enumerate(written):  # each of them in the way, by itself
+        other = tmp_path / str(number)
+        other.mkdir()
+        (other / file).write_text("mine")
+        again = programs.inside("new", "--from", name, str(other / "my-case.toml"))
+        assert (again.returncode, [each.name for each in other.iterdir()]) == (2, [file])
+        assert (other / file).read_text() == "mine"
+
+
+def test_new_lists_the_built_in_cases() -> None:
+    listed = programs.inside("new", "--list").stdout
+    assert listed == programs.inside("cases").stdout
+    assert [line.split()[0] for line in listed.splitlines()] == list(built_in_cases())
+    assert all(read_case(name).title in listed for name in built_in_cases())
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -63,6 +96,12 @@ def test_new_writes_a_case_that_checks_and_overwrites_nothing(tmp_path: Path) ->
         (["envelope", "owl-wing-static", "--memory", "-4 GB"], ["memory", "-4 GB", "must be positive"]),
         (["export", "owl-wing-static"], ["--step"]),
         (["frobnicate"], ["frobnicate"]),
+        (["new"], ["PATH", "missing", "alula new my-case.toml"]),
+        (["new", "--from", "fourbar", "a.toml"], ["no built-in case 'fourbar'", "did you mean 'four-bar'?"]),
+        (["new", "--from", "qqq", "a.toml"], ["no built-in case 'qqq'", "alula new --list"]),
+        (["new", "--from", "four-bar", "--study", "a.toml"], ["--from", "leave out one"]),
+        (["new", "--list", "a.toml"], ["--list", "leave out all else"]),
+        (["new", "--from", "owl-wing-anchor", "owl-wing-anchor.step"], ["a file that the case names"]),
     ],
 )
 def test_a_mistake_ends_with_status_2_and_says_why(arguments: list[str], words: list[str]) -> None:
