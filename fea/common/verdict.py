@@ -1,5 +1,6 @@
 """Verdicts: pass, fail, or undecided where the error band straddles the limit."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum, StrEnum
@@ -19,6 +20,10 @@ class Verdict(StrEnum):
     def exit_status(self) -> int:
         """Status of the command that ends with this verdict."""
         return {"pass": 0, "fail": 1, "undecided": 3}[self.value]
+
+
+_DECISIVE = (Verdict.FAIL, Verdict.UNDECIDED, Verdict.PASS)
+"""Of several checks, the first of these that any of them has is the verdict of all."""
 
 
 class Sense(Enum):
@@ -82,6 +87,40 @@ class Quantity(StrEnum):
     DRIVE_SPEED = "drive speed", "rpm", Sense.AT_MOST
     DRIVE_TORQUE = "drive torque over time", "N·mm", Sense.AT_MOST
     TORQUE_SHARE = "share of the motor's torque at its speed", "", Sense.AT_MOST
+
+    def margins(self, value: float, low: float, high: float, limit: float) -> tuple[float, float, float]:
+        """Return by what factor a banded number keeps its limit: 1 at the limit, less where it misses it.
+
+        It is the number over the limit where it must be at least that, and the limit over the number where it must be
+        at most that. A share of the load that is held in full says no more, so that its margin is infinite.
+
+        Parameters
+        ----------
+        value, low, high : float
+            The number and the ends of its band.
+        limit : float
+            In the unit of the number.
+
+        Returns
+        -------
+        tuple of float
+            Of the value, of the unfavourable and of the favourable end; NaN from 0 to infinity where one is not known.
+        """
+        if any(map(math.isnan, (value, low, high, limit))):
+            return math.nan, 0.0, math.inf
+        if self.sense is Sense.AT_MOST:
+            value, high, low = (limit / end if end > 0.0 else math.inf for end in (value, low, high))
+            return value, low, high
+        whole = limit if self is Quantity.LOAD_SHARE else math.inf
+        value, low, high = (_share(end, limit) if end < whole else math.inf for end in (value, low, high))
+        return value, low, high
+
+
+def _share(value: float, limit: float) -> float:
+    """Return by what factor a value keeps a least one; 0 where it is negative, infinite where any is enough."""
+    if value < 0.0:
+        return 0.0
+    return value / limit if limit > 0.0 else math.inf
 
 
 MOTOR_QUANTITIES = (Quantity.DRIVE_POWER, Quantity.DRIVE_SPEED, Quantity.DRIVE_TORQUE, Quantity.TORQUE_SHARE)
@@ -256,6 +295,11 @@ class CheckOutcome:
         return str(self.subject)
 
     @property
+    def margin(self) -> float:
+        """By what factor the unfavourable end of its band keeps the limit: 1 at the limit, 0 where it is not known."""
+        return self.quantity.margins(self.value.value, self.value.low, self.value.high, self.limit)[1]
+
+    @property
     def gives_way(self) -> bool:
         """True where it says that the linkage as a whole does not hold the load."""
         asked = self.subject == LINKAGE and self.quantity not in (Quantity.LIMIT_LOAD, Quantity.CLEARANCE)
@@ -270,6 +314,20 @@ class CheckOutcome:
     def at_least(self) -> bool:
         """True where the quantity must be at least its limit, False where it must be at most that."""
         return self.quantity.sense is Sense.AT_LEAST
+
+
+def by_nearness(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
+    """Return checks in the order of their verdicts, fail, undecided, pass; of each the nearest to its limit first.
+
+    Parameters
+    ----------
+    checks : iterable of CheckOutcome
+
+    Returns
+    -------
+    list of CheckOutcome
+    """
+    return sorted(checks, key=lambda check: (_DECISIVE.index(check.verdict), check.margin))
 
 
 def reason_for(value: Band, limit: float, verdict: Verdict) -> str:
@@ -307,7 +365,7 @@ def overall(verdicts: Iterable[Verdict]) -> Verdict:
     Verdict
     """
     found = set(verdicts)
-    for verdict in (Verdict.FAIL, Verdict.UNDECIDED, Verdict.PASS):
+    for verdict in _DECISIVE:
         if verdict in found:
             return verdict
     return Verdict.UNDECIDED

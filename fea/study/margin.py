@@ -18,7 +18,11 @@ def sense_of(number: VariantNumber) -> Sense:
     -------
     Sense
     """
-    return next(quantity.sense for quantity in Quantity if quantity.value == number.quantity)
+    return _quantity_of(number).sense
+
+
+def _quantity_of(number: VariantNumber) -> Quantity:
+    return next(quantity for quantity in Quantity if quantity.value == number.quantity)
 
 
 def margin(number: VariantNumber, *, worst: bool = True) -> float:
@@ -52,24 +56,9 @@ def margin_band(number: VariantNumber) -> tuple[float, float, float]:
     Returns
     -------
     tuple of float
-        Value, low and high; NaN from 0 to infinity where the number is not known.
+        Value, low and high, as ``Quantity.margins``.
     """
-    ends = (number.value, number.low, number.high)
-    if any(map(math.isnan, (*ends, number.limit))):
-        return math.nan, 0.0, math.inf
-    if sense_of(number) is Sense.AT_MOST:
-        value, high, low = (number.limit / end if end > 0.0 else math.inf for end in ends)
-        return value, low, high
-    whole = number.limit if number.quantity == Quantity.LOAD_SHARE.value else math.inf
-    value, low, high = (_share(end, number.limit) if end < whole else math.inf for end in ends)
-    return value, low, high
-
-
-def _share(value: float, limit: float) -> float:
-    """Return by what factor a value keeps a least one; 0 where it is negative, infinite where any is enough."""
-    if value < 0.0:
-        return 0.0
-    return value / limit if limit > 0.0 else math.inf
+    return _quantity_of(number).margins(number.value, number.low, number.high, number.limit)
 
 
 def least_margin(result: VariantResult) -> tuple[float, float, float]:

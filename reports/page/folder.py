@@ -8,6 +8,7 @@ from pathlib import Path
 
 from fea.outcomes.result import CheckResult, SolidResult
 from loads.case.case import Case
+from reports.page.claims_page import CLAIMS, write_claims
 from reports.page.output import MARK, write_folder
 from reports.page.pictures import ASSEMBLY, CONTACT, diagram_name, layers_name, linkage_name, stress_name
 from reports.tables.record import as_json, worst_load_case
@@ -33,6 +34,7 @@ def report_names(case: Case) -> set[str]:
     pictures |= {name(link) for link in links for name in (diagram_name, layers_name, stress_name)}
     return {
         REPORT,
+        CLAIMS,
         MARK,
         *(f"{PICTURES}/{name}.png" for name in pictures),
         *(f"{FIELDS}/{link}.vtu" for link in links),
@@ -49,8 +51,8 @@ def write_report(
 ) -> None:
     """Write ``report.html``, ``result.json``, pictures and VTU files, or nothing.
 
-    The VTU file of a link has the load case with the least safety factor. A picture that cannot be rendered is left out
-    with a warning.
+    Where figures were published that belong to the case, ``claims.html`` holds them. The VTU file of a link has the
+    load case with the least safety factor. A picture that cannot be rendered is left out with a warning.
 
     Parameters
     ----------
@@ -78,7 +80,8 @@ def write_report(
         told = replace(result, warnings=(*result.warnings, *warnings))
         for warning in warnings:
             progress(f"Warning: {warning}")
-        (folder / REPORT).write_text(render(told, pictures), encoding="utf-8")
+        published = write_claims(told, folder, REPORT)
+        (folder / REPORT).write_text(render(told, pictures, published), encoding="utf-8")
         (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
         (folder / PICTURES).mkdir()
         for name, picture in pictures.items():

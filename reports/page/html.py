@@ -1,17 +1,12 @@
 """``report.html``: one file with all text and pictures, which loads nothing from elsewhere."""
 
-import base64
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fea.claims.sources import check_claims
-from fea.common.verdict import Quantity, Subject, Verdict, reason_for
+from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, by_nearness, reason_for
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
-from geometry.base.version import alula_version
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.materials.material import Material
-from loads.case.case_file import built_in_cases
 from loads.case.forks import forked_link
 from reports.page.coverage import not_covered
 from reports.page.pictures import (
@@ -23,7 +18,7 @@ from reports.page.pictures import (
     linkage_name,
     stress_name,
 )
-from reports.tables.claims import as_records, count
+from reports.page.template import fill
 from reports.tables.clearance import MOST, clearance_line, clearance_record
 from reports.tables.frames import AXES, linkage_line, play_line, shown_components, thrust_line, tips
 from reports.tables.friction import friction_sentence
@@ -33,20 +28,7 @@ from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
 from reports.tables.record import worst_load_case
 from reports.tables.springs import holding_sentence, spring_sentences
-from reports.words.wording import (
-    agreement,
-    apart,
-    band,
-    checks_of,
-    fixed,
-    headline,
-    joined,
-    number,
-    percent,
-    plain,
-    sentence,
-    turning,
-)
+from reports.words.wording import agreement, apart, checks_of, headline, named, plain, turning
 
 MEANING = {
     Verdict.PASS: "In this pose and under these loads every check keeps its limit, even at the unfavourable end of "
@@ -56,6 +38,8 @@ MEANING = {
     Verdict.UNDECIDED: "At least one check is open: its limit lies inside its error band, or no model that ran can "
     "decide it. This is neither a pass nor a fail.",
 }
+MOST_CHECKS = 8
+"""That the first page shows; the others stand below."""
 _PROPERTIES = (
     ("density", "density", "kg/m³", 1e12),
     ("youngs_modulus", "Young's modulus E", "GPa", 1e-3),
@@ -67,15 +51,7 @@ _PROPERTIES = (
 )
 
 
-def _claims(result: CheckResult) -> dict[str, Any] | None:
-    """Return the findings on published figures of a case; None where there are none."""
-    if not result.case.claims and result.name not in built_in_cases():
-        return None
-    found = check_claims(result.name, fidelity="beam", known=result)
-    return {"count": count(found), "rows": as_records(found)} if found else None
-
-
-def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
+def render(result: CheckResult, figures: Mapping[str, bytes], published: str = "") -> str:
     """Return the report as one HTML page.
 
     Parameters
@@ -83,38 +59,17 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
     result : CheckResult
     figures : mapping
         PNG pictures by the names of ``reports.page.pictures``; the page omits missing ones.
+    published : str, optional
+        How many published figures ``claims.html`` beside the page has, in a sentence; "" where there is none.
 
     Returns
     -------
     str
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("reports"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {
-        "number": number,
-        "plain": plain,
-        "fixed": fixed,
-        "band": band,
-        "percent": percent,
-        "joined": joined,
-        "sentence": sentence,
-        "capitalize_first": lambda text: text[:1].upper() + text[1:],
-        "linkage_line": linkage_line,
-        "thrust_line": thrust_line,
-        "play_line": play_line,
-        "complex": complex,
-        "solved": solver_sentence,
-        "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
-    }
     first, layers = next(iter(result.load_cases.values())), build_directions_of(result)
-    return environment.get_template("report.html.jinja").render(
+    checks = by_nearness(checks_of(result))
+    return fill(
+        "report.html.jinja",
         result=result,
         case=result.case,
         pose=result.pose,
@@ -123,12 +78,11 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         verdict=result.verdict.value,
         headline=headline(result),
         meaning=MEANING[result.verdict],
-        checks=checks_of(result),
-        bands=_bands(result),
-        reasons=_reasons(result),
-        drawings=[
-            (name, result.load_cases[name], figures.get(linkage_name(name))) for name in governing_load_cases(result)
-        ],
+        checks=checks,
+        most_checks=MOST_CHECKS,
+        bands=_bands(checks_of(result)),
+        reasons=_reasons(checks),
+        drawings=_drawings(result, checks, figures),
         assembly=figures.get(ASSEMBLY),
         contact=figures.get(CONTACT),
         clearance=clearance_record(result.clearance),
@@ -145,6 +99,11 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         weight_sentence=weight_sentence,
         friction_sentence=friction_sentence,
         holding_sentence=holding_sentence,
+        linkage_line=linkage_line,
+        thrust_line=thrust_line,
+        play_line=play_line,
+        solver_sentence=solver_sentence,
+        named=named,
         spring_sentences=spring_sentences,
         bonded=[name for name, joint in result.pose.linkage.joints.items() if joint.bonded],
         forked=any(forked_link(result.case, name) is not None for name in result.case.joints),
@@ -152,35 +111,46 @@ def render(result: CheckResult, figures: Mapping[str, bytes]) -> str:
         links=[_link(result, link, figures, layers) for link in first.links],
         agreement=agreement,
         materials=_materials(result),
-        claims=_claims(result),
+        published=published,
         not_covered=not_covered(result),
-        out_of_plane=lambda load_case: len(shown_components(load_case.reactions)) > 3,
         design=design_of(result.case),
-        version=alula_version(),
-        data_uri=data_uri,
     )
 
 
-def data_uri(picture: bytes) -> str:
-    """Return a PNG as a data URI.
-
-    Parameters
-    ----------
-    picture : bytes
-
-    Returns
-    -------
-    str
-    """
-    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
+def _drawings(
+    result: CheckResult, checks: Sequence[CheckOutcome], figures: Mapping[str, bytes]
+) -> list[tuple[str, bytes | None, str]]:
+    """Return (load case, picture of the linkage, its caption), that of the check nearest to its limit first."""
+    names = list(governing_load_cases(result))
+    decisive = checks[0].load_case if checks else ""
+    names.sort(key=lambda name: name != decisive)
+    return [(name, figures.get(linkage_name(name)), _caption(result, name)) for name in names]
 
 
-def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
+def _caption(result: CheckResult, name: str) -> str:
+    """Return the caption of a load case's picture of the linkage: what it shows and what it leaves out."""
+    stated = result.case.load_cases[name]
+    told = [
+        f"Load case “{name}”{f': {stated.title}' if stated.title else ''}. To scale.",
+        "Each joint force is drawn as it acts on the link in its label; "
+        "the other link of the joint bears the opposite force.",
+    ]
+    if stated.own_weight:
+        told.append("The own weight of the links acts as well; it is not drawn.")
+    if stated.speed:
+        told.append("The inertia of the links acts as well; it is not drawn.")
+    if len(shown_components(result.load_cases[name].reactions)) > 3:
+        told.append("Forces and moments out of the plane are not drawn.")
+    if stated.air:
+        told.append("The air’s force is drawn as far as it lies in the plane.")
+    return " ".join(told)
+
+
+def _bands(checks: Sequence[CheckOutcome]) -> dict[str, tuple[str, ...]]:
     """Return the kinds of sources of error in the bands: name of the check -> each kind once, without particulars.
 
     A check without any width stands there only where its values say why.
     """
-    checks = checks_of(result)
     wide = {check.name for check in checks if check.value.low < check.value.high}
     found: dict[str, dict[str, None]] = {}
     for check in checks:
@@ -193,14 +163,14 @@ def _bands(result: CheckResult) -> dict[str, tuple[str, ...]]:
     return {name: tuple(texts) for name, texts in found.items()}
 
 
-def _reasons(result: CheckResult) -> list[str]:
+def _reasons(checks: Sequence[CheckOutcome]) -> list[str]:
     """Return the reason of each check; "" where its row says the same, so not where the reason names the model."""
     return [
         ""
         if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.DISPLACEMENT, Quantity.CLEARANCE)
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
         else check.reason
-        for check in checks_of(result)
+        for check in checks
     ]
 
 

@@ -10,10 +10,9 @@ import numpy as np
 
 from fea.study.store import NAME, Store
 from geometry.base.errors import CaseError
-from geometry.base.version import alula_version
 from loads.case.case_file import built_in_cases
-from reports.page.html import data_uri
 from reports.page.output import place, refuse_unusable, write_folder
+from reports.page.template import fill
 from reports.study.choice import StudyPicture, pictures
 from reports.study.columns import Parameter, StudyColumns, read_study
 from reports.study.style import LOOKS, tick
@@ -104,22 +103,13 @@ def render(study: StudyColumns, drawn: Sequence[StudyPicture], notes: Sequence[s
     -------
     str
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("reports"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["breakable"] = lambda path: path.replace(".", ".\u200b")
     plan, heads = study.facts["plan"], _heads(study)
     lost = [(state, why, count) for (state, why), count in study.sentences.items()]
     extremes = [(which, row, number_text(row.nearest)) for which, row in study.extremes.items() if row.nearest]
     if len(extremes) == 2 and extremes[0][1].position == extremes[1][1].position:
         extremes = extremes[:1]
-    return environment.get_template("study.html.jinja").render(
+    return fill(
+        "study.html.jinja",
         case=Path(plan["case"]).name,
         plan=plan,
         versions=study.facts["versions"],
@@ -139,8 +129,6 @@ def render(study: StudyColumns, drawn: Sequence[StudyPicture], notes: Sequence[s
         rows=[(row, _cells(row, heads, study)) for row in study.rows],
         more=len(study.outcome) - len(study.rows),
         command=_command(study),
-        version=alula_version(),
-        data_uri=data_uri,
     )
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from fea.common.band import Band
-from fea.common.verdict import CheckOutcome, Quantity, Verdict
+from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
 from fea.outcomes.unchecked import unchecked
 
 if TYPE_CHECKING:
@@ -200,37 +200,6 @@ def checks_of(result: "CheckResult") -> tuple[CheckOutcome, ...]:
     return tuple(check for load_case in result.load_cases.values() for check in load_case.checks)
 
 
-def tightness(check: CheckOutcome) -> float:
-    """Return the margin of the unfavourable end of a check's band, relative to the limit; −∞ if it is unknown.
-
-    Parameters
-    ----------
-    check : CheckOutcome
-
-    Returns
-    -------
-    float
-    """
-    if check.value.unknowable:
-        return -math.inf
-    margin = check.value.low - check.limit if check.at_least else check.limit - check.value.high
-    return margin / check.limit if check.limit > 0.0 else math.copysign(math.inf, margin)
-
-
-def tightest(checks: Sequence[CheckOutcome]) -> CheckOutcome:
-    """Return the check closest to its limit, or furthest beyond it.
-
-    Parameters
-    ----------
-    checks : sequence of CheckOutcome
-
-    Returns
-    -------
-    CheckOutcome
-    """
-    return min(checks, key=tightness)
-
-
 def headline(result: "CheckResult") -> str:
     """Return the verdict, what decides it and what no check looks at.
 
@@ -268,20 +237,21 @@ def _headline(result: "CheckResult") -> str:
     count = len(checks)
     if result.verdict is Verdict.PASS:
         kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"
-        return f"Pass: {kept} over the whole error band. Closest to its limit: {_with_limit(result, tightest(checks))}."
+        closest = _with_limit(result, by_nearness(checks)[0])
+        return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
     decisive = [c for c in checks if c.verdict is result.verdict]
-    names = joined(list(dict.fromkeys(_named(c) for c in decisive)))
+    names = joined(list(dict.fromkeys(named(c) for c in decisive)))
     share = f"{len(decisive)} of {count} checks"
     if result.verdict is Verdict.UNDECIDED:
         first = decisive[0]
         verb = "is" if len(decisive) == 1 else "are"
-        return f"Undecided: {share} {verb} open: {names}. {sentence(f'{_named(first)}: {first.reason}')}"
+        return f"Undecided: {share} {verb} open: {names}. {sentence(f'{named(first)}: {first.reason}')}"
     missed = f"{share} {'misses its limit' if len(decisive) == 1 else 'miss their limits'} over the whole error band"
     collapses = [c for c in decisive if c.quantity is Quantity.LOAD_SHARE]
     if collapses:
         worst = min(collapses, key=lambda c: c.value.value)
         return f"Fail: {_under(result, worst)}{gives_way(worst)}. {missed}: {names}."
-    return f"Fail: {missed}: {names}. Worst: {_with_limit(result, tightest(decisive))}."
+    return f"Fail: {missed}: {names}. Worst: {_with_limit(result, by_nearness(decisive)[0])}."
 
 
 def gives_way(check: CheckOutcome) -> str:
@@ -301,7 +271,19 @@ def gives_way(check: CheckOutcome) -> str:
     return f"the linkage gives way at {shown} %{'' if low == high else f' ({low} to {high} %)'} of its load"
 
 
-def _named(check: CheckOutcome, *, long: bool = False) -> str:
+def named(check: CheckOutcome, *, long: bool = False) -> str:
+    """Return what a check is about in a few words, such as ``safety factor of AE``.
+
+    Parameters
+    ----------
+    check : CheckOutcome
+    long : bool, optional
+        True for ``safety factor of link AE``.
+
+    Returns
+    -------
+    str
+    """
     if check.quantity is Quantity.LOAD_SHARE:
         return "share of the load that the linkage holds"
     return f"{check.quantity} of {check.subject.long if long else check.subject}"
@@ -318,7 +300,7 @@ def _with_limit(result: "CheckResult", check: CheckOutcome) -> str:
     unit = f" {check.quantity.unit}".rstrip()
     under = f" {_under(result, check)}".rstrip()
     sign = check.quantity.sense.value
-    return f"{_named(check, long=True)}{under}, {band(check.value)}{unit}; limit {sign} {plain(check.limit)}{unit}"
+    return f"{named(check, long=True)}{under}, {band(check.value)}{unit}; limit {sign} {plain(check.limit)}{unit}"
 
 
 def sentence(text: str) -> str:

@@ -17,7 +17,7 @@ def test_the_folder_is_complete(result, tmp_path):
     found = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*") if path.is_file()}
     diagrams = {f"pictures/diagram-{link}.png" for link in result.case.checked_links}
     pictures = {"pictures/linkage-weight.png", "pictures/stress-GF.png", *diagrams}
-    assert found == {".alula-check.json", "report.html", "result.json", "vtu/GF.vtu", *pictures}
+    assert found == {".alula-check.json", "report.html", "claims.html", "result.json", "vtu/GF.vtu", *pictures}
     # Names known before anything is solved, so that a file of the user's own under one of them is found by then.
     assert found - {".alula-check.json"} <= report_names(result.case)
     for name in pictures:

@@ -5,17 +5,21 @@ from dataclasses import replace
 import pytest
 from html_pages import Page, stands_alone
 
-from fea.common.verdict import Verdict
+from fea.common.band import Band
+from fea.common.verdict import Quantity, Verdict
+from reports.page import claims_page
+from reports.page.claims_page import CLAIMS
 from reports.page.coverage import not_covered
 from reports.page.html import render
 from reports.page.pictures import diagram_name, linkage_name, stress_name
+from reports.words.wording import checks_of
 
 PICTURES = {linkage_name("weight"): b"linkage", diagram_name("AE"): b"diagram", stress_name("GF"): b"stress"}
 
 
 @pytest.fixture(scope="module")
 def source(result):
-    return render(result, PICTURES)
+    return render(result, PICTURES, "Published statics: 3 of 15 equations do not hold.")
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +27,9 @@ def page(source):
     return Page(source)
 
 
-def test_it_loads_nothing_from_elsewhere_and_links_lead_somewhere(page):
-    stands_alone(page)
+def test_it_loads_nothing_from_elsewhere_and_links_lead_somewhere(page, result):
+    stands_alone(page, beside=(CLAIMS,))
+    stands_alone(Page(render(result, {})))
 
 
 def test_pictures_are_embedded_and_described(page):
@@ -54,8 +59,6 @@ def test_it_stands_without_pictures(result):
         "33.75 N·mm",
         "2.934 MPa",
         "14.11",
-        "3 of the equations are not equilibrium equations",
-        "CH 0.7327 0.0000 −56.03",
         "They differ by more than 3 % at x = 35.0 mm",
         "Young's modulus E 2.4 GPa handbook Paredes (2018), table 1, after Shigley",
         "density 1450 kg/m³",
@@ -108,7 +111,7 @@ def test_a_case_without_the_optional_parts_renders(result):
     only = {"weight": result.load_cases["weight"]}
     page = Page(render(replace(result, case=case, load_cases=only, hand={}, audit=None, warnings=()), {}))
     assert "published statics" not in page.words
-    assert "The case states none." in page.words
+    assert "The case states no assumptions." in page.words
     assert "Load case idle" not in page.words
 
 
@@ -116,15 +119,40 @@ def test_no_zero_has_a_sign(page):
     assert not re.search(r"−0(\.0+)?(?![.\d])", page.words)
 
 
-def test_what_the_source_published_stands_in_the_report(result, monkeypatch) -> None:
-    from reports.page import html
+def test_published_figures_and_statics_have_a_page_of_their_own(result, monkeypatch, tmp_path) -> None:
+    """The report has their number and the address; a case of which nothing was published has no such page."""
+    monkeypatch.setattr(claims_page, "built_in_cases", lambda: ("owl-wing-static",))
+    told = claims_page.write_claims(replace(result, name="owl-wing-static"), tmp_path, "report.html")
+    page = Page((tmp_path / CLAIMS).read_text(encoding="utf-8"))
+    stands_alone(page, beside=("report.html",))
+    assert "3 of the equations are not equilibrium equations" in page.words
+    assert "CH 0.7327 0.0000 −56.03" in page.words
+    assert page.source.index("<details open>") < page.source.index("do not hold or do not follow (")
+    assert "<details><summary>Figures that hold (" in page.source
+    assert re.match(r"Published figures: \d+ claims: .* Published statics: 3 of 15 equations are not equ", told)
+    plain = replace(result, name="elsewhere.toml", audit=None)
+    assert claims_page.write_claims(plain, tmp_path / "none", "report.html") == ""
+    assert CLAIMS not in render(plain, {})
 
-    monkeypatch.setattr(html, "built_in_cases", lambda: ("owl-wing-static",))
-    page = html.render(replace(result, name="owl-wing-static"), {})
-    assert 'id="claims"' in page
-    assert "does not hold" in page
-    assert "claims: " in page
-    shown = page[page.index('id="claims"') :]
-    assert shown.index("<details open>") < shown.index("do not hold or do not follow (")
-    assert "<details><summary>Figures that hold (" in shown
-    assert 'id="claims"' not in html.render(replace(result, name="elsewhere.toml"), {})
+
+def test_the_first_page_holds_verdict_picture_and_the_checks_nearest_to_their_limits(result, source, changed):
+    """Before the contents: the stamp, the linkage, eight checks in the order of their margins; all of them below."""
+    first, rest = source.split("<nav", 1)
+    assert first.index('class="stamp"') < first.index("<img") < first.index('<section id="nearest">')
+    every = checks_of(result)
+    assert len(every) > 8
+    rows = re.findall(r'<td class="what">(.*?)</td>', first)
+    assert len(rows) == 8
+    assert len(re.findall(r'<td class="what">', rest)) == len(every)
+
+    def change(check):  # one check fails by little, another is open by much, and CF passes but just so
+        if check.quantity is not Quantity.SAFETY_FACTOR or check.load_case != "weight":
+            return replace(check, verdict=Verdict.PASS, value=Band.exact(100.0 if check.at_least else 1e-3))
+        low, verdict = {"GF": (2.9, Verdict.FAIL), "CH": (1.0, Verdict.UNDECIDED), "CF": (3.1, Verdict.PASS)}.get(
+            check.link, (90.0, Verdict.PASS)
+        )
+        return replace(check, value=Band.exact(low), limit=3.0, verdict=verdict)
+
+    page = render(changed(change), {})
+    shown = [re.sub("<.*?>", "", row) for row in re.findall(r'<td class="what">(.*?)</td>', page)[:3]]
+    assert [row.split()[3] for row in shown] == ["GF", "CH", "CF"]

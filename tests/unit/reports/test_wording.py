@@ -4,7 +4,7 @@ from dataclasses import replace
 import pytest
 
 from fea.common.band import Band
-from fea.common.verdict import Quantity, Verdict
+from fea.common.verdict import Quantity, Verdict, by_nearness
 from reports.words import wording
 
 
@@ -98,7 +98,7 @@ def test_the_unfavourable_end_of_a_band_says_which_check_is_nearest_to_its_limit
         value = bands.get(check.link, Band.exact(100.0 if at_least else 0.01))
         return replace(check, quantity=quantity, value=value, limit=1.0 if at_least else 1.5)
 
-    assert wording.tightest(wording.checks_of(changed(change))).link == "CH"
+    assert by_nearness(wording.checks_of(changed(change)))[0].link == "CH"
 
 
 def test_percentages_and_sentences():

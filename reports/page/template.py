@@ -1,0 +1,61 @@
+"""The templates of pages, and how they write numbers."""
+
+import base64
+import math
+from typing import Any
+
+from geometry.base.version import alula_version
+from reports.words.wording import band, fixed, joined, number, percent, plain, sentence
+
+
+def fill(template: str, **entries: Any) -> str:
+    """Return a page.
+
+    Parameters
+    ----------
+    template : str
+        Name of a file of ``reports/templates``.
+    **entries
+        What it shows; its text is escaped.
+
+    Returns
+    -------
+    str
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("reports"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "number": number,
+        "plain": plain,
+        "fixed": fixed,
+        "band": band,
+        "percent": percent,
+        "joined": joined,
+        "sentence": sentence,
+        "capitalize_first": lambda text: text[:1].upper() + text[1:],
+        "complex": complex,
+        "breakable": lambda path: path.replace(".", ".\u200b"),
+        "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
+    }
+    return environment.get_template(template).render(**entries, version=alula_version(), data_uri=data_uri)
+
+
+def data_uri(picture: bytes) -> str:
+    """Return a PNG as a data URI.
+
+    Parameters
+    ----------
+    picture : bytes
+
+    Returns
+    -------
+    str
+    """
+    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
