@@ -1,0 +1,56 @@
+"""The tutorial and the recipes work as printed: entries are taken, commands run, and numbers are what they print."""
+
+import re
+from pathlib import Path
+
+import pytest
+from pages import Reader, merged, written
+from programs import ROOT
+from prose import FENCE, without_code
+
+from loads.case.case_file import read_case
+
+DOCS = ROOT / "docs"
+TUTORIAL = DOCS / "tutorial.md"
+PAGES = [TUTORIAL, *sorted((DOCS / "how-to").glob("*.md"))]
+names = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+
+
+@names
+def test_a_page_works_as_printed(page: Path, tmp_path: Path) -> None:
+    reader = Reader(tmp_path)
+    reader.follow(page)
+    for case in reader.cases:
+        if "links" in case.read_text(encoding="utf-8"):
+            read_case(str(case))
+
+
+@pytest.mark.converged
+@names
+def test_slow_commands_of_a_page(page: Path, tmp_path: Path) -> None:
+    Reader(tmp_path, patient=True).follow(page)
+
+
+def test_numbers_of_the_tutorial_are_printed_there() -> None:
+    """Every number with decimals or a unit in the running text stands in a block, which the tests above run."""
+    text = TUTORIAL.read_text(encoding="utf-8")
+    blocks = "\n".join(block for *_, block in FENCE.findall(text))
+    told = re.findall(r"(?<![\w.])\d+\.\d+|\d+(?= (?:mm|N|MPa|%|times)\b)", without_code(text))
+    assert told
+    assert not [number for number in told if not re.search(rf"(?<![\d.]){re.escape(number)}(?![\d.]*\d)", blocks)]
+
+
+def test_a_wrong_number_is_found(tmp_path: Path) -> None:
+    reader = Reader(tmp_path)
+    reader.sh("alula new four-bar.toml\nalula statics four-bar.toml\n")
+    reader.text("Load case lift\n...\ndrive torque on crank: 92.612 N·mm\n")
+    with pytest.raises(AssertionError, match="is not in"):
+        reader.text("drive torque on crank: 92.613 N·mm\n")
+
+
+def test_tables_are_changed_and_lists_of_tables_added_to() -> None:
+    old = {"a": {"b": 1, "c": [1, 2]}, "d": [{"e": True}]}
+    assert merged(old, {"a": {"c": [3]}, "d": [{"e": "x"}]}) == {
+        "a": {"b": 1, "c": [3]}, "d": [{"e": True}, {"e": "x"}]
+    }  # fmt: skip
+    assert written({"a b": {"c": [1.5, "é\n"]}, "d": [True]}) == '"a b" = {"c" = [1.5, "é\\n"]}\n"d" = [true]\n'
