@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import pairwise
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict
+from pydantic import AfterValidator, BaseModel, ConfigDict, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from geometry.base.errors import CaseError
@@ -97,7 +97,7 @@ def _direction(value: tuple[float, float, float]) -> tuple[float, float, float]:
 
 Direction = Annotated[tuple[float, float, float], AfterValidator(_direction)]
 """A vector of any length, without unit; kept with unit length."""
-Name = Annotated[str, AfterValidator(_name)]
+Name = Annotated[str, AfterValidator(_name), WithJsonSchema({"type": "string", "format": "name"})]
 Text = Annotated[str, AfterValidator(_text)]
 
 

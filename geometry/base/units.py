@@ -9,10 +9,10 @@ when they stand in a pydantic model.
 """
 
 import math
+from collections.abc import Callable
 from functools import cache
 from typing import Annotated, Any
 
-from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError, core_schema
 
 from geometry.base.model import refusal
@@ -126,6 +126,26 @@ def parse(text: object, dimension: str) -> float:
     return value
 
 
+def as_text(value: float, dimension: str) -> str:
+    """Return text that ``parse`` reads as a value, in the unit in which people state its dimension.
+
+    Parameters
+    ----------
+    value : float
+        In alula's unit.
+    dimension : str
+        A key of ``INTERNAL_UNITS``.
+
+    Returns
+    -------
+    str
+        Such as ``"9.81 m/s^2"``.
+    """
+    unit = EXAMPLES[dimension].split(" ", 1)[1]
+    one, zero = parse(f"1 {unit}", dimension), parse(f"0 {unit}", dimension)
+    return f"{(value - zero) / (one - zero):.12g} {unit}"
+
+
 def _comma_remedy(text: str) -> str:
     """Return how a number with commas is to be written; empty where commas are not what is wrong."""
     import re
@@ -194,9 +214,25 @@ class Dimensioned:
         """Describe the field as text, with an example."""
         return {
             "type": "string",
+            "format": self.dimension,
             "description": f"{self.dimension} with its unit",
             "examples": [EXAMPLES[self.dimension]],
         }
+
+
+class Rule:
+    """A rule on a value; the JSON Schema states it in words, since it has none for text with a unit."""
+
+    def __init__(self, check: Callable[[float], float], words: str) -> None:
+        self.check, self.words = check, words
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """Check the value after it was read."""
+        return core_schema.no_info_after_validator_function(self.check, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """State the rule beside the value's own schema."""
+        return {**handler(schema), "x-rule": self.words}
 
 
 def _positive(value: float) -> float:
@@ -211,8 +247,8 @@ def _not_negative(value: float) -> float:
     return value
 
 
-POSITIVE = AfterValidator(_positive)
-NOT_NEGATIVE = AfterValidator(_not_negative)
+POSITIVE = Rule(_positive, "greater than zero")
+NOT_NEGATIVE = Rule(_not_negative, "not negative")
 
 Length = Annotated[float, Dimensioned("length")]
 Area = Annotated[float, Dimensioned("area")]

@@ -21,7 +21,9 @@ class HoleRow(CaseModel):
     """A row of equal cross holes along the link, such as those that hold feathers."""
 
     count: Annotated[int, Field(gt=0, le=200)]
+    """Number of holes."""
     diameter: Annotated[Length, POSITIVE]
+    """Diameter of each."""
     first: Length
     """x of the first hole in the link's frame."""
     last: Length

@@ -63,17 +63,12 @@ class Link(CaseModel):
 
 
 class Joint(CaseModel):
-    """A joint between two links.
-
-    revolute      the two points coincide
-    pin-in-slot   the second link's point lies on the line through the first link's point along
-                  ``direction`` (a half joint: it may turn and slide)
-    slider        as pin-in-slot, and the second link keeps the angle ``angle`` to the first
-
-    A bonded revolute joint does not turn: it bears a moment about its pin as well.
-    """
+    """A joint between two links."""
 
     type: Literal["revolute", "pin-in-slot", "slider"] = "revolute"
+    """revolute: the two points coincide. pin-in-slot: the second link's point lies on the line through the first link's
+    point along ``direction`` (a half joint: it may turn and slide). slider: as pin-in-slot, and the second link keeps
+    the angle ``angle`` to the first."""
     links: tuple[Name, Name]
     """The two links; reactions are given as what the first does to the second."""
     points: tuple[Name, Name] | None = None

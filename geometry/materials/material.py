@@ -46,6 +46,7 @@ class Fatigue(CaseModel):
     stress: Annotated[Stress, POSITIVE]
     """Peak stress that the material bears for ``cycles``."""
     cycles: Annotated[float, Field(gt=0)]
+    """Cycles that it bears at that stress."""
     exponent: Annotated[float, Field(gt=0)] | None = None
     """Exponent of the power law; none where a single point is known."""
     stress_ratio: Annotated[float, Field(ge=-1, lt=1)] = 0.0
@@ -53,21 +54,29 @@ class Fatigue(CaseModel):
     rule: Literal["goodman", "peak-stress"] = "goodman"
     """How cycles with another mean count: by Goodman's line, or by their peak stress alone, whatever their range."""
     source: Text
+    """Where the data come from."""
 
 
 class Material(CaseModel):
     """An isotropic linear elastic material: density, stiffness, strength and where they come from."""
 
     title: Text
+    """Name of the material, for the report."""
     density: Annotated[Density, POSITIVE]
+    """Mass per volume."""
     youngs_modulus: Annotated[Stress, POSITIVE]
+    """Modulus of elasticity (Young's modulus)."""
     poissons_ratio: Annotated[float, Field(gt=-1.0, lt=0.5)]
+    """Poisson's ratio."""
     yield_strength: Annotated[Stress, POSITIVE] | None = None
+    """Tensile yield strength."""
     ultimate_strength: Annotated[Stress, POSITIVE] | None = None
+    """Tensile ultimate strength."""
     strength: Literal["yield", "ultimate"]
     """Which of the two the safety factor uses: yield against von Mises stress (ductile), ultimate
     against the largest principal stress (brittle)."""
     youngs_modulus_range: Range | None = None
+    """Scatter of the modulus: least and greatest value."""
     strength_range: Range | None = None
     """Scatter of the strength that the safety factor uses."""
     strength_across_layers: Annotated[Stress, POSITIVE] | None = None
@@ -88,6 +97,7 @@ class Material(CaseModel):
     temperature_factors: tuple[tuple[Temperature, Annotated[float, Field(gt=0)]], ...] = ()
     """(temperature, factor on strength), rising in temperature."""
     fatigue: Fatigue | None = None
+    """Fatigue data; without them an envelope judges no fatigue of its links."""
     fatigue_across_layers: Fatigue | None = None
     """Of a printed material: of specimens built upright, so that its stress is tension normal to the layers."""
     minimum_safety_factor: Annotated[float, Field(gt=0)] | None = None

@@ -34,6 +34,7 @@ class Bar(Straight):
 
     shape: Literal["bar"]
     material: Name
+    """Name of a material, of the library or of [materials]."""
     widths: Annotated[tuple[Station, ...], Field(max_length=50)] = ()
     """Width at stations along the bar in place of width, each [x, width] in the link's frame: linear in between, a step
     where two stations have one x, constant beyond the first and last. Eyes are then 1.6 times as wide as the bar at
@@ -41,6 +42,7 @@ class Bar(Straight):
     width: Annotated[Length, POSITIVE] = Field(default_factory=lambda part: _least(part))
     """Width all along; left out where widths states it."""
     thickness: Annotated[Length, POSITIVE]
+    """Thickness along the pins."""
     fillet_radius: Annotated[Length, NOT_NEGATIVE]
     """Fillet where the bar's sides meet an eye, and its faces a thicker eye; 0 leaves the edge sharp."""
     shoulder_radius: Annotated[Length, NOT_NEGATIVE] = 0.0

@@ -31,8 +31,11 @@ class Disc(PartKind):
 
     shape: Literal["disc"]
     material: Name
+    """Name of a material, of the library or of [materials]."""
     diameter: Annotated[Length, POSITIVE]
+    """Diameter of the disc."""
     thickness: Annotated[Length, POSITIVE]
+    """Thickness along the pins."""
     eye_diameter: Annotated[Length, POSITIVE]
     """Diameter of the rings about the holes on whose faces a torque or a thrust enters, as under a washer or boss."""
 

@@ -49,7 +49,9 @@ class Plate(PartKind):
 
     shape: Literal["plate"]
     material: Name
+    """Name of a material, of the library or of [materials]."""
     thickness: Annotated[Length, POSITIVE]
+    """Thickness along the pins."""
     eye_diameter: Annotated[Length, POSITIVE]
     """Diameter of the eyes about whose circles the outline runs; a link may state others for its points (eyes)."""
     fillet_radius: Annotated[Length, NOT_NEGATIVE] = 0.0

@@ -25,7 +25,9 @@ class RoundHole(CaseModel):
     x: Length
     """Of its centre, in the link's frame."""
     y: Length
+    """y of its centre."""
     diameter: Annotated[Length, POSITIVE]
+    """Its diameter."""
 
     @property
     def outline(self) -> Outline:

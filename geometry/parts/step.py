@@ -44,6 +44,7 @@ class FilePart(Printable):
             """Name of the kind in the case file."""
 
     material: Name
+    """Name of a material, of the library or of [materials]."""
     file: PartFile
     """Name of the file, relative to the folder of the case file."""
     bores: Annotated[dict[Name, Text], Field(max_length=100)] = {}

@@ -39,8 +39,11 @@ class Tube(Straight):
 
     shape: Literal["tube"]
     material: Name
+    """Name of a material, of the library or of [materials]."""
     outer_diameter: Annotated[Length, POSITIVE]
+    """Outer diameter of the tube."""
     inner_diameter: Annotated[Length, NOT_NEGATIVE]
+    """Diameter of its bore, less than the outer diameter; 0 mm for a rod."""
     eyes: Literal["round", "none"] = "round"
     """round: a solid cylindrical eye at every pin. none: pins go straight through both walls; the ends are square."""
     fillet_radius: Annotated[Length, NOT_NEGATIVE] = 0.0

@@ -45,15 +45,23 @@ class CoreCase(Revisable):
     schema_version: Literal[1]
     """Version of the case file's format."""
     title: Text
+    """What the case is, in a line; every report has it."""
     description: Text = ""
+    """What it is about, in a few sentences."""
     source: Text = ""
+    """Where its numbers come from."""
     assumptions: tuple[Text, ...] = ()
     """What the case assumes beyond its source, one sentence each; the report lists them."""
     links: Annotated[dict[Name, Link], Field(min_length=2, max_length=200)]
+    """The links by name; one of them is the ground."""
     joints: Annotated[dict[Name, Joint], Field(min_length=1, max_length=400)]
+    """The joints by name: each connects two links."""
     pose: PoseSpec = PoseSpec()
+    """The position that is checked."""
     drive: DriveSpec | None = None
+    """What holds the pose against the loads; left out for a structure, or where the pose balances by itself."""
     motion: MotionSpec | None = None
+    """The motion over which ``alula motion`` and ``alula envelope`` go."""
     springs: Annotated[dict[Name, Spring], Field(max_length=100)] = {}
     """Springs between points of two links, or about a revolute joint; they act in every load case."""
     tendons: Annotated[dict[Name, Tendon], Field(max_length=100)] = {}
@@ -63,6 +71,7 @@ class CoreCase(Revisable):
     materials: dict[Name, Material] = {}
     """Material cards of the case's own; the library's are there by name without being listed."""
     parts: dict[Name, Part] = {}
+    """Shape and material by name; links name their part."""
     joint_model: Literal["pinned", "bonded"] = "pinned"
     """Whether pins turn freely, or are all bonded and carry moments about their own axis as well, as if every revolute
     joint stated bonded = true. Sliders and pins in slots slide all the same."""
@@ -74,15 +83,21 @@ class CoreCase(Revisable):
     """auto: where the linkage moves by more than 5 % of its span, or may give way below ten times its load,
     equilibrium is sought on the deformed shape. off: never."""
     conditions: Conditions = Conditions()
+    """How long loads stay, and how warm it is."""
     ways_to_hold: WaysToHold | None = None
+    """A point whose displacement is told for every link that the drive might hold, with free and with bonded pins."""
     carried: tuple[Carried, ...] = ()
     """Masses that links carry besides their parts; they weigh where the parts weigh, and have inertia."""
     massless: tuple[Name, ...] = ()
     """Moving links without part or carried mass that are to weigh nothing where others weigh or move."""
     load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=100)]
+    """Loads that act together, by name; each load case is checked by itself."""
     checks: dict[Name, Check] = {}
+    """What is to be decided, by name; the safety factor of every link where nothing is stated."""
     hand_calculations: dict[Name, CantileverCalculation] = {}
+    """Further hand calculations, by name, which are told and decide nothing."""
     solid: SolidSettings = SolidSettings()
+    """How links are meshed as solids."""
     tolerances: TolerancesTable = {}
     """How far entries of the case may be off, by their path, such as "links.AE.points.E" = "0.2 mm"; pins stands for
     every place of a pin in every link. A size of a part is one draw for all its links. For alula tolerance alone; no

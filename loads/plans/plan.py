@@ -50,6 +50,7 @@ class StudyPlan(CaseModel):
     """A CSV file of points: entries in its first line, one point a line below, beside this file; they are combined with
     each value that is varied."""
     sample: Sample | None = None
+    """A sample of the ranges in place of their grid."""
     fidelity: Literal["auto", "beam", "frame", "solid"] = "auto"
     """Model of a check."""
     accuracy: Text | None = None

@@ -47,9 +47,13 @@ class AirPatch(CaseModel):
     """Where a part of an air load acts: along a link between two of its points, or at one point."""
 
     link: Name
+    """The link on which it acts."""
     at: Name | None = None
+    """The point at which it acts, in place of start and end."""
     start: Name | None = None
+    """The point at which the stretch begins."""
     end: Name | None = None
+    """The point at which it ends."""
     shape: Literal["uniform", "elliptic"] = "uniform"
     """elliptic: as the root of 1 - (place on the span)^2."""
     span: tuple[Annotated[float, Field(ge=0, le=1)], Annotated[float, Field(ge=0, le=1)]] = (0.0, 1.0)
@@ -69,6 +73,7 @@ class AirLoad(CaseModel):
     """Lift and drag of a stream: from coefficients, or as given."""
 
     title: Text = ""
+    """What the load is, for the report."""
     stream: Direction
     """Where the air goes, seen from the wing, in global axes; its length does not count."""
     lift_direction: Direction | None = None
@@ -76,16 +81,21 @@ class AirLoad(CaseModel):
     lift_towards: Direction | None = None
     """In its place: lift is normal to the stream, in the plane of the stream and this direction, on its side."""
     speed: Annotated[Speed, POSITIVE] | None = None
+    """Speed of the stream; with density it gives the dynamic pressure."""
     density: Annotated[Density, POSITIVE] | None = None
+    """Density of the air."""
     area: Annotated[Area, POSITIVE] | None = None
     """The reference area S of the coefficients."""
     lift_coefficient: float | None = None
+    """C_L, at most 2 in size; needs speed, density and area."""
     drag_coefficient: Annotated[float, Field(ge=0)] | None = None
+    """C_D, at most 2.3; needs speed, density and area."""
     lift: Force | None = None
     """Given instead of its coefficient."""
     drag: Annotated[Force, NOT_NEGATIVE] | None = None
     """Given instead of its coefficient."""
     spread: Annotated[tuple[AirPatch, ...], Field(min_length=1)]
+    """Where lift and drag act: along links, or at points."""
 
 
 @dataclass(frozen=True, kw_only=True)

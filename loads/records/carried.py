@@ -15,17 +15,24 @@ class CarriedSpread(CaseModel):
     """A mass spread evenly along the axis of a link between two of its points."""
 
     link: Name
+    """The link that carries it."""
     start: Name
+    """The point at which it begins."""
     end: Name
+    """The point at which it ends."""
     mass: Annotated[Mass, POSITIVE]
+    """The whole mass, spread evenly."""
 
 
 class CarriedBody(CaseModel):
     """A rigid body held at one point of a link, through which its weight and inertia enter the part."""
 
     link: Name
+    """The link that carries it."""
     at: Name
+    """The point at which it is held."""
     mass: Annotated[Mass, POSITIVE]
+    """Its mass."""
     centroid: tuple[Length, Length] | None = None
     """In the link's frame; at the point itself when left out."""
     radius_of_gyration: Annotated[Length, NOT_NEGATIVE] = 0.0

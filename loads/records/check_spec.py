@@ -27,6 +27,7 @@ class DisplacementCheck(CaseModel):
 
     type: Literal["displacement"]
     maximum: Annotated[Length, POSITIVE]
+    """The limit."""
     links: tuple[Name, ...] = ()
     """The links to check, each by itself; all that have a part when neither these nor a point are stated."""
     at: Name | None = None
@@ -41,6 +42,7 @@ class SustainedCheck(CaseModel):
 
     type: Literal["sustained"]
     links: tuple[Name, ...] = ()
+    """The links to check; all that have a part when left out."""
 
 
 class PinCheck(CaseModel):
@@ -79,7 +81,9 @@ class MotorCheck(CaseModel):
 
     type: Literal["motor"]
     voltage: Annotated[Voltage, POSITIVE]
+    """Voltage at the motor."""
     current: Annotated[Current, POSITIVE]
+    """Current that it may draw; voltage times current is the electrical power."""
     efficiency: Annotated[float, Field(gt=0, le=1)]
     """Share of the electrical power that reaches the crank."""
     no_load_speed: Annotated[AngularSpeed, POSITIVE] | None = None

@@ -30,8 +30,8 @@ MomentVector = Annotated[
     WithJsonSchema(
         {
             "anyOf": [
-                {"type": "string", "description": "moment about z with its unit", "examples": ["130 N*mm"]},
-                {"type": "array", "items": {"type": "string"}, "minItems": 3, "maxItems": 3},
+                {"type": "string", "format": "moment", "examples": ["130 N*mm"]},
+                {"type": "array", "items": {"type": "string", "format": "moment"}, "minItems": 3, "maxItems": 3},
             ]
         }
     ),
@@ -42,8 +42,11 @@ class PointForce(CaseModel):
     """A force at a point of a link."""
 
     link: Name
+    """The link on which it acts."""
     at: Name
+    """The point of that link: a pin or a load point."""
     force: Vector
+    """Its components along x and y, or x, y and z."""
     axes: Axes = "global"
     """Axes of the components: global, or the link's own, so that the force turns with the link from pose to pose. While
     the linkage deforms in a pose, the force keeps its direction either way."""
@@ -53,14 +56,18 @@ class PointMoment(CaseModel):
     """A moment at a point of a link, in global axes: about z, counter-clockwise positive, or about x, y and z."""
 
     link: Name
+    """The link on which it acts."""
     at: Name
+    """The point of that link."""
     moment: MomentVector
+    """One moment about z, or three about x, y and z."""
 
 
 class FacePressure(CaseModel):
     """A pressure on a named face of a link's part, from outside against the material."""
 
     link: Name
+    """The link whose part has the face."""
     at: Name
     """The point that stands for the face (``faces`` of the part)."""
     pressure: Stress
@@ -71,9 +78,13 @@ class SpreadForce(CaseModel):
     """A force spread evenly along the axis of a link between two of its points."""
 
     link: Name
+    """The link on which it acts."""
     start: Name
+    """The point at which it begins."""
     end: Name
+    """The point at which it ends."""
     total: Vector
+    """Components of the whole force along x and y, or x, y and z."""
     axes: Axes = "global"
     """Axes of the components: global, or the link's own, so that the force turns with the link from pose to pose. While
     the linkage deforms in a pose, the force keeps its direction either way."""
@@ -83,10 +94,12 @@ class LoadCase(CaseModel):
     """One set of loads that act at the same time."""
 
     title: Text = ""
+    """What the load case is, for the report."""
     own_weight: bool = False
     """True: every link weighs what its part's volume and density say and what it carries. False: links are
     massless, and a stated total weight stands among the forces."""
     gravity: Annotated[Acceleration, NOT_NEGATIVE] = 9810.0
+    """Acceleration of gravity, for own weight and carried masses."""
     gravity_direction: Angle = -math.pi / 2
     """Direction of the weight, from the global x axis."""
     speed: AngularSpeed = 0.0
@@ -101,10 +114,15 @@ class LoadCase(CaseModel):
     """How far all loads of this load case may be off together, such as "20 %", or { low = "90 %", high = "130 %" };
     the bands of all that they do hold it."""
     forces: tuple[PointForce, ...] = ()
+    """Forces at points."""
     moments: tuple[PointMoment, ...] = ()
+    """Moments at points."""
     pressures: tuple[FacePressure, ...] = ()
+    """Pressures on named faces of imported parts."""
     spread: tuple[SpreadForce, ...] = ()
+    """Forces spread along links."""
     air: tuple[AirLoad, ...] = ()
+    """Lift and drag of streams."""
 
 
 def gravity(load_case: LoadCase) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

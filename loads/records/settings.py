@@ -74,7 +74,9 @@ class CantileverCalculation(CaseModel):
 
     type: Literal["cantilever"]
     part: Name
+    """The part whose section bends."""
     length: Annotated[Length, POSITIVE]
+    """Length of the cantilever."""
     load: Annotated[Force, NOT_NEGATIVE]
     """The total load [N]."""
 
@@ -83,12 +85,15 @@ class WaysToHold(CaseModel):
     """How far a point moves, by the frame, depending on which link the drive holds and on whether pins turn."""
 
     link: Name
+    """The moving link that has the point."""
     at: Name
+    """The point whose displacement is told."""
     published: Annotated[Length, POSITIVE] | None = None
     """A published displacement, to stand beside them."""
     load_case: Name | None = None
     """The load case that it was published for; needed where the case has several."""
     source: Text = ""
+    """Where the published displacement stands."""
 
 
 class SolidSettings(CaseModel):

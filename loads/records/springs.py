@@ -25,7 +25,9 @@ class Attachment(CaseModel):
     """A point of a link, moving or not, at which a spring or a tendon is fastened or led over."""
 
     link: Name
+    """The link."""
     at: Name
+    """The point of that link."""
 
 
 class LineSpring(CaseModel):
@@ -123,7 +125,14 @@ def _limit(stated: object) -> Limit:
 AngleOrTravel = Annotated[
     Limit,
     PlainValidator(_limit),
-    WithJsonSchema({"type": "string", "description": "angle or length with its unit", "examples": ["30 deg", "5 mm"]}),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "format": "angle", "examples": ["30 deg"]},
+                {"type": "string", "format": "length", "examples": ["5 mm"]},
+            ]
+        }
+    ),
 ]
 
 

@@ -1,9 +1,10 @@
 """Tolerances as a user states them: how far a place, an angle, a load or a material may be off, and how it scatters."""
 
 import re
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import Field
+from pydantic_core import core_schema
 
 from geometry.base.model import CaseModel, Text, refusal
 from geometry.base.units import parse
@@ -51,31 +52,25 @@ class Tolerance(CaseModel):
         return half
 
 
-def _stated(value: object) -> object:
-    return {"plus_minus": value} if isinstance(value, str) else value
+class _TextOrTable:
+    """Tells pydantic that text stands for a tolerance with this half width, evenly distributed."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """Read text as half the width."""
+        return core_schema.no_info_before_validator_function(
+            lambda value: {"plus_minus": value} if isinstance(value, str) else value, handler(source)
+        )
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """Describe both."""
+        return {"anyOf": [{"type": "string", "examples": ["0.2 mm", "10 %"]}, handler(schema)]}
 
 
 Tolerances = dict[
     str,
     Annotated[
         Tolerance,
-        BeforeValidator(_stated),
-        WithJsonSchema(
-            {
-                "anyOf": [
-                    {"type": "string", "description": "half the width, uniform", "examples": ["0.2 mm", "10 %"]},
-                    {
-                        "type": "object",
-                        "properties": {
-                            "plus_minus": {"type": "string", "examples": ["0.2 mm", "10 %"]},
-                            "distribution": {"enum": ["uniform", "normal", "worst case"], "default": "uniform"},
-                        },
-                        "required": ["plus_minus"],
-                        "additionalProperties": False,
-                    },
-                ]
-            }
-        ),
+        _TextOrTable(),
     ],
 ]
 """Path of an entry -> its tolerance."""

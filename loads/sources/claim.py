@@ -101,6 +101,7 @@ class Claim(CaseModel):
     """A published figure: what it says, where it stands, and how it can be re-derived."""
 
     name: Annotated[str, AfterValidator(_claim_name)]
+    """Name of the claim, for the table of findings: letters, digits, '.', '-', '_' and '+', at most 80."""
     quantity: Expression = ""
     """Our value: a path into the results of the case, or an expression of such paths."""
     published: Annotated[Text, Field(min_length=1, max_length=200), AfterValidator(_published)]

@@ -15,9 +15,13 @@ class FlappingWingSpec(CaseModel):
     """The right side's four joints; the left side is its mirror."""
 
     crank_pivot: Name
+    """Joint of crank and ground, at the origin."""
     crank_pin: Name
+    """Joint of crank and coupler."""
     rocker_pin: Name
+    """Joint of coupler and rocker."""
     rocker_pivot: Name
+    """Joint of rocker and ground."""
 
     def wing(self, linkage: Linkage) -> FlappingWing:
         """Return the flapping wing whose lengths are the distances between these joints on their links.

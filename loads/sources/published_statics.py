@@ -34,6 +34,7 @@ class PublishedStatics(CaseModel):
     """A published system of equilibrium equations, to be solved and audited."""
 
     source: Text
+    """Where the equations are published."""
     exact: str
     """CSV file beside the case file: the coefficients as the source's formulas give them (N, m)."""
     printed: str

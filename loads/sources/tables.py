@@ -22,6 +22,7 @@ class SourceTables(CaseModel):
     ornithopter: OrnithopterRules | None = None
     """Rules by which ``read_case`` works out the dimensions of the built-in ornithopter or of a copy of it."""
     published_statics: PublishedStatics | None = None
+    """A published system of equilibrium equations, to be solved and audited."""
     flapping_wing: FlappingWingSpec | None = None
     """The joints of a flapping wing with one crank and two rockers, whose design figures are to be shown."""
     claims: Annotated[tuple[Claim, ...], Field(max_length=1000)] = ()

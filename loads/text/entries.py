@@ -7,6 +7,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from geometry.base.units import INTERNAL_UNITS, as_text
+
 Schema = Mapping[str, Any]
 
 
@@ -65,14 +67,14 @@ def names_tables(model: type[BaseModel], path: Sequence[object]) -> bool:
     bool
         True where he does.
     """
-    root = _schema(model)
+    root = file_schema(model)
     free = [node["additionalProperties"] for node in _at(model, path) if node.get("additionalProperties")]
     return any(node.get("type") in ("object", "array") for child in free for node in _options(child, root))
 
 
 def _at(model: type[BaseModel], path: Sequence[object]) -> list[Schema]:
     """Return the nodes of the schema at a path, all that a union leaves open."""
-    root = _schema(model)
+    root = file_schema(model)
     nodes = _options(root, root)
     for step in path:
         nodes = [found for node in nodes for child in _children(node, step) for found in _options(child, root)]
@@ -102,5 +104,24 @@ def _options(node: Schema, root: Schema) -> list[Schema]:
 
 
 @cache
-def _schema(model: type[BaseModel]) -> Schema:
-    return model.model_json_schema()
+def file_schema(model: type[BaseModel]) -> Schema:
+    """Return the JSON Schema of a file, with defaults as the file would state them.
+
+    Parameters
+    ----------
+    model : type of BaseModel
+        What the file is validated against.
+
+    Returns
+    -------
+    mapping
+        pydantic's schema; in place of numbers in alula's units, defaults of quantities are text with a unit.
+    """
+    schema = model.model_json_schema()
+    for table in (schema, *schema.get("$defs", {}).values()):
+        for entry in table.get("properties", {}).values():
+            if isinstance(entry.get("default"), float) and entry.get("format") in INTERNAL_UNITS:
+                entry["default"] = as_text(entry["default"], entry["format"])
+            elif isinstance(entry.get("default"), dict):
+                entry["default"] = {}  # a table whose own entries have their defaults
+    return schema

@@ -81,7 +81,7 @@ def _share(stated: object) -> float | None:
     return None
 
 
-_SHARE = {"anyOf": [{"type": "string"}, {"type": "number"}]}
+_SHARE = {"anyOf": [{"type": "string", "format": "percentage"}, {"type": "number"}]}
 Accuracy = Annotated[float, PlainValidator(parse_accuracy), WithJsonSchema({**_SHARE, "examples": ["5 %", 0.05]})]
 LoadScatter = Annotated[
     tuple[float, float],
@@ -89,8 +89,9 @@ LoadScatter = Annotated[
     WithJsonSchema(
         {
             "anyOf": [
-                {"type": "string", "description": "share of the loads, up and down", "examples": ["20 %"]},
+                {"type": "string", "format": "percentage", "examples": ["20 %"]},
                 {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
+                {"type": "array", "prefixItems": [_SHARE, _SHARE], "minItems": 2, "maxItems": 2},
                 {
                     "type": "object",
                     "properties": {"low": _SHARE, "high": _SHARE},

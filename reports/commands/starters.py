@@ -30,8 +30,9 @@ def schema(
 
     from loads.case.case import Case
     from loads.plans.plan import StudyPlan
+    from loads.text.entries import file_schema
 
-    print(json.dumps((StudyPlan if study else Case).model_json_schema(), indent=2))
+    print(json.dumps(file_schema(StudyPlan if study else Case), indent=2))
 
 
 @app.command()

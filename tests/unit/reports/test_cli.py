@@ -19,6 +19,11 @@ def test_schema_is_a_json_schema() -> None:
     jsonschema.Draft202012Validator.check_schema(schema)
     assert {"schema_version", "links", "joints", "load_cases"} <= set(schema["required"])
     assert schema["additionalProperties"] is False
+    for table in (schema, *schema["$defs"].values()):
+        for name, entry in table["properties"].items():
+            if "default" in entry:  # as a case file may state it: text with a unit for quantities
+                root = {"$defs": schema["$defs"], "properties": {name: entry}}
+                jsonschema.validate({name: entry["default"]} if entry["default"] != {} else {}, root)
 
 
 def test_statics_prints_the_published_system(tmp_path: Path) -> None:
