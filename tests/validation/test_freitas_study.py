@@ -8,6 +8,7 @@ from importlib import resources
 from pathlib import Path
 
 import pytest
+from solved import shared
 
 from fea.study.engine import Engine
 from fea.study.evaluate import evaluate
@@ -37,6 +38,10 @@ def _rows():
 @pytest.fixture(scope="module")
 def designs(tmp_path_factory):
     """Name of the row -> the row as printed, state, figures as published [deg], swing of the rocker [deg]."""
+    return shared("designs of Freitas", lambda: _solved(tmp_path_factory.mktemp("study")))
+
+
+def _solved(folder):
     variants = Variants(*read_plan(EXAMPLE))
 
     def submit(task):
@@ -44,7 +49,7 @@ def designs(tmp_path_factory):
         future.set_result(evaluate(task, {}))
         return future
 
-    with Store.writing(tmp_path_factory.mktemp("study")) as store:
+    with Store.writing(folder) as store:
         Study(variants=variants, store=store).run(lambda: nullcontext(Engine(submit=submit, capacity=lambda: 3)))
         found = list(store.rows())
     told = {}
