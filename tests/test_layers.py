@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from fnmatch import fnmatch
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -37,9 +38,20 @@ OWNERS = {
 }
 
 
-def imported(source: str) -> Iterator[tuple[int, str]]:
-    """Yield line and name of every module that is imported, at whatever depth, and of import_module("...")."""
-    for node in ast.walk(ast.parse(source)):
+@cache
+def parsed(source: str) -> ast.Module:
+    """Return the syntax tree of a source, which several tests look at."""
+    return ast.parse(source)
+
+
+@cache
+def imported(source: str) -> tuple[tuple[int, str], ...]:
+    """Return line and name of every module that is imported, at whatever depth, and of import_module("...")."""
+    return tuple(_imported(source))
+
+
+def _imported(source: str) -> Iterator[tuple[int, str]]:
+    for node in ast.walk(parsed(source)):
         match node:
             case ast.Import():
                 for alias in node.names:
@@ -164,7 +176,7 @@ SHARED = {"LineLoad", "PointLoad"}
 def classes() -> list[str]:
     """Return the name of every public class of the four packages, as often as there is one of that name."""
     files = [file for package in PACKAGES for file in (ROOT / package).rglob("*.py")]
-    nodes = [node for file in files for node in ast.parse(file.read_text(encoding="utf-8")).body]
+    nodes = [node for file in files for node in parsed(file.read_text(encoding="utf-8")).body]
     return [node.name for node in nodes if isinstance(node, ast.ClassDef) and not node.name.startswith("_")]
 
 

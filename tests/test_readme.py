@@ -31,7 +31,8 @@ def words(command: str) -> list[str]:
 
 
 def is_slow(command: str) -> bool:
-    return words(command)[0] in ("check", "envelope", "claims", "tolerance", "size")
+    """Whether ``make verify`` runs it: it computes or draws for seconds, and has tests of its own in ``make test``."""
+    return words(command)[0] in ("check", "envelope", "claims", "tolerance", "size", "study", "motion", "inspect")
 
 
 def writes_a_case(command: str) -> bool:
@@ -40,6 +41,18 @@ def writes_a_case(command: str) -> bool:
 
 def in_order(commands: list[str]) -> list[str]:
     return sorted(commands, key=lambda command: not writes_a_case(command))
+
+
+def needed(command: str) -> list[str]:
+    """Commands whose files another reads: cases, the STEP files, the study that is shown."""
+    shows, inspects = words(command)[:2] == ["study", "show"], words(command)[0] == "inspect"
+    return [
+        other
+        for other in in_order(COMMANDS)
+        if writes_a_case(other)
+        or (shows and words(other)[0] == "study" and words(other)[1] != "show")
+        or (inspects and words(other)[0] == "export")
+    ]
 
 
 def run(folder: Path, command: str) -> subprocess.CompletedProcess[str]:
@@ -103,7 +116,7 @@ def test_quick_commands(tmp_path: Path) -> None:
 def test_slow_commands(command: str, tmp_path: Path) -> None:
     folder = tmp_path / "empty"
     folder.mkdir()
-    for first in filter(writes_a_case, COMMANDS):
+    for first in needed(command):
         check(folder, first)
     check(folder, command)
 

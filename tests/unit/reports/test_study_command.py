@@ -81,7 +81,7 @@ def test_the_least_size_is_told_with_what_limits_it(tmp_path: Path) -> None:
     """A tie under weight by hand calculation: status, JSON and text agree; a wrong range is one sentence."""
     wrong = programs.inside("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=4 mm", folder=tmp_path)
     assert (wrong.returncode, "is no range" in wrong.stderr) == (2, True)
-    arguments = ("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=3 mm..5 mm by 0.5 mm")
+    arguments = ("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=3.5 mm..4 mm by 0.5 mm")
     found = programs.inside(*arguments, "--fidelity", "beam", "--json", "--workers", "1", folder=tmp_path)
     record = json.loads(found.stdout)
     assert found.returncode == 0
