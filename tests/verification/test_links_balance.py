@@ -19,12 +19,13 @@ CASES = {
     "spring-pedal": [],
     "four-bar-synthesis": ["load_cases.weight.own_weight=true", "load_cases.weight.speed=300 rpm"],
 }
+POSES = 13
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_loads_on_every_link_sum_to_nothing(name: str) -> None:
-    case = read_case(name, [*CASES[name], "motion.poses=25"])
-    moved = with_couples(solve_case_motion(case), np.ones(25, dtype=bool)).moved
+    case = read_case(name, [*CASES[name], f"motion.poses={POSES}"])
+    moved = with_couples(solve_case_motion(case), np.ones(POSES, dtype=bool)).moved
     compared = 0
     for link in case.checked_links:
         length = case.linkage.longest

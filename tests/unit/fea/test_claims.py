@@ -300,8 +300,11 @@ def test_only_what_a_claim_asks_for_is_computed(case_file, monkeypatch):
     assert asked == ["solid"]
 
 
+CHANGED = ['pose.angle="230 deg"']
+
+
 def test_a_source_and_its_cases():
-    whole, part = solved.claims()["owl-wing"], check_claims("owl-wing-static", overrides=['pose.angle="230 deg"'])
+    whole, part = solved.claims()["owl-wing"], check_claims("owl-wing-static", overrides=CHANGED, fidelity="beam")
     of_the_case = [result.claim.name for result in whole if result.claim.case == "owl-wing-static"]
     assert [result.claim.name for result in part] == of_the_case
     assert 100 < len(part) < len(whole)

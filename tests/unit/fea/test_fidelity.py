@@ -35,6 +35,7 @@ def test_a_limit_far_below_fails_by_hand():
     assert decided(2.0).decision.model == "beam"
 
 
+@pytest.mark.converged
 def test_what_hand_calculation_leaves_open_a_solid_decides():
     found = decided(18.0)
     assert found.decision.model == "solid"

@@ -57,7 +57,8 @@ def address_of(file: Path) -> str:
 
 def variants(poses: str) -> Variants:
     """Motions of a four-bar with different numbers of poses."""
-    plan = {"case": "four-bar-synthesis", "analysis": "motion", "vary": {"motion.poses": poses}, "mass": False}
+    plan = {"case": "four-bar-synthesis", "analysis": "motion", "vary": {"motion.poses": poses}}
+    plan |= {"mass": False, "set": {"layer_spacing": "0 mm"}}
     return Variants(plan_of(plan), Path())
 
 
@@ -68,7 +69,7 @@ def rows(store: Store):
 
 def test_a_cluster_answers_as_this_machine_does_and_survives_what_dies(tmp_path):
     """A killed worker costs its point an attempt; a killed scheduler ends the study, and this machine goes on."""
-    few, many = variants("5..8 by 1"), variants("5..64 by 1")
+    few, many = variants("5..8 by 1"), variants("5..34 by 1")
     with Store.writing(tmp_path / "local") as store:
         Study(variants=few, store=store).run(lambda: local_engine(1, {}, folder=tmp_path / "local"))
         expected = rows(store)
@@ -81,19 +82,19 @@ def test_a_cluster_answers_as_this_machine_does_and_survives_what_dies(tmp_path)
         def kill(progress):
             if progress.computed == 5:
                 os.kill(killed.pid, signal.SIGKILL)
-            if progress.computed == 20:
+            if progress.computed == 12:
                 os.kill(scheduler.pid, signal.SIGKILL)
 
         with Store.writing(tmp_path / "many") as store:
             with pytest.raises(CannotRunError, match=r"goes? on with the study"):
                 Study(variants=many, store=store, tell=kill).run(lambda: cluster_engine(address, {}, patience=5.0))
             stood = rows(store)
-            assert 20 <= len(stood) < 60
+            assert 12 <= len(stood) < 30
     with Store.writing(tmp_path / "many") as store:
         done = Study(variants=many, store=store).run(lambda: local_engine(1, {}, folder=tmp_path / "many"))
         assert done.stood >= len([row for row in stood if row[2] == "done"])
-        assert [(position, state) for position, _, state, _ in rows(store)] == [(i, "done") for i in range(60)]
-        assert set(map(repr, stood[:20])) <= set(map(repr, rows(store)))
+        assert [(position, state) for position, _, state, _ in rows(store)] == [(i, "done") for i in range(30)]
+        assert set(map(repr, stood[:12])) <= set(map(repr, rows(store)))
 
 
 class Client:
