@@ -8,7 +8,8 @@ DEMO := out/owl-wing-static
 
 # One thread per process: the tests fill the cores with processes of their own.
 ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
-PYTEST := $(ONE_THREAD) $(BIN)/pytest --numprocesses auto --dist worksteal
+# Compiled modules are kept, whatever the environment says: hundreds of processes would compile alula anew.
+PYTEST := $(ONE_THREAD) PYTHONDONTWRITEBYTECODE= $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
 .PHONY: help setup libraries demo docs test lint tests verify bench fuzz golden clean distclean

@@ -30,7 +30,13 @@ _Around = Callable[[float, Sequence[float]], Scatter]
 
 
 def force_doubt(
-    case: Case, load_case: str, forces: JointForces, loads: Sequence[Load], *, grown: bool = False
+    case: Case,
+    load_case: str,
+    forces: JointForces,
+    loads: Sequence[Load],
+    *,
+    grown: bool = False,
+    links: Sequence[str] | None = None,
 ) -> Growths:
     """Return by how much stress, displacement and joint forces may differ since the links' stiffness is in doubt.
 
@@ -44,6 +50,8 @@ def force_doubt(
         That act on the links.
     grown : bool, optional
         True where the numbers that these shares multiply hold the growth on free pins already.
+    links : sequence of str or None, optional
+        Links that are looked at; None for every one.
 
     Returns
     -------
@@ -52,9 +60,9 @@ def force_doubt(
     """
     found = Growths()
     if forces.open_by:
-        found = _doubt(case, load_case, forces, loads, forces.open_by, _summed(forces.sources))
+        found = _doubt(case, load_case, forces, loads, forces.open_by, _summed(forces.sources), links)
     if forces.sharings:
-        found = found.times(_doubt(case, load_case, forces, loads, forces.sharings, _widest, grown=grown))
+        found = found.times(_doubt(case, load_case, forces, loads, forces.sharings, _widest, links, grown=grown))
     return found
 
 
@@ -65,11 +73,12 @@ def _doubt(
     loads: Sequence[Load],
     changes: Sequence[Deviation],
     around: _Around,
+    links: Sequence[str] | None,
     *,
     grown: bool = False,
 ) -> Growths:
     stress, displacement = {}, {}
-    for link in case.checked_links:
+    for link in case.checked_links if links is None else links:
         body = case.body(link)
         cases = [(forces.reactions, grown)]
         cases += [(one.reactions, isinstance(one, Sharing)) for one in changes if _concerns(one, case, link)]

@@ -75,8 +75,9 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         poses = _worst_poses(moved, name, forces[name], evaluated)
         for pose in set(poses.values()):
             loads = _loads_at(moved, name, pose)
-            doubt = force_doubt(case, name, forces_at(moved, name, pose), loads, grown=True).stress
-            shares |= {(name, link): doubt[link] for link, own in poses.items() if own == pose and link in doubt}
+            here = [link for link, own in poses.items() if own == pose]
+            doubt = force_doubt(case, name, forces_at(moved, name, pose), loads, grown=True, links=here).stress
+            shares |= {(name, link): scatter for link, scatter in doubt.items()}
     return LayeredMotion(moved=replace(moved, forces=forces), shares=shares)
 
 
