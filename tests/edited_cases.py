@@ -11,9 +11,16 @@ PLANAR = 'layer_spacing="0 mm"'
 """Entry that puts all layers of a case in one plane: for tests of what has nothing to do with layers."""
 
 
-def edited(name: str, entries: Sequence[str]) -> Case:
-    """Return a case with entries ``path=value`` as if its file had been edited: missing tables are added."""
+def edited(name: str, entries: Sequence[str], *, bare: bool = False) -> Case:
+    """Return a case with entries ``path=value`` as if its file had been edited: missing tables are added.
+
+    A bare case has lost what its file says about layers.
+    """
     data = tomllib.loads(read_text(name)[0])
+    if bare:
+        data = {key: value for key, value in data.items() if key not in ("layer_spacing", "washer")}
+        for link in data["links"].values():
+            link.pop("layer", None)
     changes = [change for derived in Case.derived(data).values() for change in derived.items()]
     for entry in entries:
         path, _, text = entry.partition("=")

@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.outcomes.result import LoadCaseResult
+from geometry.linkage.linkage import Linkage
 from loads.records.applied import Load, shifted
 from loads.states.springs import spring_loads
 from loads.statics.friction import friction_wrenches
+from loads.statics.joint_reaction import JointReaction
 from loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
@@ -25,9 +27,10 @@ class AnchorLoads:
     Attributes
     ----------
     joints : mapping of str to ndarray, shape (6,)
-        Joint on the ground -> wrench on the ground about the joint [N, N mm], global axes. Where the drive's torque
-        reacts on the ground, that reaction is in the moment about z at the drive's joint. Springs and tendons that are
-        fastened to a point of the ground, in the undeformed pose, stand there as "springs at" that point.
+        Joint on the ground -> wrench on the ground about the joint, in the ground's mid-plane [N, N mm], global axes.
+        Where the drive's torque reacts on the ground, that reaction is in the moment about z at the drive's joint.
+        Springs and tendons that are fastened to a point of the ground, in the undeformed pose, stand there as "springs
+        at" that point.
     about : str
         The joint about which ``total`` is taken.
     total : ndarray, shape (6,)
@@ -65,7 +68,8 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
     for name in joints:
         point = pose.position(ground, pose.linkage.point_of(name, ground))
         # A pin has travelled from the ground's point along its slot; the wrench is about where it stands.
-        travelled = reactions.joints[name].arm if reactions.joints[name].by == ground else np.zeros(3)
+        reaction = reactions.joints[name]
+        travelled = reaction.arm - _lever(reaction, pose.linkage) if reaction.by == ground else np.zeros(3)
         places[name] = np.array([*point, 0.0]) + travelled
     about = next(iter(joints))
     for load in spring_loads(case.standing.case, pose.placement):
@@ -84,6 +88,11 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
         deformed=moved is not None,
         unstable=case.large_displacement.gives_way,
     )
+
+
+def _lever(reaction: JointReaction, linkage: Linkage) -> Real:
+    """Vector (3,) to the pin at a joint's second link from where it stands in the mid-plane of the first [mm]."""
+    return reaction.arm if linkage.joints[reaction.joint].type == "revolute" else reaction.arm * [0.0, 0.0, 1.0]
 
 
 def _size(reactions: Reactions) -> Real:
@@ -110,7 +119,7 @@ def wrenches_on_ground(reactions: Reactions, loads: Sequence[Load] = ()) -> dict
     Returns
     -------
     dict of str to ndarray, shape (6,)
-        Joint -> wrench about it [N, N mm].
+        Joint -> wrench about it in the ground's mid-plane [N, N mm].
     """
     rubbed = friction_wrenches(loads)
     linkage, drive = reactions.pose.linkage, reactions.drive
@@ -118,7 +127,7 @@ def wrenches_on_ground(reactions: Reactions, loads: Sequence[Load] = ()) -> dict
     for name, reaction in reactions.joints.items():
         if linkage.ground in (reaction.on, reaction.by):
             wrench = reaction.wrench + rubbed.get(name, np.zeros(6))
-            wrench = wrench if reaction.on == linkage.ground else -wrench
+            wrench = wrench if reaction.on == linkage.ground else -shifted(wrench, _lever(reaction, linkage))
             if drive is not None and name == drive.joint:
                 wrench = wrench + np.array([0.0, 0.0, 0.0, 0.0, 0.0, reactions.torque_on(linkage.ground)])
             found[name] = wrench

@@ -158,8 +158,8 @@ class LinkageFrame:
     def _arm(self, name: str, shape: Real) -> Real:
         """From the point of a joint's first link to its pin (3,), with the nodes displaced by ``shape`` (n, 3)."""
         linkage, arm = self.pose.linkage, travelled(self.pose.placement, name)
-        if linkage.joints[name].type == "revolute":
-            return arm
+        if linkage.joints[name].type == "revolute" and name not in self.pin_beams:
+            return arm  # one place in both links
         first, second = linkage.joints[name].links
         if second != linkage.ground:
             arm = arm + shape[self.points[second, linkage.point_of(name, second)]]

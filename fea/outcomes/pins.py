@@ -298,11 +298,12 @@ def shared_stress(case: Case, joint: str, reaction: JointReaction, forces: Joint
     others = [stress_at(case, joint, shared.reactions.joints[joint]) for shared in forces.sharings]
 
     def widened(name: str) -> Band:
-        value, sizes = getattr(found, name), [getattr(one, name).value for one in (plain, *others)]
-        share = value.value / (sizes[0] or math.inf)
-        return Band(value=value.value, low=share * min(sizes), high=share * max(sizes), sources=COUPLES)
+        value, sizes = getattr(found, name).value, [getattr(one, name).value for one in (plain, *others)]
+        # Shares first: the least is then 1 at most, and the largest 1 at least, in spite of rounding.
+        ends = [value * (size / sizes[0]) for size in sizes] if sizes[0] > 0.0 else [value, *sizes]
+        return Band(value=value, low=min(ends), high=max(ends), sources=COUPLES)
 
-    shear = found.shear * max(one.shear for one in (plain, *others)) / (plain.shear or math.inf)
+    shear = found.shear * max(one.shear / (plain.shear or math.inf) for one in (plain, *others))
     return replace(
         found,
         moment=widened("moment"),

@@ -269,6 +269,7 @@ def overlap(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -
     for a, b in pairs:
         [moved] = _placed(b.geometry, np.array([turn]), np.array([shift]))
         common = a.polygon.intersection(moved.buffer(b.radius, quad_segs=_SEGMENTS) if b.radius else moved)
+        common = shapely.union_all([part for part in shapely.get_parts(common) if part.geom_type == "Polygon"])
         if common.area > 0.0:
             line = shapely.maximum_inscribed_circle(common, tolerance=1e-3 * np.sqrt(common.area))
             found = max(found, (2.0 * line.length, complex(*line.coords[0])), key=lambda entry: entry[0])

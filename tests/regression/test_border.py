@@ -56,8 +56,8 @@ def test_a_force_named_pydantics_types_in_its_message() -> None:
 def test_pins_of_two_diameters_shared_one_hole() -> None:
     """Where two joints sit at one point of a link, the diameter of the last one won without a word."""
     more = [
-        'links.X={points={P=["0 mm","0 mm"],Q=["50 mm","0 mm"]}}',
-        'links.Y={points={Q=["0 mm","0 mm"],R=["50 mm","0 mm"]}}',
+        'links.X={layer=0,points={P=["0 mm","0 mm"],Q=["50 mm","0 mm"]}}',
+        'links.Y={layer=0,points={Q=["0 mm","0 mm"],R=["50 mm","0 mm"]}}',
         'joints.Q={links=["X","Y"]}',
         'joints.R={links=["AG","Y"],points=["A","R"],pin_diameter="1.5 mm"}',
     ]

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from edited_cases import PLANAR
 from scipy.optimize import brentq
 
 from fea.check.run import check_case
@@ -137,7 +138,7 @@ COMPRESSION = {"AB": 2.0, "BE": 1.0, "GF": 1.5, "FB": 1.2, "BC": 0.7, "CD": 0.9,
 
 def axial_wing() -> tuple[Case, tuple[PointLoad, ...]]:
     """The owl wing under forces at its pins that press every stretch along its axis and bend none."""
-    case = read_case("owl-wing-static")
+    case = read_case("owl-wing-static", [PLANAR])
     pose = case.solve_pose()
     owner = {"A": "AE", "B": "AE", "E": "AE", "F": "GF", "G": "GF", "C": "CH", "D": "CH", "H": "CH"}
     force = {point: np.zeros(2) for point in owner}

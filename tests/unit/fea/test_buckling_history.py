@@ -16,7 +16,7 @@ from loads.case.case_file import read_case
 from loads.states.case_motion import solve_case_motion
 
 CASES = [
-    ("owl-wing-static", ["motion.poses=7", 'motion.range=["228.15 deg", "200 deg"]']),
+    ("owl-wing-static", [PLANAR, "motion.poses=7", 'motion.range=["228.15 deg", "200 deg"]']),
     ("ornithopter", [PLANAR, "motion.poses=7"]),
     ("flapping-wing-chosen", [PLANAR, "motion.poses=7"]),
 ]

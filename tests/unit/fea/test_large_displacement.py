@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from edited_cases import edited
+from edited_cases import PLANAR, edited
 
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import internal_forces
@@ -31,7 +31,7 @@ def under(load, *overrides):
     """The wing's case with its one load replaced, as [x, y] or [x, y, z] in N."""
     components = ", ".join(f'"{x} N"' for x in load)
     return edited(
-        "owl-wing-static", [f'load_cases.weight.forces=[{{link="CH", at="H", force=[{components}]}}]', *overrides]
+        "owl-wing-static", [f'load_cases.weight.forces=[{{link="CH", at="H", force=[{components}]}}]', PLANAR, *overrides]
     )
 
 
@@ -284,7 +284,7 @@ def test_plain_ends_take_part():
 
 
 def test_what_has_no_frame_is_not_looked_into():
-    case = read_case("owl-wing-static")
+    case = read_case("owl-wing-static", [PLANAR])
     pose = case.solve_pose()
     loads = acting_loads(case, case.load_cases["weight"], pose.placement, {})
     forces = joint_forces(case, pose, loads)

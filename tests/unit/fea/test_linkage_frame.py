@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from edited_cases import PLANAR
 
 from fea.frame.build import build_frame
 from fea.frame.condensed import LinkFlexibility
@@ -16,7 +17,7 @@ from loads.records.applied import BodyForce, LineLoad, PartMass, PointLoad, shif
 from loads.states.actions import acting_loads
 from loads.statics.statics import Drive, Reactions, solve_statics
 
-WING = read_case("owl-wing-static")
+WING = read_case("owl-wing-static", [PLANAR])
 AE, GF = Drive(link="AE", joint="A"), Drive(link="GF", joint="G")
 HEIGHT, WIDTH = 60.0, 90.0
 

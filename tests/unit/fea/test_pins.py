@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from edited_cases import edited
+from edited_cases import PLANAR, edited
 from materials import SOURCED
 
 from fea.check.run import check_case
@@ -152,9 +152,9 @@ def test_a_short_pin_shears_before_it_bends():
 
 
 def test_the_eyes_of_a_joint_are_those_of_its_links():
-    assert [hole.thickness for hole in eyes(read_case(WING), "B")] == [7.0, 7.0]
+    assert [hole.thickness for hole in eyes(read_case(WING, [PLANAR]), "B")] == [7.0, 7.0]
     # The ground has no part: its eye is taken as thick as that of AE.
-    assert stress_at(edited(WING, ['joints.A.pin_gap="0.4 mm"']), "A", reaction(1, 0, 0, 0, 0, 0)).lever == 7.4
+    assert stress_at(edited(WING, [PLANAR, 'joints.A.pin_gap="0.4 mm"']), "A", reaction(1, 0, 0, 0, 0, 0)).lever == 7.4
     two = [
         'parts.thick={shape="tube",material="pvc-u",outer_diameter="5 mm",inner_diameter="2.5 mm",'
         'eye_diameter="8 mm",eye_thickness="9 mm",fillet_radius="0.8 mm"}',
@@ -164,7 +164,7 @@ def test_the_eyes_of_a_joint_are_those_of_its_links():
 
 
 def test_moments_out_of_the_plane_add():
-    case = read_case(WING)
+    case = read_case(WING, [PLANAR])
     plain, turned = stress_at(case, "A", reaction(3, 4, 0, 0, 0, 99)), stress_at(case, "A", reaction(3, 4, 9, 6, 8, 0))
     assert turned.moment.value == pytest.approx(plain.moment.value + 10.0)
     # The eyes' couple makes up to 5 N x 3.5 mm in the middle, which may take off all of these 10 N mm, not all of 100.
@@ -174,7 +174,7 @@ def test_moments_out_of_the_plane_add():
 
 def test_the_wings_pins_pass_and_thin_ones_fail():
     off = 'large_displacement="off"'  # the wing gives way under this load
-    result = check_case(edited(WING, [off]), name=WING, fidelity="beam")
+    result = check_case(edited(WING, [PLANAR, off]), name=WING, fidelity="beam")
     pins = [c for c in result.load_cases["weight"].checks if c.name == "pins"]
     assert [c.link for c in pins] == [f"pin {name}" for name in "ABCDEFG"]
     assert all(c.verdict is Verdict.PASS and c.limit == 2.0 for c in pins)
@@ -184,7 +184,7 @@ def test_the_wings_pins_pass_and_thin_ones_fail():
     assert pins[0].value.high == pytest.approx(1330.0 / (1.73205 * 0.9520 * 1.3876 / 1.7671), rel=1e-3)
     for minimum, verdict in ((500.0, Verdict.UNDECIDED), (2000.0, Verdict.FAIL)):
         limits = [f'checks.pins={{type="pins",minimum={minimum},joints=["A"]}}']
-        result = check_case(edited(WING, [*limits, off]), name=WING, fidelity="beam")
+        result = check_case(edited(WING, [PLANAR, *limits, off]), name=WING, fidelity="beam")
         (one,) = [c for c in result.load_cases["weight"].checks if c.name == "pins"]
         assert (one.verdict, one.subject.long) == (verdict, "pin A")
 

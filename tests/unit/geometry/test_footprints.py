@@ -11,7 +11,7 @@ import shapely
 from geometry.bodies.body import Body
 from geometry.bodies.features import Fork, Pin
 from geometry.bodies.footprint import Footprint
-from geometry.clearance.shape import gaps, link_shape, meeting, nearest, overlap, pin_shape
+from geometry.clearance.shape import Core, gaps, link_shape, meeting, nearest, overlap, pin_shape
 from geometry.imported.read import part_facts, part_surface
 from geometry.meshing.mesh import mass_properties
 from geometry.parts.bar import Bar
@@ -176,6 +176,16 @@ def test_two_discs_lie_apart_by_the_distance_of_their_centres_less_their_radii()
     depth, centre = overlap(pairs, 1.0 + 0j, 3.0 + 4.0j)
     assert depth == pytest.approx(2.0, rel=1e-2)
     assert abs(centre) == pytest.approx(4.0, abs=0.05)  # the lens lies from 3 to 5 mm along the line of the centres
+
+
+def test_outlines_that_overlap_here_and_touch_there_have_a_depth():
+    """Their intersection is an area and a line; the search for the largest circle stopped at the line."""
+    square = shapely.box(0.0, 0.0, 10.0, 10.0)
+    hook = shapely.Polygon([(2, 8), (4, 8), (4, 12), (6, 12), (6, 10), (9, 10), (9, 14), (2, 14)])
+    one, other = (Core(geometry=each, radius=0.0, low=0.0, high=1.0, error=0.0) for each in (square, hook))
+    depth, centre = overlap([(one, other)], 1.0 + 0j, 0j)
+    assert depth == pytest.approx(2.0, rel=1e-2)
+    assert centre == pytest.approx(3.0 + 9.0j, abs=0.05)
 
 
 def test_slabs_that_only_lie_on_each_other_do_not_meet():

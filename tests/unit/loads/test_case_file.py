@@ -91,7 +91,7 @@ BAD = [
     # links, joints, mobility
     ('links.GF.points={G=["0 mm","0 mm"]}', ["links.GF.points", "has 1", "at least 2", "add"]),
     (
-        'links.X={points={A=["0 mm","0 mm"],B=["9 mm","0 mm"]}}',
+        'links.X={layer=0,points={A=["0 mm","0 mm"],B=["9 mm","0 mm"]}}',
         ["links.X", "no joint", "nothing holds it", "add a joint"],
     ),
     ("links.GF.ground=true", ["2 links have ground = true (AG, GF)", "exactly one"]),
@@ -192,8 +192,8 @@ def test_disconnected_links() -> None:
         edited,
         OWL,
         [
-            'links.x={points={P=["0 mm","0 mm"],Q=["9 mm","0 mm"]}}',
-            'links.y={points={P=["0 mm","0 mm"],Q=["9 mm","0 mm"]}}',
+            'links.x={layer=0,points={P=["0 mm","0 mm"],Q=["9 mm","0 mm"]}}',
+            'links.y={layer=0,points={P=["0 mm","0 mm"],Q=["9 mm","0 mm"]}}',
             'joints.P={links=["x","y"]}',
             'joints.Q={links=["x","y"]}',
         ],
@@ -206,8 +206,8 @@ def test_two_diameters_in_one_hole() -> None:
         edited,
         OWL,
         [
-            'links.X={points={P=["0 mm","0 mm"],Q=["50 mm","0 mm"]}}',
-            'links.Y={points={Q=["0 mm","0 mm"],R=["50 mm","0 mm"]}}',
+            'links.X={layer=0,points={P=["0 mm","0 mm"],Q=["50 mm","0 mm"]}}',
+            'links.Y={layer=0,points={Q=["0 mm","0 mm"],R=["50 mm","0 mm"]}}',
             'joints.P={links=["CH","X"],points=["D","P"],pin_diameter="2 mm"}',
             'joints.Q={links=["X","Y"]}',
             'joints.R={links=["AG","Y"],points=["A","R"]}',

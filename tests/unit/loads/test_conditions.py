@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from edited_cases import edited
+from edited_cases import PLANAR, edited
 from materials import SOURCED, with_material
 
 from fea.check.run import check_case
@@ -90,7 +90,7 @@ def test_what_cannot_be_known(overrides, sentence):
 
 
 def checked(*overrides):
-    return check_case(edited(WING, [*OF_PVC_U, *overrides]), name=WING, fidelity="beam").load_cases["weight"]
+    return check_case(edited(WING, [PLANAR, *OF_PVC_U, *overrides]), name=WING, fidelity="beam").load_cases["weight"]
 
 
 def test_a_load_that_stays_is_checked_without_being_asked_for():

@@ -3,10 +3,12 @@
 import re
 
 import pytest
-from edited_cases import PLANAR, edited
+from edited_cases import PLANAR
+from edited_cases import edited as edited_case
 
 from fea.check.case_statics import solve_case_statics
 from geometry.base.errors import CaseError
+from loads.case.case import Case
 from loads.case.case_file import built_in_cases, read_case, read_text
 from loads.case.layers import slab
 from loads.states.clearance import clearance
@@ -16,8 +18,13 @@ FOUR = [f"links.{name}.layer={layer}" for name, layer in zip(LINKS, (0, 0, 1, 2,
 WING = "owl-wing-static"
 
 
+def edited(changes: list[str]) -> Case:
+    """Return the owl wing with layers of the test's own."""
+    return edited_case(WING, changes, bare=True)
+
+
 def test_layers_stand_a_spacing_apart() -> None:
-    case = edited(WING, [*FOUR, 'layer_spacing="7.5 mm"'])
+    case = edited([*FOUR, 'layer_spacing="7.5 mm"'])
     assert case.layered
     assert case.heights == {"AG": 0.0, "GF": 0.0, "AE": 7.5, "CF": 15.0, "CH": 22.5, "ED": 15.0}
     assert case.linkage.rise("A") == 7.5
@@ -25,19 +32,19 @@ def test_layers_stand_a_spacing_apart() -> None:
 
 
 def test_washers_lie_between_layers_as_thick_as_their_thickest_link() -> None:
-    case = edited(WING, [*FOUR, 'washer="0.5 mm"', 'links.AE.thickness="3 mm"'])
+    case = edited([*FOUR, 'washer="0.5 mm"', 'links.AE.thickness="3 mm"'])
     # half of 7, the washer, half of 3; then half of 3, the washer, half of 7; then 7.5
     assert [case.heights[name] for name in ("GF", "AE", "CF", "CH")] == [0.0, 5.5, 11.0, 18.5]
 
 
 def test_a_height_stands_for_a_layer() -> None:
-    case = edited(WING, [f'links.{name}.z="{3 * i} mm"' for i, name in enumerate(LINKS)])
+    case = edited([f'links.{name}.z="{3 * i} mm"' for i, name in enumerate(LINKS)])
     assert case.heights["ED"] == 15.0
 
 
 def test_a_spacing_of_zero_puts_all_layers_in_one_plane() -> None:
     """The joint forces are those of the same links without layers, from equilibrium alone."""
-    flat, plain = edited(WING, [*FOUR, PLANAR]), edited(WING, [])
+    flat, plain = edited([*FOUR, PLANAR]), edited([])
     assert not flat.layered
     assert set(flat.heights.values()) == {0.0}
     of_flat, of_plain = (solve_case_statics(case, WING).forces["weight"] for case in (flat, plain))
@@ -45,7 +52,7 @@ def test_a_spacing_of_zero_puts_all_layers_in_one_plane() -> None:
     for name, joint in of_plain.reactions.joints.items():
         assert of_flat.reactions.joints[name].force == pytest.approx(joint.force, rel=1e-12, abs=1e-15)
     with pytest.raises(CaseError, match="layer_spacing"):
-        edited(WING, [*FOUR, 'layer_spacing="-1 mm"'])
+        edited([*FOUR, 'layer_spacing="-1 mm"'])
 
 
 BUILT_IN = {name: case for name in built_in_cases() if (case := read_case(name)).layered}
@@ -65,7 +72,7 @@ def test_layers_of_built_in_cases_leave_room(name: str) -> None:
 
 
 def test_without_layers_all_lies_in_one_plane() -> None:
-    case = edited(WING, [])
+    case = edited([])
     assert not case.layered
     assert set(case.heights.values()) == {0.0}
 
@@ -86,5 +93,5 @@ def test_without_layers_all_lies_in_one_plane() -> None:
 )
 def test_what_does_not_fit_is_refused(changes: list[str], sentence: str) -> None:
     with pytest.raises(CaseError) as told:
-        edited(WING, changes)
+        edited(changes)
     assert re.search(sentence, str(told.value))

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import solved
-from edited_cases import edited
+from edited_cases import PLANAR, edited
 from rich.console import Console
 
 from fea.check.anchor import anchor_loads
@@ -26,7 +26,7 @@ WING = "owl-wing-static"
 
 
 def checked(*overrides):
-    return check_case(edited(WING, list(overrides)), name=WING, fidelity="beam")
+    return check_case(edited(WING, [PLANAR, *overrides]), name=WING, fidelity="beam")
 
 
 def section(result):
@@ -38,7 +38,7 @@ def section(result):
 
 @pytest.fixture
 def wing():
-    return solved.by_hand(WING)
+    return solved.by_hand(WING, PLANAR)
 
 
 def test_the_wings_page_sets_the_ways_to_hold_it_side_by_side(wing):
@@ -57,7 +57,7 @@ def test_the_wings_page_sets_the_ways_to_hold_it_side_by_side(wing):
 
 def test_a_published_displacement_stands_with_its_own_load_case_alone():
     """The source ran as-published; complete and planform are not its loads."""
-    result = solved.by_hand("owl-wing-flight")
+    result = solved.by_hand("owl-wing-flight", PLANAR)
     words = section(result)
     parts = re.split(r"Load case (as-published|complete|planform)", words)
     told = dict(zip(parts[1::2], parts[2::2], strict=True))

@@ -6,6 +6,7 @@ import re
 
 import pytest
 import solved
+from edited_cases import PLANAR
 from typer.testing import CliRunner
 
 from fea.check.case_statics import solve_case_statics
@@ -29,10 +30,10 @@ def statics_section(name, *overrides):
 @pytest.mark.parametrize(
     ("name", "overrides", "load_case", "components"),
     [
-        (WING, [], "weight", "Fx Fy"),
-        (WING, [BONDED], "weight", "Fx Fy Mz"),
-        (FLIGHT, [], "planform", "Fx Fy Fz Mx My"),
-        (FLIGHT, [BONDED], "complete", "Fx Fy Fz Mx My Mz"),
+        (WING, [PLANAR], "weight", "Fx Fy"),
+        (WING, [PLANAR, BONDED], "weight", "Fx Fy Mz"),
+        (FLIGHT, [PLANAR], "planform", "Fx Fy Fz Mx My"),
+        (FLIGHT, [PLANAR, BONDED], "complete", "Fx Fy Fz Mx My Mz"),
     ],
 )
 def test_components_are_those_that_act(name, overrides, load_case, components):
@@ -41,13 +42,13 @@ def test_components_are_those_that_act(name, overrides, load_case, components):
 
 
 def test_the_table_of_a_plane_case_stays_plain():
-    _, words = statics_section(WING)
+    _, words = statics_section(WING, PLANAR)
     assert "Joint forces [N], global axes Joint by → on F x F y magnitude A AG → AE 0.5011 0.8095 0.9520" in words
     assert "The links are massless in this load case" in words
 
 
 def test_the_table_out_of_the_plane_holds_the_whole_wrench():
-    result, words = statics_section(FLIGHT)
+    result, words = statics_section(FLIGHT, PLANAR)
     assert (
         "Joint forces [N] and moments about the joint [N·mm], global axes Joint by → on F x F y F z magnitude" in words
     )
@@ -60,9 +61,9 @@ def test_the_table_out_of_the_plane_holds_the_whole_wrench():
 def test_the_terminal_and_its_json_hold_them_too():
     from reports.commands.cli import app
 
-    shown = CliRunner().invoke(app, ["statics", FLIGHT]).output
+    shown = CliRunner().invoke(app, ["statics", FLIGHT, "--set", PLANAR]).output
     assert "-0.1393) N, 0.9621 N, Mx -7.66, My -21.85 N·mm" in shown
-    found = json.loads(CliRunner().invoke(app, ["statics", FLIGHT, "--json"]).output)
+    found = json.loads(CliRunner().invoke(app, ["statics", FLIGHT, "--set", PLANAR, "--json"]).output)
     assert found["load_cases"]["as-published"]["reactions"][0]["wrench"][4] == pytest.approx(-21.85, abs=5e-3)
 
 
@@ -71,7 +72,7 @@ def test_a_millionth_of_the_load_keeps_its_digits():
     from reports.commands.cli import app
 
     small = 'load_cases.weight.forces=[{link="CH", at="H", force=["0 N", "-2.5e-7 N"]}]'
-    shown = CliRunner().invoke(app, ["statics", WING, "--set", small]).output
+    shown = CliRunner().invoke(app, ["statics", WING, "--set", small, "--set", PLANAR]).output
     assert "drive torque on AE: -0.00013058 N·mm" in shown
     assert "( 5.011e-07,  8.095e-07) N, 9.52e-07 N" in shown
 
