@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from unittest.mock import patch
 
 from edited_cases import PLANAR
+
 from fea.check.run import check_case
 from fea.claims.audit import ClaimResult
 from fea.claims.sources import check_all
@@ -50,14 +51,16 @@ def by_hand(name: str, *overrides: str) -> CheckResult:
 
 @cache
 def claims() -> dict[str, tuple[ClaimResult, ...]]:
-    """Return the claims of every source document, by its name; their hand calculations are those of ``by_hand`` in one plane."""
+    """Return the claims of every source document; their hand calculations are those of ``by_hand`` in one plane."""
     return shared("claims", _claims)
 
 
 def _claims() -> dict[str, tuple[ClaimResult, ...]]:
     def of_this_process(case: Case, *, name: str, fidelity: str, **options: Any) -> CheckResult:
         assert case == read_case(name).in_one_plane()
-        return by_hand(name, PLANAR) if fidelity == "beam" else check_case(case, name=name, fidelity=fidelity, **options)
+        return (
+            by_hand(name, PLANAR) if fidelity == "beam" else check_case(case, name=name, fidelity=fidelity, **options)
+        )
 
     with patch("fea.claims.data.check_case", of_this_process):
         return check_all()

@@ -114,9 +114,10 @@ def test_a_load_is_held_for_sure_where_the_limit_load_is_surely_above_it(case, v
     """The band of the share that is held once left out what the limit load's knew of eyes and bores."""
     result = check_case(case(), name="owl-wing-static", fidelity="beam")
     for found in result.load_cases.values():
-        factor, (check,) = found.linkage.limit_load, [
-            c for c in found.checks if c.subject == LINKAGE and c.name != "clearance"
-        ]
+        factor, (check,) = (
+            found.linkage.limit_load,
+            [c for c in found.checks if c.subject == LINKAGE and c.name != "clearance"],
+        )
         assert check.verdict == verdict
         assert (check.verdict is Verdict.PASS) is (factor.low >= 1.0)
         assert (check.verdict is Verdict.FAIL) is (factor.high < 1.0)

@@ -6,6 +6,7 @@ from itertools import combinations
 
 import pytest
 import solved
+from edited_cases import PLANAR
 from pydantic import ValidationError
 
 import fea.check.run
@@ -316,17 +317,19 @@ def test_a_source_and_its_cases():
 def test_a_check_that_is_there_is_not_made_again(monkeypatch):
     """The page once solved all frames of its case a second time."""
     whole = {result.claim.name: result for result in solved.claims()["owl-wing"]}
-    known = solved.by_hand("owl-wing-static")
-    heavier = solved.by_hand("owl-wing-static", 'load_cases.weight.forces.0.force=["0 N", "-0.5 N"]')
+    known = solved.by_hand("owl-wing-static", PLANAR)
+    heavier = solved.by_hand("owl-wing-static", PLANAR, 'load_cases.weight.forces.0.force=["0 N", "-0.5 N"]')
     sought = []
     original = fea.check.run.examine
     monkeypatch.setattr(fea.check.run, "examine", lambda *what: sought.append(what) or original(*what))
-    found = check_claims("owl-wing-static", fidelity="beam", known=known)
+    found = check_claims("owl-wing-static", fidelity="beam", overrides=[PLANAR], known=known)
     assert sought == []
     by_hand = [result for result in found if result.finding is not Finding.CANNOT_BE_REDERIVED]
     assert len(by_hand) > 80
     assert all(result == whole[result.claim.name] for result in by_hand)
-    assert check_claims("owl-wing-static", fidelity="beam", known=heavier) == found  # the frames of another case
+    assert (
+        check_claims("owl-wing-static", fidelity="beam", overrides=[PLANAR], known=heavier) == found
+    )  # the frames of another case
     assert len(sought) == len(known.load_cases)
 
 

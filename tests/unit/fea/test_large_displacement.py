@@ -31,7 +31,8 @@ def under(load, *overrides):
     """The wing's case with its one load replaced, as [x, y] or [x, y, z] in N."""
     components = ", ".join(f'"{x} N"' for x in load)
     return edited(
-        "owl-wing-static", [f'load_cases.weight.forces=[{{link="CH", at="H", force=[{components}]}}]', PLANAR, *overrides]
+        "owl-wing-static",
+        [f'load_cases.weight.forces=[{{link="CH", at="H", force=[{components}]}}]', PLANAR, *overrides],
     )
 
 
