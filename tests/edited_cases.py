@@ -20,7 +20,8 @@ def edited(name: str, entries: Sequence[str], *, bare: bool = False) -> Case:
     if bare:
         data = {key: value for key, value in data.items() if key not in ("layer_spacing", "washer")}
         for link in data["links"].values():
-            link.pop("layer", None)
+            for key in ("layer", "thickness"):
+                link.pop(key, None)
     changes = [change for derived in Case.derived(data).values() for change in derived.items()]
     for entry in entries:
         path, _, text = entry.partition("=")

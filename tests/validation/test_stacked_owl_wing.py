@@ -30,7 +30,7 @@ TABLE = {
 
 def stacked(layers: tuple[int, ...]) -> Case:
     stated = [f"links.{name}.layer={layer}" for name, layer in zip(LINKS, layers, strict=True)]
-    return edited("owl-wing-static", [*stated, 'layer_spacing="7 mm"'])
+    return edited("owl-wing-static", [*stated, 'layer_spacing="7 mm"'], bare=True)
 
 
 def solved(case: Case) -> tuple[LinkageFrame, FrameSolution]:
@@ -131,7 +131,7 @@ def test_a_pin_that_tilts_gives_no_couple_to_that_link() -> None:
 
 
 def test_a_pin_stated_tight_tilts_in_the_other_link_alone() -> None:
-    linkage = edited("owl-wing-static", []).linkage
+    linkage = edited("owl-wing-static", [], bare=True).linkage
     stated = {"A": "AE", "B": "CF"}
     joints = {name: joint.model_copy(update={"tight_in": stated.get(name)}) for name, joint in linkage.joints.items()}
     tried = list(hinges_tried(type(linkage)(linkage.links, joints), tuple(joints)))

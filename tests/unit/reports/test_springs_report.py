@@ -36,10 +36,10 @@ def stopped():
 def test_the_balance_is_told_with_its_stiffness(balanced):
     standing = balanced.load_cases["foot"].standing
     assert holding_sentence(standing) == (
-        "The pose balances by itself at pedal = 85.44 deg, and is stable: its stiffness is 4889 N·mm/rad"
+        "The pose balances by itself at pedal = 85.44 deg, and is stable: its stiffness is 4888 N·mm/rad"
     )
     assert list(spring_sentences(standing)) == [
-        "Spring return: 76.51 mm long, pulls with 25.20 N",
+        "Spring return: 76.51 mm long, pulls with 25.21 N",
         "Stop up: joint O at 85.44 deg, at most 100.0 deg",
         "Stop down: joint O at 85.44 deg, at least 65.00 deg",
     ]
