@@ -4,6 +4,7 @@ import os
 import shutil
 import tempfile
 
+import chromium
 from hypothesis import settings
 
 # No deadline per example: a first call may import a library or build a mesh, and machines that test are busy.
@@ -28,3 +29,10 @@ def pytest_generate_tests(metafunc):
     """Run the tests of ``benchmark_tests`` on each of the importing module's BENCHMARKS."""
     if "benchmark" in metafunc.fixturenames:
         metafunc.parametrize("benchmark", metafunc.module.BENCHMARKS, ids=str)
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Say at the end that no page was tested in a browser, which a letter among thousands does not tell."""
+    reasons = {str(report.longrepr) for report in terminalreporter.stats.get("skipped", [])}
+    if any(chromium.MISSING in reason for reason in reasons):
+        terminalreporter.write_line(chromium.MISSING[0].upper() + chromium.MISSING[1:])

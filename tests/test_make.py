@@ -1,6 +1,7 @@
-"""`make demo` tells a verdict from a crash, and set-up without root ends in one command to run."""
+"""`make demo` tells a verdict from a crash, set-up without root ends in one command, CI installs a browser."""
 
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -94,3 +95,27 @@ def test_a_python_of_another_version_is_refused(tmp_path):
     result = make("libraries", f"PYTHON={old}")
     assert result.returncode != 0
     assert "alula needs Python 3.11 to 3.13" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("user", "installed", "told"),
+    [
+        (0, 0, "Installing what pages are tested in: chromium chromium-driver"),
+        (0, 100, "chromium chromium-driver cannot be installed here, so pages are not tested in a browser."),
+        (1000, None, "since only root may install it: apt-get install chromium chromium-driver"),
+    ],
+)
+def test_continuous_integration_installs_a_browser_where_it_may_and_tests_in_any_case(tmp_path, user, installed, told):
+    for name in ("bash", "dirname"):
+        (tmp_path / name).symlink_to(shutil.which(name))
+    program(tmp_path, "id", f"echo {user}")
+    program(tmp_path, "make", 'echo "make $@"')
+    program(tmp_path, "apt-get", f'echo "$@" >> {tmp_path}/commands', f"exit {installed}")
+    done = subprocess.run(
+        ["bash", ROOT / ".ci" / "run"], env={"PATH": str(tmp_path)}, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1] == "make test"
+    assert told in done.stdout + done.stderr
+    commands = (tmp_path / "commands").read_text() if (tmp_path / "commands").exists() else ""
+    assert ("install -qq --yes --no-install-recommends chromium chromium-driver" in commands) == (installed == 0)

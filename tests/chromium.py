@@ -1,0 +1,128 @@
+"""Chromium without a window, driven by selenium: pages are opened as files, and nothing can be reached from them."""
+
+import base64
+import io
+import json
+import os
+import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+PACKAGES = ("chromium", "chromium-driver")
+"""What Debian calls the browser and its driver."""
+MISSING = (
+    f"pages are not tested in a browser, since Chromium or its driver is missing: apt-get install {' '.join(PACKAGES)}"
+)
+DESKTOP, PHONE = (1280, 900), (390, 844)
+"""Width and height of the visible part of a page [CSS pixels]."""
+_ARGUMENTS = (
+    *("--headless", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-sync"),
+    *("--disable-component-update", "--disable-default-apps", "--disable-extensions", "--force-device-scale-factor=1"),
+    *("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars"),
+    *("--proxy-server=127.0.0.1:9", "--proxy-bypass-list=<-loopback>"),  # a port at which nobody answers
+)
+NO_WEBGL = ("--disable-3d-apis",)
+
+
+def programs() -> tuple[str, str] | None:
+    """Return the paths of Chromium and of its driver; None where one of them is not installed."""
+    browser, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    return (browser, driver) if browser and driver else None
+
+
+class Browser:
+    """A Chromium that is running."""
+
+    def __init__(self, driver: Any) -> None:
+        self.driver = driver
+
+    def open(self, page: Path, size: tuple[int, int] = DESKTOP) -> None:
+        """Open a page in a viewport of a size; what the browser said before is forgotten."""
+        width, height = size
+        metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": size == PHONE}
+        self.command("Emulation.setDeviceMetricsOverride", **metrics)
+        self.messages(), self.requests()
+        self.driver.get(page.as_uri())
+
+    def command(self, name: str, **parameters: Any) -> dict[str, Any]:
+        """Give a command of the DevTools protocol."""
+        found: dict[str, Any] = self.driver.execute_cdp_cmd(name, parameters)
+        return found
+
+    def run(self, script: str, *arguments: Any) -> Any:
+        """Run the body of a function in the page and return its result."""
+        return self.driver.execute_script(script, *arguments)
+
+    def wait(self, script: str, seconds: float = 60.0) -> Any:
+        """Wait until an expression of the page is true, and return it."""
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        return WebDriverWait(self.driver, seconds, 0.02).until(lambda driver: driver.execute_script(f"return {script}"))
+
+    def element(self, selector: str) -> Any:
+        """Return the first element of a CSS selector."""
+        return self.driver.find_element("css selector", selector)
+
+    def elements(self, selector: str) -> list[Any]:
+        """Return all elements of a CSS selector."""
+        return list(self.driver.find_elements("css selector", selector))
+
+    def messages(self) -> list[str]:
+        """Return what the console has shown since this was last asked."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]
+
+    def requests(self) -> list[str]:
+        """Return the addresses that the page has asked for since this was last asked, but for data in the page."""
+        events = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
+        asked = [e["params"]["request"]["url"] for e in events if e["method"] == "Network.requestWillBeSent"]
+        return [address for address in asked if not address.startswith("data:")]
+
+    def pdf(self) -> bytes:
+        """Print the page on A4."""
+        size = {"paperWidth": 210.0 / 25.4, "paperHeight": 297.0 / 25.4}
+        return base64.b64decode(self.command("Page.printToPDF", printBackground=True, **size)["data"])
+
+
+def pixels(element: Any) -> np.ndarray:
+    """Return what an element looks like, (rows, columns, 3)."""
+    from PIL import Image
+
+    with Image.open(io.BytesIO(element.screenshot_as_png)) as image:
+        return np.asarray(image.convert("RGB"), dtype=int)
+
+
+def changed(before: np.ndarray, after: np.ndarray) -> float:
+    """Return the share of pixels that differ visibly."""
+    return float(np.mean(np.abs(before - after).max(axis=2) > 24))
+
+
+def sheets(pdf: bytes) -> int:
+    """Return the number of pages of a PDF that Chromium wrote."""
+    return len(re.findall(rb"/Type\s*/Page\b", pdf))
+
+
+@contextmanager
+def chromium(profile: Path, *arguments: str) -> Iterator[Browser]:
+    """Start Chromium with an empty profile; it ends with the block."""
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    found = programs()
+    assert found is not None
+    options = webdriver.ChromeOptions()
+    options.binary_location, driver_path = found
+    root = ("--no-sandbox",) if os.name == "posix" and os.geteuid() == 0 else ()
+    for argument in (*_ARGUMENTS, *root, f"--user-data-dir={profile}", *arguments):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(options=options, service=Service(driver_path))
+    try:
+        driver.get("about:blank")  # in place of Chromium's own first page, which asks for much
+        yield Browser(driver)
+    finally:
+        driver.quit()
