@@ -34,6 +34,8 @@ STARTERS = ("finger", "four-bar", "knee", "six-bar", "slider-crank", "step")
 (``tests/verification/test_starters.py``), so that their hand calculation alone is kept here."""
 VOLATILE = ("schema_version", "timings", "timings_s", "seconds", "version", "next_cost", "work", "memory")
 """Entries that differ from run to run or from machine to machine."""
+DERIVED = ("margin", "changes")
+"""Entries that follow from kept ones, by rules that have tests of their own (``tests/unit/fea/test_changes.py``)."""
 FRAMED = "linkage"
 """Entry whose numbers come from the frame; they are kept with hand calculations and motions alone."""
 
@@ -77,7 +79,7 @@ def numbers(data: Any, path: str = "") -> Iterator[tuple[str, float | str | None
     """Yield path and value of every number, verdict and finding in plain data."""
     if isinstance(data, dict):
         for key, value in data.items():
-            if key not in VOLATILE:
+            if key not in (*VOLATILE, *DERIVED):
                 yield from numbers(value, f"{path}.{key}" if path else key)
     elif isinstance(data, list):
         for i, value in enumerate(data):

@@ -4,6 +4,7 @@ The bands of hand calculation are calibrated against solid models (``fea.beam.ca
 where no limit on the link, with its stated scatter, lies in them.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -368,4 +369,9 @@ def _at_location(location: CriticalLocation, factors: Factors, sources: tuple[So
 
 def _band(estimate: float, factors: Factors, sources: tuple[Source, ...]) -> Band:
     low, high = estimate * factors.low, estimate * factors.high
+    others = math.prod(source.width for source in sources if not math.isnan(source.width))
+    sources = tuple(
+        replace(source, width=factors.high / factors.low / others) if math.isnan(source.width) else source
+        for source in sources
+    )
     return Band(value=estimate * factors.typical, low=low, high=high, sources=sources)

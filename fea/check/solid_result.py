@@ -10,7 +10,7 @@ from fea.beam.theory import BeamCheck
 from fea.buckling.solid_holding import solid_holding
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
-from fea.common.source import CONTACT, pin_sources
+from fea.common.source import CONTACT, Source, SourceKind, pin_sources
 from fea.outcomes.compare import compare_sections
 from fea.outcomes.layer_stress import LayerStress
 from fea.outcomes.limits import displacement_limits, layer_limits, layers_of, stress_limits
@@ -113,7 +113,11 @@ def solid_result(
             low=max(min(value, *(found.low(quantity) for found in every)), 0.0),
             high=max(value, *(found.high(quantity) for found in every)),
             sources=(
-                *(source for source in sources if source != CONTACT or quantity != "displacement"),
+                *(
+                    replace(source, width=_width(source, quantity, refined, solved))
+                    for source in sources
+                    if source != CONTACT or quantity != "displacement"
+                ),
                 discretisation_source(
                     refined.precision[governing].series(quantity),
                     sharp_edges=0 if quantity == "displacement" else refined.sharp_edges,
@@ -147,6 +151,18 @@ def solid_result(
         if layers is None
         else _layer_stress(refined, own, layers, band("layers"), lambda number: precision_of("layers", number)),
     )
+
+
+def _width(source: Source, quantity: PeakQuantity, refined: RefinedSolid, solved: Sequence[int]) -> float:
+    """Return by what ratio the variants of one kind differ at most, the others alike; as it is for other kinds."""
+    names = {SourceKind.PIN_PRESSURE: "transfer", SourceKind.TORQUE_TRANSFER: "span"}
+    if source.kind not in names:
+        return source.width
+    alike: dict[object, list[float]] = {}
+    for number in solved:
+        value = refined.precision[number].series(quantity).value
+        alike.setdefault(getattr(refined.solution.cases[number], names[source.kind]), []).append(value)
+    return max(max(values) / min(values) if min(values) > 0.0 else math.inf for values in alike.values())
 
 
 def _layer_stress(

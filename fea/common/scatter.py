@@ -47,7 +47,7 @@ class Scatter:
         if band.unknowable or not self.sources:
             return band
         low, high = _product(band.low, self.low), _product(band.high, self.high)
-        return replace(band, low=low, high=high, sources=distinct(band.sources, self.sources))
+        return replace(band, low=low, high=high, sources=distinct(band.sources, self.told))
 
     def times(self, other: "Scatter") -> "Scatter":
         """Return the scatter of a product.
@@ -61,13 +61,22 @@ class Scatter:
         -------
         Scatter
         """
-        sources = distinct(self.sources, other.sources)
+        sources = distinct(self.told, other.told)
         return Scatter(low=self.low * other.low, high=self.high * other.high, sources=sources)
+
+    @property
+    def told(self) -> tuple[Source, ...]:
+        """The sources; a single one has the whole width."""
+        if len(self.sources) != 1 or not math.isnan(self.sources[0].width):
+            return self.sources
+        return (replace(self.sources[0], width=self.high / self.low if self.low > 0.0 else math.inf),)
 
     @property
     def inverse(self) -> "Scatter":
         """The scatter of what goes with one over the number."""
-        return replace(self, low=1.0 / self.high, high=1.0 / self.low if self.low > 0.0 else math.inf)
+        return replace(
+            self, sources=self.told, low=1.0 / self.high, high=1.0 / self.low if self.low > 0.0 else math.inf
+        )
 
 
 def _product(end: float, factor: float) -> float:

@@ -1,7 +1,8 @@
 """What makes a number uncertain: the sources of error that a band covers."""
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from loads.records.bearing import CONTACT_SHORTFALL
@@ -42,10 +43,14 @@ class Source:
         What it is.
     detail : str
         Particulars such as the range that was stated; "" where there are none.
+    width : float
+        Ratio of the ends of the interval that it gives by itself; NaN where that is not known. It does not make two
+        sources differ.
     """
 
     kind: SourceKind
     detail: str = ""
+    width: float = field(default=math.nan, compare=False)
 
     @property
     def text(self) -> str:
@@ -54,10 +59,43 @@ class Source:
 
 
 PIN_PRESSURE = Source(kind=SourceKind.PIN_PRESSURE, detail="over 180° and over 90°")
-CONTACT = Source(kind=SourceKind.CONTACT, detail=f"up to {CONTACT_SHORTFALL:.0%} more than the narrower pin pressure")
+CONTACT = Source(
+    kind=SourceKind.CONTACT,
+    detail=f"up to {CONTACT_SHORTFALL:.0%} more than the narrower pin pressure",
+    width=1.0 / (1.0 - CONTACT_SHORTFALL),
+)
 TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail="by eye-faces and by bore-shear")
 
 COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in the one link or in the other"),)
+
+
+def widest(sources: tuple[Source, ...], width: float) -> tuple[Source, ...]:
+    """Return the sources that the largest part of a band comes from.
+
+    Parts are factors, which multiply to the ratio of the band's ends. Sources of unknown width have together what the
+    others leave.
+
+    Parameters
+    ----------
+    sources : tuple of Source
+        Of the band.
+    width : float
+        Ratio of its ends, at least 1.
+
+    Returns
+    -------
+    tuple of Source
+        One, or several whose widths are not known one by one; none where the band has no width.
+    """
+    known = [source for source in sources if not math.isnan(source.width)]
+    others = tuple(source for source in sources if math.isnan(source.width))
+    if not sources or width <= 1.0:
+        return ()
+    most = max(known, key=lambda source: source.width, default=None)
+    if most is None:
+        return others
+    left = width / math.prod(source.width for source in known)
+    return others if others and left > most.width else (most,)
 
 
 def pin_sources(*, driven: bool) -> tuple[Source, ...]:
@@ -93,7 +131,7 @@ def play_source(clearances: Mapping[str, float]) -> Source:
 
 
 def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:
-    """Join sources, each once, in the order in which they first stand.
+    """Join sources, each once and with its largest width, in the order in which they first stand.
 
     Parameters
     ----------
@@ -104,4 +142,9 @@ def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:
     -------
     tuple of Source
     """
-    return tuple(dict.fromkeys(source for group in groups for source in group))
+    found: dict[Source, Source] = {}
+    for source in (source for group in groups for source in group):
+        known = found.get(source)
+        if known is None or source.width > known.width or math.isnan(known.width):
+            found[source] = source
+    return tuple(found.values())

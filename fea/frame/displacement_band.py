@@ -16,7 +16,7 @@ arms and slots were not among these. Lengths in mm, forces in N, moments in N·m
 
 import itertools
 import math
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -303,16 +303,39 @@ def flexibility_ranges(case: Case, frame: LinkageFrame, solution: FrameSolution)
         Link that is a beam in the frame, and the least and largest ratio of its strain energy; those that bear nothing
         are left out.
     """
+    return {
+        link: (max(band.low / band.value, STIFFEST), band.high / band.value)
+        for link, band in _works(case, frame, solution)
+    }
+
+
+def shares_of_work(case: Case, frame: LinkageFrame, solution: FrameSolution) -> dict[str, float]:
+    """Return which share of the work of all loads each link takes up, as strain energy of its beams.
+
+    Parameters
+    ----------
+    case, frame, solution
+        As of ``flexibility_ranges``.
+
+    Returns
+    -------
+    dict of str to float
+        Of the links that bear something; they sum to 1.
+    """
+    works = {link: band.value for link, band in _works(case, frame, solution)}
+    return {link: work / sum(works.values()) for link, work in works.items()}
+
+
+def _works(case: Case, frame: LinkageFrame, solution: FrameSolution) -> Iterator[tuple[str, Band]]:
+    """Yield each link that bears something, and twice the strain energy of its beams between its bounds [N mm]."""
     beams, bores = _links(case, frame, ())
-    found = {}
     for link in dict.fromkeys(beam.link for beam in frame.beams.values()):
         others = {i for i in range(len(frame.model.elements)) if i not in frame.beams or frame.beams[i].link != link}
         nodes = {node for (name, _), node in frame.points.items() if name == link}
         own = [(node, give) for node, give in bores if node in nodes]
         band = bounds(solution, solution, beams, own, without=others)
         if band.value > 0.0:
-            found[link] = (max(band.low / band.value, STIFFEST), band.high / band.value)
-    return found
+            yield link, band
 
 
 def _links(

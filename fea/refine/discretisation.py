@@ -1,5 +1,6 @@
 """What a link's result says about its meshes: the error that they leave, in numbers and in words."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -127,7 +128,8 @@ def discretisation_source(series: GridConvergence, *, sharp_edges: int = 0) -> S
         text = f"grid convergence over {len(series.values)} meshes, {series.rule}"
     if sharp_edges:
         text += f"; without the stress at sharp edges ({sharp_edges}), below {LOADED:.0%} of the peak and without limit"
-    return Source(kind=SourceKind.DISCRETISATION, detail=text)
+    width = series.high / series.low if series.low > 0.0 else math.inf
+    return Source(kind=SourceKind.DISCRETISATION, detail=text, width=width)
 
 
 def judged(refined: RefinedSolid, number: int, measure: Measure) -> Discretisation:

@@ -57,6 +57,8 @@ class PartKind(Printable):
 
     takes: ClassVar[frozenset[Feature]] = frozenset()
     """What a link of this kind may have besides pin holes."""
+    main_size: ClassVar[str] = ""
+    """The size that makes a part stronger and stiffer; "" where there is none, as of a file."""
     is_beam: ClassVar[bool] = True
     """Whether beam theory holds between its eyes."""
     by_hand: ClassVar[str] = ""

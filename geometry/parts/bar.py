@@ -32,6 +32,7 @@ class Bar(Straight):
         ("slots", "arms", "rows of holes", "load points without a pin", "eyes of their own", "forks")
     )
 
+    main_size: ClassVar[str] = "thickness"
     shape: Literal["bar"]
     material: Name
     """Name of a material, of the library or of [materials]."""

@@ -29,6 +29,7 @@ class Disc(PartKind):
         "since beam theory needs a length of several widths"
     )
 
+    main_size: ClassVar[str] = "thickness"
     shape: Literal["disc"]
     material: Name
     """Name of a material, of the library or of [materials]."""

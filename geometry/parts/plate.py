@@ -47,6 +47,7 @@ class Plate(PartKind):
         "since beam theory needs a length of several widths"
     )
 
+    main_size: ClassVar[str] = "thickness"
     shape: Literal["plate"]
     material: Name
     """Name of a material, of the library or of [materials]."""

@@ -37,6 +37,7 @@ class Tube(Straight):
         ("arms", "rows of holes", "load points without a pin", "eyes of their own")
     )
 
+    main_size: ClassVar[str] = "outer_diameter"
     shape: Literal["tube"]
     material: Name
     """Name of a material, of the library or of [materials]."""

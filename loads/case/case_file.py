@@ -1,5 +1,6 @@
 """Reading a case: a TOML file or a built-in name, overrides, and errors in one sentence each."""
 
+import json
 import os
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -144,8 +145,16 @@ def changed_tables(tables: Mapping[str, Any], changes: Sequence[Change]) -> dict
 def _changed(tables: dict[str, Any], changes: Sequence[Change], name: str) -> Case:
     """Return the case that the tables of a file state after some changes, which later ones can be added to."""
     return validate(changed_tables(tables, changes), folder_of(name)).read_from(
-        Origin(name=name, revise=partial(_revised, tables, tuple(changes), name))
+        Origin(
+            name=name,
+            revise=partial(_revised, tables, tuple(changes), name),
+            changes=tuple((change.path, _as_stated(change.value)) for change in changes),
+        )
     )
+
+
+def _as_stated(value: object) -> str:
+    return value if isinstance(value, str) else json.dumps(value, default=str)
 
 
 def _revised(tables: dict[str, Any], changes: Sequence[Change], name: str, values: Mapping[str, object]) -> Case:

@@ -20,10 +20,13 @@ class Origin:
         Path or built-in name; "" for a case that was not read.
     revise : callable or None
         Reads it once more, with other values for some entries; None where that cannot be.
+    changes : tuple of tuple of (str, str)
+        Entries that were changed beside the file, as ``--set`` states them.
     """
 
     name: str = field(default="", compare=False)
     revise: Callable[[Mapping[str, object]], Any] | None = field(default=None, compare=False)
+    changes: tuple[tuple[str, str], ...] = field(default=(), compare=False)
 
 
 class Revisable(CaseModel):
@@ -35,6 +38,11 @@ class Revisable(CaseModel):
     def origin(self) -> str:
         """Path or built-in name that it was read from; "" where it was put together in Python."""
         return self._origin.name
+
+    @property
+    def changes(self) -> tuple[tuple[str, str], ...]:
+        """Path and value of the entries that were changed beside the file, as ``--set`` states them."""
+        return self._origin.changes
 
     def read_from(self, origin: Origin) -> Self:
         """Return a copy with an origin.

@@ -20,6 +20,7 @@ from reports.page.pictures import (
 )
 from reports.page.template import fill
 from reports.tables.clearance import MOST, clearance_line, clearance_record
+from reports.tables.data import change_records
 from reports.tables.frames import AXES, linkage_line, play_line, shown_components, thrust_line, tips
 from reports.tables.friction import friction_sentence
 from reports.tables.layers import BuildDirections, build_directions_of
@@ -104,6 +105,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes], published: str = "
         play_line=play_line,
         solver_sentence=solver_sentence,
         named=named,
+        changes=change_records(result),
         spring_sentences=spring_sentences,
         bonded=[name for name, joint in result.pose.linkage.joints.items() if joint.bonded],
         forked=any(forked_link(result.case, name) is not None for name in result.case.joints),

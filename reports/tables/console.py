@@ -1,13 +1,14 @@
 """The result of a check on the terminal: verdict, links, checks, hand calculations, warnings."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from fea.check.anchor import anchor_loads
 from fea.common.verdict import CheckOutcome, Quantity, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from loads.records.aero import AirForces
+from reports.tables.data import change_records
 from reports.tables.frames import frame_lines
 from reports.tables.friction import friction_sentence
 from reports.tables.layers import build_directions_of
@@ -45,6 +46,8 @@ def print_result(result: CheckResult, console: "Console") -> None:
     """
     verdict_line(result.verdict, result.case.title, console)
     say(console, headline(result))
+    for line in _changes(result):
+        say(console, line)
     several = len(result.load_cases) > 1
     for case in result.load_cases.values():
         say(console, "")
@@ -99,6 +102,14 @@ def verdict_line(verdict: Verdict, title: str, console: "Console") -> None:
 
     badge = (f" {verdict.value.upper()} ", f"bold reverse {VERDICT_COLOURS[verdict]}")
     say(console, Text.assemble(badge, f" {title}"))
+
+
+def _changes(result: CheckResult) -> Iterator[str]:
+    """Yield what would change the check that decides, and the command that finds its size."""
+    for change in change_records(result)[:1]:
+        yield f"What would change it ({change['title']}): {' '.join(change['sentences'])}"
+        if change["command"]:
+            yield f"Find the size: {change['command']}"
 
 
 def _statics(case: LoadCaseResult) -> str:

@@ -9,6 +9,9 @@ import numpy as np
 
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome
+from fea.outcomes.result import CheckResult
+from fea.sizing.changes import changes
+from reports.words.changes import change_sentences, change_title, size_command
 
 
 def data(value: Any) -> Any:
@@ -66,8 +69,37 @@ def check_records(checks: Iterable[CheckOutcome]) -> list[dict[str, Any]]:
     list of dict
         One entry per check; the unit of a pure number is ``"1"``.
     """
-    names = "name link load_case quantity value limit verdict reason"
+    names = "name link load_case quantity value limit margin verdict reason"
     return [entries(check, names) | {"unit": check.unit or "1"} for check in checks]
+
+
+def change_records(result: CheckResult) -> list[dict[str, Any]]:
+    """Return what would change the verdict of the checks that decide it.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    list of dict
+    """
+    several = len(result.load_cases) > 1
+    return [
+        {
+            **entries(change.check, "name link load_case quantity verdict margin"),
+            "load_factor": change.load,
+            "faster": change.faster,
+            "linear_until": change.until,
+            "material": None if change.material is None else entries(change.material, "what material stated needed"),
+            "widest": [source.kind.name.lower() for source in change.widest],
+            "size": None if change.size is None else entries(change.size, "entry first last"),
+            "title": change_title(change, several=several),
+            "sentences": change_sentences(change, result),
+            "command": size_command(change, result) or None,
+        }
+        for change in changes(result)
+    ]
 
 
 def finite(value: Any, nulls: dict[str, str], path: str = "") -> Any:

@@ -14,7 +14,7 @@ from geometry.base.version import result_stamp
 from loads.sources.published_statics import StaticsAudit
 from loads.statics.statics import Reactions
 from reports.tables.clearance import clearance_record
-from reports.tables.data import check_records, data, entries, finite
+from reports.tables.data import change_records, check_records, data, entries, finite
 from reports.tables.frames import frame_record, reaction_records
 from reports.tables.friction import friction_record
 from reports.tables.layers import layer_record
@@ -61,6 +61,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "drive_force": _drive_force(first.reactions),
         "links": {name: _worst_link(result, name) for name in first.links},
         "checks": check_records(check for case in result.load_cases.values() for check in case.checks),
+        "changes": change_records(result),
         "hand_calculations": [*_cantilevers(result), *_comparisons(result.load_cases.values())],
         "clearance": clearance_record(result.clearance),
         "load_cases": {name: _load_case(result, name) for name in result.load_cases},

@@ -1,0 +1,285 @@
+"""What would change a verdict: by which factor the loads may grow or must fall, which material would do, what to size.
+
+A number that goes with the loads keeps its limit by a margin (``CheckOutcome.margin``), which is then the factor on all
+loads that takes the unfavourable end of its band to the limit, and one over it the factor on strength or modulus that
+does the same. That is told where it follows:
+
+* the share of the load that is held, the limit-load factor and the linear buckling factor of a linkage are factors on
+  all loads by definition; a frame of linear material has the shape that load over modulus gives it;
+* a safety factor is strength over stress, whatever the stress comes from;
+* stress, deflection, buckling of a link and motor effort are in proportion to all loads, own weight and inertia among
+  them, where the undeformed pose is good enough and no spring acts; displacement and buckling to one over the modulus
+  where joint forces follow from equilibrium;
+* where a band holds what grows faster than the load (``SourceKind.GROWTH``) a load smaller by that factor suffices, and
+  a load that may grow may do so by less.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from fea.common.source import Source, SourceKind, widest
+from fea.common.verdict import (
+    LINKAGE,
+    MOTOR_QUANTITIES,
+    CheckOutcome,
+    Quantity,
+    Verdict,
+    by_nearness,
+)
+from fea.frame.displacement_band import shares_of_work
+from fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
+from fea.nonlinear.stability import SNAP
+from fea.outcomes.result import CheckResult, LoadCaseResult
+from geometry.base.errors import CaseError
+from geometry.materials.material import Material
+from loads.case.case import Case
+from loads.records.check_spec import PinCheck
+
+MOST = 3
+"""Checks for which it is told what would change them."""
+REACHES = (2.0, 1.8, 1.6, 1.4, 1.2)
+"""Ratios of the ends of the range of a size, the widest that the case's own rules take."""
+Property = Literal[
+    "yield strength", "ultimate strength", "strength of the layers", "sustained strength", "modulus", "all moduli"
+]
+_NAMES: Mapping[str, Property] = {"yield": "yield strength", "ultimate": "ultimate strength"}
+_BY_DEFINITION = (Quantity.LOAD_SHARE, Quantity.LIMIT_LOAD, Quantity.BUCKLING_FACTOR)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeRange:
+    """An entry of a case, and the range in which its size may be sought.
+
+    Attributes
+    ----------
+    entry : str
+        Path, such as ``parts.tube.outer_diameter``.
+    first, last : str
+        Ends, with their unit; the case takes both.
+    """
+
+    entry: str
+    first: str
+    last: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class MaterialChange:
+    """A material that would take the unfavourable end of a band to its limit.
+
+    Attributes
+    ----------
+    what : Property
+        For people, too.
+    material : str
+        Name of the material; "" where it is all of them.
+    stated : float
+        Its property as it is [MPa]; 1 of all moduli together.
+    needed : float
+        The least that suffices; of a check that passes, how low it may be, and a modulus by linear theory.
+    """
+
+    what: Property
+    material: str
+    stated: float
+    needed: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class VerdictChange:
+    """What would change the verdict of a check.
+
+    Attributes
+    ----------
+    check : CheckOutcome
+    load : float or None
+        Factor on all loads of its load case that takes the unfavourable end of its band to the limit; None where that
+        does not follow.
+    faster : bool
+        True where the number changes faster than the loads: what passes may grow by less than ``load``, and for what
+        does not ``load`` suffices.
+    until : float
+        Factor on the loads up to which the number goes with them; infinite where it does so by definition.
+    material : MaterialChange or None
+    widest : tuple of Source
+        Of an open check, what most of its band comes from; several where they are not known one by one.
+    size : SizeRange or None
+        What to size with ``alula size``.
+    """
+
+    check: CheckOutcome
+    load: float | None = None
+    faster: bool = False
+    until: float = math.inf
+    material: MaterialChange | None = None
+    widest: tuple[Source, ...] = ()
+    size: SizeRange | None = None
+
+
+def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
+    """Return what would change the verdict of the checks that decide it.
+
+    Parameters
+    ----------
+    result : CheckResult
+
+    Returns
+    -------
+    tuple of VerdictChange
+        Of checks that fail and are open, the nearest to their limits first; of a pass, of the check that limits it.
+    """
+    checks = by_nearness(check for case in result.load_cases.values() for check in case.checks)
+    chosen = [check for check in checks if check.verdict is not Verdict.PASS and not _rests_on_nothing(result, check)]
+    every: dict[object, CheckOutcome] = {}
+    for check in chosen or checks[:1]:
+        every.setdefault((check.name, check.quantity, check.subject), check)
+    return tuple(_change(result, check) for check in list(every.values())[:MOST])
+
+
+def _rests_on_nothing(result: CheckResult, check: CheckOutcome) -> bool:
+    """True of a check that is open for the one reason that the linkage gives way, which has a check of its own."""
+    case = result.load_cases[check.load_case]
+    return check.verdict is Verdict.UNDECIDED and case.gives_way and check.subject != LINKAGE
+
+
+def _change(result: CheckResult, check: CheckOutcome) -> VerdictChange:
+    case, load_case = result.case, result.load_cases[check.load_case]
+    known = 0.0 < check.margin < math.inf and (check.verdict is not Verdict.UNDECIDED or check.margin < 1.0)
+    load = _load(case, load_case, check) if known else None
+    width = check.value.high / check.value.low if check.value.low > 0.0 else math.inf
+    straddles = check.verdict is Verdict.UNDECIDED and not check.value.unknowable and check.margin < 1.0
+    return VerdictChange(
+        check=check,
+        load=load,
+        faster=load is not None and _faster(check),
+        until=math.inf if load is None or _by_definition(check) else _linear_until(load_case.large_displacement),
+        material=_material(case, load_case, check) if known else None,
+        widest=widest(check.value.sources, width) if straddles else (),
+        size=_size(case, load_case, check),
+    )
+
+
+def _by_definition(check: CheckOutcome) -> bool:
+    """True of a number that is a factor on all loads of the linkage."""
+    return check.subject == LINKAGE and check.quantity in _BY_DEFINITION
+
+
+def _sprung(case: Case) -> bool:
+    return case.sprung or case.pose.equilibrium
+
+
+def _load(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> float | None:
+    """Return the factor on all loads that takes a check to its limit, where it follows."""
+    if _sprung(case) or check.quantity in (Quantity.CLEARANCE, Quantity.DRIVE_SPEED):
+        return None
+    if _by_definition(check) or check.quantity in MOTOR_QUANTITIES:
+        return check.margin
+    straight = load_case.large_displacement.state == "small" and str(check.subject) != case.linkage.ground
+    if not straight or check.quantity in (Quantity.FATIGUE_STRESS, Quantity.FATIGUE_LIFE):
+        return None
+    return None if _loose(check) else check.margin
+
+
+def _faster(check: CheckOutcome) -> bool:
+    """True where a band holds what grows faster than the load."""
+    return any(source.kind is SourceKind.GROWTH for source in check.value.sources)
+
+
+def _loose(check: CheckOutcome) -> bool:
+    """True where play of pins, which no load makes less, is part of a displacement."""
+    loose = any(source.kind is SourceKind.PLAY for source in check.value.sources)
+    return loose and check.quantity is Quantity.DISPLACEMENT
+
+
+def _linear_until(moved: LargeDisplacement) -> float:
+    """Return the factor on the loads from which on equilibrium is sought on the deformed shape."""
+    factor, scatter = moved.factor, moved.scatter.high
+    far = LARGE * moved.span / (scatter * moved.linear) if moved.linear > 0.0 else math.inf
+    return far if factor is None else min(far, factor / (max(LEAST_FACTOR, SNAP * moved.eyes.high) * scatter))
+
+
+def _material(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> MaterialChange | None:
+    """Return the strength or modulus that takes a check to its limit, where it follows."""
+    quantity, subject, margin = check.quantity, check.subject, check.margin
+    rule = case.all_checks.get(check.name)
+    if subject.kind == "pin":
+        if not isinstance(rule, PinCheck):
+            return None
+        joint = subject.name
+        pin = case.pin_material(joint)
+        return _needed(_NAMES[pin.strength], case.joints[joint].pin_material, pin.allowable, margin)
+    if subject.kind == "link":
+        material, name = case.material_of(subject.name), case.part_of(subject.name).material
+        stated = _strength(material, quantity)
+        if stated is not None:
+            return _needed(*stated[:1], name, stated[1], margin)
+    elif not (_by_definition(check) or quantity is Quantity.DISPLACEMENT):
+        return None
+    if _sprung(case) or _loose(check) or quantity not in (*_BY_DEFINITION, Quantity.DISPLACEMENT, Quantity.DEFLECTION):
+        return None
+    if not _by_definition(check):
+        margin = min(margin, _linear_until(load_case.large_displacement))
+    if subject.kind != "link":
+        follows = _by_definition(check) or load_case.large_displacement.state == "small"
+        return _needed("all moduli", "", 1.0, margin) if follows and not _faster(check) else None
+    if _faster(check) or _load(case, load_case, check) is None or not load_case.forces.by_equilibrium:
+        return None
+    return _needed("modulus", case.part_of(subject.name).material, material.youngs_modulus, margin)
+
+
+def _strength(material: Material, quantity: Quantity) -> tuple[Property, float] | None:
+    """Return the strength that a number of a link is in proportion to [MPa]; None where there is none."""
+    stated: Mapping[Quantity, tuple[Property, float | None]] = {
+        Quantity.SAFETY_FACTOR: (_NAMES[material.strength], material.allowable),
+        Quantity.LAYERS: ("strength of the layers", material.strength_across_layers),
+        Quantity.SUSTAINED_STRESS: ("sustained strength", material.sustained_stress),
+    }
+    what, value = stated.get(quantity, ("modulus", None))
+    return None if value is None else (what, value)
+
+
+def _needed(what: Property, material: str, stated: float, margin: float) -> MaterialChange:
+    return MaterialChange(what=what, material=material, stated=stated, needed=stated / margin)
+
+
+def _size(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> SizeRange | None:
+    """Return the size that bears on a check, with a range from what it is upwards, or downwards of a pass."""
+    subject = check.subject
+    if check.quantity in (*MOTOR_QUANTITIES, Quantity.CLEARANCE):
+        return None
+    if subject.kind == "pin":
+        path, size = f"joints.{subject.name}.pin_diameter", case.joints[subject.name].pin_diameter
+    else:
+        link = subject.name if subject.kind == "link" else _softest(case, load_case.large_displacement)
+        part = case.part_of(link) if link else None
+        if part is None or not part.main_size:
+            return None
+        path, size = f"parts.{case.links[link].part}.{part.main_size}", getattr(part, part.main_size)
+    if not size:
+        return None
+    for reach in REACHES:
+        other = size / reach if check.verdict is Verdict.PASS else size * reach
+        ends = [f"{end:g} mm" for end in sorted((size, float(f"{other:.2g}")))]
+        if all(_taken(case, path, end) for end in ends):
+            return SizeRange(entry=path, first=ends[0], last=ends[1])
+    return None
+
+
+def _softest(case: Case, moved: LargeDisplacement) -> str:
+    """Return the link that takes up most of the work of the loads, of those with a size; "" where no frame tells."""
+    if moved.frame is None or moved.solution is None:
+        return ""
+    works = shares_of_work(case, moved.frame, moved.solution)
+    sized = [link for link in works if case.part_of(link).main_size]
+    return max(sized, key=lambda link: works[link], default="")
+
+
+def _taken(case: Case, path: str, value: str) -> bool:
+    """Return whether the rules of the case take a value of an entry."""
+    try:
+        case.with_values({path: value})
+    except CaseError:
+        return False
+    return True

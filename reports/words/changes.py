@@ -1,0 +1,140 @@
+"""What would change a verdict, in sentences."""
+
+import math
+import shlex
+
+from fea.common.source import Source, SourceKind
+from fea.common.verdict import Quantity, Verdict
+from fea.outcomes.result import CheckResult
+from fea.sizing.changes import MaterialChange, VerdictChange
+from reports.words.wording import joined, named, number, plain, sentence
+
+_NARROWED: dict[SourceKind, str] = {
+    SourceKind.DISCRETISATION: "finer meshes (--accuracy, --max-unknowns)",
+    SourceKind.CALIBRATION: "a solid model (--fidelity solid)",
+    SourceKind.LOAD: "a narrower scatter of the load case",
+    SourceKind.STRENGTH: "a narrower strength range on the material's card",
+    SourceKind.MODULUS: "a narrower youngs_modulus range on the material's card",
+    SourceKind.GROWTH: "a narrower scatter of load and modulus",
+    SourceKind.COUPLES: "tight_in of the joints, which says in which link a pin is tight",
+    SourceKind.PLAY: "a smaller clearance of the joints",
+    SourceKind.POSES: "more poses of the motion",
+}
+"""What narrows a source of error, of those that an entry of the case or an option narrows."""
+
+
+def change_title(change: VerdictChange, *, several: bool) -> str:
+    """Return which check a change is about, such as ``safety factor of AE, load case lift``.
+
+    Parameters
+    ----------
+    change : VerdictChange
+    several : bool
+        True where the case has several load cases.
+
+    Returns
+    -------
+    str
+    """
+    return named(change.check) + (f", load case {change.check.load_case}" if several else "")
+
+
+def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
+    """Return what would change the verdict of a check, one sentence each; without the command for its size.
+
+    Parameters
+    ----------
+    change : VerdictChange
+    result : CheckResult
+
+    Returns
+    -------
+    list of str
+    """
+    check = change.check
+    told = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
+    if check.verdict is Verdict.UNDECIDED and not told:
+        told.append(sentence(check.reason))
+    if change.widest:
+        told.append(_of_sources(change.widest))
+    if not told:
+        told.append(
+            "It does not depend on the loads."
+            if check.quantity in (Quantity.CLEARANCE, Quantity.DRIVE_SPEED)
+            else "It does not go in proportion to the loads, on the deformed shape or beside springs."
+        )
+    return told
+
+
+def size_command(change: VerdictChange, result: CheckResult) -> str:
+    """Return the command that finds the size that would do; "" where no size stands for the check.
+
+    Parameters
+    ----------
+    change : VerdictChange
+    result : CheckResult
+
+    Returns
+    -------
+    str
+    """
+    if change.size is None or not result.name:
+        return ""
+    size = change.size
+    words = ["alula", "size", shlex.quote(result.name), "--vary", f'{size.entry}="{size.first}..{size.last}"']
+    for path, value in result.case.changes:
+        if path != size.entry:
+            words += ["--set", shlex.quote(f"{path}={value}")]
+    return " ".join(words)
+
+
+def _of_load(change: VerdictChange, result: CheckResult) -> list[str]:
+    """Return by which factor the loads may grow or must fall, as a sentence."""
+    check, load = change.check, change.load
+    if load is None:
+        return []
+    stated = result.case.load_cases[check.load_case]
+    along = [word for word, acts in (("own weight", stated.own_weight), ("inertia", stated.speed)) if acts]
+    every = f"all loads{f' ({joined(along)} included)' if along else ''}"
+    factor = _rounded(load, up=False)
+    if check.quantity in (Quantity.LOAD_SHARE, Quantity.LIMIT_LOAD):
+        factor = f"about {factor}"  # the path to it is followed in steps
+    if check.verdict is not Verdict.PASS:
+        return [f"It passes with {factor} times {every}{' at the latest' if change.faster else ''}."]
+    less = "less than " if change.faster else ""
+    if load > change.until:
+        linear = _rounded(change.until, up=False)
+        enough = f"By linear theory, which is enough up to {linear} times the load"
+        return [f"{enough}, {every} may grow to {less}{factor} times."]
+    return [f"It passes until {every} are {less}{factor} times as large."]
+
+
+def _of_material(change: MaterialChange | None, result: CheckResult, *, passes: bool) -> list[str]:
+    """Return which strength or modulus would do, as a sentence."""
+    if change is None:
+        return []
+    verb = "would still do" if passes else "would do"
+    if not change.material:
+        return [f"All moduli {_rounded(change.needed, up=True)} times as large {verb}."]
+    title = result.case.all_materials[change.material].title
+    needed, stated = _rounded(change.needed, up=True), plain(float(f"{change.stated:.4g}"))
+    article = "An" if change.what[0] in "aeiou" else "A"
+    return [f"{article} {change.what} of {needed} MPa in place of {stated} MPa ({title}) {verb}."]
+
+
+def _of_sources(sources: tuple[Source, ...]) -> str:
+    """Return where most of a band comes from, and what narrows it."""
+    kinds = list(dict.fromkeys(source.kind for source in sources))
+    narrowed = [_NARROWED[kind] for kind in kinds if kind in _NARROWED]
+    remedy = f"narrower by {joined(narrowed)}" if narrowed else "which no entry of the case and no option narrows"
+    together = " together" if len(kinds) > 1 else ""
+    return f"Most of its band comes from {joined([str(kind) for kind in kinds])}{together}, {remedy}."
+
+
+def _rounded(value: float, *, up: bool, digits: int = 3) -> str:
+    """Return a number to some digits, upwards or downwards, so that it still does what it should."""
+    if value <= 0.0 or not math.isfinite(value):
+        return number(value)
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    steps = math.ceil(value / step - 1e-9) if up else math.floor(value / step + 1e-9)
+    return number(steps * step, digits)

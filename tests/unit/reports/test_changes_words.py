@@ -1,0 +1,108 @@
+"""What would change a verdict, in sentences, on the page, in the console and in result.json."""
+
+import io
+from dataclasses import replace
+
+import pytest
+from html_pages import Page
+from rich.console import Console
+
+from fea.common.source import Source, SourceKind
+from fea.common.verdict import LINKAGE, Quantity, Verdict
+from fea.sizing.changes import MaterialChange, SizeRange, VerdictChange
+from loads.case.revisable import Origin
+from reports.page.html import render
+from reports.tables import data
+from reports.tables.console import print_result
+from reports.tables.record import result_record
+from reports.words.changes import change_sentences, size_command
+
+STRONGER = MaterialChange(what="yield strength", material="pvc-paredes-2018", stated=41.4, needed=45.2001)
+
+
+def told(result, change):
+    return " ".join(change_sentences(change, result))
+
+
+@pytest.fixture(scope="module")
+def check(result):
+    return next(c for c in result.load_cases["weight"].checks if c.quantity is Quantity.SAFETY_FACTOR)
+
+
+def test_factors_are_rounded_to_the_safe_side(result, check):
+    failed = replace(check, verdict=Verdict.FAIL)
+    text = told(result, VerdictChange(check=failed, load=0.82759, material=STRONGER))
+    assert "It passes with 0.827 times all loads." in text
+    assert "A yield strength of 45.3 MPa in place of 41.4 MPa (Rigid PVC" in text
+    assert text.endswith("would do.")
+    passed = replace(check, verdict=Verdict.PASS)
+    assert "until all loads are less than 1.06 times as large" in told(
+        result, VerdictChange(check=passed, load=1.069, faster=True)
+    )
+    assert "enough up to 2.47 times the load, all loads may grow to 3.50 times" in told(
+        result, VerdictChange(check=passed, load=3.5, until=2.4757)
+    )
+    assert "would still do" in told(result, VerdictChange(check=passed, material=STRONGER))
+
+
+def test_own_weight_is_named_where_it_is_part_of_the_load(result, check):
+    case = result.case
+    heavy = case.load_cases["weight"].model_copy(update={"own_weight": True})
+    other = replace(result, case=case.model_copy(update={"load_cases": {**case.load_cases, "weight": heavy}}))
+    change = VerdictChange(check=replace(check, verdict=Verdict.FAIL), load=0.5)
+    assert "0.500 times all loads (own weight included)" in told(other, change)
+    assert "own weight" not in told(result, change)
+
+
+@pytest.mark.parametrize(
+    ("kinds", "words"),
+    [
+        (
+            ["CALIBRATION"],
+            "comes from calibration of the hand calculation, narrower by a solid model (--fidelity solid)",
+        ),
+        (["COUPLES", "EYES"], "between layers and flexibility of eyes, bores and holes together, narrower by tight_in"),
+        (["IMPERFECTION"], "geometric imperfection, which no entry of the case and no option narrows"),
+    ],
+)
+def test_an_open_check_says_where_its_band_comes_from_and_what_narrows_it(result, check, kinds, words):
+    change = VerdictChange(
+        check=replace(check, verdict=Verdict.UNDECIDED),
+        load=0.9,
+        widest=tuple(Source(kind=SourceKind[k]) for k in kinds),
+    )
+    assert words in told(result, change)
+
+
+def test_the_command_names_case_entry_range_and_what_was_set(result, check):
+    change = VerdictChange(check=check, size=SizeRange(entry="parts.tube.outer_diameter", first="5 mm", last="9 mm"))
+    named = replace(result, name="my case.toml")
+    assert size_command(change, named) == ("alula size 'my case.toml' --vary parts.tube.outer_diameter=\"5 mm..9 mm\"")
+    case = result.case.read_from(Origin(changes=(("parts.tube.outer_diameter", "5 mm"), ("links.AE.part", "rod"))))
+    assert size_command(change, replace(named, case=case)).endswith(" --set links.AE.part=rod")
+    assert size_command(VerdictChange(check=check), result) == ""
+
+
+def test_a_check_that_no_load_changes_says_so(result, check):
+    gap = replace(check, subject=LINKAGE, quantity=Quantity.CLEARANCE)
+    assert told(result, VerdictChange(check=gap)) == "It does not depend on the loads."
+    opened = replace(check, verdict=Verdict.UNDECIDED, reason="no model may decide it")
+    assert told(result, VerdictChange(check=opened)) == "No model may decide it."
+
+
+def test_page_console_and_record_tell_the_same(result, monkeypatch):
+    check = next(c for c in result.load_cases["weight"].checks if c.quantity is Quantity.SAFETY_FACTOR)
+    size = SizeRange(entry="parts.tube.outer_diameter", first="5 mm", last="9 mm")
+    change = VerdictChange(check=check, load=1.2, material=STRONGER, size=size)
+    monkeypatch.setattr(data, "changes", lambda result: (change,))
+    [record] = result_record(result)["changes"]
+    assert record["load_factor"] == 1.2
+    assert record["linear_until"] is None
+    assert record["size"] == {"entry": "parts.tube.outer_diameter", "first": "5 mm", "last": "9 mm"}
+    console = Console(width=1000, record=True, file=io.StringIO())
+    print_result(result, console)
+    text, page = console.export_text(), Page(render(result, {}))
+    for sentence in (*record["sentences"], record["command"]):
+        assert sentence in text
+        assert sentence in page.words
+    assert page.source.index('id="changes"') < page.source.index("<nav")
