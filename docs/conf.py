@@ -26,11 +26,13 @@ extensions = [
 exclude_patterns = ["gallery"]
 suppress_warnings = ["config.cache"]
 
-myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
+myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "fieldlist", "attrs_block"]
+smartquotes = False  # quotation marks belong to TOML
 myst_heading_anchors = 4  # a link to a heading works as in a repository browser
 
 autodoc_typehints = "none"  # numpydoc's sections state the types
 numpydoc_show_class_members = False
+toc_object_entries = False
 
 sphinx_gallery_conf = {
     "examples_dirs": "gallery",
@@ -41,6 +43,7 @@ sphinx_gallery_conf = {
     "reset_modules": (),  # no script changes settings of a library
     "download_all_examples": False,
     "show_signature": False,
+    "min_reported_time": 1e9,  # times belong to the benchmarks
     "write_computation_times": False,
 }
 
@@ -49,5 +52,6 @@ html_title = "alula"
 html_math_renderer = "mathml"
 html_static_path = ["style"]
 html_css_files = ["site.css"]
+html_search_scorer = str(ROOT / "docs/style/search.js")
 html_copy_source = False
 html_show_sphinx = False

@@ -35,9 +35,9 @@ TYPES = {
 
 
 def documented(command: str) -> dict[str, set[str]]:
-    """Return path -> types of the section ``# alula COMMAND``."""
+    """Return path -> types of the section ``## alula COMMAND``."""
     text = DOCUMENT.read_text(encoding="utf-8")
-    section = re.split(r"^# ", text.split(f"\n# alula {command}\n")[1], flags=re.MULTILINE)[0]
+    section = re.split(r"^## ", text.split(f"\n## alula {command}\n")[1], flags=re.MULTILINE)[0]
     found = {}
     for keys, kind in re.findall(r"^\| (`[^|]+`) \| ([^|]+) \|", section, flags=re.MULTILINE):
         for key in re.findall(r"`([^`]+)`", keys):

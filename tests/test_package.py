@@ -12,6 +12,7 @@ from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
+import yaml
 from test_layers import imported
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -135,3 +136,11 @@ def test_the_command_line_and_the_face_import_late(installed, tmp_path):
     slow = {"numpy", "scipy", "skfem", "gmsh", "pyvista", "matplotlib", "pint", "pydantic", "meshio"}
     script = f"import sys, alula, reports.commands.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"
     assert run(installed / "bin" / "python", "-c", script, cwd=tmp_path).split() == []
+
+
+def test_the_citation_names_this_version_and_licence():
+    stated = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert (stated["version"], stated["license"]) == (project["version"], project["license"])
+    assert stated["cff-version"] == "1.2.0"
+    assert {"message", "title", "authors"} <= stated.keys()

@@ -3,14 +3,23 @@
 import re
 import subprocess
 import sys
+import tomllib
+from importlib.resources import files
 from pathlib import Path
 
 import programs
 import pytest
+from pydantic import BaseModel
 
-from docs.extensions import gallery
+from docs.extensions import case_file, gallery
+from docs.extensions.entries import tables
+from docs.extensions.examples import STARTER_PLAN, Text, of_text, stretches
 from docs.extensions.index import sections
 from docs.extensions.links import OUTSIDE, moved
+from loads.case.case import Case
+from loads.case.case_file import validate
+from loads.plans.plan import StudyPlan, plan_of
+from loads.text.entries import file_schema
 
 DOCS = programs.ROOT / "docs"
 INDEX = (DOCS / "index.md").read_text(encoding="utf-8")
@@ -47,6 +56,56 @@ def test_slow_examples_are_not_run_unless_asked_for(monkeypatch: pytest.MonkeyPa
     assert re.search(gallery.run_pattern(gallery.not_run()), "/docs/gallery/long.py")
 
 
+@pytest.mark.parametrize("model", [Case, StudyPlan])
+def test_every_entry_has_a_description_a_unit_and_an_example(model: type[BaseModel]) -> None:
+    entries = [entry for table in tables(file_schema(model)) for entry in table.entries]
+    assert len(entries) > (300 if model is Case else 10)
+    assert case_file.missing(model) == {"description": [], "example": [], "unit": []}
+
+
+def test_the_page_of_an_entry_says_all_of_it() -> None:
+    page = case_file.pages()["case-file/links.md"]
+    entry = page.partition("### fork\n")[2].partition("\n### ")[0]
+    assert ':Path: `links.NAME.eyes.NAME.fork`\n:Holds: length; such as `"125 mm"`\n:Rule: greater than zero\n' in entry
+    assert 'fork = "' in entry.partition("```toml\n")[2].partition("```")[0]
+    assert "](../../how-to/fork.md)" in entry
+
+
+@pytest.mark.parametrize(("base", "stretch"), list(stretches()), ids=lambda value: getattr(value, "source", value))
+def test_stretches_are_read_with_their_case(base: str, stretch: Text) -> None:
+    """Examples come from built-in cases and recipes, which other tests read, and from these."""
+    if base == STARTER_PLAN:
+        plan_of(stretch.tables)
+        return
+    case = validate(stretch.tables, str(files("loads.cases")))
+    assert case.solve_pose()
+    for link in case.checked_links:
+        assert case.body(link).part.section.area > 0.0
+
+
+def test_an_example_is_the_first_statement_of_its_entry() -> None:
+    whole = """
+schema_version = 1
+[links.a]
+points.P = ["0 mm", "0 mm"]   # here
+# nothing
+points.Q = [
+  "1 mm", "0 mm"]
+
+[parts.b]
+shape = "disc"
+[[load_cases.c.forces]]
+link = "a"
+force = ["1 N", "0 N"]
+"""
+    found = of_text(Text(text=whole, source="it", tables=tomllib.loads(whole)), Case)
+    assert found["Link", "points"].toml == '[links.a]\npoints.P = ["0 mm", "0 mm"]   # here'
+    assert found["PointForce", "force"].toml == '[[load_cases.c.forces]]\nforce = ["1 N", "0 N"]'
+    assert found["Case", "load_cases"].toml == '[[load_cases.c.forces]]\nlink = "a"\nforce = ["1 N", "0 N"]'
+    assert ("Disc", "shape") in found
+    assert ("Bar", "shape") not in found
+
+
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build the site as ``make docs`` does."""
@@ -69,7 +128,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_no_page_asks_for_a_foreign_address(site: Path) -> None:
     """What a page needs to be drawn is in its folder; links for readers may lead elsewhere."""
     pages = list(site.rglob("*.html"))
-    assert len(pages) > 20
+    assert len(pages) > 50
     asked = re.compile(r"""<(?:script|img|iframe|link|source|video)\b[^>]*?(?:src|href|srcset)=["']?(?:https?:)?//""")
     for page in pages:
         assert not asked.findall(page.read_text(encoding="utf-8")), page

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 
 GENERATED_PAGES = {
     "Reference": (
+        ("The case file", "generated/case-file/index.md", "every entry with type, unit, default, rule and an example."),
+        ("The plan of a study", "generated/study-plan.md", "every entry of `study.toml`."),
         ("The command line", "generated/commands.md", "every command with its options."),
-        ("Python", "generated/python.md", "the functions of `alula` and what they return."),
+        ("Python", "generated/python.rst", "the functions of `alula` and what they return."),
     )
 }
 """Section -> title, path and description of the pages that exist in the site alone."""

@@ -2,16 +2,19 @@
 
 from typing import Any
 
+from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 
-from docs.extensions import commands, gallery, index, links, python
+from docs.extensions import case_file, commands, gallery, index, links, python
 
 
 def _generate(app: Sphinx) -> None:
     """Write the pages that are made from the program and from files outside of docs/."""
     links.copy_outside_pages()
+    for path, text in case_file.pages().items():
+        links.write_changed(links.GENERATED / path, text)
     links.write_changed(links.GENERATED / "commands.md", commands.page())
-    links.write_changed(links.GENERATED / "python.md", python.page())
+    links.write_changed(links.GENERATED / "python.rst", python.page())
 
 
 def _turn_links(app: Sphinx, name: str, source: list[str]) -> None:
@@ -26,6 +29,7 @@ def _turn_links(app: Sphinx, name: str, source: list[str]) -> None:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Connect the hooks."""
+    app.add_lexer("csv", TextLexer)
     app.connect("builder-inited", _generate)
     app.connect("source-read", _turn_links)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,19 +1,21 @@
 """The page on the functions for Python, from `alula.__all__` and what those functions return."""
 
-import alula
+from collections.abc import Callable
 
-_RETURNED = (
-    "loads.case.case.Case",
-    "reports.notebook.check_report.CheckReport",
-    "reports.notebook.motion_report.MotionReport",
-    "reports.notebook.envelope_report.EnvelopeReport",
-    "reports.notebook.study_report.StudyReport",
-    "reports.notebook.claims_report.ClaimsReport",
-    "reports.notebook.shown.Table",
-    "reports.notebook.shown.Picture",
-    "fea.common.band.Band",
-    "fea.common.verdict.Verdict",
-)
+import alula
+from fea.common.band import Band
+from fea.common.verdict import Verdict
+from loads.case.case import Case
+from loads.case.revisable import Revisable
+from reports.notebook.check_report import CheckReport
+from reports.notebook.claims_report import ClaimsReport
+from reports.notebook.envelope_report import EnvelopeReport
+from reports.notebook.motion_report import MotionReport
+from reports.notebook.shown import Picture, Table
+from reports.notebook.study_report import StudyReport
+
+REPORTS = (CheckReport, MotionReport, EnvelopeReport, StudyReport, ClaimsReport, Table, Picture, Band, Verdict)
+"""What the functions return, and what those reports hold."""
 
 
 def page() -> str:
@@ -22,8 +24,24 @@ def page() -> str:
     Returns
     -------
     str
-        Markdown whose directives Sphinx fills with the docstrings.
+        reStructuredText, whose directives Sphinx fills with the docstrings.
     """
-    parts = ["# Python", "```{automodule} alula\n```", "## Functions"]
-    parts += [f"### {name}\n\n```{{autofunction}} alula.{name}\n```" for name in alula.__all__]
+    parts = [_title("Python", "="), ".. automodule:: alula", _title("Functions", "-")]
+    parts += [f"{_title(name, '^')}\n\n.. autofunction:: alula.{name}" for name in alula.__all__]
+    parts += [_title("What they return", "-"), _class(Case), _method(Revisable.with_values)]
+    parts += [_class(kind, ":members:", ":member-order: bysource") for kind in REPORTS]
     return "\n\n".join(parts) + "\n"
+
+
+def _method(method: Callable[..., object]) -> str:
+    return f".. automethod:: {method.__module__}.{method.__qualname__}"
+
+
+def _title(text: str, line: str) -> str:
+    return f"{text}\n{line * len(text)}"
+
+
+def _class(kind: type, *options: str) -> str:
+    """Return the section of a class."""
+    directive = f".. autoclass:: {kind.__module__}.{kind.__qualname__}"
+    return "\n".join([_title(kind.__name__, "^"), "", directive, *(f"   {option}" for option in options)])
