@@ -34,8 +34,7 @@ from reports.words.wording import agreement, apart, checks_of, headline, named, 
 MEANING = {
     Verdict.PASS: "In this pose and under these loads every check keeps its limit, even at the unfavourable end of "
     "its error band. The last section lists what the model does not cover.",
-    Verdict.FAIL: "At least one check misses its limit, even at the favourable end of its error band. "
-    "Change the section, the material, the load or the supports.",
+    Verdict.FAIL: "At least one check misses its limit, even at the favourable end of its error band.",
     Verdict.UNDECIDED: "At least one check is open: its limit lies inside its error band, or no model that ran can "
     "decide it. This is neither a pass nor a fail.",
 }
