@@ -27,7 +27,8 @@ demo: setup ## check the built-in owl wing, all links as solids, and say where i
 	esac
 
 docs: setup ## the site in out/site, without network (GALLERY=all: slow examples are run, too)
-	@GALLERY=$(GALLERY) $(ONE_THREAD) $(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --doctree-dir out/site-cache docs out/site
+	@rm -rf out/site
+	@GALLERY=$(GALLERY) $(ONE_THREAD) $(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --fresh-env --doctree-dir out/site-cache docs out/site
 	@echo "The site: $(CURDIR)/out/site/index.html"
 
 # The types are checked beside the tests: by themselves they would keep one core alone busy.

@@ -16,6 +16,12 @@ GENERATED_PAGES = {
 }
 """Section -> title, path and description of the pages that exist in the site alone."""
 
+_FOLDER = re.compile(r"^This page lists all pages of this folder\..*?\n\n", re.S | re.M)
+"""What the index says of the site to those who read it in a repository browser."""
+_SITE = """To state something in a case file, search for its word, such as *fork*: first come the recipe and the entry.
+
+"""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Section:
@@ -25,12 +31,12 @@ class Section:
     ----------
     title : str
         Its heading.
-    pages : tuple of str
-        Paths of its pages, as the index states them.
+    pages : dict of str to str
+        Path of a page, as the index states it -> the text of its link.
     """
 
     title: str
-    pages: tuple[str, ...]
+    pages: dict[str, str]
 
 
 def sections(index: str) -> list[Section]:
@@ -47,8 +53,11 @@ def sections(index: str) -> list[Section]:
         In the order of the text.
     """
     parts = re.split(r"^## +(.+)\n", index, flags=re.M)
-    pages = [tuple(re.findall(r"^\* +\[[^\]]+\]\(([^)#]+\.(?:md|rst))\)", text, re.M)) for text in parts[2::2]]
-    return [Section(title=title, pages=found) for title, found in zip(parts[1::2], pages, strict=True)]
+    link = re.compile(r"^\* +\[([^\]]+)\]\(([^)#]+\.(?:md|rst))\)", re.M)
+    return [
+        Section(title=title, pages={path: text for text, path in link.findall(body)})
+        for title, body in zip(parts[1::2], parts[2::2], strict=True)
+    ]
 
 
 def with_contents(index: str) -> str:
@@ -64,12 +73,18 @@ def with_contents(index: str) -> str:
     str
         For Sphinx.
     """
+    index = _FOLDER.sub(_SITE, index)
     for title, pages in GENERATED_PAGES.items():
         lines = "".join(f"* [{name}]({path}): {text}\n" for name, path, text in pages)
         index = index.replace(f"## {title}\n\n", f"## {title}\n\n{lines}", 1)
     trees = [
-        "\n".join(["```{toctree}", ":hidden:", f":caption: {section.title}", "", *section.pages, "```"])
+        "\n".join(["```{toctree}", ":hidden:", f":caption: {section.title}", "", *_entries(section), "```"])
         for section in sections(index)
         if section.pages
     ]
     return "\n\n".join([index, *trees]) + "\n"
+
+
+def _entries(section: Section) -> list[str]:
+    """Return the lines of a section's table of contents."""
+    return [f"{text} <{path}>" for path, text in section.pages.items()]

@@ -1,6 +1,5 @@
 """Formulas as MathML, which browsers draw by themselves: no script, no fonts, no network."""
 
-from collections.abc import Callable
 from typing import Any
 
 from docutils import nodes
@@ -8,18 +7,21 @@ from latex2mathml.converter import convert
 from sphinx.application import Sphinx
 
 
-def _renderer(display: str) -> Callable[[Any, nodes.Element], None]:
-    def visit(translator: Any, node: nodes.Element) -> None:
-        formula = convert(node.astext(), display=display)
-        if display == "block":
-            formula = translator.starttag(node, "div", CLASS="math") + formula + "</div>\n"
-        translator.body.append(formula)
-        raise nodes.SkipNode
+def _inline(translator: Any, node: nodes.Element) -> None:
+    """Write a formula within a line."""
+    translator.body.append(convert(node.astext()))
+    raise nodes.SkipNode
 
-    return visit
+
+def _block(translator: Any, node: nodes.Element) -> None:
+    """Write a formula of its own, with its number where it has one."""
+    number = f'<span class="eqno">({node["number"]})</span>' if node["number"] else ""
+    formula = convert(node.astext(), display="block")
+    translator.body.append(f"{translator.starttag(node, 'div', CLASS='math')}{number}{formula}</div>\n")
+    raise nodes.SkipNode
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Add the renderer of formulas."""
-    app.add_html_math_renderer("mathml", (_renderer("inline"), None), (_renderer("block"), None))
+    app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}
