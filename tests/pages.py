@@ -1,8 +1,8 @@
 """Pages whose blocks work as a reader would use them.
 
 A block of TOML begins with the comment ``# NAME.toml``: its entries change that file, or make it. Commands and Python
-are run. A block of text is printed by the block before it, but for lines ``...`` and the breaks of lines. Commands that
-take longer than seconds are run by ``make verify`` alone.
+are run. A block of text is a file where it begins with ``# NAME.csv``; else it is printed by the block before it, but
+for lines ``...`` and breaks of lines. Commands that take longer than seconds are run by ``make verify`` alone.
 """
 
 import json
@@ -47,11 +47,6 @@ class Reader:
         file.write_text(written(merged(old, tomllib.loads(text))), encoding="utf-8")
         self.cases.append(file)
 
-    def csv(self, text: str) -> None:
-        """Make a file that the first line names, which is no part of it."""
-        name, _, rows = text.partition("\n")
-        (self.folder / name.removeprefix("# ")).write_text(rows, encoding="utf-8")
-
     def sh(self, text: str) -> None:
         """Run commands."""
         commands = [shlex.split(line, comments=True) for line in re.sub(r"\\\n *", "", text).splitlines()]
@@ -80,8 +75,11 @@ class Reader:
         self.printed = done.stdout
 
     def text(self, text: str) -> None:
-        """Look for what was printed."""
-        if self.printed is not None:
+        """Make a table whose name is the first line, or look for what was printed."""
+        name, _, rows = text.partition("\n")
+        if name.startswith("# "):
+            (self.folder / name.removeprefix("# ")).write_text(rows, encoding="utf-8")
+        elif self.printed is not None:
             said = " ".join(self.printed.split())
             for piece in re.split(r"^ *(?:\.\.\.|…) *$", text, flags=re.M):
                 assert " ".join(piece.split()) in said, f"{piece}\nis not in\n{self.printed}"

@@ -92,6 +92,15 @@ def test_links_lead_somewhere() -> None:
     assert not {file: links for file, links in dead.items() if links}
 
 
+def test_files_that_pages_name_are_there() -> None:
+    """In running text; NAME stands for any name."""
+    path = re.compile(r"`((?:geometry|loads|fea|reports|tests|benchmarks|docs)/[\w/.-]+\.\w+)`")
+    named = [(file, name) for file in prose.markdown_files() for name in path.findall(file.read_text(encoding="utf-8"))]
+    assert len(named) > 50
+    here = [(file, name) for file, name in named if "NAME" not in name and file.name != "CHANGELOG.md"]
+    assert not [f"{file.name}: {name}" for file, name in here if not (ROOT / name).exists()]
+
+
 def test_addresses_are_whole_and_encrypted() -> None:
     found = [(file, url) for file, _, text in texts() for url in URL.findall(text)]
     assert found
