@@ -222,7 +222,7 @@ def _largest(beam: BeamCheck, low: float, high: float) -> float:
     stations = [x for x in beam.x if low <= x <= high] + [low, high]
     sides: tuple[Side, Side] = ("before", "after")
     found = [forces_at(beam, float(x), side) for x in stations for side in sides]
-    return max(equivalent_stress(beam.section, forces, beam.poisson) for forces in found)
+    return float(equivalent_stress(beam.section, np.array(found), beam.poisson).max())
 
 
 def _eye(body: Body, pin: Pin, loads: LinkLoads, beam: BeamCheck) -> CriticalLocation:

@@ -113,7 +113,7 @@ def deflection(
     relative[:, 5, 0] -= tilt[0]
     relative[:, 4, 0] += tilt[1]
     functions = Piecewise(breaks=forces.breaks, coefficients=relative)
-    _, _, value = functions.largest(lambda f: float(np.hypot(f[1], f[2])))
+    _, _, value = functions.largest(lambda f: np.hypot(f[:, 1], f[:, 2]))
     return Deflection(functions=functions, largest=value)
 
 

@@ -202,15 +202,16 @@ def _slot(body: Body, pin: Pin, load: PinLoad, forces: Piecewise, poisson: float
     mean = float(np.trapezoid(table[:, 5], x)) / length
     force = abs(float(load.wrench[1])) / 2.0
     push = flank_moments(length, place - flanks.first, force, x - x[0])
-    found = []
+    found: list[tuple[float, float, Floats]] = []
     for station, row, apart in zip(x, table, push, strict=True):
         for side in (1.0, -1.0):
             # N of the mean moment, to either side; M of the net section's curvature, of what is left, of the push.
             own = row / 2.0
             own[0] += side * flank.area * mean * flanks.apart / 2.0 / net.i_z
             own[5] = abs(mean) * flank.i_z / net.i_z + abs(row[5] - mean) / 2.0 + abs(apart)
-            found.append((equivalent_stress(flank, own, poisson), float(station), row[0] / net.area, own))
-    _, worst_x, axial, own = max(found, key=lambda entry: entry[0])
+            found.append((float(station), row[0] / net.area, own))
+    worst = int(np.argmax(equivalent_stress(flank, np.array([own for *_, own in found]), poisson)))
+    worst_x, axial, own = found[worst]
     stress = section_stress(flank, own, poisson)
     stress = replace(stress, axial=float(axial), bending=abs(stress.axial - float(axial)) + stress.bending)
     slender = length / height

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -13,7 +14,9 @@ from geometry.base.errors import CannotRunError
 Floats = NDArray[np.float64]
 Side = Literal["before", "after"]
 SAMPLES = 33
-_GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+_FINER, _ROUNDS = 17, 12
+"""Samples between the neighbours of the best one, and how often: each time the stretch has an eighth of its length."""
+Measure = Callable[[Floats], Floats]
 
 
 def integral(c: Floats, constant: Floats) -> Floats:
@@ -102,37 +105,55 @@ class Piecewise:
         interval = min(max(interval, 0), len(self.coefficients) - 1)
         return values(self.coefficients[interval], x - self.breaks[interval])
 
-    def largest(self, measure: Callable[[Floats], float]) -> tuple[float, Side, float]:
+    @cached_property
+    def samples(self) -> tuple[Floats, Floats]:
+        """Stations (n,) [mm], and the functions (n, m) there: both ends of every interval, and more where they bend."""
+        grids = self._grids
+        x = np.concatenate([x0 + s for x0, s in zip(self.breaks[:-1], grids, strict=True)])
+        return x, np.concatenate([_along(c, s) for c, s in zip(self.coefficients, grids, strict=True)])
+
+    @cached_property
+    def _grids(self) -> list[Floats]:
+        """Distances of the samples from each interval's first station."""
+        bent = np.any(self.coefficients[:, :, 2:], axis=(1, 2))
+        lengths = np.diff(self.breaks)
+        return [np.linspace(0.0, h, SAMPLES if curved else 2) for h, curved in zip(lengths, bent, strict=True)]
+
+    def largest(self, measure: Measure, sampled: Floats | None = None) -> tuple[float, Side, float]:
         """Find the largest measure of the functions over the beam.
 
-        Both ends of every interval are tried, and inside it samples, the best of them refined by golden section; a
-        measure that is convex where the functions are linear (any norm) has its maximum found exactly there.
+        Both ends of every interval are tried, and inside it samples, about the best of which finer and finer ones
+        follow; a measure that is convex where the functions are linear (any norm) has its maximum found exactly there.
 
         Parameters
         ----------
         measure : callable
-            Of the values (m,) of the functions.
+            Of values (n, m) of the functions at n stations, to numbers (n,).
+        sampled : array (n,), optional
+            The measure of ``samples``, where it is known.
 
         Returns
         -------
         tuple of float, Side and float
             Station [mm], side and value.
         """
+        grids, found = self._grids, measure(self.samples[1]) if sampled is None else sampled
         peaks: list[tuple[float, Side, float]] = []
-        for c, x0, x1 in zip(self.coefficients, self.breaks[:-1], self.breaks[1:], strict=True):
-            h = float(x1 - x0)
-
-            def value(s: float, c: Floats = c) -> float:
-                return measure(values(c, s))
-
-            grid = np.linspace(0.0, h, SAMPLES if np.any(c[:, 2:]) else 2)
-            found = [value(s) for s in grid]
-            i = first_largest(found)
-            s, peak = float(grid[i]), found[i]
+        parts = np.split(found, np.cumsum([len(grid) for grid in grids])[:-1])
+        for c, x0, x1, grid, sizes in zip(
+            self.coefficients, self.breaks[:-1], self.breaks[1:], grids, parts, strict=True
+        ):
+            i = first_largest(sizes)
+            s, peak = float(grid[i]), float(sizes[i])
             if 0 < i < len(grid) - 1:
-                s, peak = _golden(value, float(grid[i - 1]), float(grid[i + 1]), s, peak)
+                s, peak = _refined(c, measure, (float(grid[i - 1]), float(grid[i + 1])), s, peak)
             peaks.append((float(x1), "before", peak) if i == len(grid) - 1 else (float(x0) + s, "after", peak))
         return peaks[first_largest([peak for _, _, peak in peaks])]
+
+
+def _along(c: Floats, s: Floats) -> Floats:
+    """Values (n, m) of polynomials (m, k) at n places."""
+    return np.asarray(np.vander(s, c.shape[-1], increasing=True) @ c.T)
 
 
 def divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
@@ -166,12 +187,13 @@ def divided(functions: Piecewise, stations: Sequence[float]) -> Piecewise:
     return Piecewise(breaks=breaks, coefficients=np.array(rows))
 
 
-def _golden(value: Callable[[float], float], low: float, high: float, s: float, peak: float) -> tuple[float, float]:
-    """Golden-section search for a maximum; the start (s, peak) is kept if nothing better turns up."""
-    for _ in range(60):
-        a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-        fa, fb = value(a), value(b)
-        low, high = (low, b) if fa > fb else (a, high)
-        if max(fa, fb) > peak:
-            s, peak = (a, fa) if fa > fb else (b, fb)
+def _refined(c: Floats, measure: Measure, between: tuple[float, float], s: float, peak: float) -> tuple[float, float]:
+    """Search for a maximum between two places of an interval; the start (s, peak) stays if nothing better turns up."""
+    for _ in range(_ROUNDS):
+        grid = np.linspace(*between, _FINER)
+        sizes = measure(_along(c, grid))
+        i = int(np.argmax(sizes))
+        between = float(grid[max(i - 1, 0)]), float(grid[min(i + 1, _FINER - 1)])
+        if sizes[i] > peak:
+            s, peak = float(grid[i]), float(sizes[i])
     return s, peak

@@ -71,12 +71,14 @@ def section_stress(section: Section, forces: Floats, poisson: float = 0.3) -> Se
     """
     n, v_y, v_z, t, m_y, m_z = map(float, forces)
     root = math.sqrt(3.0)
+    alone = np.array([[0.0, 0.0, 0.0, t, 0.0, 0.0], [0.0, v_y, v_z, 0.0, 0.0, 0.0], [n, v_y, v_z, t, m_y, m_z]])
+    twist, shear, together = equivalent_stress(section, alone, poisson)
     return SectionStress(
         axial=n / section.area,
         bending=float(bending_stress(section, m_y, m_z)),
-        torsion=equivalent_stress(section, np.array([0.0, 0.0, 0.0, t, 0.0, 0.0]), poisson) / root,
-        shear=equivalent_stress(section, np.array([0.0, v_y, v_z, 0.0, 0.0, 0.0]), poisson) / root,
-        equivalent=equivalent_stress(section, np.asarray(forces, dtype=np.float64), poisson),
+        torsion=float(twist) / root,
+        shear=float(shear) / root,
+        equivalent=float(together),
     )
 
 
@@ -100,35 +102,37 @@ def bending_stress(section: Section, m_y: ArrayLike, m_z: ArrayLike) -> Floats:
     return np.abs(m_z) * section.half_y / section.i_z + np.abs(m_y) * section.half_z / section.i_y
 
 
-def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) -> float:
-    """Return the largest von Mises stress over a section, the best of a grid refined by parabolas.
+def equivalent_stress(section: Section, forces: Floats, poisson: float = 0.3) -> Floats:
+    """Return the largest von Mises stress over a section at n stations, the best of a grid refined by parabolas.
 
     Parameters
     ----------
     section : Section
         Of the beam.
-    forces : ndarray, shape (6,)
+    forces : ndarray, shape (n, 6)
         N, V_y, V_z [N], T, M_y, M_z [N·mm].
     poisson : float, optional
         Poisson's ratio.
 
     Returns
     -------
-    float
+    ndarray, shape (n,)
         Stress [MPa].
     """
     fields = _fields(section, poisson)
-    normal, along_y, along_z = np.tensordot(fields, forces, axes=1)
+    _, rows, columns, _ = fields.shape
+    normal, along_y, along_z = (fields.reshape(-1, 6) @ forces.T).reshape(3, rows * columns, -1)
     square = normal**2 + 3.0 * (along_y**2 + along_z**2)
-    i, j = np.unravel_index(int(np.argmax(square)), square.shape)
-    peak = float(square[i, j])
-    rows, columns = square.shape
-    down, up = square[abs(i - 1), j], square[i + 1 if i + 1 < rows else i - 1, j]
+    best, each = np.argmax(square, axis=0), np.arange(square.shape[1])
+    i, j = np.unravel_index(best, (rows, columns))
+    square = square.reshape(rows, columns, -1)
+    peak = square[i, j, each]
+    down, up = square[abs(i - 1), j, each], square[np.where(i + 1 < rows, i + 1, i - 1), j, each]
     if section.round:
-        left, right = square[i, j - 1], square[i, (j + 1) % columns]
+        left, right = square[i, j - 1, each], square[i, (j + 1) % columns, each]
     else:
-        left, right = square[i, abs(j - 1)], square[i, j + 1 if j + 1 < columns else j - 1]
-    return math.sqrt(peak + _rise(down, peak, up) + _rise(left, peak, right))
+        left, right = square[i, abs(j - 1), each], square[i, np.where(j + 1 < columns, j + 1, j - 1), each]
+    return np.sqrt(peak + _rise(down, peak, up) + _rise(left, peak, right))
 
 
 def rim_shear(section: Section, nu: float) -> tuple[float, float]:
@@ -150,10 +154,10 @@ def rim_shear(section: Section, nu: float) -> tuple[float, float]:
     return float(fields[1, middle, 0, 1]), float(fields[2, 0, middle, 2])
 
 
-def _rise(before: float, peak: float, after: float) -> float:
+def _rise(before: Floats, peak: Floats, after: Floats) -> Floats:
     """Height of a parabola through three neighbours above the middle one, the largest."""
     curved = before - 2.0 * peak + after
-    return float((after - before) ** 2 / (-8.0 * curved)) if curved < 0.0 else 0.0
+    return np.where(curved < 0.0, (after - before) ** 2 / np.where(curved < 0.0, -8.0 * curved, 1.0), 0.0)
 
 
 @lru_cache(maxsize=64)

@@ -17,14 +17,13 @@ such and therefore exact at every station.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_beam import about_centre, cut_stress, nearest
 from fea.beam.loads import BeamLoads
-from fea.beam.piecewise import SAMPLES, Piecewise, Side, divided, integral, values
+from fea.beam.piecewise import Piecewise, Side, divided, integral, values
 from fea.beam.section_stress import SectionStress, bending_stress, equivalent_stress, section_stress
 from fea.common.ties import first_largest
 from geometry.base.errors import CannotRunError
@@ -211,14 +210,10 @@ def check_beam(
         For unbalanced loads.
     """
     forces = divided(internal_forces(loads), [cut.x for cut in cuts])
-    stations, rows = [], []
-    for c, x0, x1 in zip(forces.coefficients, forces.breaks[:-1], forces.breaks[1:], strict=True):
-        for s in np.linspace(0.0, x1 - x0, SAMPLES if np.any(c[:, 2:]) else 2):
-            stations.append(x0 + s)
-            rows.append(values(c, s))
+    stations, rows = forces.samples
     if cuts:
         own = [nearest(cuts, x) for x in stations]
-        rows = [about_centre(cut) @ row for cut, row in zip(own, rows, strict=True)]
+        rows = np.array([about_centre(cut) @ row for cut, row in zip(own, rows, strict=True)])
         found = [cut_stress(cut, row, poisson) for cut, row in zip(own, rows, strict=True)]
         most = first_largest([stress.equivalent for stress in found])
         x, worst = float(stations[most]), found[most]
@@ -226,22 +221,16 @@ def check_beam(
             np.array([getattr(stress, name) for stress in found]) for name in ("axial", "bending", "equivalent")
         )
     else:
-        n, *_, m_y, m_z = np.transpose(rows)
-        axial, bending = n / section.area, bending_stress(section, m_y, m_z)
-
-        @cache  # the rows are samples that the search for the largest tries as well
-        def stress(row: bytes) -> float:
-            return equivalent_stress(section, np.frombuffer(row), poisson)
-
-        x, side, _ = forces.largest(lambda f: stress(f.tobytes()))
+        axial, bending = rows[:, 0] / section.area, bending_stress(section, rows[:, 4], rows[:, 5])
+        equivalent = equivalent_stress(section, rows, poisson)
+        x, side, _ = forces.largest(lambda f: equivalent_stress(section, f, poisson), equivalent)
         worst = section_stress(section, forces.at(x, side), poisson)
-        equivalent = np.array([stress(row.tobytes()) for row in rows])
-    n, v_y, v_z, t, m_y, m_z = np.transpose(rows)
+    n, v_y, v_z, t, m_y, m_z = rows.T
     return BeamCheck(
         forces=forces,
         section=section,
         poisson=poisson,
-        x=np.array(stations),
+        x=stations,
         n=n,
         v_y=v_y,
         v_z=v_z,

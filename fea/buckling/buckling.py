@@ -158,7 +158,7 @@ def column(case: Case, link: str, beam: BeamCheck) -> Column | None:
     -------
     Column or None
     """
-    _, _, compression = beam.forces.largest(lambda f: -float(f[0]))
+    _, _, compression = beam.forces.largest(lambda f: -f[:, 0])
     forces = max(float(np.abs(values).max()) for values in (beam.n, beam.v_y, beam.v_z))
     if compression <= NO_COMPRESSION * forces:
         return None

@@ -106,7 +106,7 @@ def on_tilting_pins(case: Case, link: str, loads: LinkLoads) -> LinkLoads:
     if no_beam(body):
         return loads
     forces = curving_forces(internal_forces(beam_loads(loads, body, material.density)), body.cuts)
-    if forces.largest(lambda f: -float(f[0]))[2] <= 0.0:
+    if forces.largest(lambda f: -f[:, 0])[2] <= 0.0:
         return loads
     inertia, soft = columns(body, free=True)[1]
     across = Bend(stiffness=material.youngs_modulus * inertia, stretches=soft)

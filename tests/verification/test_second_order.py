@@ -50,7 +50,7 @@ def forces(loads: LinkLoads):
 
 def moment(loads: LinkLoads) -> float:
     """Largest bending moment in either plane."""
-    return forces(loads).largest(lambda f: float(np.hypot(f[4], f[5])))[2]
+    return forces(loads).largest(lambda f: np.hypot(f[:, 4], f[:, 5]))[2]
 
 
 @pytest.mark.parametrize("n", FACTORS)
@@ -84,7 +84,7 @@ def test_a_column_pressed_beside_its_centroid_bears_the_secant_formula(n: float)
     loads = loaded((0.0, [P, 0, 0, 0, 0, 0]), (L, [-P, 0, 0, 0, 0, 0]))
     found = on_its_pins(loads, curving_forces(forces(loads), cuts), BEND, BEND, (0.0, L))
     about = curving_forces(forces(found), cuts)
-    assert about.largest(lambda f: abs(float(f[5])))[2] == pytest.approx(P * 3.0 / math.cos(u), rel=1e-3)
+    assert about.largest(lambda f: abs(f[:, 5]))[2] == pytest.approx(P * 3.0 / math.cos(u), rel=1e-3)
 
 
 @pytest.mark.parametrize("n", FACTORS)
@@ -279,7 +279,7 @@ def test_over_a_motion_every_pose_has_its_own_growth() -> None:
         across = abs(5.0 * math.sin(angle) + 38.6 * math.cos(angle))
         u = 200.0 * math.sqrt(push / stiffness)
         linear, found = (
-            internal_forces(beam_loads(own.chosen(pose), case.body("post"), 0.0)).largest(lambda f: abs(float(f[5])))[2]
+            internal_forces(beam_loads(own.chosen(pose), case.body("post"), 0.0)).largest(lambda f: abs(f[:, 5]))[2]
             for own in (history, grown)
         )
         assert linear == pytest.approx(200.0 * across, rel=1e-9)

@@ -74,7 +74,7 @@ def test_triangular_load_on_supports() -> None:
         points=(point(0, 0, q0 * length / 6), point(length, 0, q0 * length / 3)),
         lines=(LineLoad(start=0, end=length, first=np.zeros(3), last=np.array([0, -q0, 0])),),
     )
-    x, _, largest = internal_forces(loads).largest(lambda f: abs(f[5]))
+    x, _, largest = internal_forces(loads).largest(lambda f: abs(f[:, 5]))
     assert largest == pytest.approx(q0 * length**2 / (9 * np.sqrt(3)), rel=1e-12)
     assert x == pytest.approx(length / np.sqrt(3), rel=1e-6)
 
