@@ -1,5 +1,6 @@
 """The site: its index holds every page, and it builds without a warning or a foreign address."""
 
+import json
 import re
 import subprocess
 import sys
@@ -138,6 +139,19 @@ def test_no_page_asks_for_a_foreign_address(site: Path) -> None:
         assert not asked.findall(page.read_text(encoding="utf-8")), page
     for style in site.rglob("*.css"):
         assert not re.findall(r"url\([\"']?(?:https?:)?//|@import", style.read_text(encoding="utf-8")), style
+
+
+@pytest.mark.converged
+def test_a_search_for_a_word_finds_the_recipe_and_the_entry(site: Path) -> None:
+    text = (site / "searchindex.js").read_text(encoding="utf-8")
+    index = json.loads(text.removeprefix("Search.setIndex(").removesuffix(")"))
+    places = {
+        f"{index['docnames'][page]}#{anchor or ''}"
+        for title, found in index["alltitles"].items()
+        if "fork" in re.findall(r"\w+", title.lower())
+        for page, anchor in found
+    }
+    assert {"how-to/fork#", "generated/case-file/links#entry-eyesizes-fork"} <= places
 
 
 @pytest.mark.converged

@@ -246,7 +246,8 @@ def _find(node: Schema, root: Schema, value: Any, place: Place, kinds: dict[Plac
 def _statements(text: str) -> Iterator[tuple[Place, str]]:
     """Yield what every statement states, and its text below the header of its table; a header comes with its table."""
     lines = text.splitlines()
-    header, above, number = "", (), 0
+    above: Place = ()
+    header, number = "", 0
     while number < len(lines):
         line = lines[number]
         if head := _HEADER.match(line):
