@@ -7,6 +7,7 @@ import sys
 import tomllib
 from importlib.resources import files
 from pathlib import Path
+from urllib.parse import unquote, urlsplit
 
 import programs
 import pytest
@@ -70,6 +71,9 @@ def test_the_page_of_an_entry_says_all_of_it() -> None:
     assert ':Path: `links.NAME.eyes.NAME.fork`\n:Holds: length; such as `"125 mm"`\n:Rule: greater than zero\n' in entry
     assert 'fork = "' in entry.partition("```toml\n")[2].partition("```")[0]
     assert "](../../how-to/fork.md)" in entry
+    every = case_file.pages()["case-file/all.md"]
+    assert "| [title](#entry-case-title) | text | needed |" in every
+    assert '| [parts.NAME.width](#entry-bar-width) (shape = "bar") | length |  |' in every
 
 
 @pytest.mark.parametrize(("base", "stretch"), list(stretches()), ids=lambda value: getattr(value, "source", value))
@@ -139,6 +143,24 @@ def test_no_page_asks_for_a_foreign_address(site: Path) -> None:
         assert not asked.findall(page.read_text(encoding="utf-8")), page
     for style in site.rglob("*.css"):
         assert not re.findall(r"url\([\"']?(?:https?:)?//|@import", style.read_text(encoding="utf-8")), style
+
+
+@pytest.mark.converged
+def test_links_within_the_site_lead_somewhere(site: Path) -> None:
+    """Generated pages and anchors too, which the links of the Markdown files do not show."""
+    anchors: dict[Path, set[str]] = {}
+    dead = []
+    for page in site.rglob("*.html"):
+        for link in re.findall(r'(?:href|src)="([^"]+)"', page.read_text(encoding="utf-8")):
+            parts = urlsplit(link)
+            if parts.scheme or link == "#":
+                continue
+            there = (page.parent / unquote(parts.path)).resolve() if parts.path else page
+            if there.suffix == ".html" and there.exists() and there not in anchors:
+                anchors[there] = set(re.findall(r'\bid="([^"]+)"', there.read_text(encoding="utf-8")))
+            if not there.exists() or (parts.fragment and unquote(parts.fragment) not in anchors[there]):
+                dead.append(f"{page.relative_to(site)}: {link}")
+    assert not dead
 
 
 @pytest.mark.converged

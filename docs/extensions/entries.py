@@ -131,7 +131,9 @@ def _children(node: Schema) -> list[Schema]:
 
 
 def _mark(table: Schema) -> str:
-    return next((f'{key} = "{child["const"]}"' for key, child in table["properties"].items() if "const" in child), "")
+    """Return the entry whose only value tells a table from others."""
+    told = [(key, child["const"]) for key, child in table["properties"].items() if "const" in child]
+    return next((f'{key} = "{value}"' for key, value in told if isinstance(value, str)), "")
 
 
 def _entries(table: Schema, root: Schema) -> Iterator[Entry]:
@@ -171,11 +173,13 @@ def _kind_of_option(node: Schema, root: Schema) -> str:
         case "array" if "prefixItems" in node:
             return "[" + ", ".join(_kind(item, root) for item in node["prefixItems"]) + "]"
         case "array":
-            return f"list of {_kind(node['items'], root)}"
+            kind = _kind(node["items"], root)
+            return "list of tables" if kind == "table" else f"list of {kind}"
         case "object" if "properties" in node:
             return "table"
         case "object" if isinstance(node.get("additionalProperties"), dict):
-            return f"table: name = {_kind(node['additionalProperties'], root)}"
+            kind = _kind(node["additionalProperties"], root)
+            return "tables by name" if kind == "table" else f"table: name = {kind}"
     return "any value"
 
 
