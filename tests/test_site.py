@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -13,7 +14,7 @@ import programs
 import pytest
 from pydantic import BaseModel
 
-from docs.extensions import case_file, gallery
+from docs.extensions import case_file, gallery, python
 from docs.extensions.entries import tables
 from docs.extensions.examples import STARTER_PLAN, Text, of_text, stretches
 from docs.extensions.index import sections
@@ -74,6 +75,16 @@ def test_the_page_of_an_entry_says_all_of_it() -> None:
     every = case_file.pages()["case-file/all.md"]
     assert "| [title](#entry-case-title) | text | needed |" in every
     assert '| [parts.NAME.width](#entry-bar-width) (shape = "bar") | length |  |' in every
+
+
+def test_the_page_on_python_has_what_the_functions_return() -> None:
+    found = python.returned()
+    assert all(hasattr(import_module(module), name) for module, name in found)
+    assert ("reports.notebook.check_report", "CheckReport") in found
+    page = python.page()
+    assert "autofunction:: alula.check\n" in page
+    assert "autoclass:: reports.notebook.check_report.CheckReport\n" in page
+    assert "automethod:: loads.case.revisable.Revisable.with_values\n" in page
 
 
 @pytest.mark.parametrize(("base", "stretch"), list(stretches()), ids=lambda value: getattr(value, "source", value))

@@ -1,21 +1,17 @@
-"""The page on the functions for Python, from `alula.__all__` and what those functions return."""
+"""The page on the functions for Python: those of `alula.__all__`, and what they return."""
 
-from collections.abc import Callable
+import ast
+import inspect
+from collections.abc import Callable, Iterator
 
 import alula
 from fea.common.band import Band
 from fea.common.verdict import Verdict
-from loads.case.case import Case
 from loads.case.revisable import Revisable
-from reports.notebook.check_report import CheckReport
-from reports.notebook.claims_report import ClaimsReport
-from reports.notebook.envelope_report import EnvelopeReport
-from reports.notebook.motion_report import MotionReport
 from reports.notebook.shown import Picture, Table
-from reports.notebook.study_report import StudyReport
 
-REPORTS = (CheckReport, MotionReport, EnvelopeReport, StudyReport, ClaimsReport, Table, Picture, Band, Verdict)
-"""What the functions return, and what those reports hold."""
+HELD = (Table, Picture, Band, Verdict)
+"""What the reports hold."""
 
 
 def page() -> str:
@@ -28,9 +24,39 @@ def page() -> str:
     """
     parts = [_title("Python", "="), ".. automodule:: alula", _title("Functions", "-")]
     parts += [f"{_title(name, '^')}\n\n.. autofunction:: alula.{name}" for name in alula.__all__]
-    parts += [_title("What they return", "-"), _class(Case), _method(Revisable.with_values)]
-    parts += [_class(kind, ":members:", ":member-order: bysource") for kind in REPORTS]
+    parts.append(_title("What they return", "-"))
+    for module, name in returned():
+        if name == "Case":  # its fields are the entries of the case file
+            parts += [_class(module, name), _method(Revisable.with_values)]
+        else:
+            parts.append(_class(module, name, ":members:", ":member-order: bysource"))
+    parts += [_class(kind.__module__, kind.__name__, ":members:", ":member-order: bysource") for kind in HELD]
     return "\n\n".join(parts) + "\n"
+
+
+def returned() -> list[tuple[str, str]]:
+    """Return the records that the functions return, as `alula.py` imports them for type checkers.
+
+    Returns
+    -------
+    list of (str, str)
+        Module and name.
+    """
+    tree = ast.parse(inspect.getsource(alula))
+    imported = {
+        alias.name: node.module or ""
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    return [(imported[name], name) for name in dict.fromkeys(_return_names(tree)) if name in imported]
+
+
+def _return_names(tree: ast.Module) -> Iterator[str]:
+    """Yield the names in the return types of the public functions."""
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and node.name in alula.__all__ and node.returns is not None:
+            yield str(node.returns.value) if isinstance(node.returns, ast.Constant) else ast.unparse(node.returns)
 
 
 def _method(method: Callable[..., object]) -> str:
@@ -41,7 +67,7 @@ def _title(text: str, line: str) -> str:
     return f"{text}\n{line * len(text)}"
 
 
-def _class(kind: type, *options: str) -> str:
+def _class(module: str, name: str, *options: str) -> str:
     """Return the section of a class."""
-    directive = f".. autoclass:: {kind.__module__}.{kind.__qualname__}"
-    return "\n".join([_title(kind.__name__, "^"), "", directive, *(f"   {option}" for option in options)])
+    directive = f".. autoclass:: {module}.{name}"
+    return "\n".join([_title(name, "^"), "", directive, *(f"   {option}" for option in options)])
