@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 DEMO := out/owl-wing-static
+VIEWER := out/viewer
 
 # One thread per process: the tests fill the cores with processes of their own.
 ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
@@ -12,7 +13,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) PYTHONDONTWRITEBYTECODE= $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo docs test lint tests verify bench fuzz golden clean distclean
+.PHONY: help setup libraries demo docs test lint tests verify bench fuzz golden viewer clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -59,6 +60,12 @@ golden: setup ## renew the golden results, after a change that is meant (GOLDEN=
 fuzz: setup ## a million hostile inputs for all that reads a case (FUZZ="--share 0.01": fewer)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --requirement tests/fuzz/requirements.lock
 	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m fuzz --output out/fuzz $(FUZZ)
+
+# Needs node 20 and npm; the packages are locked, and the same sources give the same bytes.
+viewer: ## build reports/turnable/viewer.js, which draws the models in a report, from its sources
+	@mkdir -p $(VIEWER) && cp reports/turnable/package.json reports/turnable/package-lock.json $(VIEWER)
+	@npm ci --prefix $(VIEWER) --ignore-scripts --no-audit --no-fund --silent
+	@node reports/turnable/build.js $(VIEWER)
 
 clean: ## remove results and caches
 	rm -rf out build dist docs/generated alula.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

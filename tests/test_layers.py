@@ -23,7 +23,7 @@ LAYERS = {
         *("refine", "outcomes", "check", "superposition", "motion", "calculix", "claims"),
         *("study", "sizing", "tolerance"),
     ),
-    "reports": ("words", "tables", "sheet", "figures", "page", "study", "commands", "notebook"),
+    "reports": ("words", "tables", "sheet", "figures", "turnable", "page", "study", "commands", "notebook"),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""
 PACKAGES = tuple(LAYERS)

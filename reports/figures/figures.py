@@ -35,7 +35,7 @@ _Key = TypeVar("_Key", bound=Hashable)
 TIME_LIMIT = 180.0
 """Seconds for the renderings of one check."""
 _POOL = ServerPool()
-_COLOURS = ("#ffffcc", "#ffeda0", "#fed976", "#feb24c", "#fd8d3c", "#fc4e2a", "#e31a1c", "#bd0026", "#800026")
+COLOURS = ("#ffffcc", "#ffeda0", "#fed976", "#feb24c", "#fd8d3c", "#fc4e2a", "#e31a1c", "#bd0026", "#800026")
 """From no stress to the largest: YlOrRd of ColorBrewer (Brewer, Harrower & Penn State University, 2013)."""
 
 
@@ -97,7 +97,18 @@ def plots_of(
     return found, (f"no stress plot of {', '.join(missing)}: {trouble}",) if missing else ()
 
 
-def _limits(scene: Scene) -> tuple[float, float]:
+def colour_range(scene: Scene) -> tuple[float, float]:
+    """Return the values of the first and the last colour.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    tuple of 2 float
+        Stress [MPa].
+    """
     return 0.0, scene.top if scene.top > 0.0 else 1.0
 
 
@@ -108,7 +119,7 @@ def _renderings(scene: Scene) -> dict[str, Rendering]:
         points=scene.points,
         triangles=scene.triangles,
         values=scene.values,
-        limits=_limits(scene),
+        limits=colour_range(scene),
         colours=colours(),
         cells=scene.cells,
     )
@@ -201,7 +212,7 @@ def colours() -> NDArray[np.uint8]:
     array
         Red, green and blue from 0 to 255.
     """
-    fixed = np.array([[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in _COLOURS])
+    fixed = np.array([[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in COLOURS])
     places = np.linspace(0.0, 1.0, 256)
     mixed = [np.interp(places, np.linspace(0.0, 1.0, len(fixed)), channel) for channel in fixed.T]
     return np.column_stack(mixed).round().astype(np.uint8)
@@ -269,7 +280,7 @@ def _colour_bar(sheet: Canvas, scene: Scene, box: tuple[float, float, float, flo
         tip = [(right, top), (right + 8.0, (top + bottom) / 2.0), (right, bottom)]
         sheet.area(tip, "#{:02x}{:02x}{:02x}".format(*table[-1]), INK, 0.6)
     sheet.picture(np.tile(table, (4, 1, 1)), box)
-    axes = Axes(box=box, x=_limits(scene), y=(0.0, 1.0))
+    axes = Axes(box=box, x=colour_range(scene), y=(0.0, 1.0))
     axes.frame(sheet)
     axes.scale_x(sheet, f"{scene.measure} [MPa]", most=7)
 

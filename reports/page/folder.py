@@ -71,17 +71,19 @@ def write_report(
     """
     from reports.page.html import render
     from reports.page.pictures import draw_pictures
+    from reports.turnable.link import link_models
 
     def fill(folder: Path) -> None:
         with ThreadPoolExecutor(1) as beside:
             drawn = beside.submit(draw_pictures, result, progress)
             _write_fields(result, folder / FIELDS)
+            models = link_models(result)
             pictures, warnings = drawn.result()
         told = replace(result, warnings=(*result.warnings, *warnings))
         for warning in warnings:
             progress(f"Warning: {warning}")
         published = write_claims(told, folder, REPORT)
-        (folder / REPORT).write_text(render(told, pictures, published), encoding="utf-8")
+        (folder / REPORT).write_text(render(told, pictures, published, models), encoding="utf-8")
         (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
         (folder / PICTURES).mkdir()
         for name, picture in pictures.items():

@@ -1,6 +1,7 @@
 """``report.html``: one file with all text and pictures, which loads nothing from elsewhere."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, by_nearness, reason_for
@@ -29,6 +30,8 @@ from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
 from reports.tables.record import worst_load_case
 from reports.tables.springs import holding_sentence, spring_sentences
+from reports.turnable.link import link_name
+from reports.turnable.script import viewer
 from reports.words.wording import agreement, apart, checks_of, headline, named, plain, turning
 
 MEANING = {
@@ -51,7 +54,12 @@ _PROPERTIES = (
 )
 
 
-def render(result: CheckResult, figures: Mapping[str, bytes], published: str = "") -> str:
+def render(
+    result: CheckResult,
+    figures: Mapping[str, bytes],
+    published: str = "",
+    models: Mapping[str, str] = MappingProxyType({}),
+) -> str:
     """Return the report as one HTML page.
 
     Parameters
@@ -61,6 +69,9 @@ def render(result: CheckResult, figures: Mapping[str, bytes], published: str = "
         PNG pictures by the names of ``reports.page.pictures``; the page omits missing ones.
     published : str, optional
         How many published figures ``claims.html`` beside the page has, in a sentence; "" where there is none.
+    models : mapping, optional
+        Data blocks of the models that a reader can turn, by the names of ``reports.turnable``; the page omits missing
+        ones.
 
     Returns
     -------
@@ -70,6 +81,8 @@ def render(result: CheckResult, figures: Mapping[str, bytes], published: str = "
     checks = by_nearness(checks_of(result))
     return fill(
         "report.html.jinja",
+        styles=("report.css", "turnable.css"),
+        script=viewer() if models else "",
         result=result,
         case=result.case,
         pose=result.pose,
@@ -109,7 +122,7 @@ def render(result: CheckResult, figures: Mapping[str, bytes], published: str = "
         bonded=[name for name, joint in result.pose.linkage.joints.items() if joint.bonded],
         forked=any(forked_link(result.case, name) is not None for name in result.case.joints),
         guided=[name for name, joint in result.pose.linkage.joints.items() if joint.type == "slider"],
-        links=[_link(result, link, figures, layers) for link in first.links],
+        links=[_link(result, link, figures, layers, models) for link in first.links],
         agreement=agreement,
         materials=_materials(result),
         published=published,
@@ -188,7 +201,11 @@ def _dead_points(result: CheckResult) -> list[tuple[str, str, float]]:
 
 
 def _link(
-    result: CheckResult, name: str, figures: Mapping[str, bytes], layers: Mapping[str, BuildDirections]
+    result: CheckResult,
+    name: str,
+    figures: Mapping[str, bytes],
+    layers: Mapping[str, BuildDirections],
+    models: Mapping[str, str],
 ) -> dict[str, Any]:
     """Return the entries of one link under its governing load case."""
     worst: LoadCaseResult = worst_load_case(result, name)
@@ -201,6 +218,7 @@ def _link(
         "material": result.case.material_of(name),
         "part": result.case.part_of(name),
         "plot": figures.get(stress_name(name)),
+        "model_data": models.get(link_name(name)),
         "layers": layers.get(name),
         "build_map": figures.get(layers_name(name)),
         "diagram": figures.get(diagram_name(name)),

@@ -5,16 +5,21 @@ import math
 from typing import Any
 
 from geometry.base.version import alula_version
+from reports.page.policy import sealed
 from reports.words.wording import band, fixed, joined, number, percent, plain, sentence
 
 
-def fill(template: str, **entries: Any) -> str:
-    """Return a page.
+def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: str = "", **entries: Any) -> str:
+    """Return a page with the policy that seals it.
 
     Parameters
     ----------
     template : str
         Name of a file of ``reports/templates``.
+    styles : tuple of str, optional
+        Names of its style sheets there.
+    script : str, optional
+        What it runs.
     **entries
         What it shows; its text is escaped.
 
@@ -44,7 +49,8 @@ def fill(template: str, **entries: Any) -> str:
         "breakable": lambda path: path.replace(".", ".\u200b"),
         "degrees": lambda angle: number(math.degrees(angle) % 360.0, 6),
     }
-    return environment.get_template(template).render(**entries, version=alula_version(), data_uri=data_uri)
+    own = {"version": alula_version(), "data_uri": data_uri, **sealed(*styles, script=script)}
+    return environment.get_template(template).render(**entries, **own)
 
 
 def data_uri(picture: bytes) -> str:

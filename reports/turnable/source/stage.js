@@ -1,0 +1,187 @@
+// A scene with a camera that a reader turns, drawn when something has changed, in parallel projection.
+//
+// All stages of a page share one WebGL context, since browsers allow some sixteen: each picture is drawn there and copied
+// to the stage's own canvas, on which labels are written.
+
+import { ColorManagement, LinearSRGBColorSpace, OrthographicCamera, Quaternion, Scene, Vector3, WebGLRenderer } from "three";
+import { button, element } from "./elements.js";
+import { HELP, letTurn } from "./turning.js";
+import { plain, round } from "./words.js";
+
+const X = new Vector3(1, 0, 0);
+const Y = new Vector3(0, 1, 0);
+const MARGIN = 0.08; // of the picture, left free about the model in its first view
+const INK = "#1c2733";
+
+let context = null;
+const stages = [];
+let turns = 0;
+
+/** The page's renderer, or null where the browser has no WebGL. */
+export function renderer() {
+  if (context === null) {
+    ColorManagement.enabled = false; // colours stay as the pictures have them
+    try {
+      context = new WebGLRenderer({ antialias: true, alpha: false });
+      context.outputColorSpace = LinearSRGBColorSpace;
+      context.setClearColor(0xffffff);
+      context.domElement.addEventListener("webglcontextrestored", () => stages.forEach((stage) => stage.redraw()));
+    } catch {
+      context = false;
+    }
+  }
+  return context || null;
+}
+
+export class Stage {
+  /**
+   * @param {Element} holder receives the canvas and the buttons
+   * @param {string} label the model's name, for readers that cannot see it
+   */
+  constructor(holder, label) {
+    this.scene = new Scene();
+    this.camera = new OrthographicCamera();
+    this.target = new Vector3();
+    this.halfHeight = 1;
+    this.points = [];
+    this.overlays = []; // functions of (2D context, stage) that write on the picture
+    this.canvas = element("canvas", { tabindex: "0", role: "application", "aria-label": label, "aria-describedby": "" });
+    const help = element("p", { class: "help", id: `turnable-help-${(turns += 1)}` }, HELP);
+    this.canvas.setAttribute("aria-describedby", help.id);
+    this.tools = element("div", { class: "tools" });
+    this.tools.append(
+      button("Reset view", "Reset view", () => this.reset()),
+      button("+", "Larger", () => this.zoom(1 / 1.2)),
+      button("−", "Smaller", () => this.zoom(1.2)),
+    );
+    this.picture = element("div", { class: "picture" }, this.canvas);
+    holder.append(this.picture, this.tools, help);
+    letTurn(this.canvas, this);
+    new ResizeObserver(() => this.redraw()).observe(this.picture);
+    stages.push(this);
+  }
+
+  /** Set the first view: the points [[x, y, z], ...] to be seen, and the directions to the viewer and up. */
+  look(points, toward, up) {
+    this.points = points.map((point) => new Vector3(...point));
+    this.camera.position.set(0, 0, 0);
+    this.camera.up.set(...up);
+    this.camera.lookAt(new Vector3(...toward).negate());
+    this.first = this.camera.quaternion.clone();
+    this.reset();
+  }
+
+  /** Return to the first view. */
+  reset() {
+    this.camera.quaternion.copy(this.first);
+    const back = this.first.clone().invert();
+    const seen = this.points.map((point) => point.clone().applyQuaternion(back));
+    const range = (axis) => [Math.min(...seen.map((point) => point[axis])), Math.max(...seen.map((point) => point[axis]))];
+    const [[left, right], [low, high]] = [range("x"), range("y")];
+    this.target.set((left + right) / 2, (low + high) / 2, 0).applyQuaternion(this.first);
+    const middle = this.points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(this.points.length);
+    const toward = new Vector3(0, 0, 1).applyQuaternion(this.first);
+    this.target.addScaledVector(toward, middle.sub(this.target).dot(toward)); // turns about the middle of the model
+    this.radius = Math.max(...this.points.map((point) => point.distanceTo(this.target)));
+    this.halves = [(right - left) / 2, (high - low) / 2];
+    this.fit = true;
+    this.redraw();
+  }
+
+  /** Turn the model about the picture's axes, to the right and down [radians]. */
+  turn(right, down) {
+    this.camera.quaternion
+      .multiply(new Quaternion().setFromAxisAngle(Y, -right))
+      .multiply(new Quaternion().setFromAxisAngle(X, -down));
+    this.redraw();
+  }
+
+  /** Show more (factor above 1) or less. */
+  zoom(factor) {
+    const [least, most] = [this.radius / 500, this.radius * 4];
+    this.halfHeight = Math.min(Math.max(this.halfHeight * factor, least), most);
+    this.fit = false;
+    this.redraw();
+  }
+
+  /** Move the model by pixels of the page. */
+  pan(right, down) {
+    const size = (2 * this.halfHeight) / this.canvas.clientHeight;
+    this.target.add(new Vector3(-right * size, down * size, 0).applyQuaternion(this.camera.quaternion));
+    this.redraw();
+  }
+
+  /** Draw before the browser shows the next picture; several calls draw once. */
+  redraw() {
+    if (this.waiting) return;
+    this.waiting = requestAnimationFrame(() => {
+      this.waiting = 0;
+      this.draw();
+    });
+  }
+
+  /** Draw now. */
+  draw() {
+    const gl = renderer();
+    const [width, height] = [this.picture.clientWidth, this.picture.clientHeight];
+    if (!gl || !width || !height || gl.getContext().isContextLost()) return;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const [wide, tall] = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (this.fit) this.halfHeight = (Math.max(this.halves[1], (this.halves[0] * height) / width) || 1) * (1 + 2 * MARGIN);
+    this.place(width / height);
+    const size = gl.domElement;
+    if (size.width !== wide || size.height !== tall) gl.setSize(wide, tall, false);
+    gl.render(this.scene, this.camera);
+    if (this.canvas.width !== wide || this.canvas.height !== tall) Object.assign(this.canvas, { width: wide, height: tall });
+    const pen = this.canvas.getContext("2d");
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.drawImage(size, 0, 0);
+    pen.scale(ratio, ratio);
+    this.bar(pen, height);
+    for (const overlay of this.overlays) overlay(pen, this);
+  }
+
+  place(aspect) {
+    const camera = this.camera;
+    const away = 10 * this.radius + this.target.length();
+    Object.assign(camera, { left: -this.halfHeight * aspect, right: this.halfHeight * aspect, top: this.halfHeight,
+      bottom: -this.halfHeight, near: away - 2 * this.radius - this.halfHeight, far: away + 2 * this.radius + this.halfHeight });
+    camera.position.set(0, 0, away).applyQuaternion(camera.quaternion).add(this.target);
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+  }
+
+  /** Where a point [mm] is in the picture [pixels from its upper left corner], and how near to the viewer [mm]. */
+  project(point) {
+    const at = point.clone().project(this.camera);
+    return { x: ((at.x + 1) / 2) * this.picture.clientWidth, y: ((1 - at.y) / 2) * this.picture.clientHeight, z: -at.z };
+  }
+
+  /** The ray through a place of the picture [pixels]. */
+  ray(x, y) {
+    const shares = [(2 * x) / this.picture.clientWidth - 1, 1 - (2 * y) / this.picture.clientHeight];
+    return {
+      origin: new Vector3(...shares, -1).unproject(this.camera),
+      direction: new Vector3(0, 0, -1).applyQuaternion(this.camera.quaternion),
+    };
+  }
+
+  /** Write with a white border, so that it reads on any colour. */
+  write(pen, text, x, y, { bold = false, align = "left" } = {}) {
+    pen.font = `${bold ? "bold " : ""}13px system-ui, sans-serif`;
+    Object.assign(pen, { textAlign: align, textBaseline: "middle", lineJoin: "round", lineWidth: 4, strokeStyle: "#ffffffd0", fillStyle: INK });
+    pen.strokeText(text, x, y);
+    pen.fillText(text, x, y);
+  }
+
+  bar(pen, height) {
+    const size = (2 * this.halfHeight) / height;
+    const length = round(110 * size);
+    Object.assign(pen, { strokeStyle: INK, lineWidth: 2 });
+    pen.beginPath();
+    pen.moveTo(12, height - 14);
+    pen.lineTo(12 + length / size, height - 14);
+    pen.stroke();
+    this.write(pen, `${plain(length)} mm`, 18 + length / size, height - 14);
+  }
+}
