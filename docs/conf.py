@@ -41,6 +41,7 @@ sphinx_gallery_conf = {
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": ("docs.extensions.gallery.pictures",),
     "reset_modules": (),  # no script changes settings of a library
+    "default_thumb_file": str(ROOT / "docs/images/owl-wing-linkage.png"),  # of scripts that are not run
     "download_all_examples": False,
     "show_signature": False,
     "min_reported_time": 1e9,  # times belong to the benchmarks
