@@ -9,7 +9,7 @@ worst together; at one pose the linkage is then solved at that worst combination
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -428,23 +428,32 @@ def play_at(
     radii = {name: play / 2.0 for name, play in clearances(case).items()}
     if not radii:
         return None
-
-    def rates(place: Placement) -> Placement:
-        if coordinate is None or not (np.any(speed) or np.any(acceleration)):
-            return place
-        first, second = DrivenClosure(place.closure, coordinate, slides).coefficients(place.q)
-        rate, change = (np.asarray(x)[..., None] for x in (speed, acceleration))
-        return replace(place, qdot=rate * first, qddot=rate**2 * second + change * first)
-
-    def friction(place: Placement, loads: Sequence[Load]) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
-        name, sense = coordinate or case.pose.coordinate, WAYS.get(case.load_cases[load_case].direction)
-        if not rubbing_joints(case) or name is None or sense is None or not is_determinate(case.linkage):
-            return (), np.zeros(place.shape, dtype=np.bool_)
-        travels = slides if coordinate else case.pose.travel is not None
-        return friction_at(DrivenClosure(place.closure, name, travels), place, case.pinned_drive, loads, sense)
-
+    rates = partial(_with_rates, coordinate, slides, speed, acceleration)
+    friction = partial(_rubbed, case, load_case, coordinate, slides)
     loose = LooseJoints(place=place.at_rest, radii=radii, held=held_rows(place, case.pinned_drive))
     return Play(case=case, load_case=load_case, loose=loose, masses=masses, rates=rates, friction=friction)
+
+
+def _with_rates(
+    coordinate: str | None, slides: bool, speed: float | Real, acceleration: float | Real, place: Placement
+) -> Placement:
+    """Return a placement with the rates that those of a coordinate give it."""
+    if coordinate is None or not (np.any(speed) or np.any(acceleration)):
+        return place
+    first, second = DrivenClosure(place.closure, coordinate, slides).coefficients(place.q)
+    rate, change = (np.asarray(x)[..., None] for x in (speed, acceleration))
+    return replace(place, qdot=rate * first, qddot=rate**2 * second + change * first)
+
+
+def _rubbed(
+    case: Case, load_case: str, coordinate: str | None, slides: bool, place: Placement, loads: Sequence[Load]
+) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
+    """Return what friction adds to the loads, and where it finds no balance."""
+    name, sense = coordinate or case.pose.coordinate, WAYS.get(case.load_cases[load_case].direction)
+    if not rubbing_joints(case) or name is None or sense is None or not is_determinate(case.linkage):
+        return (), np.zeros(place.shape, dtype=np.bool_)
+    travels = slides if coordinate else case.pose.travel is not None
+    return friction_at(DrivenClosure(place.closure, name, travels), place, case.pinned_drive, loads, sense)
 
 
 def held_rows(place: Placement, drive: Drive | None) -> Real:
