@@ -1,19 +1,16 @@
 """Pages whose blocks work as a reader would use them.
 
-A block of TOML begins with the comment ``# NAME.toml``: its entries change that file, or make it. Commands and Python
+A block of TOML begins with the comment ``# NAME.toml``; its entries change that file, or make it. Commands and Python
 are run. A block of text is a file where it begins with ``# NAME.csv``; else it is printed by the block before it, but
 for lines ``...`` and breaks of lines. Commands that take longer than seconds are run by ``make verify`` alone.
 """
 
-import json
 import re
 import shlex
 import subprocess
 import sys
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import programs
 from prose import FENCE
@@ -40,11 +37,11 @@ class Reader:
 
     def toml(self, text: str) -> None:
         """Change a file, or make it."""
-        name = re.match(r"# ([\w-]+\.toml)\n", text)
+        name = re.match(r"# ([\w-]+\.toml)\b", text)
         assert name, f"a block of TOML begins with the name of its file: {text}"
         file = self.folder / name[1]
-        old = tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-        file.write_text(written(merged(old, tomllib.loads(text))), encoding="utf-8")
+        old = file.read_text(encoding="utf-8") if file.exists() else ""
+        file.write_text(edited(old, text.partition("\n")[2]), encoding="utf-8")
         self.cases.append(file)
 
     def sh(self, text: str) -> None:
@@ -91,28 +88,38 @@ def is_slow(command: list[str]) -> bool:
     return command[1] not in QUICK and not (command[1] in ("check", "size", "study") and by_hand)
 
 
-def merged(old: Any, new: Any) -> Any:
-    """Return tables with the entries of others; a load takes the place of one at the same point of the same link."""
-    if isinstance(old, dict) and isinstance(new, dict):
-        return old | {key: merged(old[key], value) if key in old else value for key, value in new.items()}
-    if isinstance(old, list) and isinstance(new, list) and all(isinstance(item, dict) for item in (*old, *new)):
-        places = [_place(item) for item in new if _place(item)]
-        return [*(item for item in old if _place(item) not in places), *new]
-    return new
+def edited(file: str, lines: str) -> str:
+    """Return a TOML file with lines changed, or added under their headings, as with an editor.
+
+    A line takes the place of the one with its key under the same heading; a heading that is not there goes to the end.
+    """
+    sections = _sections(file)
+    for heading, block in _sections(lines).items():
+        here = sections.setdefault(heading, [])
+        for line in block:
+            key = _key(line)
+            same = [i for i, old in enumerate(here) if key and _key(old) == key]
+            if same:
+                here[same[0]] = line
+            else:
+                here.insert(1 + max((i for i, old in enumerate(here) if _key(old)), default=-1), line)
+    return "".join(
+        f"{heading}\n" * bool(heading) + "".join(f"{line}\n" for line in block) for heading, block in sections.items()
+    )
 
 
-def _place(item: dict[str, Any]) -> dict[str, Any]:
-    return {key: item[key] for key in ("link", "at", "start", "end") if key in item}
+def _sections(text: str) -> dict[str, list[str]]:
+    """Return the lines under every heading, those above all headings under an empty one."""
+    found: dict[str, list[str]] = {"": []}
+    for line in text.splitlines():
+        if line.startswith("["):
+            heading = line.partition("#")[0].strip()
+            assert heading not in found, f"{heading} stands twice"
+            found[heading] = []
+        else:
+            found[list(found)[-1]].append(line)
+    return found
 
 
-def written(table: dict[str, Any]) -> str:
-    """Return a table as TOML."""
-    return "".join(f"{json.dumps(key)} = {_value(value)}\n" for key, value in table.items())
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{json.dumps(key)} = {_value(inner)}" for key, inner in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_value, value)) + "]"
-    return json.dumps(value, ensure_ascii=False)
+def _key(line: str) -> str:
+    return "" if line.lstrip().startswith("#") else line.partition("=")[0].strip()

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from pages import Reader, merged, written
+from pages import Reader, edited
 from programs import ROOT
 from prose import FENCE, without_code
 
@@ -48,9 +48,7 @@ def test_a_wrong_number_is_found(tmp_path: Path) -> None:
         reader.text("drive torque on crank: 92.613 N·mm\n")
 
 
-def test_tables_are_changed_and_lists_of_tables_added_to() -> None:
-    old = {"a": {"b": 1, "c": [1, 2]}, "d": [{"e": True}]}
-    assert merged(old, {"a": {"c": [3]}, "d": [{"e": "x"}]}) == {
-        "a": {"b": 1, "c": [3]}, "d": [{"e": True}, {"e": "x"}]
-    }  # fmt: skip
-    assert written({"a b": {"c": [1.5, "é\n"]}, "d": [True]}) == '"a b" = {"c" = [1.5, "é\\n"]}\n"d" = [true]\n'
+def test_lines_are_changed_or_added_under_their_headings() -> None:
+    file = "# A\nx = 1\n\n[b]  # B\ny.z = 2\n\n# of c\n[[c]]\nlink = 1\n"
+    lines = "w = 0\n[b]\ny.z = 3\ny.a = 4\n[d]\nv = 5\n"
+    assert edited(file, lines) == "# A\nx = 1\nw = 0\n\n[b]\ny.z = 3\ny.a = 4\n\n# of c\n[[c]]\nlink = 1\n[d]\nv = 5\n"

@@ -124,7 +124,7 @@ def recipes() -> Iterator[Text]:
             target: tomllib.loads(starter(STARTER_PLAN if study else name or STARTER))
             for study, name, target in re.findall(r"alula new (--study )?(?:--from ([\w-]+) )?([\w-]+\.toml)", page)
         }
-        blocks = [(re.match(r"# ([\w-]+\.toml)\n", block), block) for block in _BLOCK.findall(page)]
+        blocks = [(re.match(r"# ([\w-]+\.toml)\b", block), block) for block in _BLOCK.findall(page)]
         for name, block in blocks:
             if name:
                 tables[name[1]] = merged(tables.get(name[1], {}), tomllib.loads(block))

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
@@ -85,7 +86,13 @@ def read_tables(name_or_path: str) -> dict[str, Any]:
     except RecursionError:
         raise CaseError(f"{where}: the tables are nested too deeply; flatten them") from None
     except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
-        raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; correct that line") from None
+        raise CaseError(f"{where}: this is not valid TOML: {printable(str(error))}; {_toml_remedy(error)}") from None
+
+
+def _toml_remedy(error: ValueError) -> str:
+    if re.match(r"Cannot (declare .* twice|overwrite a value)", str(error)):
+        return "TOML takes a heading or an entry once: write its lines under the one that is there, or remove one"
+    return "correct that line"
 
 
 def stated_changes(overrides: Sequence[str]) -> tuple[Change, ...]:
