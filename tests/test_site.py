@@ -84,7 +84,7 @@ def test_the_page_on_python_has_what_the_functions_return() -> None:
     page = python.page()
     assert "autofunction:: alula.check\n" in page
     assert "autoclass:: reports.notebook.check_report.CheckReport\n" in page
-    assert "automethod:: loads.case.revisable.Revisable.with_values\n" in page
+    assert "automethod:: loads.case.case.Case.with_values\n" in page
 
 
 @pytest.mark.parametrize(("base", "stretch"), list(stretches()), ids=lambda value: getattr(value, "source", value))

@@ -2,12 +2,11 @@
 
 import ast
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import alula
 from fea.common.band import Band
 from fea.common.verdict import Verdict
-from loads.case.revisable import Revisable
 from reports.notebook.shown import Picture, Table
 
 HELD = (Table, Picture, Band, Verdict)
@@ -27,7 +26,7 @@ def page() -> str:
     parts.append(_title("What they return", "-"))
     for module, name in returned():
         if name == "Case":  # its fields are the entries of the case file
-            parts += [_class(module, name), _method(Revisable.with_values)]
+            parts += [_class(module, f"{name}()"), f".. automethod:: {module}.{name}.with_values"]
         else:
             parts.append(_class(module, name, ":members:", ":member-order: bysource"))
     parts += [_class(kind.__module__, kind.__name__, ":members:", ":member-order: bysource") for kind in HELD]
@@ -59,10 +58,6 @@ def _return_names(tree: ast.Module) -> Iterator[str]:
             yield str(node.returns.value) if isinstance(node.returns, ast.Constant) else ast.unparse(node.returns)
 
 
-def _method(method: Callable[..., object]) -> str:
-    return f".. automethod:: {method.__module__}.{method.__qualname__}"
-
-
 def _title(text: str, line: str) -> str:
     return f"{text}\n{line * len(text)}"
 
@@ -70,4 +65,4 @@ def _title(text: str, line: str) -> str:
 def _class(module: str, name: str, *options: str) -> str:
     """Return the section of a class."""
     directive = f".. autoclass:: {module}.{name}"
-    return "\n".join([_title(name, "^"), "", directive, *(f"   {option}" for option in options)])
+    return "\n".join([_title(name.rstrip("()"), "^"), "", directive, *(f"   {option}" for option in options)])
