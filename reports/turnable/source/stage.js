@@ -21,13 +21,13 @@ let turns = 0;
 export function renderer() {
   if (context === null) {
     ColorManagement.enabled = false; // colours stay as the pictures have them
-    try {
-      context = new WebGLRenderer({ antialias: true, alpha: false });
+    const canvas = document.createElement("canvas");
+    const webgl = canvas.getContext("webgl2", { antialias: true, alpha: false }); // three.js would complain in the console
+    context = webgl ? new WebGLRenderer({ canvas, context: webgl }) : false;
+    if (context) {
       context.outputColorSpace = LinearSRGBColorSpace;
       context.setClearColor(0xffffff);
-      context.domElement.addEventListener("webglcontextrestored", () => stages.forEach((stage) => stage.redraw()));
-    } catch {
-      context = false;
+      canvas.addEventListener("webglcontextrestored", () => stages.forEach((stage) => stage.redraw()));
     }
   }
   return context || null;
