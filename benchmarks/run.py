@@ -32,6 +32,7 @@ BENCHMARKS: dict[str, tuple[bool, list[str], list[str]]] = {
     "commits": (False, [], ["--repeats", "1"]),
     "iterations": (False, [], []),
     "trade": (False, [], ["--accuracies", "0.2", "0.05"]),
+    "page": (False, [], ["--repeats", "2"]),
     "peers": (False, [], ["--sizes", "20k", "160k", "--repeats", "1"]),
 }
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from figures import HERE, loaded, power, seconds, unknowns_of
@@ -267,6 +268,19 @@ def studies(record: Record) -> str:
     return "\n".join((table(header, rows), said, on_paper, table(limits, paper), stamp(record)))
 
 
+def page(record: Record) -> str:
+    """Weight of a report, and how soon its models can be turned."""
+    parts = dict(record["bytes"])
+    aims = {"page": "6.00 MB", "at the top": "2 s", "at the first link": "2 s"}
+    rows = [["`report.html`", f"{parts.pop('page') / 1e6:.2f} MB", aims["page"]]]
+    rows += [[f"{name} in it", f"{size / 1e6:.2f} MB", ""] for name, size in parts.items()]
+    for one in record["opened"]:
+        middle, times = median(one["ms"]), f"{min(one['ms']) / 1e3:.2f} to {max(one['ms']) / 1e3:.2f} s"
+        told = f"{middle / 1e3:.2f} s ({times}, {len(one['ms'])} times)"
+        rows.append([f"opened {one['where']}, until its models can be turned", told, aims[one["where"]]])
+    return table("what|measured|aim", rows) + "\n" + stamp(record)
+
+
 SECTIONS: dict[str, Callable[[Record], str]] = {
     "accuracy": accuracy,
     "peers": peers,
@@ -279,6 +293,7 @@ SECTIONS: dict[str, Callable[[Record], str]] = {
     "commits": commits,
     "trade": trade,
     "iterations": iterations,
+    "page": page,
 }
 
 
