@@ -251,9 +251,9 @@ def print_inspection(found: Inspection, console: "Console") -> None:
     sizes = [high - low for low, high in zip(facts.low, facts.high, strict=True)]
     say(console, f"{printable(found.path.name)}: one solid", style="bold")
     box = " × ".join(number(size) for size in sizes)
-    say(console, f"Size {box} mm along x, y, z of the file, from {_point(facts.low)} to {_point(facts.high)}.")
+    say(console, f"Size {box} mm along x, y, z of the file, from {_point(facts.low)} to {_point(facts.high)} mm.")
     say(console, f"Volume {number(facts.volume, 7)} mm³, surface {number(facts.surface, 6)} mm².")
-    say(console, f"Centroid {_point(facts.centroid)}.")
+    say(console, f"Centroid {_point(facts.centroid)} mm.")
     if found.card is not None and found.mass is not None:
         density = found.card.density / 1e-12  # kg/m³
         say(console, f"Mass {number(found.mass * GRAMS)} g of {found.card.title} ({plain(density)} kg/m³).")

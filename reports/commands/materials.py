@@ -13,10 +13,10 @@ _COLUMNS = (
     ("material", False),
     ("density\n[kg/m³]", True),
     ("E\n[GPa]", True),
-    ("ν", True),
+    ("Poisson's\nratio ν", True),
     ("strength\n[MPa]", True),
     ("across layers\n[MPa]", True),
-    ("least n", True),
+    ("least safety\nfactor n", True),
     ("assumed", False),
     ("missing", False),
 )

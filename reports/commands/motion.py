@@ -207,7 +207,8 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
         way, unit = drive["way_to_dead_point"], motion["unit"]
         beyond = "none was met beyond" if way is None else f"the nearest is {way:.4g} {unit} beyond"
         print(
-            f"\nNo dead point of {drive['link']} in the range, {beyond}; least distance {drive['least_distance']:.3g}"
+            f"\nNo dead point of {drive['link']} in the range, {beyond}; least distance (a ratio) "
+            f"{drive['least_distance']:.3g}"
         )
     play = motion_play_record(result)
     for told in () if play is None else play_lines(result, play):
@@ -240,7 +241,9 @@ def print_motion(result: CaseMotion, name: str, *, json: bool) -> None:
             continue
         if "drive_power" in row:
             power = _line(row["drive_power"], "W", motion["unit"])
-            print(f"  drive power at {at}: {power}; energy imbalance {row['energy_imbalance']:.1g}")
+            print(
+                f"  drive power at {at}: {power}; energy imbalance {row['energy_imbalance']:.1g} of the largest power"
+            )
         for joint, extremes in row["joints"].items():
             print(f"  joint {joint}: {_line(extremes, 'N', motion['unit'])}")
 
@@ -252,7 +255,8 @@ def _line(row: Mapping[str, Any], unit: str, at: str) -> str:
     ends = f"{first} -> {last} {unit}"
     if row["unbounded"]:
         return ends
-    return f"{ends}; min {smallest} at {row['smallest_at']:.1f} {at}, max {largest} at {row['largest_at']:.1f} {at}"
+    least = f"min {smallest} {unit} at {row['smallest_at']:.1f} {at}"
+    return f"{ends}; {least}, max {largest} {unit} at {row['largest_at']:.1f} {at}"
 
 
 def _text(value: float | None, scale: float) -> str:

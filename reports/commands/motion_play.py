@@ -81,7 +81,7 @@ def play_lines(moved: CaseMotion, found: dict[str, Any]) -> list[str]:
     near = found["dead_point_distance"]
     if near["smallest"] > 0.0:
         lines.append(
-            f"With play the least distance to a dead point is {number(near['smallest'], 3)}, at "
+            f"With play the least distance to a dead point (a ratio) is {number(near['smallest'], 3)}, at "
             f"{near['smallest_at']:.1f} {unit}."
         )
     if found["through_dead_point"]:

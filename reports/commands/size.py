@@ -268,4 +268,4 @@ def _limited(found: "Sized", step: int) -> str:
         return told + "."
     other = found.values[step + (1 if found.rising else -1)]
     verb = "raises" if sense_of(limit).value == "≥" else "lowers"
-    return f"{told}; {other} {verb} it by some {100.0 * abs(gain):.2g} %."
+    return f"{told}; {other} {verb} it by some {float(f'{100.0 * abs(gain):.2g}'):g} %."

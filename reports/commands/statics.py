@@ -40,7 +40,7 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
         print(jsonlib.dumps(_record(statics, matrix=matrix), indent=2))
         return
     pose = statics.pose
-    print(f"Mobility (Gruebler): {pose.linkage.mobility}")
+    print(f"Mobility (Gruebler): degrees of freedom {pose.linkage.mobility}")
     print(f"Closure residual: {pose.residual:.1e} of the longest link")
     left = max(12, *map(len, pose.points), *map(len, pose.linkage.moving))
     for link in pose.linkage.moving:

@@ -137,7 +137,7 @@ def print_synthesis(synthesis: Synthesis, *, json: bool) -> None:
     bar = synthesis.four_bar
     print("Four-bar through three precision points (Freudenstein)")
     print("  loop a·e^(jφ) + b·e^(jθ) − c·e^(jψ) − d = 0: φ turns with link a, θ with b, ψ with c")
-    print(f"  K1 = {synthesis.K[0]:.6f}, K2 = {synthesis.K[1]:.6f}, K3 = {synthesis.K[2]:.6f}")
+    print(f"  ratios K1 = {synthesis.K[0]:.6f}, K2 = {synthesis.K[1]:.6f}, K3 = {synthesis.K[2]:.6f}")
     print(f"  condition number of the 3×3 system: {synthesis.condition:.4g}")
     print("\nLink lengths")
     for name in "abcd":

@@ -60,8 +60,15 @@ def claims_page(
     str
     """
     claims = {"count": count(found), "rows": as_records(found)} if found else None
-    entries = {"title": title, "name": name, "claims": claims, "audit": audit, "tolerance": tolerance, "report": report}
-    return fill("claims.html.jinja", **entries)
+    return fill(
+        "claims.html.jinja",
+        title=title,
+        name=name,
+        claims=claims,
+        audit=audit,
+        tolerance=tolerance,
+        report=report,
+    )
 
 
 def write_claims(result: CheckResult, folder: Path, report: str) -> str:

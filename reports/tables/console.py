@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from fea.check.anchor import anchor_loads
-from fea.common.verdict import CheckOutcome, Quantity, Verdict
+from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from loads.records.aero import AirForces
 from reports.tables.data import change_records
@@ -183,13 +183,14 @@ def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
     Parameters
     ----------
     checks : sequence of CheckOutcome
-        The load case has a column if there are several. The quantity is shown if one name stands for several.
+        The load case has a column if there are several; the name is shown where several have one quantity.
     console : rich.console.Console
     """
     from rich.text import Text
 
     several = len({check.load_case for check in checks}) > 1
-    named = Counter((check.name, check.link, check.load_case) for check in checks)
+    checks = by_nearness(checks)
+    alike = Counter((check.quantity, check.link, check.load_case) for check in checks)
     columns = [("check", False), ("link", False), *([("load case", False)] if several else [])]
     columns += [("value (band)", True), ("limit", True), ("verdict", False)]
     rows: list[tuple[str | Text, ...]] = []
@@ -197,8 +198,8 @@ def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
         unit = f" {check.unit}" if check.unit else ""
         rows.append(
             (
-                check.name
-                if named[check.name, check.link, check.load_case] == 1
+                check.quantity
+                if alike[check.quantity, check.link, check.load_case] == 1
                 else f"{check.name}: {check.quantity}",
                 check.link,
                 *([check.load_case] if several else []),

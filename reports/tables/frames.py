@@ -175,7 +175,7 @@ def linkage_line(case: "LoadCaseResult") -> str:
     if not found.displacement.unknowable:
         told.append(f"largest displacement {band(found.displacement)} mm ({found.where})")
     if found.dead_point_distance is not None and drive is not None:
-        told.append(f"distance to a dead point of {drive.link} {number(found.dead_point_distance, 3)}")
+        told.append(f"distance to a dead point of {drive.link} (a ratio) {number(found.dead_point_distance, 3)}")
     return f"Linkage: {', '.join(told)}."
 
 
@@ -319,7 +319,7 @@ def play_line(play: Play) -> str:
     what, unit = ("force", "N") if pushes else ("torque", "N·mm")
     return (
         f"{told}. Drive {what} {band(_band(play, play.effort))} {unit}, distance to a dead point of {drive.link} "
-        f"{band(_band(play, play.distance))}."
+        f"(a ratio) {band(_band(play, play.distance))}."
     )
 
 

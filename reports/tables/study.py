@@ -290,4 +290,4 @@ def number_text(found: VariantNumber) -> str:
     value = Band(value=found.value, low=found.low, high=found.high)
     unit = "" if found.unit == "1" else f" {found.unit}"
     sign = sense_of(found).value
-    return f"{found.quantity} of {found.subject} {band(value)}{unit} ({sign} {found.limit:g})"
+    return f"{found.quantity} of {found.subject} {band(value)}{unit} ({sign} {found.limit:g}{unit})"

@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -78,13 +79,23 @@ def print_tolerance(result: ToleranceResult, console: "Console") -> None:
     result : ToleranceResult
     console : Console
     """
-    titles = (("check", False), ("subject", False), ("nominal", True), ("1 %", True), ("median", True), ("99 %", True))
+    titles = (
+        ("number", False),
+        ("subject", False),
+        ("unit", False),
+        ("nominal", True),
+        ("1 %", True),
+        ("median", True),
+        ("99 %", True),
+    )
     columns = (*titles, ("limit", True), ("passes", True))
     several = len(result.nominal.load_cases) > 1
+    alike = Counter((one.quantity, one.subject, one.load_case) for one in result.numbers)
     rows = [
         (
-            one.check or one.quantity,
+            one.quantity if alike[one.quantity, one.subject, one.load_case] == 1 else f"{one.check}: {one.quantity}",
             one.subject + (f", {one.load_case}" if several else ""),
+            "" if one.unit == "1" else one.unit,
             number(one.nominal[0], 3),
             *(number(value, 3) for value in one.percentiles(*SHARES).tolist()),
             "" if math.isnan(one.limit) else f"{'≥' if one.at_least else '≤'} {one.limit:g}",
@@ -135,7 +146,7 @@ def _say_what_matters(result: ToleranceResult, console: "Console") -> None:
     shown = [one for one in result.numbers if one is closest or one.certain is None]
     for one in (one for one in shown if np.isfinite(one.total).any()):
         order = [i for i in np.argsort(-one.total).tolist() if one.total[i] >= 0.005][:MOST]
-        title = f"What matters for {_what(one)} (Sobol' indices)"
+        title = f"What matters for {_what(one)} (Sobol' indices, shares of its variance)"
         rows = [(result.tolerances[i], f"{max(one.first[i], 0.0):.2f}", f"{one.total[i]:.2f}") for i in order]
         say_table(console, (("tolerance", False), ("by itself", True), ("in all", True)), rows, title=title)
 
@@ -148,5 +159,6 @@ def _say_corner(result: ToleranceResult, console: "Console") -> None:
     if math.isnan(corner.value):
         say(console, f"Worst corner for {what}: the linkage has no equilibrium there.")
     else:
-        ends = f"{number(corner.value, 3)} ({number(corner.low, 3)} to {number(corner.high, 3)})"
+        unit = "" if closest.unit == "1" else f" {closest.unit}"
+        ends = f"{number(corner.value, 3)} ({number(corner.low, 3)} to {number(corner.high, 3)}){unit}"
         say(console, f"Worst corner for {what}: {ends}, all tolerances at their worse ends.")

@@ -45,7 +45,7 @@ def test_it_lists_the_solid_its_mass_and_every_bore():
     told = " ".join(done.stdout.split())
     assert "Size 49.50 × 39.50 × 12.00 mm along x, y, z of the file" in told
     assert "Volume 3526.124 mm³, surface 2689.29 mm²." in told
-    assert "Centroid (11.265, 6.225, 3.099)." in told
+    assert "Centroid (11.265, 6.225, 3.099) mm." in told
     assert "Mass 4.372 g of PLA" in told
     assert "bore 1 C 6 12 0.000 0.000 6.000 0.0000 0.0000 1.0000 through, coaxial with the outside" in told
     assert "Middles of the bores along z of the link [mm]: A 0.000, B 0.000 and C 3.500; they are not in one" in told
