@@ -105,13 +105,11 @@ def _variant(
     hottest = int(np.argmax(values))
     largest = peak.principal if link.brittle else peak.von_mises
     place = ", ".join(f"{axis} = {fixed(at, 1)}" for axis, at in zip("xyz", solid.space.nodes[hottest], strict=True))
-    if np.isnan(largest) or (governs and scene.doubt):
-        lines = [f"largest: no result, {scene.doubt}", f"at {place} mm"]
-    else:
-        lines = [f"largest: {number(largest)} MPa", f"at {place} mm"]
+    unknown = np.isnan(largest) or (governs and scene.doubt)
+    told = f"no result, {scene.doubt}" if unknown else f"{number(largest)} MPa"
     return {
         "title": peak.title,
-        "peak": lines,
+        "peak": [f"largest: {told} at {place} mm"],
         "beyond": bool(values.max() > scene.top),
         "hottest": int(np.argmin(np.linalg.norm(solid.space.nodes[cut.nodes] - solid.space.nodes[hottest], axis=1))),
         "largest": float(np.linalg.norm(displacement, axis=1).max()),

@@ -21,6 +21,7 @@ from reports.page.html import render
 from reports.tables.claims import as_markdown, as_text
 from reports.tables.console import print_result
 from reports.tables.record import as_json
+from reports.turnable.pack import data_block
 
 OWL = "owl-wing-static"
 HOSTILE = (
@@ -185,6 +186,15 @@ def test_claims_show_hostile_text_as_text(hostile: tuple[Case, str]) -> None:
     rows = [line for line in page.splitlines() if line.startswith(("| a ", "| b "))]
     assert len(rows) == 2
     assert as_text(results)
+
+
+def test_a_data_block_in_a_page_shows_hostile_text_as_text(checked: CheckResult) -> None:
+    """A link of such a name is refused where a case is read; a model's record could have other texts."""
+    for text in (HOSTILE, "</script><script>alert(1)", "<!--<script>", "]]>"):
+        page = _Page()
+        page.feed(f'<script type="application/json">{data_block({text: text})}</script>')
+        assert page.tags == ["script"]
+        assert json.loads("".join(page.text)) == {text: text}
 
 
 @pytest.mark.parametrize("name", ["../cases/x.csv", "/etc/passwd", "..", ".", "a/../b", "~/x", "\x00", ".x"])

@@ -8,6 +8,8 @@ import { Stage } from "./stage.js";
 import { Surface, colourTexture, trianglesOf } from "./surface.js";
 import { fixed, number, plain } from "./words.js";
 
+const ABOVE = 18; // pixels from a pin to its name
+
 /** Build the model of a link in a holder; returns what `window.alulaViewer` offers of it. */
 export function startLink(holder, record) {
   const rest = reals(record.nodes);
@@ -41,7 +43,7 @@ export function startLink(holder, record) {
   function take(place) {
     variant = variants[place];
     surface.colour(variant.values, 0, record.top);
-    legend.tell([...variant.peak, `largest displacement ${number(variant.largest, 3)} mm`, "grey lines: undeformed"], variant.beyond);
+    legend.tell([...variant.peak, `largest displacement ${number(variant.largest, 3)} mm`, "thin grey lines: undeformed", "dashed ring: behind the body"], variant.beyond);
     point(variant.hottest);
     show();
   }
@@ -66,23 +68,26 @@ export function startLink(holder, record) {
   stage.canvas.addEventListener("click", pickAt);
   stage.picture.after(reading);
   if (variants.length > 1) {
-    stage.tools.append(choice("Variant", variants.map(({ title }) => title), record.governing, take));
+    stage.tools.append(choice("Variant", variants.map(({ title }, place) => title + (place === record.governing ? " (value)" : "")), record.governing, take));
   }
   stage.tools.append(scale.line);
-  holder.append(legend.box);
+  reading.after(legend.box);
   stage.scene.add(surface.group, surface.still());
   stage.overlays.push((pen) => {
     for (const [name, [x, y]] of Object.entries(record.points)) {
       const at = stage.project(new Vector3(x, y, record.high));
-      stage.write(pen, name, at.x, at.y, { bold: true, align: "center" });
+      stage.write(pen, name, at.x, at.y - ABOVE, { bold: true, align: "center" });
     }
-    const at = stage.project(surface.node(chosen));
+    const { x, y } = stage.project(surface.node(chosen));
+    const dash = surface.seen(chosen, stage.ray(x, y)) ? [] : [3, 3];
     for (const [colour, width] of [["#ffffff", 4], ["#1c2733", 1.6]]) {
       Object.assign(pen, { strokeStyle: colour, lineWidth: width });
+      pen.setLineDash(dash);
       pen.beginPath();
-      pen.arc(at.x, at.y, 7, 0, 2 * Math.PI);
+      pen.arc(x, y, 7, 0, 2 * Math.PI);
       pen.stroke();
     }
+    pen.setLineDash([]);
   });
   stage.look(record.corners, record.toward, record.up);
   take(record.governing);
@@ -95,10 +100,11 @@ export function startLink(holder, record) {
     screen: (node) => {
       const box = stage.canvas.getBoundingClientRect();
       const at = stage.project(surface.node(node));
-      const seen = surface.pick(stage.ray(at.x, at.y));
-      return { x: box.left + at.x, y: box.top + at.y, seen: seen !== null && seen.node === node };
+      return { x: box.left + at.x, y: box.top + at.y, seen: surface.seen(node, stage.ray(at.x, at.y)) };
     },
     reading: () => reading.textContent,
+    legend: () => legend.box.innerText,
+    take,
     hottest: () => variant.hottest,
   };
 }

@@ -2,7 +2,11 @@
 //
 // A figure with a model holds its picture and a data block, <script type="application/json" data-model>. The picture stays
 // where there is no WebGL, and on paper. A figure's data-turnable is "waiting", "ready" or, without WebGL, "still"; that of
-// the whole page is "ready" as soon as all models near the visible part are drawn. Tests read window.alulaViewer.
+// the whole page is "ready" as soon as all models near the visible part are drawn.
+//
+// Tests read window.alulaViewer.models: each has name, kind, figure and start(), which returns what it is made of. Of a link:
+// nodes (how many), value(node) with value, unit, place and displacement, screen(node) with x and y in the window and
+// whether it is seen, hottest() (node of the largest stress), take(variant), reading() and legend() (texts), and its stage.
 
 import { element } from "./elements.js";
 import { startLink } from "./link.js";

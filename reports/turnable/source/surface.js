@@ -21,7 +21,7 @@ uniform float coloured;
 varying float share;
 varying vec3 across;
 void main() {
-  float light = min(0.55 + 0.5 * abs(normalize(across).z), 1.0);
+  float light = min(0.62 + 0.42 * abs(normalize(across).z), 1.0);
   float place = (clamp(share, 0.0, 1.0) * 255.0 + 0.5) / 256.0;
   vec3 colour = mix(plain, texture2D(colours, vec2(place, 0.5)).rgb, coloured);
   gl_FragColor = vec4(colour * light, 1.0);
@@ -116,6 +116,15 @@ export class Surface {
   node(number) {
     this.group.updateWorldMatrix(true, false);
     return new Vector3().fromBufferAttribute(this.body.attributes.position, number).applyMatrix4(this.group.matrixWorld);
+  }
+
+  /** Whether a ray through a node meets it first, or what lies less than a thousandth of the body before it. */
+  seen(node, ray) {
+    const found = this.pick(ray);
+    if (!found) return true; // on the outline
+    const before = this.node(node).sub(ray.origin).dot(ray.direction) - found.distance;
+    if (!this.body.boundingSphere) this.body.computeBoundingSphere();
+    return found.node === node || before < 1e-3 * this.body.boundingSphere.radius;
   }
 
   /**

@@ -1,6 +1,8 @@
 """Models that a reader can turn: what the page holds of them is what the solid's solution says."""
 
 import base64
+import hashlib
+import html.parser
 import json
 import re
 import shutil
@@ -8,6 +10,11 @@ import shutil
 import numpy as np
 import pytest
 
+from fea.solid.stress import stress_field
+from reports.figures.figures import colours
+from reports.page.html import render
+from reports.tables.record import as_json
+from reports.turnable.link import link_models, link_name
 from reports.turnable.pack import data_block, indices, quantised
 from reports.turnable.script import FOLDER, built_from, sources_digest, viewer
 from reports.turnable.surface import cut_surface
@@ -101,3 +108,141 @@ def test_a_round_wall_of_few_curved_faces_is_not_cut():
     assert len(curved.edges) == 2 * 12  # both rims, two pieces for each face
     plane = cut_surface(points, np.array(faces)[:, :3])
     assert len(plane.nodes) > 12
+
+
+@pytest.fixture(scope="module")
+def record(result):
+    """The model of the owl wing's link GF as the page holds it."""
+    models = link_models(result)
+    assert list(models) == [link_name("GF")]  # the others are no solids
+    return json.loads(models[link_name("GF")])
+
+
+def fields(record, place):
+    """Positions, displacements and stresses of a variant, as a browser has them."""
+    variant = record["variants"][place]
+    return (
+        unpacked(record["nodes"], 3),
+        unpacked(variant["displacement"], 3),
+        unpacked(variant["values"], 1)[:, 0],
+    )
+
+
+def test_every_variant_has_its_own_stress_and_displacements_at_the_nodes(record, result):
+    link = result.load_cases["weight"].links["GF"]
+    solid, space = link.solution, link.solution.space
+    cases = [case for case in solid.cases if case.load == link.governing_case.load]
+    assert [variant["title"] for variant in record["variants"]] == [peak.title for peak in link.variants]
+    for place, case in enumerate(cases):
+        nodes, moved, values = fields(record, place)
+        near = np.linalg.norm(space.nodes[:, None] - nodes[None], axis=2).argmin(axis=0)
+        assert np.abs(space.nodes[near] - nodes).max() < 1e-5 * np.ptp(space.nodes[:, 0])
+        stress = stress_field(space, case.displacement, E=solid.E, nu=solid.nu).von_mises
+        assert np.abs(values - stress[near]).max() < 1e-5 * stress.max()
+        assert np.abs(moved - case.displacement[near]).max() < 1e-5 * np.abs(case.displacement).max()
+        hottest = record["variants"][place]["hottest"]
+        assert values[hottest] == pytest.approx(link.variants[place].von_mises, rel=1e-4)
+
+
+def test_the_legend_agrees_with_result_json(record, result):
+    told = json.loads(as_json(result))["load_cases"]["weight"]["links"]["GF"]
+    assert record["top"] == pytest.approx(told["von_mises_max"]["value"], rel=1e-9)
+    governing = record["variants"][record["governing"]]
+    assert governing["peak"][0].startswith(f"largest: {told['von_mises_max']['value']:.4f}"[:14])
+    assert governing["largest"] == pytest.approx(told["displacement_max"]["value"], rel=1e-9)
+    nodes, _, values = fields(record, record["governing"])
+    assert np.linalg.norm(nodes[np.argmax(values)] - told["location"]) < 1e-3
+    assert (record["measure"], record["unit"]) == ("von Mises stress", "MPa")
+
+
+def test_displacements_are_relative_to_the_line_through_the_pins(record):
+    """Material about the bores of both pins stays in the mean where it was, across the line through them."""
+    nodes, moved, _ = fields(record, record["governing"])
+    for x, y in (record["points"]["G"], record["points"]["F"]):
+        bore = np.abs(np.hypot(nodes[:, 0] - x, nodes[:, 1] - y) - 0.75) < 0.01
+        assert bore.sum() > 8
+        assert abs(moved[bore, 1].mean()) < 0.05 * np.abs(moved).max()
+
+
+def test_the_surface_is_that_of_the_solid(record, result):
+    """Its triangles are closed but for the cuts, and enclose the volume of the mesh (Gauss's theorem)."""
+    space = result.load_cases["weight"].links["GF"].solution.space
+    nodes, _, _ = fields(record, 0)
+    faces = np.frombuffer(base64.b64decode(record["faces"]["data"]), dtype="<u2").reshape(len(space.boundary), -1)
+    a, b, c = np.moveaxis(nodes[faces[:, :3]], 1, 0)
+    p, q, r, s = np.moveaxis(space.nodes[space.cells[:, :4]], 1, 0)
+    volume = np.einsum("ij,ij->i", q - p, np.cross(r - p, s - p)).sum() / 6.0
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0 == pytest.approx(volume, rel=1e-4)
+
+
+def test_colours_are_those_of_the_picture(record):
+    fixed = np.array([[int(text[k : k + 2], 16) for k in (0, 2, 4)] for text in record["colours"]])
+    assert fixed.shape == (9, 3)
+    assert (fixed[[0, 4, 8]] == [[255, 255, 204], [253, 141, 60], [128, 0, 38]]).all()  # YlOrRd of ColorBrewer
+    assert (colours()[[0, -1]] == fixed[[0, -1]]).all()
+
+
+class _Sealed(html.parser.HTMLParser):
+    """Collects what a policy speaks of: styles, scripts that run, data blocks, and the policy itself."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.held, self.inside, self.policy, self.inline = {"style": [], "run": [], "data": []}, None, "", []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        given = dict(attributes)
+        self.inline += [name for name in given if name == "style" or name.startswith("on")]
+        if tag == "meta" and given.get("http-equiv") == "Content-Security-Policy":
+            self.policy = given["content"]
+        if tag == "style":
+            self.inside = "style"
+        if tag == "script":
+            self.inside = "data" if given.get("type") == "application/json" else "run"
+
+    def handle_endtag(self, tag):
+        self.inside = None
+
+    def handle_data(self, data):
+        if self.inside:
+            self.held[self.inside].append(data)
+
+
+def digest(text):
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def rules_of(page):
+    return {name: values for name, *values in (rule.split() for rule in page.policy.split(";"))}
+
+
+def test_the_page_may_run_and_load_only_what_alula_put_into_it(result):
+    page = _Sealed(render(result, {}, models=link_models(result)))
+    [style], [script], [_] = page.held["style"], page.held["run"], page.held["data"]
+    assert script == viewer()
+    assert rules_of(page) == {
+        "default-src": ["'none'"],
+        "script-src": [digest(script)],
+        "style-src": [digest(style)],
+        "img-src": ["data:"],
+        "base-uri": ["'none'"],
+        "form-action": ["'none'"],
+    }
+    assert page.inline == []
+
+
+def test_a_page_without_models_runs_nothing(result):
+    page = _Sealed(render(result, {}))
+    assert page.held["run"] == page.held["data"] == []
+    assert rules_of(page)["script-src"] == ["'none'"]
+
+
+def test_names_in_a_model_run_nothing(result, record):
+    """A link of this name is refused where a case is read; here it is in the page all the same."""
+    hostile = "</script><script>alert(1)</script><style>*{}</style>"
+    block = data_block(record | {"name": hostile, "points": {hostile: [0.0, 0.0]}})
+    page = _Sealed(render(result, {}, models={link_name("GF"): block}))
+    assert page.held["run"] == [viewer()]
+    assert len(page.held["style"]) == 1
+    assert json.loads(page.held["data"][0])["name"] == hostile
