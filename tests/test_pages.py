@@ -31,6 +31,14 @@ def test_slow_commands_of_a_page(page: Path, tmp_path: Path) -> None:
     Reader(tmp_path, patient=True).follow(page)
 
 
+def test_cases_to_start_from_are_there() -> None:
+    named = [
+        name for page in PAGES for name in re.findall(r"alula new --from ([\w-]+)", page.read_text(encoding="utf-8"))
+    ]
+    assert named
+    assert all(read_case(name).links for name in named)
+
+
 def test_numbers_of_the_tutorial_are_printed_there() -> None:
     """Every number with decimals or a unit in the running text stands in a block, which the tests above run."""
     text = TUTORIAL.read_text(encoding="utf-8")
