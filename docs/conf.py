@@ -6,7 +6,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from docs.extensions.gallery import not_run, run_pattern  # noqa: E402 - the path comes first
+from docs.extensions.gallery import NOT_RUN_PICTURE, not_run, run_pattern  # noqa: E402 - the path comes first
 from geometry.base.version import alula_version  # noqa: E402
 
 project = "alula"
@@ -41,7 +41,7 @@ sphinx_gallery_conf = {
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": ("docs.extensions.gallery.pictures",),
     "reset_modules": (),  # no script changes settings of a library
-    "default_thumb_file": str(ROOT / "docs/images/owl-wing-linkage.png"),  # of scripts that are not run
+    "default_thumb_file": str(NOT_RUN_PICTURE),
     "download_all_examples": False,
     "show_signature": False,
     "min_reported_time": 1e9,  # times belong to the benchmarks

@@ -18,7 +18,7 @@ from docs.extensions import case_file, gallery, python
 from docs.extensions.entries import tables
 from docs.extensions.examples import STARTER_PLAN, Text, of_text, stretches
 from docs.extensions.index import sections
-from docs.extensions.links import OUTSIDE, moved
+from docs.extensions.links import OUTSIDE, moved, remove_others
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.plans.plan import StudyPlan, plan_of
@@ -41,6 +41,14 @@ def test_links_follow_a_page_to_where_the_site_has_it() -> None:
     assert moved(text, source, target) == (
         "[a](../../parts.md#forks) ![b](../../images/fork.png) [c](changelog.md) [d](https://example.org) [e](#here)"
     )
+
+
+def test_pages_of_what_is_gone_are_removed(tmp_path: Path) -> None:
+    for name in ("index.rst", "old.rst", "old.py.md5", "new.rst"):
+        (tmp_path / name).touch()
+    (tmp_path / "images").mkdir()
+    remove_others(tmp_path, {"index", "new"})
+    assert {file.name for file in tmp_path.iterdir()} == {"index.rst", "new.rst", "images"}
 
 
 def test_slow_examples_are_not_run_unless_asked_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

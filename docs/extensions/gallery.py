@@ -11,6 +11,8 @@ from reports.notebook.shown import Picture
 FOLDER = DOCS / "gallery"
 SLOW = re.compile(r"^# slow: .+$", re.M)
 """The line by which a script says that it takes too long for `make docs`, and how long."""
+NOT_RUN_PICTURE = GENERATED / "not-run.png"
+"""Stands in the list for a script that was not run and names no picture."""
 _NOT_RUN = """
 .. note::
 
@@ -46,6 +48,17 @@ def run_pattern(slow: tuple[str, ...]) -> str:
         A regular expression.
     """
     return rf"/(?!(?:{'|'.join(slow)})\.py$)[^/]+\.py$" if slow else r"\.py$"
+
+
+def draw_not_run() -> None:
+    """Draw the picture of scripts that were not run."""
+    from PIL import Image, ImageDraw, ImageFont
+
+    picture = Image.new("RGB", (400, 280), "#f2f4f6")
+    text, font = "not run for this page", ImageFont.load_default(28)
+    ImageDraw.Draw(picture).text((200, 140), text, fill="#6b7280", font=font, anchor="mm")
+    NOT_RUN_PICTURE.parent.mkdir(exist_ok=True)
+    picture.save(NOT_RUN_PICTURE)
 
 
 def pictures(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 import os
 import re
+from collections.abc import Collection
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parents[1]
@@ -63,3 +64,18 @@ def write_changed(file: Path, text: str) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
     if not file.exists() or file.read_text(encoding="utf-8") != text:
         file.write_text(text, encoding="utf-8")
+
+
+def remove_others(folder: Path, stems: Collection[str]) -> None:
+    """Remove pages of former builds whose entry or script is gone.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of generated pages.
+    stems : collection of str
+        Names of the pages that are made now, without suffix.
+    """
+    for file in folder.glob("*"):
+        if file.is_file() and file.name.partition(".")[0] not in stems:
+            file.unlink()

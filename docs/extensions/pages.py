@@ -1,5 +1,6 @@
 """Sphinx's hooks: pages are generated before it reads any, and links are turned while it reads."""
 
+from pathlib import Path
 from typing import Any
 
 from pygments.lexers.special import TextLexer
@@ -10,9 +11,13 @@ from docs.extensions import case_file, commands, gallery, index, links, python
 
 def _generate(app: Sphinx) -> None:
     """Write the pages that are made from the program and from files outside of docs/."""
+    gallery.draw_not_run()
     links.copy_outside_pages()
-    for path, text in case_file.pages().items():
+    written = case_file.pages()
+    for path, text in written.items():
         links.write_changed(links.GENERATED / path, text)
+    links.remove_others(links.GENERATED / "case-file", {Path(path).stem for path in written})
+    links.remove_others(links.GENERATED / "gallery", {"index", *(file.stem for file in gallery.FOLDER.glob("*.py"))})
     links.write_changed(links.GENERATED / "commands.md", commands.page())
     links.write_changed(links.GENERATED / "python.rst", python.page())
 
