@@ -82,6 +82,7 @@ def link_model(name: str, link: SolidResult, points: Mapping[str, tuple[float, f
         "points": {point: list(at) for point, at in points.items()},
         "high": float(high[2]),
         "corners": [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])],
+        "close": scene.close.half_height,
         "toward": scene.strip.toward.tolist(),
         "up": scene.strip.up.tolist(),
         "nodes": quantised(space.nodes[cut.nodes]),

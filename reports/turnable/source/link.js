@@ -2,7 +2,7 @@
 
 import { Vector3 } from "three";
 import { indices, reals } from "./data.js";
-import { choice, element, slider } from "./elements.js";
+import { button, choice, element, slider } from "./elements.js";
 import { Legend } from "./legend.js";
 import { Stage } from "./stage.js";
 import { Surface, colourTexture, trianglesOf } from "./surface.js";
@@ -56,6 +56,13 @@ export function startLink(holder, record) {
     stage.redraw();
   }
 
+  function face(node) {
+    const toward = new Vector3(...record.toward);
+    const free = surface.freeDirection(node, toward);
+    point(node);
+    stage.aim(surface.node(node), free ?? toward, record.close, free === null); // inside of a hollow body: cut open
+  }
+
   function pickAt(event) {
     const box = stage.canvas.getBoundingClientRect();
     const found = surface.pick(stage.ray(event.clientX - box.left, event.clientY - box.top));
@@ -67,6 +74,7 @@ export function startLink(holder, record) {
   });
   stage.canvas.addEventListener("click", pickAt);
   stage.picture.after(reading);
+  stage.tools.append(button("Largest stress", "Show the place of the largest stress", () => face(variant.hottest)));
   if (variants.length > 1) {
     stage.tools.append(choice("Variant", variants.map(({ title }, place) => title + (place === record.governing ? " (value)" : "")), record.governing, take));
   }
@@ -104,7 +112,10 @@ export function startLink(holder, record) {
     },
     reading: () => reading.textContent,
     legend: () => legend.box.innerText,
-    take,
+    face: (node) => {
+      face(node);
+      stage.draw();
+    },
     hottest: () => variant.hottest,
   };
 }

@@ -6,7 +6,7 @@
 //
 // Tests read window.alulaViewer.models: each has name, kind, figure and start(), which returns what it is made of. Of a link:
 // nodes (how many), value(node) with value, unit, place and displacement, screen(node) with x and y in the window and
-// whether it is seen, hottest() (node of the largest stress), take(variant), reading() and legend() (texts), and its stage.
+// whether it is seen, hottest() (node of the largest stress), face(node) (looks at it from near), reading() and legend() (texts), and its stage.
 
 import { element } from "./elements.js";
 import { startLink } from "./link.js";

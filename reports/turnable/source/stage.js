@@ -73,6 +73,7 @@ export class Stage {
 
   /** Return to the first view. */
   reset() {
+    this.cut = false;
     this.camera.quaternion.copy(this.first);
     const back = this.first.clone().invert();
     const seen = this.points.map((point) => point.clone().applyQuaternion(back));
@@ -85,6 +86,16 @@ export class Stage {
     this.radius = Math.max(...this.points.map((point) => point.distanceTo(this.target)));
     this.halves = [(right - left) / 2, (high - low) / 2];
     this.fit = true;
+    this.redraw();
+  }
+
+  /** Look at a point [mm] from a direction, with so much to be seen above and below it [mm]; `cut` takes away what is before it. */
+  aim(point, toward, halfHeight, cut = false) {
+    this.camera.position.set(0, 0, 0);
+    this.camera.up.copy(Math.abs(toward.y) < 0.95 ? Y : X);
+    this.camera.lookAt(toward.clone().negate());
+    this.target.copy(point);
+    Object.assign(this, { halfHeight, cut, fit: false });
     this.redraw();
   }
 
@@ -138,6 +149,7 @@ export class Stage {
     pen.drawImage(size, 0, 0);
     pen.scale(ratio, ratio);
     this.bar(pen, height);
+    if (this.cut) this.write(pen, "cut open", 12, 16);
     for (const overlay of this.overlays) overlay(pen, this);
   }
 
@@ -145,7 +157,7 @@ export class Stage {
     const camera = this.camera;
     const away = 10 * this.radius + this.target.length();
     Object.assign(camera, { left: -this.halfHeight * aspect, right: this.halfHeight * aspect, top: this.halfHeight,
-      bottom: -this.halfHeight, near: away - 2 * this.radius - this.halfHeight, far: away + 2 * this.radius + this.halfHeight });
+      bottom: -this.halfHeight, near: away - (this.cut ? this.radius / 1000 : 2 * this.radius + this.halfHeight), far: away + 2 * this.radius + this.halfHeight });
     camera.position.set(0, 0, away).applyQuaternion(camera.quaternion).add(this.target);
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();

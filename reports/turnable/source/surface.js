@@ -127,6 +127,19 @@ export class Surface {
     return found.node === node || before < 1e-3 * this.body.boundingSphere.radius;
   }
 
+  /** A direction from which a node is seen, as near to its normal and to the viewer's direction as may be; null if there is none. */
+  freeDirection(node, toward) {
+    this.group.updateWorldMatrix(true, false);
+    const normal = new Vector3().fromBufferAttribute(this.body.attributes.normal, node).transformDirection(this.group.matrixWorld);
+    this.body.computeBoundingSphere();
+    const [at, away] = [this.node(node), 4 * this.body.boundingSphere.radius];
+    const round = Array.from({ length: 150 }, (_, k) => new Vector3().setFromSphericalCoords(1, Math.acos(1 - (k + 0.5) / 75), k * Math.PI * (1 + Math.sqrt(5))));
+    const facing = (one) => one.dot(normal);
+    return [toward, ...round].filter((one) => facing(one) > 0.25)
+      .sort((one, other) => facing(other) + 0.4 * other.dot(toward) - facing(one) - 0.4 * one.dot(toward))
+      .find((one) => this.seen(node, { origin: at.clone().addScaledVector(one, away), direction: one.clone().negate() })) ?? null;
+  }
+
   /**
    * The first triangle that a ray meets: { distance, node } with the nearest of its nodes, or null.
    *
