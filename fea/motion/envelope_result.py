@@ -84,6 +84,26 @@ class LinkFatigue:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class StressAlong:
+    """The decisive stress along a link under one load case, of the variant that governs.
+
+    Attributes
+    ----------
+    first, last : float
+        x between which the stretches lie, all of one length, in the link's frame [mm].
+    poses : ndarray of int, shape (k,)
+        Numbers of the poses, rising.
+    stress : ndarray, shape (k, stretches)
+        Largest of all nodes of a stretch at each pose [MPa].
+    """
+
+    first: float
+    last: float
+    poses: NDArray[np.int64]
+    stress: Real
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class LoadCaseEnvelope:
     """A link over the motion under one load case.
 
@@ -104,6 +124,8 @@ class LoadCaseEnvelope:
     fatigue : LinkFatigue or None
     discretisation : Discretisation or None
         What the meshes leave open, judged at the worst pose of the first mesh; None for one mesh alone.
+    along : StressAlong or None
+        Where the stress is; None where the peak has no limit.
     """
 
     name: str
@@ -118,6 +140,7 @@ class LoadCaseEnvelope:
     location: Real
     fatigue: LinkFatigue | None
     discretisation: Discretisation | None
+    along: StressAlong | None = None
 
     @property
     def known(self) -> bool:

@@ -12,6 +12,7 @@ from fea.common.scatter import Scatter, strength_scatter
 from fea.common.source import Source, SourceKind, distinct, pin_sources
 from fea.elements.space import DisplacementSpace
 from fea.elements.supports import LineReference
+from fea.motion.along import stress_along
 from fea.motion.critical import critical_nodes
 from fea.motion.envelope_result import LinkEnvelope, LinkFatigue, LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import closed_history, fatigue_life, missing_data, not_closed, strength_at
@@ -224,6 +225,9 @@ class LinkMotion:
             series, load = MeshFactors.of(refined, name, material), (scatter or {}).get(name, Scatter())
             own = self._estimated(self._by_meshes(name, curves, series), series)
             own = _scattered(own, material, load)
+            if own.known:
+                along = stress_along(solved, own.governing, self.evaluated, brittle=material.brittle)
+                own = replace(own, along=along)
             if not lacking and own.known:
                 own = replace(own, fatigue=self._fatigue(own, series, load, repetitions))
             found[name] = own

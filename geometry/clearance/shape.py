@@ -95,7 +95,7 @@ class Shape:
         return shapely.union_all([core.polygon for core in self.cores])
 
 
-def link_shape(name: str, body: Body, planes: Sequence[float]) -> Shape:
+def link_shape(name: str, body: Body, planes: Sequence[float], *, without: int = 0) -> Shape:
     """Return the outline of a link.
 
     Parameters
@@ -106,14 +106,16 @@ def link_shape(name: str, body: Body, planes: Sequence[float]) -> Shape:
         Its body.
     planes : sequence of float
         z of its mid-plane; of both, where it is doubled [mm].
+    without : int, optional
+        How many of its first footprints are left out, and with any of them the fillets at them.
 
     Returns
     -------
     Shape
         In the frame of the link.
     """
-    solid = [_core(piece) for piece in body.part.footprints(body)]
-    if body.part.is_beam and body.part.fillet_radius > 0.0:
+    solid = [_core(piece) for piece in body.part.footprints(body)[without:]]
+    if body.part.is_beam and body.part.fillet_radius > 0.0 and not without:
         solid += _fillets(solid, body.part.fillet_radius)
     forked = [core for piece in solid for core in _forked(piece, body)]
     cores = [replace(core, low=plane + core.low, high=plane + core.high) for plane in planes for core in forked]

@@ -72,12 +72,14 @@ def write_report(
     from reports.page.html import render
     from reports.page.pictures import draw_pictures
     from reports.turnable.link import link_models
+    from reports.turnable.moving import LINKAGE, check_linkage
+    from reports.turnable.pack import data_block
 
     def fill(folder: Path) -> None:
         with ThreadPoolExecutor(1) as beside:
             drawn = beside.submit(draw_pictures, result, progress)
             _write_fields(result, folder / FIELDS)
-            models = link_models(result)
+            models = link_models(result) | {LINKAGE: data_block(check_linkage(result))}
             pictures, warnings = drawn.result()
         told = replace(result, warnings=(*result.warnings, *warnings))
         for warning in warnings:

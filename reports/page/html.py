@@ -31,6 +31,7 @@ from reports.tables.meshes import solver_sentence
 from reports.tables.record import worst_load_case
 from reports.tables.springs import holding_sentence, spring_sentences
 from reports.turnable.link import link_name
+from reports.turnable.moving import CHECK_CAPTION, LINKAGE
 from reports.turnable.script import viewer
 from reports.words.wording import agreement, apart, checks_of, headline, named, plain, turning
 
@@ -128,6 +129,9 @@ def render(
         published=published,
         not_covered=not_covered(result),
         design=design_of(result.case),
+        linkage_model=models.get(LINKAGE),
+        linkage_caption=CHECK_CAPTION,
+        linkage_still="",
     )
 
 

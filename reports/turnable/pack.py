@@ -51,6 +51,22 @@ def indices(numbers: NDArray[np.int64]) -> dict[str, Any]:
     return {"columns": numbers.shape[1], "bits": bits, "data": _text(numbers.astype(f"<u{bits // 8}"))}
 
 
+def shades(shares: NDArray[np.float64]) -> str:
+    """Pack shares of a range in 8 bits each, since a legend has 256 colours.
+
+    Parameters
+    ----------
+    shares : array
+        From 0 to 1; what lies beyond has the last colour.
+
+    Returns
+    -------
+    str
+        Base64 of bytes, row by row.
+    """
+    return _text(np.rint(255.0 * np.clip(shares, 0.0, 1.0)).astype(np.uint8))
+
+
 def data_block(record: Mapping[str, Any]) -> str:
     """Return a record as JSON for a ``<script type="application/json">``, whatever its texts hold.
 

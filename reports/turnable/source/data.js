@@ -16,3 +16,8 @@ export function reals({ low, high, data }) {
 export function indices({ bits, data }) {
   return bits === 16 ? new Uint16Array(bytes(data)) : new Uint32Array(bytes(data));
 }
+
+/** Places among the 256 colours of a legend. */
+export function shades(text) {
+  return new Uint8Array(bytes(text));
+}

@@ -10,9 +10,10 @@
 
 import { element } from "./elements.js";
 import { startLink } from "./link.js";
+import { startLinkage } from "./linkage.js";
 import { renderer } from "./stage.js";
 
-const STARTS = { link: startLink };
+const STARTS = { link: startLink, linkage: startLinkage };
 const NEAR = "300px";
 const page = document.documentElement.dataset;
 

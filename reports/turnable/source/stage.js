@@ -43,7 +43,6 @@ export class Stage {
     this.camera = new OrthographicCamera();
     this.target = new Vector3();
     this.halfHeight = 1;
-    this.points = [];
     this.overlays = []; // functions of (2D context, stage) that write on the picture
     this.canvas = element("canvas", { tabindex: "0", role: "application", "aria-label": label, "aria-describedby": "" });
     const help = element("p", { class: "help", id: `turnable-help-${(turns += 1)}` }, HELP);
@@ -63,29 +62,36 @@ export class Stage {
 
   /** Set the first view: the points [[x, y, z], ...] to be seen, and the directions to the viewer and up. */
   look(points, toward, up) {
-    this.points = points.map((point) => new Vector3(...point));
     this.camera.position.set(0, 0, 0);
     this.camera.up.set(...up);
     this.camera.lookAt(new Vector3(...toward).negate());
     this.first = this.camera.quaternion.clone();
-    this.reset();
+    this.fit = true;
+    this.frame(points);
   }
 
   /** Return to the first view. */
   reset() {
     this.cut = false;
     this.camera.quaternion.copy(this.first);
-    const back = this.first.clone().invert();
-    const seen = this.points.map((point) => point.clone().applyQuaternion(back));
-    const range = (axis) => [Math.min(...seen.map((point) => point[axis])), Math.max(...seen.map((point) => point[axis]))];
-    const [[left, right], [low, high]] = [range("x"), range("y")];
-    this.target.set((left + right) / 2, (low + high) / 2, 0).applyQuaternion(this.first);
-    const middle = this.points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(this.points.length);
-    const toward = new Vector3(0, 0, 1).applyQuaternion(this.first);
-    this.target.addScaledVector(toward, middle.sub(this.target).dot(toward)); // turns about the middle of the model
-    this.radius = Math.max(...this.points.map((point) => point.distanceTo(this.target)));
-    this.halves = [(right - left) / 2, (high - low) / 2];
     this.fit = true;
+    this.frame(this.seen);
+  }
+
+  /** Show the points [[x, y, z], ...]; a reader who has moved or scaled the model keeps the view. */
+  frame(points) {
+    this.seen = points;
+    const corners = points.map((point) => new Vector3(...point));
+    if (this.fit) {
+      const turned = this.camera.quaternion;
+      const back = turned.clone().invert();
+      const seen = corners.map((point) => point.clone().applyQuaternion(back));
+      const range = (axis) => [Math.min(...seen.map((point) => point[axis])), Math.max(...seen.map((point) => point[axis]))];
+      const [[left, right], [low, high], [far, near]] = ["x", "y", "z"].map(range);
+      this.target.set((left + right) / 2, (low + high) / 2, (far + near) / 2).applyQuaternion(turned); // turns about the middle
+      this.halves = [(right - left) / 2, (high - low) / 2];
+    }
+    this.radius = Math.max(...corners.map((point) => point.distanceTo(this.target)));
     this.redraw();
   }
 
@@ -118,6 +124,7 @@ export class Stage {
   /** Move the model by pixels of the page. */
   pan(right, down) {
     const size = (2 * this.halfHeight) / this.canvas.clientHeight;
+    this.fit = false;
     this.target.add(new Vector3(-right * size, down * size, 0).applyQuaternion(this.camera.quaternion));
     this.redraw();
   }

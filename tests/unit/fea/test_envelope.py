@@ -1,6 +1,7 @@
 """Envelopes of a crank-rocker: its loads over the motion, peaks among all nodes, dead points, verdicts, output."""
 
 import csv
+import itertools
 import json
 import math
 from dataclasses import replace
@@ -438,6 +439,22 @@ def test_curves_and_record_tell_the_same(result, tmp_path):
     assert told["verdict"] == result.verdict.value
     assert "small enough for a factorisation" in told["links"]["rocker"]["solver_reason"]
     assert 0.0 <= told["links"]["rocker"]["solver_error"] < 1e-8
+
+
+def test_stress_along_a_link_is_that_of_its_field(result):
+    """At the worst pose it is the stress of the nodes of each stretch; at every pose the largest is the curve's."""
+    link = result.links["rocker"]
+    for found in link.load_cases.values():
+        along = found.along
+        assert np.array_equal(along.poses, np.arange(25))
+        assert along.stress.max(axis=1) == pytest.approx(found.governing.stress, rel=1e-9)
+    worst = link.worst.along
+    x, stress = link.field.space.nodes[:, 0], link.field.von_mises
+    edges = np.linspace(worst.first, worst.last, worst.stress.shape[1] + 1)
+    edges[-1] += 1.0
+    of_field = [stress[(a <= x) & (x < b)].max() for a, b in itertools.pairwise(edges)]
+    assert worst.stress.shape[1] > 10
+    assert worst.stress[link.worst.pose] == pytest.approx(of_field, rel=1e-6)
 
 
 def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch):
