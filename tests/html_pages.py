@@ -38,7 +38,11 @@ def stands_alone(page: Page, beside: tuple[str, ...] = ()) -> None:
         assert tag not in ("link", "iframe", "object")
         assert (tag, name) != ("script", "src")
         if name in ("src", "href", "srcset", "style"):
-            assert value.startswith(("data:image/png;base64,", "#")) or value in beside, (tag, name, value)
+            assert value.startswith(("data:image/png;base64,", "data:image/webp;base64,", "#")) or value in beside, (
+                tag,
+                name,
+                value,
+            )
     assert "url(" not in page.source
     assert "@import" not in page.source
     ids = [value for _, name, value in page.attributes if name == "id"]

@@ -70,7 +70,7 @@ def write_report(
         As ``write_folder``.
     """
     from reports.page.html import render
-    from reports.page.pictures import draw_pictures
+    from reports.page.pictures import draw_pictures, repacked
     from reports.turnable.link import link_models
     from reports.turnable.moving import LINKAGE, check_linkage
     from reports.turnable.pack import data_block
@@ -85,7 +85,9 @@ def write_report(
         for warning in warnings:
             progress(f"Warning: {warning}")
         published = write_claims(told, folder, REPORT)
-        (folder / REPORT).write_text(render(told, pictures, published, models), encoding="utf-8")
+        stresses = pictures.keys() & set(map(stress_name, result.case.checked_links))
+        packed = {name: repacked(pictures[name]) for name in stresses}
+        (folder / REPORT).write_text(render(told, {**pictures, **packed}, published, models), encoding="utf-8")
         (folder / MARK).write_text(as_json(told) + "\n", encoding="utf-8")
         (folder / PICTURES).mkdir()
         for name, picture in pictures.items():

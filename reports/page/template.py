@@ -54,7 +54,7 @@ def fill(template: str, *, styles: tuple[str, ...] = ("report.css",), script: st
 
 
 def data_uri(picture: bytes) -> str:
-    """Return a PNG as a data URI.
+    """Return a PNG or a WebP as a data URI.
 
     Parameters
     ----------
@@ -64,4 +64,5 @@ def data_uri(picture: bytes) -> str:
     -------
     str
     """
-    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
+    kind = "webp" if picture.startswith(b"RIFF") else "png"
+    return f"data:image/{kind};base64," + base64.b64encode(picture).decode("ascii")

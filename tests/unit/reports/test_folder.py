@@ -1,6 +1,10 @@
+import base64
+import io
 import json
+import re
 
 import pytest
+from PIL import Image
 
 from reports.figures import figures
 from reports.page.folder import report_names, write_report
@@ -24,7 +28,16 @@ def test_the_folder_is_complete(result, tmp_path):
         assert (tmp_path / "out" / name).read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "out" / "report.html").read_text(encoding="utf-8").count("<img") == len(pictures)
     assert json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))["case"] == "owl-wing-static"
+    _is_repacked_without_loss(tmp_path / "out" / "pictures" / "stress-GF.png", tmp_path / "out" / "report.html")
     assert said == ["Drawing the linkage, the internal forces and the stress plots ..."]
+
+
+def _is_repacked_without_loss(picture, page):
+    """The page's picture of the stress has the same pixels in fewer bytes."""
+    [packed] = map(base64.b64decode, re.findall(r"data:image/webp;base64,([^\"]*)", page.read_text(encoding="utf-8")))
+    assert len(packed) < 0.8 * picture.stat().st_size
+    with Image.open(io.BytesIO(packed)) as found, Image.open(picture) as drawn:
+        assert found.convert("RGB").tobytes() == drawn.convert("RGB").tobytes()
 
 
 @pytest.mark.usefixtures("without_renderer")
