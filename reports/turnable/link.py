@@ -71,6 +71,8 @@ def link_model(name: str, link: SolidResult, points: Mapping[str, tuple[float, f
     scene, space = scene_of(link), link.solution.space
     cut = cut_surface(space.nodes, space.boundary)
     cases = [case for case in link.solution.cases if case.load == link.governing_case.load]
+    named: list[tuple[int, str | None]] = [(case.span, case.transfer) for case in cases]
+    governing = named.index((link.governing.span, link.governing.transfer))
     low, high = space.nodes.min(axis=0), space.nodes.max(axis=0)
     return {
         "name": name,
@@ -88,18 +90,24 @@ def link_model(name: str, link: SolidResult, points: Mapping[str, tuple[float, f
         "nodes": quantised(space.nodes[cut.nodes]),
         "faces": indices(cut.faces),
         "edges": indices(cut.edges),
-        "governing": link.variants.index(link.governing),
+        "governing": governing,
         "variants": [
-            _variant(link, scene, cut, case.displacement, peak) for case, peak in zip(cases, link.variants, strict=True)
+            _variant(link, scene, cut, case.displacement, peak, governs=place == governing)
+            for place, (case, peak) in enumerate(zip(cases, link.variants, strict=True))
         ],
     }
 
 
 def _variant(
-    link: SolidResult, scene: Scene, cut: CutSurface, displacement: NDArray[np.float64], peak: VariantPeak
+    link: SolidResult,
+    scene: Scene,
+    cut: CutSurface,
+    displacement: NDArray[np.float64],
+    peak: VariantPeak,
+    *,
+    governs: bool,
 ) -> dict[str, Any]:
     """Return title, peak and fields of one variant."""
-    governs = displacement is link.governing_case.displacement
     solid = link.solution
     field = link.stress if governs else stress_field(solid.space, displacement, E=solid.E, nu=solid.nu)
     values = field.decisive(brittle=link.brittle)

@@ -4,17 +4,20 @@ import base64
 import hashlib
 import html.parser
 import json
+import math
 import re
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from mesh_states import state
 
 from fea.solid.stress import stress_field
 from reports.figures.figures import colours
 from reports.page.html import render
 from reports.tables.record import as_json
-from reports.turnable.link import link_models, link_name
+from reports.turnable.link import link_model, link_models, link_name
 from reports.turnable.pack import data_block, indices, quantised
 from reports.turnable.script import FOLDER, built_from, sources_digest, viewer
 from reports.turnable.surface import cut_surface
@@ -153,6 +156,25 @@ def test_the_legend_agrees_with_result_json(record, result):
     nodes, _, values = fields(record, record["governing"])
     assert np.linalg.norm(nodes[np.argmax(values)] - told["location"]) < 1e-3
     assert (record["measure"], record["unit"]) == ("von Mises stress", "MPa")
+
+
+def test_a_singular_peak_sets_no_colours_and_is_no_number(result):
+    """Colours end at the stress beside the sharp edge, a tip tells that values lie beyond, and no number."""
+    link = result.load_cases["weight"].links["GF"]
+    beside = 0.5 * float(link.stress.von_mises.max())
+    peaks = tuple(replace(peak, von_mises=math.nan, principal=math.nan) for peak in link.variants)
+    governing = link.variants.index(link.governing)
+    singular = replace(
+        link,
+        discretisation=state("singular", beside),
+        variants=peaks,
+        governing=replace(peaks[governing], von_mises=float("nan")),
+    )
+    record = link_model("GF", singular, {})
+    assert record["top"] == pytest.approx(beside)
+    for variant in record["variants"]:
+        assert variant["peak"][0].startswith("largest: no result, singular at a sharp edge at x = ")
+        assert variant["beyond"]
 
 
 def test_displacements_are_relative_to_the_line_through_the_pins(record):
