@@ -55,7 +55,7 @@ def drive_angle(result: EnvelopeResult, pose: int) -> float:
 def write_envelope(
     result: EnvelopeResult, target: Path, *, progress: Callable[[str], None] = lambda message: None
 ) -> None:
-    """Write ``result.json``, ``envelope.csv``, ``envelope.png``, ``vtu/<link>.vtu`` and ``pictures/stress-<link>.png``.
+    """Write ``envelope.html``, ``result.json``, ``envelope.csv`` and ``envelope.png``, VTU files and stress plots.
 
     VTU file and picture show the worst pose under the worst load case.
 
@@ -74,12 +74,14 @@ def write_envelope(
     """
     from reports.figures.envelope_figures import envelope_figure, stress_pictures
     from reports.page.export import write_vtu
+    from reports.page.motion_pages import ENVELOPE, envelope_page
 
     def fill(folder: Path) -> None:
         (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")
         write_curves(result, folder / CURVES)
         progress("Drawing the envelope ...")
-        (folder / FIGURE).write_bytes(envelope_figure(result))
+        curves = envelope_figure(result)
+        (folder / FIGURE).write_bytes(curves)
         progress("Rendering the stress plots ...")
         plots, warnings = stress_pictures(result, result.links)
         for warning in warnings:
@@ -87,6 +89,7 @@ def write_envelope(
         (folder / "pictures").mkdir()
         for name, plot in plots.items():
             (folder / "pictures" / f"stress-{name}.png").write_bytes(plot)
+        (folder / ENVELOPE).write_text(envelope_page(result, curves, plots), encoding="utf-8")
         (folder / "vtu").mkdir()
         for name, link in result.links.items():
             write_vtu(folder / "vtu" / f"{name}.vtu", link.displacement, link.field)

@@ -31,7 +31,7 @@ UNITS = {"angle": "deg", "length": "mm", "force": "N", "moment": "N*mm", "time":
 
 
 def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
-    """Write ``result.json``, the tables, the figures and the animation.
+    """Write ``motion.html``, ``result.json``, the tables, the figures and the animation.
 
     Parameters
     ----------
@@ -44,14 +44,19 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
     from reports.figures.contact import contact_drawing
     from reports.figures.motion_animation import draw_animation
     from reports.figures.motion_figures import draw_figures
+    from reports.page.motion_pages import MOTION, motion_page
 
     (folder / "result.json").write_text(jsonlib.dumps(record(result, name), indent=2) + "\n", encoding="utf-8")
     write_tables(result, folder)
-    draw_figures(result, folder)
+    drawn = draw_figures(result, folder)
     apart = clearance(result.case)
     if apart is not None and apart.shown is not None:
-        (folder / "clearance.png").write_bytes(contact_drawing(apart))
+        drawn.append(folder / "clearance.png")
+        drawn[-1].write_bytes(contact_drawing(apart))
     draw_animation(result.motion, folder / "linkage.gif")
+    pictures = {path.stem: path.read_bytes() for path in drawn}
+    page = motion_page(result, pictures, (folder / "linkage.gif").read_bytes(), name=name)
+    (folder / MOTION).write_text(page, encoding="utf-8")
 
 
 def write_tables(result: CaseMotion, folder: Path) -> None:

@@ -466,10 +466,16 @@ def test_the_folder_holds_curves_figure_and_fields(result, tmp_path, monkeypatch
     write_envelope(result, tmp_path / "out", progress=told.append)
     out = tmp_path / "out" / "envelope"
     assert {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()} == {
-        ".alula-envelope.json", "result.json", "envelope.csv", "envelope.png", "vtu/rocker.vtu"
+        ".alula-envelope.json", "result.json", "envelope.csv", "envelope.html", "envelope.png", "vtu/rocker.vtu"
     }  # fmt: skip
     assert (out / "envelope.png").read_bytes().startswith(b"\x89PNG")
     assert "Warning: no renderer" in told
+    page = (out / "envelope.html").read_text(encoding="utf-8")
+    model = json.loads(page.split('data-model="linkage">')[1].split("</script>")[0])
+    worst = result.links["rocker"].worst
+    [values] = [one for one in model["values"] if one["label"] == worst.name]
+    assert values["links"]["rocker"][worst.pose] == pytest.approx(worst.stress.value, rel=1e-3)
+    assert max(values["links"]["rocker"]) == values["links"]["rocker"][worst.pose]
 
 
 def test_console_names_link_angle_and_verdict(result):

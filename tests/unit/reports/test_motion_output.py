@@ -90,6 +90,7 @@ def test_everything_is_there(folder):
     assert {path.name for path in folder.iterdir()} == {
         ".alula-motion.json", "result.json", "links.csv", "points.csv", "torque.csv", "joint-forces.csv",
         "link-angles.png", "paths.png", "torque.png", "joint-forces-1.png", "joint-forces-2.png", "linkage.gif",
+        "motion.html",
     }  # fmt: skip
 
 
