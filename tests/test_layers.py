@@ -17,7 +17,7 @@ LAYERS = {
         *("base", "materials", "imported", "bodies", "parts"),
         *("linkage", "mechanisms", "solids", "meshing", "placement", "clearance"),
     ),
-    "loads": ("text", "records", "statics", "sources", "case", "states", "plans"),
+    "loads": ("text", "records", "statics", "sources", "case", "states", "plans", "exchange"),
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
         *("refine", "outcomes", "check", "superposition", "motion", "calculix", "claims"),

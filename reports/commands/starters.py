@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
 STARTER = "four-bar"
 """The built-in case that ``alula new`` writes where none is named."""
+Unit = Literal["mm", "cm", "m", "in"]
+_MILLIMETRES: dict[Unit, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 app = typer.Typer()
 
 
@@ -44,13 +46,21 @@ def new(
     ] = None,
     listed: Annotated[bool, typer.Option("--list", help="List the built-in cases to start from.")] = False,
     study: Annotated[bool, typer.Option("--study", help="Write the plan of a study instead.")] = False,
+    pylinkage: Annotated[
+        Path | None,
+        typer.Option("--from-pylinkage", metavar="FILE", help="Start from a mechanism that pylinkage saved."),
+    ] = None,
+    pmks: Annotated[
+        Path | None, typer.Option("--from-pmks", metavar="FILE", help="Start from a text file with a link of PMKS+.")
+    ] = None,
+    unit: Annotated[Unit, typer.Option("--unit", help="Unit of pylinkage's lengths, which states none.")] = "mm",
 ) -> None:
     """Write a commented case to start from: a four-bar linkage, or any built-in case with the files that it names."""
     from geometry.base.errors import CaseError
     from reports.words.wording import joined
 
     if listed:
-        if path is not None or start is not None or study:
+        if path is not None or start is not None or study or pylinkage or pmks:
             raise CaseError("--list: it lists the built-in cases and writes nothing; leave out all else")
         cases()
         return
@@ -60,6 +70,12 @@ def new(
         raise CaseError(
             "--from: it names a built-in case, but --study writes the plan of a study; leave out one of them"
         )
+    if sum([start is not None, study, pylinkage is not None, pmks is not None]) > 1:
+        raise CaseError("--from, --from-pylinkage, --from-pmks, --study: they name different things; keep one of them")
+    if pylinkage is not None or pmks is not None:
+        write_new({path: sketched(pylinkage, pmks, unit)})
+        print(f"Wrote {path}. It has no parts yet. See its joint forces with: alula statics {path}")
+        return
     contents = {path: _text("loads.plans", "starter-study.toml.txt")} if study else case_files(start or STARTER, path)
     write_new(contents)
     command = "study" if study else "check"
@@ -67,6 +83,45 @@ def new(
         f"Wrote {joined([str(file) for file in contents])}. "
         f"{command.capitalize()} it with: alula {command} {path} -o out"
     )
+
+
+def sketched(pylinkage: Path | None, pmks: Path | None, unit: Unit) -> bytes:
+    """Return the case of a linkage that another program saved.
+
+    Parameters
+    ----------
+    pylinkage, pmks : Path, optional
+        The file, of one of them.
+    unit : str
+        Of the lengths of pylinkage.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    CaseError
+        For a file that cannot be read, or whose linkage is no case.
+    """
+    import tomllib
+
+    from geometry.base.errors import CaseError
+    from loads.case.case_file import validate
+    from loads.exchange.pmks import read_pmks
+    from loads.exchange.pylinkage import read_pylinkage
+    from loads.exchange.sketch import case_text
+
+    source = pylinkage or pmks
+    assert source is not None
+    try:
+        text = source.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise CaseError(f"'{source}' cannot be read as text ({error}); name the file that was saved") from None
+    sketch = read_pylinkage(text, source.name, _MILLIMETRES[unit]) if pylinkage else read_pmks(text, source.name)
+    found = case_text(sketch)
+    validate(tomllib.loads(found)).solve_pose()
+    return found.encode()
 
 
 def case_files(name: str, path: Path) -> dict[Path, bytes]:

@@ -1,0 +1,120 @@
+"""Linkages from pylinkage and PMKS+ become cases with the same pins, joints and forces."""
+
+import json
+import math
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from fea.check.case_statics import solve_case_statics
+from geometry.base.errors import CaseError
+from loads.case.case_file import validate
+from loads.exchange.pmks import read_pmks
+from loads.exchange.pylinkage import read_pylinkage
+from loads.exchange.sketch import case_text
+
+DATA = Path(__file__).resolve().parents[2] / "data" / "exchange"
+"""Written by pylinkage 1.3.0: ``fourbar(1, 3, 3, 4, initial_angle=0.7)``, ``slider_crank(1, 3, initial_angle=0.9)``."""
+FOUR_BAR = (
+    "2P.Ay,1E8.K,0.1011.MA,A,0mv,0VU,0.GB,B,0e_,E6,0.GC,C,l1,WW,0.KD,D,qD,0Pk,0..YRAB,AB,Fe,Fe,0ix,08i,c5cae9,A,B,,."
+    "YRBC,BC,Fe,Fe,32,NJ,303e9f,B,C,,.YRCD,CD,Fe,Fe,nd,3P,0d125a,C,D,,...N_v"
+)
+PUNCH = (
+    "2P.Ay,1E8.K,0.1011.MA,A,0,0,0.GB,B,0,Im,0.GC,C,0,0r8,0.LP,P,0,0r8,OZ..YRAB,Crank,VG,o,0,9O,c5cae9,A,B,,."
+    "YRBC,Connecting rod,ku,6G,0,0HC,303e9f,B,C,,.YPCP,CP,1Tm,0,0,0,,C,P,,..2F1,BC,F1,0,0r8,0,0bW,1Xg0..N_J"
+)
+"""Two templates of PMKS+ (PMKS-Web/PMKSWeb, ``template-linkages.ts``)."""
+WATT = (
+    "2P.Ay,1E8.K,0.1011.MA,A,0Qh,0Kn,0.GB,B,0e1,9i,0.GC,C,bT,LF,0.GD,D,0G5,tZ,0.GE,E,V5,1_z,0.GF,F,1mM,1Gv,0.KG,G,1rt,"
+    "0ey,0..YRAB,AB,Fe,Fe,0XM,05Z,c5cae9,A,B,,.YRBCD,BCD,Fe,Fe,06D,Sr,303e9f,B,C,D,,.YRDE,DE,Fe,Fe,7W,1RG,0d125a,D,E,,."
+    "YREF,EF,Fe,Fe,17j,1dx,B2DFDB,E,F,,.YRFCG,FCG,Fe,Fe,1PE,KQ,26A69A,F,C,G,,...N_u"
+)
+
+
+def case_of(sketch):
+    return validate(tomllib.loads(case_text(sketch)))
+
+
+def test_a_four_bar_of_pylinkage_stands_where_its_pins_stand():
+    data = json.loads((DATA / "pylinkage-four-bar.json").read_text(encoding="utf-8"))
+    case = case_of(read_pylinkage(json.dumps(data), "four-bar.json", 25.4))
+    pose = case.solve_pose()
+    for joint in data["joints"]:
+        place = pose.points[joint["id"].replace(".", "-").replace("_", "-")]
+        assert list(place) == pytest.approx([25.4 * x for x in joint["position"]], abs=1e-9)
+    assert (case.drive.link, pose.linkage.mobility) == ("crank", 1)
+    lengths = {name: max(x for x, _ in case.links[name].points.values()) for name in ("crank", "coupler", "rocker")}
+    assert lengths == pytest.approx({"crank": 25.4, "coupler": 76.2, "rocker": 76.2}, rel=1e-11)
+
+
+def test_a_slider_crank_of_pylinkage_holds_its_force_by_virtual_work():
+    case = case_of(
+        read_pylinkage((DATA / "pylinkage-slider-crank.json").read_text(encoding="utf-8"), "slider.json", 10.0)
+    )
+    pose = case.solve_pose()
+    assert pose.linkage.mobility == 1
+    [load] = case.load_cases["load"].forces
+    # The end of the rod slides along y = 2 mm, so that a force down does no work: no torque.
+    assert list(load.force)[:2] == [0.0, -1.0]
+    reactions = solve_case_statics(case, "slider").reactions["load"]
+    assert reactions.drive_torque == pytest.approx(0.0, abs=1e-12)
+    [guide] = [joint for name, joint in reactions.joints.items() if name.startswith("slide-")]
+    assert abs(guide.force[1]) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_four_bar_of_pmks_stands_where_its_pins_stand():
+    """Its joints in centimetres: 0mv is -(48 x 64 + 57)/1000."""
+    pose = case_of(read_pmks(f"https://app.pmksplus.com/?{FOUR_BAR}", "link.txt")).solve_pose()
+    expected = {"A": (-31.29, -20.14), "B": (-26.22, 9.02), "C": (30.09, 20.8), "D": (33.41, -16.46)}
+    for name, place in expected.items():
+        assert list(pose.points[name]) == pytest.approx(place, abs=1e-6), name
+
+
+def test_pins_of_three_links_have_two_joints():
+    case = case_of(read_pmks(WATT, "watt.txt"))
+    assert case.solve_pose().linkage.mobility == 1
+    assert set(case.joints) == set("ABCDEFG")
+    assert {name for name, link in case.links.items() if not link.ground} == {"AB", "BCD", "DE", "EF", "FCG"}
+
+
+def test_a_punch_of_pmks_presses_with_its_force():
+    """In line with its crank the 400 N go straight through it: no torque, and 400 N in every pin.
+
+    The direction of its guide is rounded to a thousandth of a radian.
+    """
+    case = case_of(read_pmks(PUNCH, "punch.txt"))
+    [force] = case.load_cases["load"].forces
+    assert (force.link, list(force.force)[:2]) == ("BC", [0.0, 400.0])
+    reactions = solve_case_statics(case, "punch").reactions["load"]
+    assert abs(reactions.drive_torque) < 400.0 * 1e-3 * abs(case.links["AB"].points["B"][0])
+    assert {name: reactions.joints[name].magnitude for name in "AB"} == pytest.approx({"A": 400.0, "B": 400.0})
+    assert math.hypot(*reactions.joints["slide-C"].force[:2]) < 0.4
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "no whole link of PMKS"),
+        (FOUR_BAR[:-9], "no whole link of PMKS"),
+        ("x" * 62 + "0", "no link of PMKS"),
+        (FOUR_BAR.replace(".MA,", ".KA,"), "the input has to be one pin on the ground"),
+    ],
+)
+def test_what_is_no_mechanism_of_pmks_is_refused(text, words):
+    with pytest.raises(CaseError, match=words):
+        read_pmks(text, "link.txt")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("{", "no mechanism of pylinkage"),
+        ("[1]", "no mechanism of pylinkage"),
+        ('{"joints": [{"id": "A", "type": "Static"}], "links": []}', "older format"),
+        ('{"joints": [], "links": []}', "no link has a motor"),
+    ],
+)
+def test_what_is_no_mechanism_of_pylinkage_is_refused(text, words):
+    with pytest.raises(CaseError, match=words):
+        read_pylinkage(text, "mechanism.json", 1.0)
