@@ -14,7 +14,7 @@ Examples
 4 mm pass 8.8
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
@@ -26,9 +26,14 @@ if TYPE_CHECKING:
     from reports.notebook.claims_report import ClaimsReport
     from reports.notebook.envelope_report import EnvelopeReport
     from reports.notebook.motion_report import MotionReport
+    from reports.notebook.part_report import PartReport
     from reports.notebook.study_report import StudyReport
+    from reports.notebook.synthesis_report import SynthesisReport
+    from reports.notebook.tolerance_report import ToleranceReport
 
-__all__ = ["cases", "check", "claims", "envelope", "motion", "read_case", "study"]
+__all__ = [
+    "cases", "check", "claims", "envelope", "inspect", "motion", "read_case", "study", "synthesise", "tolerance",
+]  # fmt: skip
 __version__ = alula_version()
 
 
@@ -310,6 +315,109 @@ def study(
     )
     _, counts = compute_study(Variants(plan, Path()), Path(folder), workers=workers)
     return StudyReport(Path(folder), counts)
+
+
+def tolerance(
+    case: "Case | str | PathLike[str]",
+    tolerances: Mapping[str, str] | None = None,
+    *,
+    samples: int = 100_000,
+    seed: int = 0,
+    accuracy: str | None = None,
+    threads: int = 2,
+) -> "ToleranceReport":
+    """Sample the tolerances of a case: how likely every check passes. The nominal case is solved as solids.
+
+    Parameters
+    ----------
+    case : Case, str or path
+        A case, the name of a built-in one, or the path of a case file.
+    tolerances : mapping of str to str, optional
+        Besides those of the case: entry -> half the width, such as ``{"pins": "0.2 mm"}``.
+    samples, seed : int
+    accuracy, threads
+        As for ``check``.
+
+    Returns
+    -------
+    ToleranceReport
+        Probabilities, table and pictures.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        As ``check``, and for a case without tolerances.
+    """
+    from fea.check.run import effort_of
+    from fea.tolerance.analysis import tolerance_case
+    from reports.commands.tolerance import with_tolerances
+    from reports.notebook.tolerance_report import ToleranceReport
+
+    found = with_tolerances(_case(case), tolerances or {})
+    effort = effort_of(found, accuracy)
+    done = tolerance_case(found, name=found.origin, samples=samples, seed=seed, threads=threads, effort=effort)
+    return ToleranceReport(done)
+
+
+def synthesise(points: Sequence[tuple[str, str]], ground: str) -> "SynthesisReport":
+    """Find the four-bar whose coupler b and output link c stand at three pairs of directions, with its defects.
+
+    Parameters
+    ----------
+    points : sequence of tuple of str
+        Three pairs (theta of b, psi of c).
+    ground : str
+        Length of the ground link d.
+
+    Returns
+    -------
+    SynthesisReport
+        Lengths, findings, table and picture.
+
+    Raises
+    ------
+    CaseError
+        For wrong text, other than three points, and where no linkage follows from them.
+
+    Examples
+    --------
+    >>> found = synthesise([("0 deg", "30 deg"), ("20 deg", "110 deg"), ("5 deg", "130 deg")], "10 m")
+    >>> {name: round(length) for name, length in found.lengths.items()}  # mm
+    {'a': 1709, 'b': 10344, 'c': 1998, 'd': 10000}
+    """
+    from reports.commands.synthesis import read_synthesis
+    from reports.notebook.synthesis_report import SynthesisReport
+
+    return SynthesisReport(read_synthesis([", ".join(pair) for pair in points], ground))
+
+
+def inspect(path: "str | PathLike[str]", *, material: str | None = None, unit: str | None = None) -> "PartReport":
+    """Look into a STEP file or a mesh: bores, volume, mass, and the entries of a case file for it.
+
+    Parameters
+    ----------
+    path : str or path
+    material : str, optional
+        Name of a material of the library.
+    unit : str, optional
+        Unit of length of a mesh, which its file does not state.
+
+    Returns
+    -------
+    PartReport
+        Numbers, table and picture.
+
+    Raises
+    ------
+    CaseError, CannotRunError
+        For a file that holds no single solid, and where the geometry kernel fails.
+    """
+    from pathlib import Path
+
+    from reports.commands.inspect_part import inspect_file
+    from reports.notebook.part_report import PartReport
+
+    return PartReport(inspect_file(Path(path), material, unit))
 
 
 def _case(case: "Case | str | PathLike[str]") -> "Case":

@@ -4,7 +4,7 @@ import json as jsonlib
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -209,14 +209,14 @@ def write_synthesis(synthesis: Synthesis, folder: Path) -> None:
     draw_linkage(synthesis, folder / "linkage.png")
 
 
-def draw_linkage(synthesis: Synthesis, path: Path) -> None:
+def draw_linkage(synthesis: Synthesis, path: Path | BinaryIO) -> None:
     """Draw the linkage at the three precision points, one below the other.
 
     Parameters
     ----------
     synthesis : Synthesis
-    path : Path
-        File to write.
+    path : Path or stream
+        PNG file to write.
     """
     from matplotlib.figure import Figure
 
@@ -253,4 +253,4 @@ def draw_linkage(synthesis: Synthesis, path: Path) -> None:
             axes.set_xlabel(f"x [{unit}]")
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
-    figure.savefig(path, dpi=130)
+    figure.savefig(path, dpi=130, format="png")

@@ -152,6 +152,51 @@ class CheckReport:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")
         return Picture(contact_drawing(self.result.clearance))
 
+    def plot_internal_forces(self, link: str) -> Picture:
+        """Draw normal force, shear force and bending moment along a link, under the load case that stresses it most.
+
+        Parameters
+        ----------
+        link : str
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        CaseError
+            For a link that there is not.
+        """
+        from reports.figures.diagrams import internal_force_diagram
+
+        pick({name: name for name in self._links}, link, "link")
+        stations = {point: x for point, (x, _) in self.result.case.links[link].points.items()}
+        return Picture(internal_force_diagram(self._case(link, None).links[link].beam, stations))
+
+    def plot_build_directions(self, link: str) -> Picture:
+        """Draw the safety factor of a printed link's layers for every direction in which it may be built.
+
+        Parameters
+        ----------
+        link : str
+            A link whose part states ``build_direction`` and that was solved as a solid.
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        CaseError
+            For a link without layers, and where nothing is known of them.
+        """
+        from reports.figures.build_map import build_map
+        from reports.tables.layers import build_directions_of
+
+        known = {name: one for name, one in build_directions_of(self.result).items() if one.scan is not None}
+        return Picture(build_map(pick(known, link, "printed link, solved as a solid,")))
+
     def plot_stress(self, link: str, load_case: str | None = None) -> Picture:
         """Draw the stress of a link on its deformed shape, and around its largest value.
 

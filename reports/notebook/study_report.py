@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fea.study.store import Store
-from reports.notebook.shown import Row, Table
+from reports.notebook.shown import Picture, Row, Table
 from reports.tables.study import nearest_text, study_rows
 
 
@@ -39,6 +39,16 @@ class StudyReport:
                 found |= {"verdict": row.outcome, "margin": row.margin, "nearest": nearest_text(row)}
                 rows.append(found | {"mass [g]": row.mass})
         return Table(tuple(rows))
+
+    @property
+    def pictures(self) -> Mapping[str, Picture]:
+        """What ``alula study show`` draws of the variants, by the title of each picture."""
+        from reports.study.choice import pictures
+        from reports.study.columns import read_study
+
+        with Store.reading(self.folder) as store:
+            drawn, _ = pictures(read_study(store))
+        return {one.title: Picture(one.png) for one in drawn}
 
     def __str__(self) -> str:
         return str(self.table())

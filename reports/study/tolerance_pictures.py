@@ -31,11 +31,8 @@ def tolerance_pictures(result: ToleranceResult) -> dict[str, bytes]:
     drawn = [*nearest, *(one for one in result.numbers if one.certain is None)]
     found: dict[str, bytes] = {}
     for one in drawn:
-        name, title = _file_name(one), _title(one)
-        outcome = None if one.certain is None else _outcomes(one)
-        found[f"spread-{name}.png"] = png(
-            histogram(one.values, one.limit, label=title, outcome=outcome, at_least=one.at_least, counted="samples")
-        )
+        name = _file_name(one)
+        found[f"spread-{name}.png"] = spread_picture(one)
         if np.isfinite(one.total).any() and len(result.tolerances) > 1:
             label = f"Sobol' index of the {one.quantity} of {one.subject}"
             texts = "by itself", "in all"
@@ -45,6 +42,24 @@ def tolerance_pictures(result: ToleranceResult) -> dict[str, bytes]:
                 )
             )
     return found
+
+
+def spread_picture(one: ToleranceNumber) -> bytes:
+    """Draw how a number spreads over the samples.
+
+    Parameters
+    ----------
+    one : ToleranceNumber
+
+    Returns
+    -------
+    bytes
+        A PNG: a histogram, with the limit and the verdicts where something is asked of the number.
+    """
+    outcome = None if one.certain is None else _outcomes(one)
+    return png(
+        histogram(one.values, one.limit, label=_title(one), outcome=outcome, at_least=one.at_least, counted="samples")
+    )
 
 
 def _outcomes(one: ToleranceNumber) -> "np.ndarray[tuple[int], np.dtype[np.str_]]":

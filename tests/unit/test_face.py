@@ -140,3 +140,19 @@ def test_a_study_is_kept_and_shown(tmp_path):
     assert dict(report.counts) == {"pass": 2}  # of the clearance between its layers
     assert "<table>" in report._repr_html_()
     assert alula.study("four-bar-synthesis", {"motion.poses": "3, 5"}, tmp_path / "s", analysis="motion") == report
+
+
+def test_inspect_says_what_the_command_says_of_a_file():
+    found = alula.inspect(programs.ROOT / "loads" / "cases" / "bell-crank.step", material="aluminium-6061-t6")
+    assert [row["diameter [mm]"] for row in found.table()] == pytest.approx([5.0, 4.0, 4.0])
+    assert found.mass == pytest.approx(found.volume * 2.7e-3)
+    assert tomllib.loads(found.entries)["parts"]["bell-crank"]["shape"] == "step"
+    with pytest.raises(CaseError, match="there is no material"):
+        alula.inspect("none.step", material="cheese")
+
+
+def test_synthesise_shows_what_the_command_finds():
+    found = alula.synthesise([("0 deg", "30 deg"), ("20 deg", "110 deg"), ("5 deg", "130 deg")], "10 m")
+    assert [row["psi, of c [deg]"] for row in found.table()] == pytest.approx([30.0, 110.0, 130.0])
+    assert found.plot_linkage().png.startswith(b"\x89PNG")
+    assert any("Grashof" in finding for finding in found.findings)

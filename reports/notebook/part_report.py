@@ -1,0 +1,79 @@
+"""What ``alula.inspect`` returns."""
+
+from dataclasses import dataclass
+
+from geometry.base.errors import CannotRunError
+from geometry.imported.read import part_surface
+from reports.commands.inspect_part import GRAMS, Inspection, case_entries
+from reports.notebook.shown import Picture, Row, Table
+
+
+@dataclass(frozen=True)
+class PartReport:
+    """What a STEP file or a mesh holds, as ``alula inspect`` finds it.
+
+    Attributes
+    ----------
+    result : Inspection
+        The record that the numbers come from.
+    """
+
+    result: Inspection
+
+    @property
+    def volume(self) -> float:
+        """Volume [mm³]."""
+        return float(self.result.facts.volume)
+
+    @property
+    def mass(self) -> float | None:
+        """Mass [g]; None where no material is named."""
+        return None if self.result.mass is None else self.result.mass * GRAMS
+
+    @property
+    def entries(self) -> str:
+        """The entries of a case file for the part, as TOML; empty where it has no bore for a pin."""
+        return case_entries(self.result)
+
+    def table(self) -> Table:
+        """Return one row a bore: diameter, length and centre [mm] in the frame of the file."""
+        rows: list[Row] = [
+            {
+                "bore": bore.name,
+                "diameter [mm]": float(bore.diameter),
+                "length [mm]": float(bore.length),
+                **{f"{axis} [mm]": float(value) for axis, value in zip("xyz", bore.centre, strict=True)},
+                "through": "yes" if bore.through else "no",
+            }
+            for bore in self.result.facts.bores
+        ]
+        return Table(tuple(rows))
+
+    def plot_part(self) -> Picture:
+        """Draw the part from above and from below, with its bores and largest flat faces named.
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        CannotRunError
+            Where rendering fails.
+        """
+        from reports.figures.part_picture import part_picture
+
+        facts = self.result.facts
+        picture, trouble = part_picture(facts, part_surface(self.result.path, self.result.mesh_unit))
+        if picture is None:
+            raise CannotRunError(trouble)
+        return Picture(picture)
+
+    def __str__(self) -> str:
+        return str(self.table())
+
+    def __repr__(self) -> str:
+        return f"<{self.result.path.name}: {len(self.result.facts.bores)} bores>"
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()

@@ -1,0 +1,61 @@
+"""What ``alula.synthesise`` returns."""
+
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from geometry.mechanisms.synthesis import Synthesis
+from reports.commands.synthesis import draw_linkage, record
+from reports.notebook.shown import Picture, Row, Table
+
+
+@dataclass(frozen=True)
+class SynthesisReport:
+    """A four-bar through three precision points, as ``alula synth`` finds it.
+
+    Attributes
+    ----------
+    result : Synthesis
+        The record that the numbers come from.
+    """
+
+    result: Synthesis
+
+    @property
+    def lengths(self) -> Mapping[str, float]:
+        """Length of each link [mm]: ``"a"`` and ``"c"`` at the ground, ``"b"`` between them, ``"d"`` the ground."""
+        return {name: float(length) for name, length in record(self.result)["lengths"].items()}
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """What its user must know, one sentence each: branch and order defects, lock-ups, Grashof's condition."""
+        return tuple(finding.sentence for finding in self.result.findings)
+
+    def table(self) -> Table:
+        """Return the precision points: directions of the links [degrees], and the branch as seen from each drive."""
+        rows: list[Row] = [
+            {
+                "theta, of b [deg]": point["theta"],
+                "psi, of c [deg]": point["psi"],
+                "phi, of a [deg]": point["phi"],
+                **{f"branch, {drive} driven": branch or "dead point" for drive, branch in point["branches"].items()},
+            }
+            for point in record(self.result)["points"]
+        ]
+        return Table(tuple(rows))
+
+    def plot_linkage(self) -> Picture:
+        """Draw the linkage at the three precision points."""
+        stream = io.BytesIO()
+        draw_linkage(self.result, stream)
+        return Picture(stream.getvalue())
+
+    def __str__(self) -> str:
+        return str(self.table())
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} {length:.4g} mm" for name, length in self.lengths.items())
+        return f"<four-bar: {told}>"
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
