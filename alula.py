@@ -11,7 +11,7 @@ Examples
 ...     report = alula.check(case.with_values({"parts.tube.outer_diameter": diameter}), fidelity="beam")
 ...     print(diameter, report.verdict, f"{report.safety_factors['AE'].value:.1f}")
 3.5 mm undecided 4.4
-4 mm pass 8.8
+4 mm pass 8.7
 """
 
 from collections.abc import Callable, Mapping, Sequence
