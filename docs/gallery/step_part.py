@@ -48,5 +48,5 @@ print(f"rod {pull:.2f} N, servo {pull * arm:.1f} N·mm")
 assert abs(report.drive_torques["pull"] / (pull * arm) - 1.0) < 1e-6
 
 # %%
-# It is stressed most at the bore of the rod's pin, and nearly as much in the corner between both arms.
+# It is stressed most at the bore of the rod's pin, far less in the corner between both arms.
 report.plot_stress("bell-crank")

@@ -253,4 +253,4 @@ def draw_linkage(synthesis: Synthesis, path: Path | BinaryIO) -> None:
             axes.set_xlabel(f"x [{unit}]")
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
-    figure.savefig(path, dpi=130, format="png")
+    figure.savefig(path, dpi=130, format="png", bbox_inches="tight")

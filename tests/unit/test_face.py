@@ -2,13 +2,16 @@
 
 import doctest
 import importlib
+import io
 import shutil
 import subprocess
 import sys
 import tomllib
 
+import numpy as np
 import programs
 import pytest
+from PIL import Image
 
 import alula
 from geometry.base.errors import CaseError
@@ -152,7 +155,9 @@ def test_inspect_says_what_the_command_says_of_a_file():
 
 
 def test_synthesise_shows_what_the_command_finds():
-    found = alula.synthesise([("0 deg", "30 deg"), ("20 deg", "110 deg"), ("5 deg", "130 deg")], "10 m")
-    assert [row["psi, of c [deg]"] for row in found.table()] == pytest.approx([30.0, 110.0, 130.0])
-    assert found.plot_linkage().png.startswith(b"\x89PNG")
+    found = alula.synthesise([("26 deg", "60 deg"), ("19 deg", "71 deg"), ("20 deg", "92 deg")], "100 mm")
+    assert [row["psi, of c [deg]"] for row in found.table()] == pytest.approx([60.0, 71.0, 92.0])
+    with Image.open(io.BytesIO(found.plot_linkage().png)) as picture:
+        pixels = np.asarray(picture.convert("L"))
+    assert (pixels[:, [0, -1]] == 255).all()  # nothing is cut at the sides: the labels of y were
     assert any("Grashof" in finding for finding in found.findings)
