@@ -185,12 +185,15 @@ export class Stage {
     };
   }
 
-  /** Write with a white border, so that it reads on any colour. */
+  /** Write with a white border, so that it reads on any colour; what would stand half in the picture stands in it. */
   write(pen, text, x, y, { bold = false, align = "left" } = {}) {
     pen.font = `${bold ? "bold " : ""}13px system-ui, sans-serif`;
     Object.assign(pen, { textAlign: align, textBaseline: "middle", lineJoin: "round", lineWidth: 4, strokeStyle: "#ffffffd0", fillStyle: INK });
-    pen.strokeText(text, x, y);
-    pen.fillText(text, x, y);
+    const [width, wide] = [this.picture.clientWidth, pen.measureText(text).width];
+    const before = align === "center" ? wide / 2 : 0;
+    const at = x < -wide || x > width + wide ? x : Math.max(Math.min(x, width - 4 - wide + before), before + 4);
+    pen.strokeText(text, at, y);
+    pen.fillText(text, at, y);
   }
 
   bar(pen, height) {
