@@ -271,7 +271,7 @@ def studies(record: Record) -> str:
 def page(record: Record) -> str:
     """Weight of a report, and how soon its models can be turned."""
     parts = dict(record["bytes"])
-    aims = {"page": "6.00 MB", "at the top": "2 s", "at the first link": "2 s"}
+    aims = {"page": "6.00 MB", "at the linkage": "2 s", "at the first link": "2 s"}
     rows = [["`report.html`", f"{parts.pop('page') / 1e6:.2f} MB", aims["page"]]]
     rows += [[f"{name} in it", f"{size / 1e6:.2f} MB", ""] for name, size in parts.items()]
     for one in record["opened"]:
