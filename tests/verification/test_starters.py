@@ -156,12 +156,14 @@ def test_bands_by_hand_and_by_solids_overlap(name: str) -> None:
     for load_case, found in by_solids.load_cases.items():
         for link, solid in found.links.items():
             hand = by_hand.load_cases[load_case].links[link]
+            shape = by_solids.case.parts[by_solids.case.links[link].part].shape
+            if shape != "bar" or not hand.safety_factor.low < hand.safety_factor.high:
+                continue  # of no calibrated shape: plain sections, which decide nothing
             for one, other in (
                 (solid.safety_factor, hand.safety_factor),
                 (solid.displacement_max, hand.displacement_max),
             ):
-                if other.low < other.high:
-                    compared += 1
-                    assert one.low <= other.high, (load_case, link)
-                    assert other.low <= one.high, (load_case, link)
+                compared += 1
+                assert one.low <= other.high, (load_case, link)
+                assert other.low <= one.high, (load_case, link)
     assert compared or name == "knee"  # whose plates are too short for it
