@@ -25,7 +25,7 @@ def link(result):
 def test_a_singular_peak_sets_neither_legend_nor_colours(link):
     peak = link.stress.peak.value
     scene = figures.scene_of(replace(link, discretisation=state("singular", screening=0.6 * peak)))
-    assert figures._limits(scene) == (0.0, 0.6 * peak)
+    assert figures.colour_range(scene) == (0.0, 0.6 * peak)
     told = "\n".join(figures.peak_lines(scene))
     assert "no result, singular at a sharp edge" in told
     assert "MPa" not in told
