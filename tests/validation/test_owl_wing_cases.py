@@ -176,7 +176,7 @@ def test_the_plumage_that_the_source_derives_would_relieve_the_link_that_decides
         float(result.load_cases["complete"].links["AE"].beam.equivalent.max())
         for result in (check_case(read_case(name, tenfold), name=name, fidelity="beam"), solved.by_hand(name))
     ]
-    assert stress == pytest.approx([28.8, 49.6] if "flight" in name else [85.0, 90.0], rel=5e-3)
+    assert stress == pytest.approx([28.6, 49.6] if "flight" in name else [79.9, 84.3], rel=5e-3)
 
 
 @pytest.mark.parametrize("name", ALL)
