@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from urllib.parse import unquote
 
 from geometry.base.errors import CaseError
-from loads.exchange.sketch import Push, Rider, Sketch, plain_name
+from loads.exchange.sketch import MALFORMED, Push, Rider, Sketch, plain_name
 
 _LETTERS = string.digits + string.ascii_uppercase + string.ascii_lowercase
 _DIGITS = _LETTERS + "_-"
@@ -60,7 +60,7 @@ def read_pmks(text: str, name: str) -> Sketch:
         raise CaseError(f"'{name}': it is no whole link of PMKS+; copy it anew")
     try:
         return _read(code[:-1], name)
-    except (ValueError, KeyError, IndexError) as error:
+    except MALFORMED as error:
         raise CaseError(f"'{name}': it is no link of PMKS+ ({error!r}); copy it anew") from None
 
 

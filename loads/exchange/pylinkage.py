@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from geometry.base.errors import CaseError
-from loads.exchange.sketch import Rider, Sketch, plain_name
+from loads.exchange.sketch import MALFORMED, Rider, Sketch, plain_name
 
 _LEGACY = {"Static", "Crank", "Revolute", "Fixed", "Prismatic"}
 _SAVE = "save it with pylinkage.mechanism.mechanism_to_json"
@@ -35,7 +35,7 @@ def read_pylinkage(text: str, name: str, millimetres: float) -> Sketch:
     """
     try:
         return _read(json.loads(text), name, millimetres)
-    except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
+    except MALFORMED as error:
         raise CaseError(f"'{name}': it is no mechanism of pylinkage ({error!r}); {_SAVE}") from None
 
 

@@ -11,6 +11,8 @@ from geometry.base.errors import CaseError
 
 GUIDED = 10.0
 """Distance of the second point of a sliding block from its pin [mm]; it only shows along what the block slides."""
+MALFORMED = (ArithmeticError, AttributeError, LookupError, RecursionError, StopIteration, TypeError, ValueError)
+"""What reading a file raises that is not of the form that it should have."""
 _SAME = 1e-6
 """Points nearer than this are one [mm]."""
 

@@ -53,7 +53,7 @@ def new(
     pmks: Annotated[
         Path | None, typer.Option("--from-pmks", metavar="FILE", help="Start from a text file with a link of PMKS+.")
     ] = None,
-    unit: Annotated[Unit, typer.Option("--unit", help="Unit of pylinkage's lengths, which states none.")] = "mm",
+    unit: Annotated[Unit, typer.Option("--unit", help="Unit of the lengths, which pylinkage does not state.")] = "mm",
 ) -> None:
     """Write a commented case to start from: a four-bar linkage, or any built-in case with the files that it names."""
     from geometry.base.errors import CaseError
@@ -110,17 +110,25 @@ def sketched(pylinkage: Path | None, pmks: Path | None, unit: Unit) -> bytes:
     from loads.case.case_file import validate
     from loads.exchange.pmks import read_pmks
     from loads.exchange.pylinkage import read_pylinkage
-    from loads.exchange.sketch import case_text
+    from loads.exchange.sketch import MALFORMED, case_text
+    from loads.text.explain import printable
 
     source = pylinkage or pmks
     assert source is not None
     try:
         text = source.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise CaseError(f"'{source}' cannot be read as text ({error}); name the file that was saved") from None
-    sketch = read_pylinkage(text, source.name, _MILLIMETRES[unit]) if pylinkage else read_pmks(text, source.name)
-    found = case_text(sketch)
-    validate(tomllib.loads(found)).solve_pose()
+        why = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+        told = f"'{printable(str(source))}' cannot be read as text ({why})"
+        raise CaseError(f"{told}; name the file that was saved") from None
+    name = printable(source.name)  # it stands in a comment of the case
+    sketch = read_pylinkage(text, name, _MILLIMETRES[unit]) if pylinkage else read_pmks(text, name)
+    try:
+        found = case_text(sketch)
+        tables = tomllib.loads(found)
+    except MALFORMED as error:
+        raise CaseError(f"'{name}': its linkage makes no case ({error!r}); save it anew") from None
+    validate(tables).solve_pose()
     return found.encode()
 
 

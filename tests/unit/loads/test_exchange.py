@@ -5,6 +5,7 @@ import math
 import tomllib
 from pathlib import Path
 
+import programs
 import pytest
 
 from fea.check.case_statics import solve_case_statics
@@ -99,6 +100,7 @@ def test_a_punch_of_pmks_presses_with_its_force():
         (FOUR_BAR[:-9], "no whole link of PMKS"),
         ("x" * 62 + "0", "no link of PMKS"),
         (FOUR_BAR.replace(".MA,", ".KA,"), "the input has to be one pin on the ground"),
+        (PUNCH.replace("0r8,0,0bW", "0r8,0,0r8"), "no link of PMKS"),  # a force without direction
     ],
 )
 def test_what_is_no_mechanism_of_pmks_is_refused(text, words):
@@ -113,8 +115,32 @@ def test_what_is_no_mechanism_of_pmks_is_refused(text, words):
         ("[1]", "no mechanism of pylinkage"),
         ('{"joints": [{"id": "A", "type": "Static"}], "links": []}', "older format"),
         ('{"joints": [], "links": []}', "no link has a motor"),
+        ("[" * 100_000, "no mechanism of pylinkage"),
+        (
+            '{"joints": [{"id": "A", "type": "ground", "position": [0, 0]}, {"id": "B", "type": "tracker", "position": '
+            '[1, 0], "ref_joint1_id": "A", "ref_joint2_id": "B"}], "links": [{"id": "c", "type": "driver", "joints": '
+            '["A"], "motor_joint": "A"}]}',
+            "no mechanism of pylinkage",
+        ),
     ],
 )
 def test_what_is_no_mechanism_of_pylinkage_is_refused(text, words):
     with pytest.raises(CaseError, match=words):
         read_pylinkage(text, "mechanism.json", 1.0)
+
+
+def test_the_name_of_a_file_stays_a_name(tmp_path: Path) -> None:
+    """It stands in a comment of the case, which a line break in it would end."""
+    (tmp_path / "a\nschema_version = 7.txt").write_text(FOUR_BAR, encoding="utf-8")
+    done = programs.inside("new", "--from-pmks", "a\nschema_version = 7.txt", "case.toml", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert tomllib.loads((tmp_path / "case.toml").read_text(encoding="utf-8"))["schema_version"] == 1
+
+
+@pytest.mark.parametrize("name", ["nowhere.json", "bytes.json", "bad.json"])
+def test_a_file_that_is_none_ends_in_one_sentence(name: str, tmp_path: Path) -> None:
+    (tmp_path / "bytes.json").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "bad.json").write_text('{"joints": 3}', encoding="utf-8")
+    done = programs.inside("new", "--from-pylinkage", name, "case.toml", folder=tmp_path)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert not (tmp_path / "case.toml").exists()
