@@ -74,7 +74,7 @@ def print_lightest(found: "Lightest", console: "Console") -> None:
     found : Lightest
     console : rich.console.Console
     """
-    from reports.tables.study import number_text
+    from reports.study.rows import number_text
     from reports.words.terminal import say, say_table
 
     sought = f"{'Greatest' if found.objective.largest else 'Least'} {found.objective.quantity}"
@@ -122,7 +122,7 @@ def _cost(found: "Lightest", place: "Place") -> str:
 
 def _outcome(found: "Lightest", place: "Place") -> tuple[str, str]:
     from fea.study.margin import nearest
-    from reports.tables.study import number_text
+    from reports.study.rows import number_text
 
     result = found.solved[place]
     limit = nearest(result)

@@ -258,7 +258,7 @@ def _best(found: "Sized") -> int | None:
 
 def _limited(found: "Sized", step: int) -> str:
     from fea.study.margin import sense_of
-    from reports.tables.study import number_text
+    from reports.study.rows import number_text
 
     limit, gain = found.limit(step), found.gain(step)
     if limit is None:

@@ -268,7 +268,7 @@ def show(
 ) -> None:  # fmt: skip
     """Show what became of the points of a study: table, best, worst, undecided; pictures with -o."""
     from fea.study.store import Store
-    from reports.tables.study import as_record, columns, print_study
+    from reports.study.rows import as_record, columns, print_study
 
     with Store.reading(folder) as store:
         if csv_file is not None:

@@ -48,7 +48,7 @@ def tolerance(
     from fea.tolerance.analysis import tolerance_case
     from loads.case.case_file import read_case
     from reports.page.output import refuse_unusable
-    from reports.tables.tolerance import as_json, print_tolerance
+    from reports.study.tolerance_table import as_json, print_tolerance
     from reports.words.limits import limited
 
     with limited(threads, memory):
@@ -107,7 +107,7 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
 
     from reports.page.output import MARK, write_folder
     from reports.study.tolerance_pictures import tolerance_pictures
-    from reports.tables.tolerance import as_json
+    from reports.study.tolerance_table import as_json
 
     def fill(folder: Path) -> None:
         (folder / MARK).write_text(as_json(result) + "\n", encoding="utf-8")

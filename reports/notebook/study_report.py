@@ -6,7 +6,7 @@ from pathlib import Path
 
 from fea.study.store import Store
 from reports.notebook.shown import Picture, Row, Table
-from reports.tables.study import nearest_text, study_rows
+from reports.study.rows import nearest_text, study_rows
 
 
 @dataclass(frozen=True)

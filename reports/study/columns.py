@@ -16,7 +16,7 @@ from fea.study.store import Store
 from geometry.base.errors import CaseError
 from loads.plans.axis import number_of
 from loads.sources.quantity import unit_of
-from reports.tables.study import Chosen, Row, study_rows, title
+from reports.study.rows import Chosen, Row, study_rows, title
 
 Real = NDArray[np.float64]
 MOST_NUMBERS = 3

@@ -15,8 +15,8 @@ from reports.page.output import place, refuse_unusable, write_folder
 from reports.page.template import fill
 from reports.study.choice import StudyPicture, pictures
 from reports.study.columns import Parameter, StudyColumns, read_study
+from reports.study.rows import Row, number_text
 from reports.study.style import LOOKS, tick
-from reports.tables.study import Row, number_text
 from reports.words.wording import joined, number
 
 PAGE = "study.html"

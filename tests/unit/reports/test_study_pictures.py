@@ -25,9 +25,9 @@ from reports.study.many import front, parallel, pareto
 from reports.study.maps import verdict_map
 from reports.study.page import write_study
 from reports.study.regression import regression
+from reports.study.rows import Chosen, Row
 from reports.study.spread import histogram, tornado
 from reports.study.style import LOOKS
-from reports.tables.study import Chosen, Row
 
 CSS = Path(__file__).resolve().parents[3] / "reports" / "templates" / "report.css"
 
