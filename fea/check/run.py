@@ -12,7 +12,6 @@ from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.case_statics import CaseStatics, solve_case_statics
-from fea.check.clearance import clearance_outcomes
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
@@ -32,7 +31,6 @@ from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
-from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.pins import PinStress, shared_stress
 from fea.outcomes.point_displacement import meshes_to_refine
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
@@ -41,13 +39,14 @@ from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
+from fea.whole.outcomes import whole_outcomes
 from geometry.base.errors import CaseError
 from geometry.bodies.body import PartKind
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.meshing.mesh import MeshSettings
 from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.case.case import Case
-from loads.records.check_spec import BearingCheck, DisplacementCheck, MotorCheck, PinCheck
+from loads.records.check_spec import BearingCheck, DisplacementCheck, PinCheck
 from loads.states.clearance import clearance
 from loads.statics.statics import Reactions
 from loads.text.shares import parse_accuracy
@@ -168,8 +167,8 @@ class _LoadCase:
             )
         return found
 
-    def judged(self, decided: Mapping[str, DecidedLink], motors: Sequence[CheckOutcome]) -> LoadCaseResult:
-        """Return the result, with the outcomes of ``motors`` after those of links, joints and linkage."""
+    def judged(self, decided: Mapping[str, DecidedLink], whole: Sequence[CheckOutcome]) -> LoadCaseResult:
+        """Return the result, with the outcomes of the linkage as a whole after those of links and joints."""
         case, load_case, moved = self.case, self.load_case, self.moved
         reactions = moved.reactions or self.statics.reactions[load_case]
         links, pins = self.links(decided), _pins(case, reactions, self.forces)
@@ -182,7 +181,7 @@ class _LoadCase:
             ),
             *solid_buckling_outcomes(case, load_case, {x: found for x, found in links.items() if self.acts_on(x)}),
             *limit_load_outcomes(case, load_case, linkage),
-            *motors,
+            *whole,
         )
         checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())
         if self.idle:
@@ -271,15 +270,8 @@ def check_case(
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:
         clock("solid models")
-    motors: dict[str, list[CheckOutcome]] = {load_case: [] for load_case in by_load_case}
-    for asked, check in case.checks.items():
-        if isinstance(check, MotorCheck):
-            for load_case, found in motor_outcomes(case, asked, check).items():
-                motors[load_case] += found
-    load_cases = {load_case: one.judged(decided, motors[load_case]) for load_case, one in by_load_case.items()}
-    first_name = next(iter(load_cases))
-    kept = (*load_cases[first_name].checks, *clearance_outcomes(case, apart))
-    load_cases[first_name] = replace(load_cases[first_name], checks=kept)
+    whole = whole_outcomes(case, apart)
+    load_cases = {load_case: one.judged(decided, whole[load_case]) for load_case, one in by_load_case.items()}
     clock("stress")
     return CheckResult(
         name=name,

@@ -123,6 +123,8 @@ def _share(value: float, limit: float) -> float:
     return value / limit if limit > 0.0 else math.inf
 
 
+UNLOADED_QUANTITIES = (Quantity.CLEARANCE,)
+"""What no load changes."""
 MOTOR_QUANTITIES = (Quantity.DRIVE_POWER, Quantity.DRIVE_SPEED, Quantity.DRIVE_TORQUE, Quantity.TORQUE_SHARE)
 """What is asked of a motor over the motion of a rigid linkage."""
 
@@ -302,7 +304,7 @@ class CheckOutcome:
     @property
     def gives_way(self) -> bool:
         """True where it says that the linkage as a whole does not hold the load."""
-        asked = self.subject == LINKAGE and self.quantity not in (Quantity.LIMIT_LOAD, Quantity.CLEARANCE)
+        asked = self.subject == LINKAGE and self.quantity not in (Quantity.LIMIT_LOAD, *UNLOADED_QUANTITIES)
         return asked and self.verdict is Verdict.FAIL
 
     @property

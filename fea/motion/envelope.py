@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.buckling.linkage import unless_it_gives_way
-from fea.check.clearance import clearance_outcomes
 from fea.check.run import effort_of
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
@@ -36,6 +35,7 @@ from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
 from fea.refine.refinement import START, Effort, refine_links
 from fea.solid.solution import require_compressible
+from fea.whole.clearance import clearance_outcomes
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case

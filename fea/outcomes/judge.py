@@ -18,11 +18,7 @@ from fea.outcomes.solid_buckling import solid_buckling
 from fea.refine.discretisation import Discretisation
 from loads.case.case import Case
 from loads.records.check_spec import (
-    BearingCheck,
-    ClearanceCheck,
     DisplacementCheck,
-    LimitLoadCheck,
-    MotorCheck,
     PinCheck,
     SafetyFactorCheck,
     SustainedCheck,
@@ -39,10 +35,10 @@ def outcomes(
     uneven: Mapping[str, Scatter] | None = None,
     forces: JointForces | None = None,
 ) -> tuple[CheckOutcome, ...]:
-    """Return the outcome of every check of a load case, but for motors, bearing, clearance, limit load and buckling.
+    """Return the outcome of every check of links, pins and points, and of the linkage's equilibrium, of a load case.
 
-    These are in ``fea.outcomes`` (``motor``, ``bearing``), ``fea.check`` (``clearance``, ``linkage_numbers``) and
-    ``fea.buckling.buckling``.
+    Bearing is in ``fea.outcomes.bearing``, limit load in ``fea.check.linkage_numbers``, buckling of links in
+    ``fea.buckling.buckling``, and what is checked of the linkage as a whole in ``fea.whole``.
 
     Parameters
     ----------
@@ -78,7 +74,7 @@ def outcomes(
             ]
         elif isinstance(check, DisplacementCheck) and check.at is not None:
             found.append(point_outcome(case, name, check, load_case, moved, links, free, forces))
-        elif not isinstance(check, MotorCheck | BearingCheck | LimitLoadCheck | ClearanceCheck):
+        elif isinstance(check, SafetyFactorCheck | DisplacementCheck | SustainedCheck):
             found += [_link(case, name, check, load_case, links[link]) for link in check.links or case.checked_links]
     beams = {link: result.beam for link, result in links.items()}
     found += layer_outcomes(case, load_case, links)

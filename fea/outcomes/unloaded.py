@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
-from fea.common.verdict import CheckOutcome, Quantity, Subject
+from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject
 from fea.outcomes.limits import least_safety_factor
 from loads.case.case import Case
 from loads.records.applied import BodyForce, LineLoad, Load, PointLoad
@@ -142,7 +142,7 @@ def undecided(
 ) -> Iterator[CheckOutcome]:
     """Yield the outcomes of a load case under which nothing acts inside any link, undecided.
 
-    Pins and motors keep theirs where a joint bears a force.
+    Pins and motors keep theirs where a joint bears a force, and so does what no load changes.
 
     Parameters
     ----------
@@ -161,7 +161,8 @@ def undecided(
     bearing = {name for name, force in joints.items() if force > SHARE * size}
     for outcome in outcomes:
         borne = outcome.subject.kind == "pin" and outcome.subject.name in bearing
-        if borne or (outcome.quantity is Quantity.DRIVE_POWER and bearing):
+        moved = outcome.quantity is Quantity.DRIVE_POWER and bearing
+        if borne or moved or outcome.quantity in UNLOADED_QUANTITIES:
             yield outcome
         else:
             yield outcome.left_open(nothing_acts(title, size))

@@ -23,6 +23,7 @@ from fea.common.source import Source, SourceKind, widest
 from fea.common.verdict import (
     LINKAGE,
     MOTOR_QUANTITIES,
+    UNLOADED_QUANTITIES,
     CheckOutcome,
     Quantity,
     Verdict,
@@ -172,7 +173,7 @@ def _sprung(case: Case) -> bool:
 
 def _load(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> float | None:
     """Return the factor on all loads that takes a check to its limit, where it follows."""
-    if _sprung(case) or check.quantity in (Quantity.CLEARANCE, Quantity.DRIVE_SPEED):
+    if _sprung(case) or check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES):
         return None
     if _by_definition(check) or check.quantity in MOTOR_QUANTITIES:
         return check.margin

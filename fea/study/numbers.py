@@ -7,16 +7,14 @@ from typing import Literal
 
 import numpy as np
 
-from fea.check.clearance import clearance_outcomes
 from fea.common.band import Band
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, overall
 from fea.motion.envelope_result import EnvelopeResult
 from fea.motion.linkage_history import LinkageOverMotion, asked_over_motion, limit_load_outcomes
-from fea.outcomes.motor import motor_outcomes
 from fea.outcomes.result import CheckResult, LinkageNumbers
+from fea.whole.outcomes import whole_outcomes
 from loads.case.case import Case
 from loads.case.layers import pin_masses
-from loads.records.check_spec import MotorCheck
 from loads.states.case_motion import CaseMotion
 from loads.states.clearance import clearance
 from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
@@ -217,15 +215,9 @@ def of_motion(result: CaseMotion, *, weighs: Weighs) -> tuple[Verdict | None, tu
     tuple of VariantNumber
     """
     case = result.case
-    motors = [
-        outcome
-        for name, check in case.checks.items()
-        if isinstance(check, MotorCheck)
-        for outcomes in motor_outcomes(case, name, check).values()
-        for outcome in outcomes
-    ]
+    whole = [outcome for outcomes in whole_outcomes(case, clearance(case)).values() for outcome in outcomes]
     linkage = asked_over_motion(result)
-    checked = [*motors, *limit_load_outcomes(result, linkage), *clearance_outcomes(case, clearance(case))]
+    checked = [*whole, *limit_load_outcomes(result, linkage)]
     verdict = overall(outcome.verdict for outcome in checked) if checked else None
     frames = (number for name, over in linkage.items() for number in _of_linkage(over, name))
     own = (*_of_motion(result), *frames, *_masses(case, weighs=weighs))

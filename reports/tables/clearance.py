@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fea.check.clearance import clearance_band, clearance_sentence
+from fea.whole.clearance import clearance_band, clearance_sentence
 from geometry.clearance.least import Gap
 from loads.states.clearance import Clearance
 from reports.tables.data import data

@@ -10,7 +10,7 @@ from motion_poses import kinetostatics
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
 from fea.motion.link_history import link_histories
-from fea.outcomes.motor import motor_outcomes
+from fea.whole.motor import motor_outcomes
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import freedom
 from geometry.mechanisms.ornithopter import OrnithopterRules, variants

@@ -19,8 +19,8 @@ from fea.check.force_doubt import measures
 from fea.common.source import SourceKind
 from fea.motion.envelope import envelope_case
 from fea.motion.loosened import joint_growth, loosened
-from fea.outcomes.motor import motor_outcomes
 from fea.refine.refinement import Effort
+from fea.whole.motor import motor_outcomes
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import validate

@@ -7,7 +7,7 @@ import pytest
 from edited_cases import edited
 
 from fea.common.verdict import Verdict
-from fea.outcomes.motor import demand, largest_factor, line_share, motor_outcomes
+from fea.whole.motor import demand, largest_factor, line_share, motor_outcomes
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case
 from loads.states.case_motion import solve_case_motion

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 
-from fea.check.clearance import clearance_outcomes
 from fea.common.verdict import Verdict
+from fea.whole.clearance import clearance_outcomes
 from geometry.base.errors import CaseError
 from geometry.clearance.shape import gaps
 from loads.states.clearance import _poses, clearance
