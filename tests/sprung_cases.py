@@ -3,7 +3,7 @@
 import tomllib
 from typing import Any
 
-from fea.check.case_statics import CaseStatics, solve_case_statics
+from fea.frame.case_statics import CaseStatics, solve_case_statics
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.states.standing import Standing

@@ -5,10 +5,10 @@ from functools import partial
 
 import numpy as np
 
-from fea.check.case_statics import CaseStatics
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from fea.frame.case_statics import CaseStatics
 from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.point_displacement import PointDisplacement

@@ -11,7 +11,6 @@ from pydantic_core import PydanticCustomError
 from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
-from fea.check.case_statics import CaseStatics, solve_case_statics
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
@@ -27,6 +26,7 @@ from fea.common.link_loads import LinkLoads
 from fea.common.source import COUPLES
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, Verdict, overall
+from fea.frame.case_statics import CaseStatics, solve_case_statics
 from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.bearing import bearing_outcome

@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 from fea.beam.calibration import uncalibrated
 from fea.beam.cut_free import link_loads
-from fea.check.case_statics import CaseStatics
 from fea.common.link_loads import LinkLoads
 from fea.common.plates import plates
 from fea.common.source import PIN_PRESSURE, Source, SourceKind
 from fea.elements.space import displacement_space
 from fea.frame.build import build_frame
+from fea.frame.case_statics import CaseStatics
 from fea.frame.condensed import LinkFlexibility
 from fea.frame.deviation import Deviation
 from fea.frame.displacement_band import flexibility_ranges

@@ -21,8 +21,8 @@ from typing import Any
 
 import numpy as np
 
-from fea.check.case_statics import CaseStatics, solve_case_statics
 from fea.check.run import check_case, effort_of
+from fea.frame.case_statics import CaseStatics, solve_case_statics
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.mechanisms.flapping import FlappingWing

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.check.case_statics import CaseStatics, solve_case_statics
 from fea.check.run import check_case
 from fea.common.clock import Clock
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome
+from fea.frame.case_statics import CaseStatics, solve_case_statics
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.result import CheckResult
 from fea.refine.refinement import Effort

@@ -12,9 +12,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
 from fea.common.verdict import CheckOutcome, Quantity
+from fea.frame.case_statics import solve_case_statics
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.refine.refinement import Effort
 from fea.tolerance.states import Reach, States

@@ -139,7 +139,7 @@ def statics(
     overrides: SetOption = None,
 ) -> None:
     """Solve pose and joint forces only."""
-    from fea.check.case_statics import solve_case_statics
+    from fea.frame.case_statics import solve_case_statics
     from loads.case.case_file import read_case
     from reports.commands.statics import print_statics
 

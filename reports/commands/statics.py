@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from fea.check.case_statics import CaseStatics
+from fea.frame.case_statics import CaseStatics
 from geometry.base.version import result_stamp
 from loads.statics.friction import friction_wrenches
 from loads.statics.statics import Reactions

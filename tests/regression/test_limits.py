@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
+from fea.frame.case_statics import solve_case_statics
 from geometry.base.errors import CaseError
 from loads.case.case_file import LARGEST_FILE, read_case, validate
 from loads.case.case_rules import MOST_RESULTS

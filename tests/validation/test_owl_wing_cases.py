@@ -8,10 +8,10 @@ import solved
 from edited_cases import PLANAR
 
 from fea.check.anchor import wrenches_on_ground
-from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
 from fea.elements.quadrature import surface_quadrature
 from fea.elements.space import displacement_space
+from fea.frame.case_statics import solve_case_statics
 from fea.refine.refinement import START
 from geometry.base.errors import CaseError
 from geometry.meshing.mesh import mesh_body

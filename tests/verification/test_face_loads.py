@@ -5,9 +5,9 @@ import pytest
 from imported_case import imported_case
 
 from fea.beam.cut_free import link_loads
-from fea.check.case_statics import solve_case_statics
 from fea.elements.quadrature import surface_quadrature
 from fea.elements.space import displacement_space
+from fea.frame.case_statics import solve_case_statics
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field
 from fea.tractions.traction import wrench_density

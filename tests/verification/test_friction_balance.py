@@ -11,8 +11,8 @@ from programs import inside
 
 from fea.beam.cut_free import link_loads
 from fea.check.anchor import anchor_loads
-from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
+from fea.frame.case_statics import solve_case_statics
 from fea.motion.envelope import envelope_case
 from fea.nonlinear.large_displacement import examine
 from fea.tolerance.states import Sampler

@@ -10,9 +10,9 @@ from held_ground import POISSON, THICKNESS, WIDTH, E, L, bracket
 from scipy.optimize import brentq
 
 from fea.beam.cut_free import link_loads
-from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
 from fea.common.verdict import Quantity, Subject
+from fea.frame.case_statics import solve_case_statics
 from fea.motion.envelope import envelope_case
 from fea.motion.link_history import link_histories
 from geometry.base.errors import CaseError

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fea.check.case_statics import solve_case_statics
 from fea.check.linkage_numbers import left_stops
 from fea.frame.build import build_frame
+from fea.frame.case_statics import solve_case_statics
 from fea.nonlinear.corotational import subdivide
 from fea.nonlinear.equilibrium_path import EquilibriumPath, State
 from fea.nonlinear.large_displacement import examine

@@ -10,9 +10,9 @@ import pytest
 import solved
 from golden import STARTERS
 
-from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
+from fea.frame.case_statics import solve_case_statics
 from loads.case.case_file import read_case
 from loads.statics.statics import Reactions
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bars_in_layers import four_bars, parallel_bars
 
-from fea.check.case_statics import solve_case_statics
+from fea.frame.case_statics import solve_case_statics
 from fea.frame.joint_forces import JointForces
 from fea.frame.thrust import thrusts
 from loads.case.case import Case

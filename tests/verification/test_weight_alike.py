@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.check.case_statics import solve_case_statics
+from fea.frame.case_statics import solve_case_statics
 from fea.motion.link_history import link_histories
 from loads.case.case_file import read_case
 from loads.states.case_motion import solve_case_motion

@@ -17,11 +17,11 @@ from result_paths import compare
 from fea.beam.cut_free import beam_loads, link_loads
 from fea.beam.theory import check_beam
 from fea.buckling.buckling import buckling_outcomes
-from fea.check.case_statics import solve_case_statics
 from fea.common.band import Band
 from fea.common.source import SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.elements.space import displacement_space
+from fea.frame.case_statics import solve_case_statics
 from fea.motion import envelope
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes

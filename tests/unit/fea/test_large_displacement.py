@@ -9,11 +9,11 @@ from edited_cases import PLANAR, edited
 
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import internal_forces
-from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
 from fea.common.link_loads import EndLoad, LineLoad, LinkLoads, PinLoad
 from fea.common.verdict import LINKAGE, Verdict
 from fea.frame.build import build_frame
+from fea.frame.case_statics import solve_case_statics
 from fea.frame.joint_forces import joint_forces
 from fea.nonlinear.corotational import solve_large_displacement
 from fea.nonlinear.deformed_links import balanced, bent, in_slots

@@ -12,9 +12,9 @@ from sprung_cases import FOUR_BAR, HANG, case_of
 from sprung_cases import LEVER as LEVER_LET_GO
 
 from benchmarks.tolerances import direct_case
-from fea.check.case_statics import solve_case_statics
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity, Subject
+from fea.frame.case_statics import solve_case_statics
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field

@@ -8,7 +8,7 @@ from pathlib import Path
 import programs
 import pytest
 
-from fea.check.case_statics import solve_case_statics
+from fea.frame.case_statics import solve_case_statics
 from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 from loads.exchange.pmks import read_pmks

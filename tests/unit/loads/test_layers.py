@@ -6,7 +6,7 @@ import pytest
 from edited_cases import PLANAR
 from edited_cases import edited as edited_case
 
-from fea.check.case_statics import solve_case_statics
+from fea.frame.case_statics import solve_case_statics
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import built_in_cases, read_case, read_text

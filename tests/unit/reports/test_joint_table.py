@@ -9,7 +9,7 @@ import solved
 from edited_cases import PLANAR
 from typer.testing import CliRunner
 
-from fea.check.case_statics import solve_case_statics
+from fea.frame.case_statics import solve_case_statics
 from loads.case.case_file import read_case
 from reports.page.html import render
 from reports.tables.frames import shown_components
