@@ -12,7 +12,7 @@ from loads.case.core import CoreCase
 from loads.case.forks import check_fork, check_pair
 from loads.case.joint_rules import check_clearances, check_friction
 from loads.case.layers import check_layers
-from loads.case.load_rules import check_loads, check_masses, check_place
+from loads.case.load_rules import check_loads, check_masses, check_place, check_wings
 from loads.case.places import check_moving, check_point
 from loads.case.spring_rules import check_equilibrium, check_springs, check_stops
 from loads.case.toleranced import toleranced
@@ -82,6 +82,7 @@ def check_rules(case: CoreCase) -> None:
         check_fork(case, name)
     for i, mass in enumerate(case.carried):
         check_place(case, f"carried.{i}", mass)
+    check_wings(case)
     for name, load_case in case.load_cases.items():
         check_loads(case, f"load_cases.{name}", load_case)
     check_masses(case)

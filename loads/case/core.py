@@ -31,6 +31,7 @@ from loads.records.check_spec import (
     SustainedCheck,
 )
 from loads.records.conditions import Conditions, under
+from loads.records.flapping import Wing
 from loads.records.load_case import LoadCase
 from loads.records.motion_spec import MotionSpec
 from loads.records.settings import CantileverCalculation, DriveSpec, PoseSpec, SolidSettings, WaysToHold
@@ -88,6 +89,8 @@ class CoreCase(Revisable):
     """A point whose displacement is told for every link that the drive might hold, with free and with bonded pins."""
     carried: tuple[Carried, ...] = ()
     """Masses that links carry besides their parts; they weigh where the parts weigh, and have inertia."""
+    wings: Annotated[tuple[Wing, ...], Field(max_length=100)] = ()
+    """Plates that links carry through the air, which acts on them in load cases with ``flapping``."""
     massless: tuple[Name, ...] = ()
     """Moving links without part or carried mass that are to weigh nothing where others weigh or move."""
     load_cases: Annotated[dict[Name, LoadCase], Field(min_length=1, max_length=100)]

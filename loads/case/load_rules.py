@@ -7,9 +7,10 @@ from loads.case.core import CoreCase
 from loads.case.places import check_moving, check_point
 from loads.records.aero import AirPatch, check_air
 from loads.records.carried import CarriedBody, CarriedSpread
+from loads.records.flapping import WIDEST, Wing, check_flapping
 from loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
 
-Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch
+Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch | Wing
 
 
 def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
@@ -46,6 +47,8 @@ def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
         check_air(air, f"{where}.air.{i}")
         for j, patch in enumerate(air.spread):
             check_place(case, f"{where}.air.{i}.spread.{j}", patch)
+    if load_case.flapping is not None:
+        _check_flapping(case, where, load_case)
     if load_case.speed != 0.0 and case.pose.coordinate is None:
         raise CaseError(f"{where}.speed: the linkage cannot move, so it has no speed; remove it")
     if load_case.speed != 0.0 and case.pose.travel is not None:
@@ -53,6 +56,48 @@ def check_loads(case: CoreCase, where: str, load_case: LoadCase) -> None:
             f"{where}.speed: it is the angular speed of the pose's coordinate, but '{case.pose.coordinate}' is a "
             "slider; leave it out and state motion.travel_speed"
         )
+
+
+def _check_flapping(case: CoreCase, where: str, load_case: LoadCase) -> None:
+    """Check that a load case with air has wings that move in it."""
+    assert load_case.flapping is not None
+    if not case.wings:
+        raise CaseError(
+            f"{where}.flapping: the case states no wings for the air to act on; add [[wings]] with link, chord, "
+            "start and end"
+        )
+    moves = case.motion is not None and case.motion.inertia
+    if load_case.speed == 0.0 and not moves:
+        raise CaseError(
+            f"{where}.flapping: the linkage stands still in this load case, so its wings do not flap; state "
+            'its speed, for example speed = "180 rpm"'
+        )
+    check_flapping(load_case.flapping, f"{where}.flapping")
+
+
+def check_wings(case: CoreCase) -> None:
+    """Check where wings are held, and that they are wings.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+
+    Raises
+    ------
+    CaseError
+        For the first that does not fit.
+    """
+    for i, wing in enumerate(case.wings):
+        check_place(case, f"wings.{i}", wing)
+        points = case.links[wing.link].points
+        first, last = wing.span or (points[wing.start or ""][0], points[wing.end or ""][0])
+        span, chord = abs(last - first), sum(wing.chord) / 2.0
+        if chord > WIDEST * span:
+            raise CaseError(
+                f"wings.{i}.chord: on average it is {chord:.4g} mm, more than {WIDEST:g} times the wing's span of "
+                f"{span:.4g} mm, and strips along the span describe no such plate; correct chord or span"
+            )
 
 
 def check_place(case: CoreCase, entry: str, place: Place) -> None:

@@ -9,6 +9,7 @@ from pydantic import Field, PlainValidator, WithJsonSchema
 from geometry.base.model import CaseModel, Name, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, Acceleration, Angle, AngularSpeed, Force, Stress, parse
 from loads.records.aero import AirLoad
+from loads.records.flapping import Flapping
 from loads.text.shares import LoadScatter
 
 Vector = Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]
@@ -123,6 +124,8 @@ class LoadCase(CaseModel):
     """Forces spread along links."""
     air: tuple[AirLoad, ...] = ()
     """Lift and drag of streams."""
+    flapping: Flapping | None = None
+    """Air at rest in which the wings flap; without it they meet none."""
 
 
 def gravity(load_case: LoadCase) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

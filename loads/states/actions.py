@@ -16,6 +16,7 @@ from loads.records.aero import air_loads
 from loads.records.applied import BodyForce, LineLoad, Load, PartMass, PointLoad, at_poses, shifted
 from loads.records.carried import Carried, CarriedSpread, mass_of
 from loads.records.load_case import LoadCase, gravity, vector3
+from loads.states.flapping import flapping_loads
 from loads.states.masses import all_carried
 from loads.states.springs import spring_loads
 
@@ -92,7 +93,7 @@ def refuse_turning_bonds(place: Placement) -> None:
 
 
 def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapping[str, PartMass]) -> tuple[Load, ...]:
-    """Return all that acts on the links but the joint forces: stated loads, air, weight, inertia, springs and tendons.
+    """Return all that acts on the links but the joint forces: stated loads, air, weight, inertia, springs, tendons.
 
     In layers pins weigh too (``loads.case.layers.pin_masses``), in the mid-plane of the link that they stand in.
 
@@ -102,7 +103,7 @@ def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapp
     load_case : LoadCase
         One of the case's.
     place : Placement
-        Where the links stand; inertia acts where it has rates.
+        Where the links stand; inertia, and air on wings that flap, act where it has rates.
     masses : mapping of str to PartMass
         Of the parts alone, by link; what links carry comes from the case.
 
@@ -117,7 +118,7 @@ def acting_loads(case: Case, load_case: LoadCase, place: Placement, masses: Mapp
         loads += inertia_loads(place, masses, pull)
         carried = all_carried(case, stated=load_case.carried)
         loads += tuple(_carried_load(place, mass, pull) for mass in carried)
-    loads += spring_loads(case, place)
+    loads += (*flapping_loads(case, load_case, place), *spring_loads(case, place))
     return tuple(at_poses(load, place.shape) for load in loads)
 
 

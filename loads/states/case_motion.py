@@ -16,6 +16,7 @@ from loads.records.applied import Load, PartMass
 from loads.records.load_case import LoadCase, gravity
 from loads.states.actions import acting_loads, inertia_loads, needs_masses, refuse_turning_bonds, stated_loads
 from loads.states.drive_work import DriveWork, drive_work
+from loads.states.flapping import flapping_loads
 from loads.states.kinetostatics import (
     Kinetostatics,
     Power,
@@ -198,8 +199,10 @@ def _energies(case: Case, name: str, motion: Motion, masses: Mapping[str, PartMa
     load_case, place = case.load_cases[name], motion.placement
     laden = laden_masses(case, masses, stated=load_case.carried)
     weights = inertia_loads(place.at_rest, laden, gravity(load_case)) if load_case.own_weight else ()
-    others = (*stated_loads(case, load_case), *spring_loads(case, place))
-    return energies(place, (*others, *weights, *friction), laden if with_inertia(case, name) else {})
+    moves = with_inertia(case, name)
+    air = flapping_loads(case, load_case, place) if moves else ()
+    others = (*stated_loads(case, load_case), *spring_loads(case, place), *air)
+    return energies(place, (*others, *weights, *friction), laden if moves else {})
 
 
 def with_inertia(case: Case, load_case: str) -> bool:
