@@ -12,12 +12,10 @@ from loads.records.applied import Load, shifted
 from loads.states.springs import spring_loads
 from loads.statics.friction import friction_wrenches
 from loads.statics.joint_reaction import JointReaction
+from loads.statics.rounding import rounded, size_of
 from loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
-
-_ROUNDING = 1e-10
-"""Share of the solution's size below which a component is taken for rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,11 +78,11 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
     total = np.zeros(6)
     for name, wrench in joints.items():
         total += shifted(wrench, places[name] - places[about])
-    size = _size(reactions)
+    size = size_of(reactions)
     return AnchorLoads(
-        joints={name: _rounded(wrench, size) for name, wrench in joints.items()},
+        joints={name: rounded(wrench, size) for name, wrench in joints.items()},
         about=about,
-        total=_rounded(total, size),
+        total=rounded(total, size),
         deformed=moved is not None,
         unstable=case.large_displacement.gives_way,
     )
@@ -93,18 +91,6 @@ def anchor_loads(case: LoadCaseResult) -> AnchorLoads:
 def _lever(reaction: JointReaction, linkage: Linkage) -> Real:
     """Vector (3,) to the pin at a joint's second link from where it stands in the mid-plane of the first [mm]."""
     return reaction.arm if linkage.joints[reaction.joint].type == "revolute" else reaction.arm * [0.0, 0.0, 1.0]
-
-
-def _size(reactions: Reactions) -> Real:
-    """Size (6,) of the forces and moments of a solution, beside which a component may be rounding."""
-    wrenches = np.array([joint.wrench for joint in reactions.joints.values()])
-    arm = reactions.pose.linkage.longest
-    force = max(np.abs(wrenches[:, :3]).max(), np.abs(wrenches[:, 3:]).max() / arm, abs(reactions.drive_torque) / arm)
-    return np.array([force] * 3 + [force * arm] * 3)
-
-
-def _rounded(wrench: Real, size: Real) -> Real:
-    return np.where(np.abs(wrench) <= _ROUNDING * size, 0.0, wrench)
 
 
 def wrenches_on_ground(reactions: Reactions, loads: Sequence[Load] = ()) -> dict[str, Real]:

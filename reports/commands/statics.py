@@ -8,6 +8,7 @@ import numpy as np
 from fea.frame.case_statics import CaseStatics
 from geometry.base.version import result_stamp
 from loads.statics.friction import friction_wrenches
+from loads.statics.rounding import rounded, size_of, without_rounding
 from loads.statics.statics import Reactions
 from loads.statics.system import System
 from reports.tables.data import finite
@@ -49,14 +50,13 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
         print(f"  {name:<{left}} at ({_column(x, pose.linkage.longest)}, {_column(y, pose.linkage.longest)}) mm")
     for title, reactions in statics.reactions.items():
         print(f"\nLoad case {title}")
-        shown = shown_components(reactions)
+        shown, clean = shown_components(reactions), without_rounding(reactions)
         width = max(4, *map(len, reactions.joints))
         places = [AXES.index(axis) for axis in shown]
-        largest = max((float(np.abs(joint.wrench[:3]).max()) for joint in reactions.joints.values()), default=0.0)
         forces, moments = [i for i in places if i < 3], [i for i in places if i >= 3]
-        for joint in reactions.joints.values():
-            force = ", ".join(_column(joint.wrench[i], largest) for i in forces)
-            size = _column(joint.magnitude, largest).strip()
+        for joint in clean.joints.values():
+            force = ", ".join(_column(joint.wrench[i]) for i in forces)
+            size = _column(joint.magnitude).strip()
             turned = "".join(f", {AXES[i]} {joint.wrench[i]:.4g}" for i in moments)
             print(
                 f"  {joint.joint:<{width}} {joint.by} pushes {joint.on} with ({force}) N, {size} N"
@@ -71,13 +71,14 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
         if reactions.drive and not held:
             drive = reactions.drive
             if drive.pushes(reactions.pose.linkage):
-                print(f"  drive force on {drive.link}: {reactions.drive_force:.5g} N (along {drive.joint} +)")
+                print(f"  drive force on {drive.link}: {clean.drive_force:.5g} N (along {drive.joint} +)")
             else:
-                print(f"  drive torque on {drive.link}: {reactions.drive_torque:.5g} N·mm (counter-clockwise +)")
+                print(f"  drive torque on {drive.link}: {clean.drive_torque:.5g} N·mm (counter-clockwise +)")
         if title in statics.work:
             print(f"  {friction_sentence(statics.work[title], reactions)}")
-            for name, wrench in friction_wrenches(statics.loads[title]).items():
-                joint, force = reactions.joints[name], ", ".join(_column(x, largest).strip() for x in wrench[:2])
+            for name, rubbed in friction_wrenches(statics.loads[title]).items():
+                wrench = rounded(rubbed, size_of(reactions))
+                joint, force = reactions.joints[name], ", ".join(_column(x).strip() for x in wrench[:2])
                 by = f"({force}) N, " if np.any(wrench[:2]) else ""
                 print(f"  {name:<{width}} {joint.by} rubs {joint.on} with {by}{wrench[5]:.4g} N·mm")
         if (play := statics.forces[title].play) is not None:
@@ -104,11 +105,13 @@ def _print_matrix(reactions: Reactions) -> None:
     for label, row, b in zip(labels, system.matrix, system.rhs, strict=True):
         cells = "".join(f"{_cell(x, largest):>{w}}" for x, w in zip(row, widths, strict=True))
         print(f"  {label:<{left}}{cells}{b:>12.5g}")
-    solution = "".join(f"{x:>{w}.4g}" for x, w in zip(reactions.unknowns, widths, strict=True))
+    nil = 1e-12 * float(np.abs(reactions.unknowns).max())
+    told = np.where(np.abs(reactions.unknowns) <= nil, 0.0, reactions.unknowns)
+    solution = "".join(f"{x:>{w}.4g}" for x, w in zip(told, widths, strict=True))
     print(f"  {'[R]':<{left}}{solution}")
 
 
-def _column(value: float, beside: float) -> str:
+def _column(value: float, beside: float = 0.0) -> str:
     """Four decimals, or four digits where these would lose the number; what is rounding ``beside`` another is zero."""
     shown = 0.0 if abs(value) <= 1e-12 * beside else float(value)
     return f"{shown:10.4f}" if shown == 0.0 or 0.1 <= abs(shown) < 1e5 else f"{shown:10.4g}"

@@ -11,6 +11,7 @@ from loads.records.aero import shares
 from loads.records.applied import LineLoad, PointLoad, in_axes
 from loads.records.springs import LineSpring
 from loads.states.actions import stated_loads
+from loads.statics.rounding import without_rounding
 from reports.figures.sprung import coil, spiral, stop_mark
 from reports.sheet.canvas import Canvas, extent
 from reports.sheet.labels import along, place_labels
@@ -55,7 +56,7 @@ class _Drawing:
     def __init__(self, result: CheckResult, load_case: str) -> None:
         self.name = load_case
         self.result, self.pose, self.linkage = result, result.pose, result.pose.linkage
-        self.reactions = result.load_cases[load_case].reactions
+        self.reactions = without_rounding(result.load_cases[load_case].reactions)
         self.stated = result.case.load_cases[load_case]
         # The very loads that the statics had, turned as they are in this pose; the air's are told together below.
         without_air = self.stated.model_copy(update={"air": ()})

@@ -9,6 +9,7 @@ from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from geometry.base.errors import CannotRunError, CaseError
+from loads.statics.rounding import without_rounding
 from reports.notebook.shown import Picture, Row, Table, pick, summary
 from reports.tables.record import worst_load_case
 from reports.words.wording import checks_of, headline
@@ -301,7 +302,7 @@ class CheckReport:
                 "size [N]": float(joint.magnitude),
             }
             for case in self.result.load_cases.values()
-            for name, joint in case.reactions.joints.items()
+            for name, joint in without_rounding(case.reactions).joints.items()
         ]
 
 

@@ -9,6 +9,7 @@ from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidRe
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.materials.material import Material
 from loads.case.forks import forked_link
+from loads.statics.rounding import without_rounding
 from reports.page.coverage import not_covered
 from reports.page.pictures import (
     ASSEMBLY,
@@ -110,6 +111,7 @@ def render(
         axes=AXES,
         tips=tips(result.case),
         shown_components=shown_components,
+        without_rounding=without_rounding,
         weight_sentence=weight_sentence,
         friction_sentence=friction_sentence,
         holding_sentence=holding_sentence,

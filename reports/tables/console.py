@@ -8,6 +8,7 @@ from fea.check.anchor import anchor_loads
 from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from loads.records.aero import AirForces
+from loads.statics.rounding import without_rounding
 from reports.tables.data import change_records
 from reports.tables.frames import frame_lines
 from reports.tables.friction import friction_sentence
@@ -113,15 +114,12 @@ def _changes(result: CheckResult) -> Iterator[str]:
 
 
 def _statics(case: LoadCaseResult) -> str:
-    largest = max((joint.magnitude for joint in case.reactions.joints.values()), default=0.0)
-    forces = "  ".join(
-        f"{name}{KEPT}{number(joint.magnitude, beside=largest)}" for name, joint in case.reactions.joints.items()
-    )
-    torque = case.reactions.drive_torque
-    drive = case.reactions.drive
+    reactions = without_rounding(case.reactions)
+    forces = "  ".join(f"{name}{KEPT}{number(joint.magnitude)}" for name, joint in reactions.joints.items())
+    drive, torque = reactions.drive, reactions.drive_torque
     driven = "" if drive is None else f"\nDrive torque on {drive.link}: {number(torque)} N·mm ({turning(torque)})"
-    if drive is not None and drive.pushes(case.reactions.pose.linkage):
-        driven = f"\nDrive force on {drive.link}: {number(case.reactions.drive_force)} N along {drive.joint}"
+    if drive is not None and drive.pushes(reactions.pose.linkage):
+        driven = f"\nDrive force on {drive.link}: {number(reactions.drive_force)} N along {drive.joint}"
     if held := holding_sentence(case.standing):
         driven = f"\n{held}."
     if case.work is not None:

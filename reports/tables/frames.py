@@ -11,6 +11,7 @@ from fea.frame.thrust import thrusts
 from loads.case.case import Case
 from loads.records.check_spec import DisplacementCheck
 from loads.states.play import Play, Span
+from loads.statics.rounding import without_rounding
 from loads.statics.statics import Reactions
 from reports.tables.data import data, entries
 from reports.words.wording import band, fixed, limit_load, number
@@ -199,8 +200,8 @@ def frame_lines(result: "CheckResult", case: "LoadCaseResult") -> list[str]:
     lines += filter(None, [thrust_line(case.forces, case.large_displacement.reactions)])
     if case.forces.play is not None:
         lines.append(play_line(case.forces.play))
-    deformed = case.large_displacement.reactions
-    if deformed is not None:
+    if case.large_displacement.reactions is not None:
+        deformed = without_rounding(case.large_displacement.reactions)
         forces = "  ".join(f"{name} {number(joint.magnitude)}" for name, joint in deformed.joints.items())
         lines.append(f"Joint forces on the deformed shape [N]: {forces}")
         if deformed.drive is not None:

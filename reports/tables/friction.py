@@ -12,6 +12,7 @@ from loads.states.case_motion import CaseMotion
 from loads.states.drive_work import DriveWork
 from loads.states.rubbing import told_direction
 from loads.statics.friction import friction_wrenches
+from loads.statics.rounding import size_of
 from loads.statics.statics import Reactions
 from reports.words.wording import number
 
@@ -62,10 +63,12 @@ def friction_sentence(work: DriveWork, reactions: Reactions) -> str:
     str
     """
     pose, drive = reactions.pose, reactions.drive
-    unit = "N" if drive is not None and drive.pushes(pose.linkage) else "N·mm"
+    pushes = drive is not None and drive.pushes(pose.linkage)
+    unit, size = ("N", size_of(reactions)[0]) if pushes else ("N·mm", size_of(reactions)[5])
     found = (
         f"Friction, driven {told_direction(work.way, pose.coordinate, pose.slides)}: drive "
-        f"{number(float(work.effort[0]))} {unit}, without friction {number(float(work.without[0]))} {unit}"
+        f"{number(float(work.effort[0]), beside=size)} {unit}, without friction "
+        f"{number(float(work.without[0]), beside=size)} {unit}"
     )
     if bool(work.holds_itself[0]):
         return f"{found}; the linkage holds itself: the load does not drive it this way"
@@ -138,7 +141,10 @@ def motion_friction_lines(moved: CaseMotion, load_case: str) -> list[str]:
 
 def _range(values: Real) -> str:
     known = values[np.isfinite(values)]
-    return f"{number(float(known.min()))} to {number(float(known.max()))}" if known.size else "not known"
+    if not known.size:
+        return "not known"
+    size = float(np.abs(known).max())
+    return " to ".join(number(float(end), beside=size) for end in (known.min(), known.max()))
 
 
 def _spans(spans: list[list[float]], unit: str) -> str:

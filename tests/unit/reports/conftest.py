@@ -40,6 +40,12 @@ forces = [{ link = "piston", at = "Q", force = ["-20 N", "5 N"] }]
 """
 
 
+@pytest.fixture(scope="session")
+def slider_text():
+    """The file of a slider-crank without parts."""
+    return SLIDER
+
+
 @pytest.fixture
 def slider():
     """A slider-crank without parts, checked."""
