@@ -8,7 +8,7 @@ import pytest
 import slotted_cases
 from edited_cases import edited
 
-from fea.check.case_statics import solve_case_statics
+from fea.frame.case_statics import solve_case_statics
 from geometry.base.errors import CaseError
 from geometry.linkage.placement import Placement
 from loads.case.case import Case

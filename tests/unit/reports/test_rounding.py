@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from legible import written
 
-from fea.check.case_statics import solve_case_statics
 from fea.check.run import check_case
+from fea.frame.case_statics import solve_case_statics
 from loads.case.case_file import validate
 from loads.statics.rounding import size_of, without_rounding
 from reports.commands.statics import print_statics
