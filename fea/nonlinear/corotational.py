@@ -12,6 +12,7 @@ is an unknown of its own (a Lagrange multiplier: Bathe, Finite Element Procedure
 have neither play nor stiffness.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,15 +30,15 @@ _MOST_ITERATIONS = 30
 _LEAST_STEP = 1.0 / 4096.0
 
 
-def subdivide(model: FrameModel, parts: int) -> FrameModel:
+def subdivide(model: FrameModel, parts: int | Sequence[int]) -> FrameModel:
     """Return the frame with every element divided into equal parts, in order; new nodes stand after the old ones.
 
     Parameters
     ----------
     model : FrameModel
         The frame.
-    parts : int
-        Per element.
+    parts : int or sequence of int
+        Per element; a number for each, or one for all.
 
     Returns
     -------
@@ -46,7 +47,8 @@ def subdivide(model: FrameModel, parts: int) -> FrameModel:
     """
     nodes, elements = list(model.nodes), []
     names = [model.name(i) for i in range(len(model.nodes))]
-    for i, e in enumerate(model.elements):
+    each = [parts] * len(model.elements) if isinstance(parts, int) else parts
+    for i, (e, parts) in enumerate(zip(model.elements, each, strict=True)):
         start, end = model.ends(i)
         chain = [e.nodes[0], *range(len(nodes), len(nodes) + parts - 1), e.nodes[1]]
         for k in range(1, parts):

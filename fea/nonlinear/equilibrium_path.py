@@ -325,6 +325,27 @@ class EquilibriumPath:
         rotations = np.array([np.eye(3) if node is None else state.rotations[node] for node in nodes])
         return guide_gap(guide, displacements, rotations)
 
+    def allowed(self, bordered: Floats) -> Floats:
+        """Return the motions that the guides allow.
+
+        Parameters
+        ----------
+        bordered : ndarray, shape (k + g, k + g)
+            Derivative with the guides' rows and columns.
+
+        Returns
+        -------
+        ndarray, shape (k + g, c)
+            Independent motions, in unknowns of like size.
+        """
+        from scipy.linalg import null_space
+
+        count = self.chain.count
+        if count == self.size:
+            return np.diag(self.unit)
+        Z = null_space(bordered[count:, :count] * self.unit[:count])
+        return np.vstack([self.unit[:count, None] * Z, np.zeros((self.size - count, Z.shape[1]))])
+
     def free(self, bordered: Floats) -> Floats:
         """Return the scaled stiffness of the motions that the guides allow.
 
@@ -338,14 +359,10 @@ class EquilibriumPath:
         ndarray
             Square matrix over the motions that are left.
         """
-        from scipy.linalg import null_space
-
-        count = self.chain.count
-        scaled = bordered * np.outer(self.unit, self.unit)
-        if count == len(scaled):
-            return scaled
-        Z = null_space(bordered[count:, :count] * self.unit[:count])
-        return np.asarray(Z.T @ scaled[:count, :count] @ Z)
+        if self.chain.count == self.size:
+            return bordered * np.outer(self.unit, self.unit)
+        Z = self.allowed(bordered)
+        return np.asarray(Z.T @ bordered @ Z)
 
     def is_stable(self, state: State, factor: float) -> bool:
         """Return True where every small motion stores energy.

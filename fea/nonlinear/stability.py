@@ -26,6 +26,8 @@ from fea.nonlinear.corotational import SUBDIVISIONS, subdivide
 from fea.nonlinear.equilibrium_path import EquilibriumPath
 from geometry.linkage.pose import Pose, constraint_jacobian, held_motion
 
+Floats = NDArray[np.float64]
+
 COARSE_SUBDIVISIONS, NEAR_BUCKLING = 2, 30.0
 """Elements per beam for a first buckling factor, and the factor below which it is computed with ``SUBDIVISIONS``."""
 SNAP = 3.0 * math.sqrt(3.0)
@@ -84,21 +86,40 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
     divided = subdivide(model, subdivisions)
     linear = solve_frame(divided)
     path = EquilibriumPath(divided)
-    start = path.state
-    f = linear.end_forces
+    K, G = (path.free(part) for part in stiffness_parts(path, linear.end_forces, linear.guide_forces))
+    largest = float(eigh(-(G + G.T) / 2.0, (K + K.T) / 2.0, eigvals_only=True)[-1])
+    return 1.0 / largest if largest > 1e-12 else np.inf
+
+
+def stiffness_parts(path: EquilibriumPath, end_forces: Floats, guide_forces: Floats) -> tuple[Floats, Floats]:
+    """Return the stiffness of a frame as it stands, and the geometric stiffness of the forces in it.
+
+    Parameters
+    ----------
+    path : EquilibriumPath
+        Of the frame, at its start.
+    end_forces : ndarray, shape (m, 2, 6)
+        On the beams' ends, local axes, as ``FrameSolution`` has them [N, N·mm].
+    guide_forces : ndarray, shape (g,)
+        Of the guides.
+
+    Returns
+    -------
+    tuple of 2 ndarray
+        K and K_g (k + g, k + g) with the guides' rows and columns, for ``EquilibriumPath.free``.
+    """
+    start, f = path.state, end_forces
     natural = np.column_stack(
         [(f[:, 1, 0] - f[:, 0, 0]) / 2.0, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]]
     )
-    K = path.free(path.assemble(path.respond(start, 0.0), start, 0.0)[1])
-    loaded = replace(start, guide_forces=linear.guide_forces)
+    K = path.assemble(path.respond(start, 0.0), start, 0.0)[1]
+    loaded = replace(start, guide_forces=guide_forces)
     bent = path.assemble(path.elements.geometric(natural), loaded, 1.0)[1]
-    if model.springs:
+    if path.model.springs:
         # Their stiffness is in K already; what their forces make of it is left.
         elastic = path.springs.tangent(start.displacements, path.chain.axes(start.rotations), 0.0)
         bent[: path.chain.count, : path.chain.count] -= elastic
-    G = path.free(bent)
-    largest = float(eigh(-(G + G.T) / 2.0, (K + K.T) / 2.0, eigvals_only=True)[-1])
-    return 1.0 / largest if largest > 1e-12 else np.inf
+    return K, bent
 
 
 def linkage_factor(frame: LinkageFrame) -> float:
