@@ -20,7 +20,7 @@ LAYERS = {
     "loads": ("text", "records", "statics", "sources", "case", "states", "plans", "exchange"),
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
-        *("refine", "outcomes", "whole", "check", "superposition", "motion", "calculix", "claims"),
+        *("refine", "outcomes", "vibration", "whole", "check", "superposition", "motion", "calculix", "claims"),
         *("study", "sizing", "tolerance"),
     ),
     "reports": ("words", "tables", "sheet", "figures", "turnable", "page", "study", "commands", "notebook"),

@@ -338,10 +338,25 @@ def _works(case: Case, frame: LinkageFrame, solution: FrameSolution) -> Iterator
             yield link, band
 
 
-def _links(
-    case: Case, frame: LinkageFrame, solids: Container[str]
-) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[int, Real]]]:
-    """Zones of every element that is part of a link without solid, and these links' bores with the nodes in them."""
+def give_of_links(
+    case: Case, frame: LinkageFrame, solids: Container[str] = ()
+) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[str, int, Real]]]:
+    """Return how far the links of a frame may give beside plain beams.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    frame : LinkageFrame
+        Of the linkage.
+    solids : container of str, optional
+        Links that are left out.
+
+    Returns
+    -------
+    tuple of dict of int to tuple of Zone, and list of tuple of str, int and ndarray
+        Zones of every element that is part of a link; link, node and give (6,) of every pin in a bore.
+    """
     bodies = {link: case.body(link) for link in case.bending_links if link not in solids}
     beams = {}
     for i, beam in frame.beams.items():
@@ -354,12 +369,20 @@ def _links(
     for link, body in bodies.items():
         material = case.material_of(link)
         gives[link] = bore_gives(body, case.links[link].count * material.youngs_modulus, material.poissons_ratio)
-    bores: dict[int, Real] = {}
+    bores: dict[int, tuple[str, int, Real]] = {}
     for name, nodes in frame.pins.items():
         for link, point, node in zip(case.joints[name].links, case.linkage.joint_points(name), nodes, strict=True):
             if node is not None and point in gives.get(link, {}):
-                bores[node] = gives[link][point]
-    return beams, list(bores.items())
+                bores[node] = link, node, gives[link][point]
+    return beams, list(bores.values())
+
+
+def _links(
+    case: Case, frame: LinkageFrame, solids: Container[str]
+) -> tuple[dict[int, tuple[Zone, ...]], list[tuple[int, Real]]]:
+    """Zones of every element that is part of a link without solid, and these links' bores with the nodes in them."""
+    beams, bores = give_of_links(case, frame, solids)
+    return beams, [(node, give) for _, node, give in bores]
 
 
 def _terms(loaded: FrameSolution, unit: FrameSolution, i: int, zones: Sequence[Zone] | None) -> tuple[Real, Real, Real]:

@@ -132,6 +132,28 @@ def line_load_effect(
     return v0, p0
 
 
+def to_ends(model: FrameModel, i: int) -> Floats:
+    """Return the matrix from the displacements of an element's nodes to those of its beam's ends beyond the arms.
+
+    Parameters
+    ----------
+    model : FrameModel
+        The frame.
+    i : int
+        Number of the element.
+
+    Returns
+    -------
+    ndarray, shape (12, 12)
+        From global axes to local ones.
+    """
+    R = model.axes(i)
+    turned, across = np.kron(np.eye(4), R), np.eye(12)
+    for end, (x, y, z) in enumerate(model.elements[i].offsets @ R.T):
+        across[6 * end : 6 * end + 3, 6 * end + 3 : 6 * end + 6] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+    return np.asarray(across @ turned)
+
+
 class FrameSystem:
     """Numbering and scaling of the unknowns of a frame.
 
@@ -158,7 +180,7 @@ class FrameSystem:
         self.condensed_unit = np.array([1.0, 1.0, 1.0, mean, mean, mean])
         self.guide_unit = np.array([1.0 if guide.axis is None else mean for guide in model.guides])
         self.owner = self._owners()
-        self._matrices = [self._to_ends(i) for i in range(m)]
+        self._matrices = [to_ends(model, i) for i in range(m)]
         supported = {int(self.owner[6 * s.node + DOFS.index(dof)]) for s in model.supports for dof in s.dofs}
         idle = self._idle()
         free = [i for i in range(6 * n) if self.owner[i] == i and i not in supported and not idle[i]]
@@ -179,14 +201,6 @@ class FrameSystem:
         _, group = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(size, size)), directed=False)
         _, first = np.unique(group, return_index=True)
         return np.asarray(first[group])
-
-    def _to_ends(self, i: int) -> Floats:
-        """(12, 12) from the displacements of both nodes, global axes, to those of the beam's ends, local axes."""
-        R = self.model.axes(i)
-        turned, across = np.kron(np.eye(4), R), np.eye(12)
-        for end, (x, y, z) in enumerate(self.model.elements[i].offsets @ R.T):
-            across[6 * end : 6 * end + 3, 6 * end + 3 : 6 * end + 6] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
-        return np.asarray(across @ turned)
 
     def _node_columns(self, i: int) -> NDArray[np.int64]:
         a, b = self.model.elements[i].nodes

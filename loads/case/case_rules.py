@@ -105,6 +105,14 @@ def check_rules(case: CoreCase) -> None:
 
 def _check_drive(case: CoreCase) -> None:
     check_drive(case.linkage, case.pinned_drive)
+    if case.drive is not None and case.drive.stiffness is not None:
+        slides = case.joints[case.drive.joint].type == "slider"
+        if case.drive.stiffness.slides != slides:
+            kind, unit = ("slider", "20 N/mm") if slides else ("revolute joint", "2 N*m/rad")
+            raise CaseError(
+                f"drive.stiffness: joint '{case.drive.joint}' is a {kind}, whose drive has a stiffness such as "
+                f'"{unit}"; state that'
+            )
     mobility = case.linkage.mobility
     if case.drive is not None and case.joints[case.drive.joint].bonded:
         raise CaseError(

@@ -1,11 +1,12 @@
 """The smaller tables of a case file: pose, drive, solid models, hand calculations, ways to hold."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field, PlainValidator, PrivateAttr, WithJsonSchema
+from pydantic_core import PydanticCustomError
 
-from geometry.base.model import CaseModel, Name, Text
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Force, Length
+from geometry.base.model import CaseModel, Name, Text, refusal
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Force, Length, parse
 from loads.text.shares import Accuracy
 
 
@@ -26,6 +27,36 @@ class PoseSpec(CaseModel):
     loads balance, or where a stop holds it. A drive then drives the motion alone."""
 
 
+class DriveStiffness(NamedTuple):
+    """How stiff a drive is.
+
+    Attributes
+    ----------
+    value : float
+        Torque per angle [N mm/rad], or force per travel [N/mm].
+    slides : bool
+        True for a force per travel.
+    """
+
+    value: float
+    slides: bool
+
+
+def _drive_stiffness(stated: object) -> DriveStiffness:
+    try:
+        found = DriveStiffness(parse(stated, "torsional stiffness"), slides=False)
+    except PydanticCustomError as wrong:
+        try:
+            found = DriveStiffness(parse(stated, "stiffness"), slides=True)
+        except PydanticCustomError:
+            raise refusal(
+                f'{wrong.message()} for a drive about a joint, or a stiffness such as "20 N/mm" for one along a slider'
+            ) from None
+    if found.value <= 0.0:
+        raise refusal("it must be greater than zero; leave it out for a drive that does not give")
+    return found
+
+
 class DriveSpec(CaseModel):
     """Where the drive torque enters, or at a slider the drive force."""
 
@@ -37,6 +68,23 @@ class DriveSpec(CaseModel):
     transfer: Literal["eye-faces", "bore-shear"] = "eye-faces"
     """How the torque enters the driven part: as shear on the eye's flat faces, or on its bore. Where the part
     has no flat ring about that hole it enters through the bore."""
+    stiffness: (
+        Annotated[
+            DriveStiffness,
+            PlainValidator(_drive_stiffness),
+            WithJsonSchema(
+                {
+                    "anyOf": [
+                        {"type": "string", "format": "torsional stiffness", "examples": ["2 N*m/rad"]},
+                        {"type": "string", "format": "stiffness", "examples": ["20 N/mm"]},
+                    ]
+                }
+            ),
+        ]
+        | None
+    ) = None
+    """How stiffly it holds its link, for natural frequencies alone: torque per angle about the joint, or force per
+    travel along a slider. Left out, it does not give."""
     _stop: str = PrivateAttr("")
     _idle: bool = PrivateAttr(False)
 

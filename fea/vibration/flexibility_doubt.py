@@ -1,0 +1,204 @@
+"""What natural frequencies may be since the flexibility of links is in doubt.
+
+Material and shape leave the flexibility F of every beam between two ends: the modulus by the range that its material
+states, and what the frame of plain beams does not know of eyes, bores and holes by the bounds of
+``fea.frame.displacement_band``. With all of them at one end together no frequency is beyond that of this end (Rayleigh:
+Courant & Hilbert, Methods of Mathematical Physics, vol. 1, 1953, section VI.2: a system that gives more has no
+frequency higher).
+
+The compliance of the linkage in its own modes is 1/λ; a further flexibility dF adds qᵢ dF qⱼ/(λᵢ λⱼ) with the forces q
+of the modes (virtual work). The eigenvalues of that small matrix are the new 1/λ: exactly where equilibrium alone gives
+the forces, else to first order in dF, as displacements have it; and but for the modes that are left out, which
+``BASIS`` makes negligible.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.deflection import flexibility
+from fea.common.band import Band
+from fea.common.scatter import Scatter, compliance_scatter
+from fea.common.source import Source, SourceKind, distinct
+from fea.frame.displacement_band import Zone, give_of_links
+from fea.frame.linkage_frame import LinkageFrame
+from fea.frame.model import FrameModel
+from fea.frame.system import natural_deformations, natural_flexibility, to_ends
+from fea.nonlinear.large_displacement import blind_link
+from fea.vibration.modes import Eigenmodes, frequency
+from loads.case.case import Case
+
+Floats = NDArray[np.float64]
+_PLAIN = np.ones(6)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Change:
+    """By what compliance in modes changes at both ends of a cause."""
+
+    less: Floats
+    more: Floats
+
+
+def flexibility_doubt(
+    case: Case,
+    frame: LinkageFrame,
+    model: FrameModel,
+    parents: NDArray[np.int64],
+    found: Eigenmodes,
+    shapes: Floats,
+    count: int,
+) -> list[Band]:
+    """Return the frequencies of the lowest modes with their bands.
+
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+    model : FrameModel
+        Of the frame with divided beams.
+    parents : ndarray of int, shape (m,)
+        Element of the frame that each one is part of.
+    found : Eigenmodes
+        More than are asked for.
+    shapes : ndarray, shape (c, n, 6)
+        Motions of the nodes, of unit modal mass.
+    count : int
+        Frequencies that are asked for.
+
+    Returns
+    -------
+    list of Band
+        [Hz]
+    """
+    values = [frequency(value) for value in found.values[:count]]
+    blind = blind_link(case)
+    if blind:
+        why = f"the frame takes link {blind} for a beam along its axis, which does not tell how far it gives"
+        return [Band(value=value, low=0.0, high=math.inf, without=why) for value in values]
+    modulus, eyes, both = _Forces(case, frame, model, parents, shapes).changes()
+    ends = [_ends(found, change) for change in (modulus, eyes, both)]
+    scatters = [compliance_scatter(case.material_of(link)) for link in case.bending_links]
+    ranges = distinct(*(one.sources for one in scatters))
+    bands = []
+    for k, value in enumerate(values):
+        own, plain, (low, high) = (one[k] for one in ends)
+        sources = [Source(kind=one.kind, detail=one.detail, width=_width(own, len(ranges))) for one in ranges]
+        sources.append(Source(kind=SourceKind.EYES, width=_width(plain, 1)))
+        bands.append(Band(value=value, low=min(low, value), high=max(high, value), sources=tuple(sources)))
+    return bands
+
+
+def _width(ends: tuple[float, float], causes: int) -> float:
+    low, high = ends
+    return high / low if causes == 1 and low > 0.0 else math.nan
+
+
+def _ends(found: Eigenmodes, change: _Change) -> list[tuple[float, float]]:
+    """Least and largest frequency of every mode."""
+    least, largest = (
+        [frequency(1.0 / mu - found.shift) if mu > 0.0 else math.inf for mu in _sorted(found, more)]
+        for more in (change.more, change.less)
+    )
+    return list(zip(least, largest, strict=True))
+
+
+def _sorted(found: Eigenmodes, change: Floats) -> Floats:
+    compliance = 1.0 / (found.values + found.shift)
+    mu = np.linalg.eigvalsh(np.diag(compliance) + change * np.outer(compliance, compliance))
+    return np.asarray(mu[::-1])
+
+
+class _Forces:
+    """Forces of modes in the beams and at the bores of a frame."""
+
+    def __init__(
+        self, case: Case, frame: LinkageFrame, model: FrameModel, parents: NDArray[np.int64], shapes: Floats
+    ) -> None:
+        self.case, self.frame, self.model, self.parents = case, frame, model, parents
+        self.zones, self.bores = give_of_links(case, frame)
+        self.links: Mapping[str, Scatter] = {
+            link: compliance_scatter(case.material_of(link)) for link in case.bending_links
+        }
+        self.pins = {
+            i: compliance_scatter(case.all_materials[case.joints[name].pin_material])
+            for name, i in frame.pin_beams.items()
+            if not frame.model.elements[i].rigid
+        }
+        c = len(shapes)
+        self.natural = np.zeros((len(model.elements), 6, c))
+        self.at_nodes = np.zeros((len(model.nodes), 6, c))
+        built_in = set(frame.pin_beams.values())
+        for i, e in enumerate(model.elements):
+            length = model.length(i)
+            B = natural_deformations(length) @ to_ends(model, i)
+            ends = shapes[:, e.nodes].reshape(c, 12).T
+            F = natural_flexibility(e.section, e.young, e.poisson, length)
+            self.natural[i] = np.linalg.solve(F, B @ ends)
+            if int(parents[i]) not in built_in:
+                wrenches = (B.T @ self.natural[i]).reshape(2, 6, c)
+                for node, wrench in zip(e.nodes, wrenches, strict=True):
+                    self.at_nodes[node] += wrench
+
+    def changes(self) -> tuple[_Change, _Change, _Change]:
+        """By the moduli alone, by eyes, bores and holes alone, and by both together."""
+        c = self.natural.shape[2]
+        less, more = np.zeros((3, c, c)), np.zeros((3, c, c))
+        passed: dict[int, float] = {}
+        for i, parent in enumerate(map(int, self.parents)):
+            start, end = passed.get(parent, 0.0), passed.get(parent, 0.0) + self.model.length(i)
+            passed[parent] = end
+            scatter = self._scatter(parent)
+            if scatter is None:
+                continue
+            whole = (Zone(start=0.0, end=math.inf, least=_PLAIN, most=_PLAIN),)
+            F, low, high = _flexibilities(self.model, i, self.zones.get(parent, whole), start, end)
+            q = self.natural[i]
+            for into, eyes, factor in ((less, low, scatter.low), (more, high, scatter.high)):
+                for row, own in enumerate((factor * F, eyes, factor * eyes)):
+                    into[row] += q.T @ (own - F) @ q
+        for link, node, give in self.bores:
+            w, factor = self.at_nodes[node], self.links[link].high
+            sunk = w.T @ (give[:, None] * w)
+            more[1] += sunk
+            more[2] += factor * sunk
+        first, second, third = (_Change(less=a, more=b) for a, b in zip(less, more, strict=True))
+        return first, second, third
+
+    def _scatter(self, parent: int) -> Scatter | None:
+        if parent in self.frame.beams:
+            return self.links[self.frame.beams[parent].link]
+        return self.pins.get(parent)
+
+
+def _flexibilities(
+    model: FrameModel, i: int, zones: tuple[Zone, ...], start: float, end: float
+) -> tuple[Floats, Floats, Floats]:
+    """Natural flexibility (6, 6) of an element: plain, the least and the largest; its ends along the whole beam."""
+    e, length = model.elements[i], model.length(i)
+    flexible = flexibility(e.section, e.young, e.poisson)
+    found = np.zeros((3, 6, 6))
+    for zone in zones:
+        low, high = max(zone.start, start) - start, min(zone.end, end) - start
+        if high <= low:
+            continue
+        terms = _terms(low / length, high / length, length)
+        for row, factor in enumerate((_PLAIN, zone.least, zone.most)):
+            found[row] += np.einsum("k,kab->ab", flexible * factor, terms)
+    return found[0], found[1], found[2]
+
+
+def _terms(low: float, high: float, length: float) -> Floats:
+    """(6, 6, 6) ∫ bᵀ b dx over a part of a beam for each of N, V_y, V_z, T, M_y, M_z, which are b q."""
+    found, size = np.zeros((6, 6, 6)), (high - low) * length
+    found[0, 0, 0] = found[3, 5, 5] = size
+    for shear, moment, first in ((1, 5, 1), (2, 4, 3)):
+        rows = slice(first, first + 2)
+        found[shear, rows, rows] = size / length**2
+        a, b = ((1.0 - low) ** 3 - (1.0 - high) ** 3) / 3.0, (high**3 - low**3) / 3.0
+        mixed = (high**2 - low**2) / 2.0 - b
+        found[moment, rows, rows] = length * np.array([[a, -mixed], [-mixed, b]])
+    return found

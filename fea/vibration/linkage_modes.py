@@ -1,0 +1,252 @@
+"""Natural frequencies and shapes of the linkage as a whole, in one pose under one set of loads.
+
+They are those of small motions about the pose: (K + K_g) x = ω² M x with the frame's stiffness K, the geometric
+stiffness K_g of the forces that the load case's weight, inertia and stated loads make in it (``stiffness_parts``; so
+weights and springs hold a linkage), and the mass M of parts, pins and what links carry (``mass_matrix``). The pose is
+frozen: Coriolis and gyroscopic terms, and the change of inertia forces with the motion, are left out, which are small
+while links turn slowly beside the frequency. So are friction, play, and the air that moves along. Pins between layers
+are tight in both links.
+
+The drive holds its link rigidly; with a stiffness of its own it is a spring about its joint or along its guide, about
+the state in which it held the linkage. A stop that bears is pressed on and holds rigidly. Where the pose balances by
+itself nothing holds but springs and weights.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.build import ALONG_PINS, build_frame
+from fea.frame.linear import FrameSolution, solve_frame
+from fea.frame.linkage_frame import LinkageFrame, slot_normal
+from fea.frame.model import FrameModel, Guide
+from fea.nonlinear.corotational import subdivide
+from fea.nonlinear.equilibrium_path import EquilibriumPath
+from fea.nonlinear.stability import stiffness_parts
+from fea.vibration.flexibility_doubt import flexibility_doubt
+from fea.vibration.mass_matrix import MassMatrix, mass_matrix
+from fea.vibration.modes import Eigenmodes, Mode, lowest
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.records.applied import PartMass
+
+Floats = NDArray[np.float64]
+
+SUBDIVISIONS = 4
+"""Elements along the longest beam; shorter ones have fewer in proportion."""
+BASIS = 12
+"""Modes beyond those asked for in which the doubt about flexibilities is resolved."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinkageModes:
+    """The lowest modes of a linkage in a pose.
+
+    Attributes
+    ----------
+    pose : Pose
+    load_case : str
+        Its name.
+    frame : LinkageFrame
+        Of the linkage, held by its drive.
+    model : FrameModel
+        Its model with divided beams, to whose nodes the shapes belong.
+    modes : tuple of Mode
+        The lowest frequency first.
+    notes : tuple of str
+        What the reader must know.
+    """
+
+    pose: Pose
+    load_case: str
+    frame: LinkageFrame
+    model: FrameModel
+    modes: tuple[Mode, ...]
+    notes: tuple[str, ...] = ()
+
+
+def linkage_modes(
+    case: Case,
+    load_case: str,
+    frame: LinkageFrame,
+    masses: Mapping[str, PartMass],
+    *,
+    count: int = 4,
+    subdivisions: int = SUBDIVISIONS,
+) -> LinkageModes:
+    """Return the lowest natural modes of a linkage.
+
+    Parameters
+    ----------
+    case : Case
+        As it stands, with what holds it as its drive.
+    load_case : str
+        Its name.
+    frame : LinkageFrame
+        In the pose, under the loads, held by the drive.
+    masses : mapping of str to PartMass
+        Of the parts, by link.
+    count : int, optional
+        Modes.
+    subdivisions : int, optional
+        Elements along the longest beam.
+
+    Returns
+    -------
+    LinkageModes
+
+    Raises
+    ------
+    CannotRunError
+        Where the held frame moves without strain, or what moves has no mass.
+    """
+    divided, parents = divide(frame, subdivisions)
+    held = solve_frame(divided)
+    model, guide_forces = divided, held.guide_forces
+    stiffness = _drive_stiffness(case, frame)
+    if stiffness is not None:
+        model, guide_forces = _released(case, frame, divided, held)
+    path = EquilibriumPath(model)
+    K, G = stiffness_parts(path, held.end_forces, guide_forces)
+    tangent = K + G
+    if stiffness:
+        way = _drive_way(frame, path)
+        tangent[: path.chain.count, : path.chain.count] += stiffness * np.outer(way, way)
+    mass = mass_matrix(case, frame, model, parents, masses, carried=case.load_cases[load_case].carried)
+    found = frame_modes(path, tangent, mass, count + BASIS)
+    modes, notes = _modes(case, frame, path, mass, found, count, parents)
+    return LinkageModes(pose=frame.pose, load_case=load_case, frame=frame, model=model, modes=modes, notes=notes)
+
+
+def frame_modes(path: EquilibriumPath, tangent: Floats, mass: MassMatrix, count: int) -> Eigenmodes:
+    """Return the lowest modes of a frame.
+
+    Parameters
+    ----------
+    path : EquilibriumPath
+        Of the frame, at its start.
+    tangent : ndarray, shape (k + g, k + g)
+        Its whole stiffness, with the guides' rows and columns.
+    mass : MassMatrix
+        Its mass.
+    count : int
+        Modes at the most.
+
+    Returns
+    -------
+    Eigenmodes
+        With vectors (k + g, c) in the unknowns of the path.
+    """
+    Z = path.allowed(tangent)
+    found = lowest(Z.T @ tangent @ Z, Z.T @ mass.bordered(path) @ Z, count)
+    return replace(found, vectors=Z @ found.vectors)
+
+
+def divide(frame: LinkageFrame, subdivisions: int) -> tuple[FrameModel, NDArray[np.int64]]:
+    """Return the model of a linkage with its links' beams divided, and the element of the frame that each is part of.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+    subdivisions : int
+        Elements along the longest beam.
+
+    Returns
+    -------
+    tuple of FrameModel and ndarray of int, shape (m,)
+    """
+    lengths = {i: frame.model.length(i) for i in frame.beams}
+    longest = max(lengths.values())
+    parts = [
+        int(np.ceil(subdivisions * lengths[i] / longest - 1e-9)) if i in lengths else 1
+        for i in range(len(frame.model.elements))
+    ]
+    return subdivide(frame.model, parts), np.repeat(np.arange(len(parts)), parts)
+
+
+def _modes(
+    case: Case,
+    frame: LinkageFrame,
+    path: EquilibriumPath,
+    mass: MassMatrix,
+    found: Eigenmodes,
+    count: int,
+    parents: NDArray[np.int64],
+) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
+    """Modes with the bands of their frequencies, and notes."""
+    shapes = np.array([_shape(path, vector) for vector in found.vectors.T])
+    bands = flexibility_doubt(case, frame, path.model, parents, found, shapes, count)
+    modes = []
+    for shape, band in zip(shapes, bands, strict=False):
+        whole, plane = mass.energies(shape)
+        size = float(np.linalg.norm(shape[:, :3], axis=1).max()) or 1.0
+        modes.append(Mode(frequency=band, shape=shape / size, in_plane=plane / whole))
+    notes = list(frame.notes)
+    unstable = found.values[:count] < -1e-9 * abs(found.values[-1])
+    if unstable.any():
+        rate = float(np.sqrt(-found.values[0]))
+        notes.append(
+            f"the pose is unstable under its loads: what moves it off grows by the factor e every {1.0 / rate:.3g} s"
+        )
+    return tuple(modes), tuple(notes)
+
+
+def _shape(path: EquilibriumPath, vector: Floats) -> Floats:
+    """Motion of the nodes (n, 6) in the unknowns of a path."""
+    chain = path.chain
+    axes = chain.axes(path.state.rotations)
+    found = np.zeros((len(path.model.nodes), 6))
+    found[:, :3] = np.where(chain.translations >= 0, vector[chain.translations], 0.0)
+    for node, steps in enumerate(chain.nodes):
+        for step in steps:
+            found[node, 3:] += axes[step.number] * vector[step.number]
+    return found
+
+
+def _drive_stiffness(case: Case, frame: LinkageFrame) -> float | None:
+    """Stiffness of what holds the linkage; None where it is rigid."""
+    if frame.held is None or frame.held.stop or case.drive is None:
+        return None
+    if frame.held.idle:
+        return 0.0
+    return None if case.drive.stiffness is None else case.drive.stiffness.value
+
+
+def _released(case: Case, frame: LinkageFrame, divided: FrameModel, held: FrameSolution) -> tuple[FrameModel, Floats]:
+    """The divided model without what the drive holds, and the forces of its guides in the held state."""
+    free = build_frame(case, frame.pose, frame.loads, held=None).model
+    known = {_guide_key(guide): float(force) for guide, force in zip(divided.guides, held.guide_forces, strict=True)}
+    assert frame.held is not None
+    coarse = frame.reactions(held.joint_wrenches[: len(frame.model.nodes)], held.residual)
+    on_pin = coarse.joints[frame.held.joint].wrench[:3]
+    forces = [known.get(_guide_key(guide), -float(guide.normal @ on_pin)) for guide in free.guides]
+    model = replace(divided, ties=free.ties, supports=free.supports, guides=free.guides)
+    return model, np.array(forces)
+
+
+def _guide_key(guide: Guide) -> tuple[int | None, int | None, tuple[float, ...], bool]:
+    return guide.carrier, guide.pin, tuple(guide.normal), guide.axis is None
+
+
+def _drive_way(frame: LinkageFrame, path: EquilibriumPath) -> Floats:
+    """Turn of the driven joint, or way along its guide, by the unknowns of a path."""
+    assert frame.held is not None
+    name, chain = frame.held.joint, path.chain
+    first, second = frame.pins[name]
+    revolute = frame.pose.linkage.joints[name].type == "revolute"
+    if name in frame.pin_ends:
+        first, second = (frame.pin_ends[name], second) if revolute else (first, frame.pin_ends[name])
+    way, axes = np.zeros(chain.count), chain.axes(path.state.rotations)
+    along = np.cross(slot_normal(frame.pose, name), ALONG_PINS) if not revolute else ALONG_PINS
+    for node, sense in ((first, -1.0), (second, 1.0)):
+        if node is None:
+            continue
+        if revolute:
+            for step in chain.nodes[node]:
+                way[step.number] += sense * float(axes[step.number] @ along)
+        else:
+            places = chain.translations[node]
+            np.add.at(way, places[places >= 0], sense * along[places >= 0])
+    return way

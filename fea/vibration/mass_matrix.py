@@ -1,0 +1,353 @@
+"""The mass of a linkage on its frame: consistent mass matrices of Timoshenko beams, and rigid bodies at nodes.
+
+What moves in the frame weighs as the kernel says. The mass of a part lies along its beams, arms and flanks of slots
+included, in proportion to their sections, and changes linearly along the link so that its centroid is that of the part;
+where it would become negative for that, or the centroid lies beside the beams, its line is shifted as a rigid body
+beside them. Sections have rotary inertia, and where the part's moment of inertia about z is more than this gives, as
+that of eyes and discs, what is missing is spread along the beams as rotary inertia. Where it is less, it is left so.
+Masses that are spread along a link lie on its axis; bodies stand at a node, with their centroid beside it.
+
+The matrix of a beam is the integral of Nᵀ m N with the shape functions N that its stiffness has, in bending
+(Przemieniecki, Theory of Matrix Structural Analysis, 1968, section 11.6; Friedman & Kosmatka, Computers & Structures 47
+(1993) 473-481):
+
+    w = N1 w1 + N2 θ1 + N3 w2 + N4 θ2,  N1 = (1 - 3 ξ² + 2 ξ³ + Φ (1 - ξ))/(1 + Φ),  Φ = 12 E I/(κ G A L²), ...
+
+so that the kinetic energy of every motion that its stiffness knows is exact, and frequencies come from above.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.deflection import flexibility
+from fea.frame.linkage_frame import LinkageFrame
+from fea.frame.model import FrameElement, FrameModel
+from fea.frame.system import to_ends
+from fea.nonlinear.equilibrium_path import EquilibriumPath
+from fea.nonlinear.kinematic_chain import Places
+from loads.case.case import Case
+from loads.records.applied import PartMass
+from loads.records.carried import Carried, CarriedSpread, mass_of
+from loads.states.masses import all_carried
+
+Floats = NDArray[np.float64]
+
+_XI, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_XI, _WEIGHTS = (1.0 + _XI) / 2.0, _WEIGHTS / 2.0
+"""Places and weights along a beam; exact for cubic shapes and a density that changes linearly."""
+IN_PLANE = np.array([True, True, False, False, False, True] * 2)
+"""What of the motion of two nodes lies in the linkage's plane."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MassMatrix:
+    """The mass of a frame, beam by beam and node by node.
+
+    Attributes
+    ----------
+    model : FrameModel
+        The frame.
+    beams : ndarray, shape (m, 12, 12)
+        Of the elements, for displacements and rotations of both nodes, global axes [tonne, tonne·mm, tonne·mm²].
+    bodies : tuple of (int, ndarray of shape (6, 6))
+        Rigid bodies with the nodes that carry them.
+    """
+
+    model: FrameModel
+    beams: Floats
+    bodies: tuple[tuple[int, Floats], ...] = ()
+
+    @cached_property
+    def _body_pairs(self) -> tuple[NDArray[np.int64], Floats]:
+        """Nodes (b, 2) of the bodies with the ground in second place, and their matrices (b, 12, 12)."""
+        found = np.zeros((len(self.bodies), 12, 12))
+        for k, (_, matrix) in enumerate(self.bodies):
+            found[k, :6, :6] = matrix
+        return np.array([(node, -1) for node, _ in self.bodies], dtype=np.int64).reshape(-1, 2), found
+
+    def bordered(self, path: EquilibriumPath) -> Floats:
+        """Return the mass matrix in the unknowns of a path of this frame.
+
+        Parameters
+        ----------
+        path : EquilibriumPath
+            Of the frame, at its start.
+
+        Returns
+        -------
+        ndarray, shape (k + g, k + g)
+            With empty rows and columns for the guides.
+        """
+        axes = path.chain.axes(path.state.rotations)
+        pairs, bodies = self._body_pairs
+        T = path.places.matrices(axes)
+        found = path.places.gathered(T @ self.beams @ T.swapaxes(1, 2))
+        if len(bodies):
+            places = Places(path.chain, pairs, path.size)
+            T = places.matrices(axes)
+            found = found + places.gathered(T @ bodies @ T.swapaxes(1, 2))
+        return found
+
+    def energies(self, shape: Floats) -> tuple[float, float]:
+        """Return twice the kinetic energy of a motion, and that of its part in the linkage's plane.
+
+        Parameters
+        ----------
+        shape : ndarray, shape (n, 6)
+            Velocities of the nodes, global axes [mm/s, rad/s].
+
+        Returns
+        -------
+        tuple of 2 float
+            [tonne·mm²/s²]
+        """
+        pairs, bodies = self._body_pairs
+        moved = np.vstack([shape, np.zeros((1, 6))])
+        ends = np.array([e.nodes for e in self.model.elements], dtype=np.int64).reshape(-1, 2)
+        whole, plane = 0.0, 0.0
+        for nodes, matrices in ((ends, self.beams), (pairs, bodies)):
+            v = moved[nodes].reshape(-1, 12)
+            whole += float(np.einsum("mi,mij,mj->", v, matrices, v))
+            v = v * IN_PLANE
+            plane += float(np.einsum("mi,mij,mj->", v, matrices, v))
+        return whole, plane
+
+
+def beam_mass(model: FrameModel, i: int, density: Floats, turning: float = 0.0, aside: Floats | None = None) -> Floats:
+    """Return the consistent mass matrix of a beam whose density is given at the four places of integration.
+
+    Parameters
+    ----------
+    model : FrameModel
+        The frame.
+    i : int
+        Number of the element.
+    density : ndarray, shape (4,)
+        Mass per length at Gauss's places [tonne/mm].
+    turning : float, optional
+        Moment of inertia about z per mass, besides that of the section [mm²].
+    aside : ndarray, shape (3,), optional
+        From the beam to the line of its mass, global axes [mm].
+
+    Returns
+    -------
+    ndarray, shape (12, 12)
+        For the motion of both nodes, global axes.
+    """
+    element, length, R = model.elements[i], model.length(i), model.axes(i)
+    section = element.section
+    inertia = np.diag([section.i_y + section.i_z, section.i_y, section.i_z]) / section.area
+    if turning:
+        z = R[:, 2]  # the axis of the linkage, in the beam's own axes
+        inertia = inertia + turning * np.outer(z, z)
+    shapes = _shapes(element, length)
+    if aside is not None:
+        shapes[:, :3] -= _cross(R @ aside) @ shapes[:, 3:]
+    grains = density * length * _WEIGHTS
+    local = np.einsum("p,pai,paj->ij", grains, shapes[:, :3], shapes[:, :3])
+    local += np.einsum("p,pai,ab,pbj->ij", grains, shapes[:, 3:], inertia, shapes[:, 3:])
+    across = to_ends(model, i)
+    return np.asarray(across.T @ local @ across)
+
+
+def _shapes(element: FrameElement, length: float) -> Floats:
+    """Displacement and rotation (4, 6, 12) at the places of integration by those of both ends, local axes."""
+    _, shear, _, _, about_y, about_z = flexibility(element.section, element.young, element.poisson)
+    x, found = _XI, np.zeros((len(_XI), 6, 12))
+    for row in (0, 3):
+        found[:, row, row], found[:, row, row + 6] = 1.0 - x, x
+    for w, turn, sign, bending in ((1, 5, 1.0, about_z), (2, 4, -1.0, about_y)):
+        phi = 12.0 * shear / (bending * length**2)
+        moved = [
+            1.0 - 3.0 * x**2 + 2.0 * x**3 + phi * (1.0 - x),
+            length * (x - 2.0 * x**2 + x**3 + phi * (x - x**2) / 2.0),
+            3.0 * x**2 - 2.0 * x**3 + phi * x,
+            length * (-(x**2) + x**3 - phi * (x - x**2) / 2.0),
+        ]
+        turned = [
+            6.0 * (x**2 - x) / length,
+            1.0 - 4.0 * x + 3.0 * x**2 + phi * (1.0 - x),
+            6.0 * (x - x**2) / length,
+            -2.0 * x + 3.0 * x**2 + phi * x,
+        ]
+        for k, column in enumerate((w, turn, w + 6, turn + 6)):
+            by_turn = sign if k % 2 else 1.0
+            found[:, w, column] = by_turn * moved[k] / (1.0 + phi)
+            found[:, turn, column] = sign * by_turn * turned[k] / (1.0 + phi)
+    return found
+
+
+def _cross(arm: Floats) -> Floats:
+    """Matrix of arm x."""
+    x, y, z = arm
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def body_mass(mass: float, arm: Floats, inertia: float = 0.0) -> Floats:
+    """Return the mass matrix of a rigid body at a node.
+
+    Parameters
+    ----------
+    mass : float
+        [tonne]
+    arm : ndarray, shape (3,)
+        From the node to its centroid, global axes [mm].
+    inertia : float, optional
+        About its centroid and z [tonne·mm²]; it lies in the plane, as a thin plate or rod does, and about x and y has
+        what its arm gives alone.
+
+    Returns
+    -------
+    ndarray, shape (6, 6)
+    """
+    move = np.hstack([np.eye(3), -_cross(arm)])
+    found = mass * move.T @ move
+    found[5, 5] += inertia
+    return np.asarray(found)
+
+
+def mass_matrix(
+    case: Case,
+    frame: LinkageFrame,
+    divided: FrameModel,
+    parents: NDArray[np.int64],
+    masses: Mapping[str, PartMass],
+    *,
+    carried: bool = True,
+) -> MassMatrix:
+    """Return the mass of a linkage on its divided frame.
+
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+        Of the linkage.
+    divided : FrameModel
+        Its model with beams divided, whose first nodes are those of the frame.
+    parents : ndarray of int, shape (m,)
+        Element of the frame that each one is part of.
+    masses : mapping of str to PartMass
+        Of the parts, by link.
+    carried : bool, optional
+        False to leave out what the case states as carried; pins are always there.
+
+    Returns
+    -------
+    MassMatrix
+    """
+    mass = _Mass(case, frame, divided, parents)
+    for link in case.bending_links:
+        mass.part(link, masses[link])
+    for one in all_carried(case, stated=carried):
+        if one.link != case.linkage.ground:
+            mass.carried(one)
+    return MassMatrix(model=divided, beams=mass.beams, bodies=tuple(mass.bodies))
+
+
+class _Mass:
+    """Collects the mass of all links."""
+
+    def __init__(self, case: Case, frame: LinkageFrame, divided: FrameModel, parents: NDArray[np.int64]) -> None:
+        self.case, self.frame, self.divided = case, frame, divided
+        self.beams = np.zeros((len(divided.elements), 12, 12))
+        self.bodies: list[tuple[int, Floats]] = []
+        self.own: dict[str, list[int]] = {}
+        for i, parent in enumerate(parents):
+            if int(parent) in frame.beams:
+                self.own.setdefault(frame.beams[int(parent)].link, []).append(i)
+        self.parents = parents
+
+    def _grains(self, link: str) -> tuple[list[int], Floats, Floats]:
+        """Elements of a link's beams, the places of integration on them (e, 4, 2) in its frame, and masses (e, 4).
+
+        The masses are those of sections of unit density.
+        """
+        elements, place = self.own[link], self.frame.pose
+        turn, origin = place.rotation(link), place.origins[link]
+        at, sizes = [], []
+        for i in elements:
+            start, end = self.divided.ends(i)
+            points = start + _XI[:, None] * (end - start)
+            at.append((points[:, :2] - origin) @ turn)
+            sizes.append(self.divided.elements[i].section.area * self.divided.length(i) * _WEIGHTS)
+        return elements, np.array(at), np.array(sizes)
+
+    def part(self, link: str, mass: PartMass) -> None:
+        """Add a link's part."""
+        elements, at, sizes = self._grains(link)
+        sizes = sizes * (mass.mass / sizes.sum())
+        factors, aside = _matched(at, sizes, mass)
+        grains = sizes * factors
+        turn = self.frame.pose.rotation(link)
+        line = np.array([*(turn @ aside), 0.0])
+        about = at + aside - mass.centroid
+        own = [self.divided.elements[i].section for i in elements]
+        known = float((grains * (about**2).sum(axis=-1)).sum())
+        known += sum(float(g.sum()) * s.i_z / s.area for g, s in zip(grains, own, strict=True))
+        missing = max(mass.inertia - known, 0.0) / mass.mass
+        for i, own_grains in zip(elements, grains, strict=True):
+            density = own_grains / (self.divided.length(i) * _WEIGHTS)
+            self.beams[i] += beam_mass(self.divided, i, density, missing, line)
+
+    def carried(self, one: Carried) -> None:
+        """Add what a link carries."""
+        points, link = self.case.links[one.link].points, one.link
+        if isinstance(one, CarriedSpread) and link in self.own:
+            found = [(i, density, _bare(self.divided, i, density)) for i, density in self._spread(one, points)]
+            borne = sum(float(density @ _WEIGHTS) * self.divided.length(i) for i, density, _ in found)
+            if abs(borne - one.mass) <= 1e-9 * one.mass:  # else it reaches beyond the beams, and stands as a body
+                for i, _, matrix in found:
+                    self.beams[i] += matrix
+                return
+        known, place = mass_of(one, points), self.frame.pose
+        at = one.start if isinstance(one, CarriedSpread) else one.at
+        if (link, at) not in self.frame.points:
+            at = next(point for name, point in self.frame.points if name == link)
+        arm = place.rotation(link) @ (known.centroid - np.array(points[at]))
+        node = self.frame.points[link, at]
+        self.bodies.append((node, body_mass(known.mass, np.array([*arm, 0.0]), known.inertia)))
+
+    def _spread(self, one: CarriedSpread, points: Mapping[str, tuple[float, float]]) -> Iterator[tuple[int, Floats]]:
+        """Yield the elements along the axis of a link between two places, with the density on each."""
+        first, last = sorted((points[one.start][0], points[one.end][0]))
+        for i in self.own[one.link]:
+            beam = self.frame.beams[int(self.parents[i])]
+            if beam.arm:
+                continue
+            start, end = (self._along(one.link, place) for place in self.divided.ends(i))
+            low, high = max(start, first), min(end, last)
+            if high <= low:
+                continue
+            share = 0.5 if beam.flank else 1.0
+            even = share * one.mass / (last - first) * (high - low) / (end - start)
+            # Linear along the element, so that what covers a part of it has its centroid.
+            off = ((low + high) / 2.0 - (start + end) / 2.0) / (end - start)
+            yield i, even * (1.0 + 12.0 * off * (_XI - 0.5))
+
+    def _along(self, link: str, place: Floats) -> float:
+        pose = self.frame.pose
+        return float(((place[:2] - pose.origins[link]) @ pose.rotation(link))[0])
+
+
+def _bare(model: FrameModel, i: int, density: Floats) -> Floats:
+    """Mass matrix of what lies on the axis of a beam, without rotary inertia of its own."""
+    moved = _shapes(model.elements[i], model.length(i))[:, :3]
+    local = np.einsum("p,pai,paj->ij", density * model.length(i) * _WEIGHTS, moved, moved)
+    across = to_ends(model, i)
+    return np.asarray(across.T @ local @ across)
+
+
+def _matched(at: Floats, sizes: Floats, mass: PartMass) -> tuple[Floats, Floats]:
+    """Factors (e, 4) on masses along beams, and the shift (2,) of their line, that give them a part's centroid."""
+    x = at[..., 0]
+    middle = float((sizes * x).sum() / mass.mass)
+    spread = float((sizes * (x - middle) ** 2).sum() / mass.mass)
+    slope = (float(mass.centroid[0]) - middle) / spread if spread > 0.0 else 0.0
+    most = 1.0 / max(float(np.abs(x - middle).max()), 1e-300)
+    factors = 1.0 + float(np.clip(slope, -most, most)) * (x - middle)
+    centre = (sizes * factors)[..., None] * at
+    return factors, np.asarray(mass.centroid - centre.sum(axis=(0, 1)) / mass.mass)

@@ -1,0 +1,133 @@
+"""The lowest natural modes of a stiffness and a mass matrix, and their record.
+
+With K = L Lᵀ the largest eigenvalues μ of L⁻¹ M L⁻ᵀ are 1/λ of K x = λ M x (Bathe, Finite Element Procedures, 1996,
+section 10.2.5, with the matrices' parts exchanged). Unknowns without mass have μ = 0, so that they give no spurious
+values. Where K is not positive definite, as of a frame that its loads make unstable, K + s M takes its place, which
+shifts every λ by s (section 10.2.3).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.band import Band
+from geometry.base.errors import CannotRunError
+
+Floats = NDArray[np.float64]
+
+_FIRST_SHIFT, _SHIFTS = 1e-16, 20
+"""First shift over the largest ratio of diagonal entries, and how often it is made ten times as large."""
+_NO_MASS = 1e-14
+"""Share of the largest 1/λ below which an unknown counts as without mass."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mode:
+    """A natural mode.
+
+    Attributes
+    ----------
+    frequency : Band
+        [Hz]; 0 where the pose is unstable in this shape, which does not swing but departs.
+    shape : ndarray, shape (n, 6)
+        Displacements and rotations of the nodes of the model, global axes, with the largest displacement 1 mm [mm,
+        rad].
+    in_plane : float
+        Share of its kinetic energy in the linkage's plane.
+    """
+
+    frequency: Band
+    shape: Floats
+    in_plane: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Eigenmodes:
+    """Lowest eigenvalues with their vectors.
+
+    Attributes
+    ----------
+    values : ndarray, shape (c,)
+        λ [rad²/s²], the least first; negative where unstable.
+    vectors : ndarray, shape (n, c)
+        Of unit modal mass, with the largest entry positive.
+    shift : float
+        s [rad²/s²] by which the stiffness was made positive definite; 0 where it is.
+    """
+
+    values: Floats
+    vectors: Floats
+    shift: float = 0.0
+
+
+def lowest(K: Floats, M: Floats, count: int) -> Eigenmodes:
+    """Return the lowest eigenvalues of K x = λ M x.
+
+    Parameters
+    ----------
+    K : ndarray, shape (n, n)
+        Stiffness.
+    M : ndarray, shape (n, n)
+        Mass; it may be singular.
+    count : int
+        Eigenvalues at the most; fewer where fewer unknowns have mass.
+
+    Returns
+    -------
+    Eigenmodes
+
+    Raises
+    ------
+    CannotRunError
+        Where nothing has mass, or what has none is unstable.
+    """
+    from scipy.linalg import eigh, solve_triangular
+
+    K, M = (K + K.T) / 2.0, (M + M.T) / 2.0
+    if not np.trace(M) > 0.0:
+        raise CannotRunError("nothing of the frame that can move has mass, so that it has no natural frequency")
+    L, shift = _factorised(K, M)
+    half = solve_triangular(L, M, lower=True, check_finite=False)
+    A = solve_triangular(L, half.T, lower=True, check_finite=False)
+    size = len(A)
+    mu, y = eigh((A + A.T) / 2.0, subset_by_index=[max(size - count, 0), size - 1], check_finite=False)
+    mu, y = mu[::-1], y[:, ::-1]
+    heavy = mu > _NO_MASS * mu[0]
+    mu, y = mu[heavy], y[:, heavy]
+    vectors = solve_triangular(L, y, lower=True, trans=1, check_finite=False) / np.sqrt(mu)
+    largest = np.abs(vectors).argmax(axis=0)
+    vectors = vectors * np.sign(vectors[largest, np.arange(len(mu))])
+    return Eigenmodes(values=1.0 / mu - shift, vectors=vectors, shift=shift)
+
+
+def _factorised(K: Floats, M: Floats) -> tuple[Floats, float]:
+    """Return L of K + s M = L Lᵀ, and s."""
+    from scipy.linalg import LinAlgError, cholesky
+
+    ratio = float(np.diag(K).max() / np.diag(M).max())
+    for shift in (0.0, *(_FIRST_SHIFT * ratio * 10.0**k for k in range(_SHIFTS))):
+        try:
+            return np.asarray(cholesky(K + shift * M, lower=True, check_finite=False)), shift
+        except LinAlgError:
+            continue
+    raise CannotRunError(
+        "the frame is unstable in a motion in which nothing has mass, so that it has no natural frequencies; check "
+        "what holds its links"
+    )
+
+
+def frequency(value: float) -> float:
+    """Return the frequency of an eigenvalue.
+
+    Parameters
+    ----------
+    value : float
+        λ [rad²/s²].
+
+    Returns
+    -------
+    float
+        [Hz]; 0 where λ is not positive.
+    """
+    return float(np.sqrt(max(value, 0.0)) / (2.0 * np.pi))

@@ -1,0 +1,218 @@
+"""Natural frequencies of a case over its motion, for every load case with its own prestress and carried masses.
+
+The motion is looked at in poses that are evenly spaced. The least first frequency between them is found by golden
+section (Press et al., Numerical Recipes, 3rd ed., section 10.2) beside the least pose, on a grid ``FINE`` times as
+fine. Poses without equilibrium, such as dead points of the driven link, are left out. Friction is left out too.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.build import build_frame
+from fea.vibration.linkage_modes import LinkageModes, linkage_modes
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.case.joint_rules import rubbing_joints
+from loads.records.applied import Load, PartMass, chosen
+from loads.states.actions import acting_loads, placed
+from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.dead_point_reach import pose_at
+from loads.states.masses import part_masses
+from loads.states.standing import stand
+
+Floats = NDArray[np.float64]
+
+FINE = 16
+"""Poses of the fine grid from one pose to the next."""
+_GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FrequencyHistory:
+    """The lowest natural frequencies of a linkage over its motion, under one load case.
+
+    Attributes
+    ----------
+    driving : float
+        Turns of the drive per second [Hz]; 0 where no angular speed is stated.
+    at : ndarray, shape (k,)
+        Values of the motion's coordinate [rad, mm]; the pose's own where there is no motion, 0 for a structure.
+    frequencies : ndarray, shape (k, count)
+        [Hz]; 0 where unstable, infinite where so few unknowns have mass.
+    low : ndarray, shape (k, count)
+        Low ends of their bands.
+    high : ndarray, shape (k, count)
+        High ends of their bands.
+    lowest : LinkageModes
+        At the pose where the low end of the first frequency is least.
+    left_out : tuple of float
+        Values of the coordinate at which there is no equilibrium.
+    """
+
+    driving: float
+    at: Floats
+    frequencies: Floats
+    low: Floats
+    high: Floats
+    lowest: LinkageModes
+    left_out: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CaseFrequencies:
+    """The natural frequencies of a case.
+
+    Attributes
+    ----------
+    case : Case
+    histories : mapping of str to FrequencyHistory
+        By load case.
+    links : mapping of str to object
+        Natural modes of each link by itself.
+    """
+
+    case: Case
+    histories: Mapping[str, FrequencyHistory]
+    links: Mapping[str, object] = field(default_factory=dict)
+
+
+def case_frequencies(
+    case: Case, *, poses: int = 25, count: int = 4, solid: bool = False, threads: int = 2
+) -> CaseFrequencies:
+    """Return the natural frequencies of a case over its motion, or in its pose where it states none.
+
+    Parameters
+    ----------
+    case : Case
+    poses : int, optional
+        Poses over the motion, both ends included.
+    count : int, optional
+        Frequencies of each pose.
+    solid : bool, optional
+        Whether links by themselves are solids; else beams.
+    threads : int, optional
+        Of the solids' solver.
+
+    Returns
+    -------
+    CaseFrequencies
+
+    Raises
+    ------
+    CaseError
+        For a linkage without parts, or a pose that cannot be assembled.
+    CannotRunError
+        Where no pose has frequencies.
+    """
+    case = _smooth(case)
+    masses = part_masses(case)
+    histories = _moving(case, masses, poses, count) if case.motion is not None else _standing(case, masses, count)
+    return CaseFrequencies(case=case, histories=histories)
+
+
+def _smooth(case: Case) -> Case:
+    """Return the case without friction."""
+    if not rubbing_joints(case):
+        return case
+    joints = {name: joint.model_copy(update={"friction": 0.0}) for name, joint in case.joints.items()}
+    return case.model_copy(update={"joints": joints})
+
+
+def _standing(case: Case, masses: Mapping[str, PartMass], count: int) -> dict[str, FrequencyHistory]:
+    found = {}
+    for name, load_case in case.load_cases.items():
+        standing = stand(case, name, masses)
+        own, pose = standing.case, standing.pose
+        loads = acting_loads(own, load_case, placed(pose, load_case.speed), masses)
+        modes = _at(own, name, pose, loads, masses, count)
+        at = pose.held if pose.coordinate is not None else 0.0
+        found[name] = _history(abs(load_case.speed) / (2.0 * math.pi), {at: modes}, (), count)
+    return found
+
+
+def _moving(case: Case, masses: Mapping[str, PartMass], poses: int, count: int) -> dict[str, FrequencyHistory]:
+    assert case.motion is not None
+    fine = (poses - 1) * FINE + 1
+    moved = solve_case_motion(case.model_copy(update={"motion": case.motion.model_copy(update={"poses": fine})}))
+    return {name: _over(moved, name, masses, count) for name in moved.loads}
+
+
+def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: int) -> FrequencyHistory:
+    case, motion = moved.case, moved.motion
+    known: dict[int, LinkageModes | None] = {}
+
+    def modes(i: int) -> LinkageModes | None:
+        if i not in known:
+            known[i] = None
+            if np.isfinite(moved.torque[name][i]):
+                loads = [chosen(load, i) for load in moved.loads[name]]
+                try:
+                    known[i] = _at(case, name, pose_at(motion, i), loads, masses, count)
+                except (CannotRunError, CaseError):
+                    known[i] = None
+        return known[i]
+
+    def least(i: int) -> float:
+        found = modes(i)
+        return math.inf if found is None else found.modes[0].frequency.low
+
+    size = len(motion.angles)
+    coarse = range(0, size, FINE)
+    best = min(coarse, key=least)
+    if modes(best) is None:
+        raise CannotRunError(f"load case {name}: no pose of the motion has an equilibrium that a frame can hold")
+    _least_between(least, max(best - FINE, 0), min(best + FINE, size - 1))
+    spec, load_case = case.motion, case.load_cases[name]
+    assert spec is not None
+    speed = load_case.speed or spec.speed
+    found = {float(motion.angles[i]): one for i, one in sorted(known.items()) if one is not None}
+    left_out = tuple(float(motion.angles[i]) for i, one in sorted(known.items()) if one is None)
+    return _history(abs(speed) / (2.0 * math.pi), found, left_out, count)
+
+
+def _least_between(function: Callable[[int], float], low: int, high: int) -> None:
+    """Look for the least value of a function of whole numbers, which keeps what it found, by golden section."""
+    while high - low > 2:
+        step = max(round(_GOLDEN * (high - low)), 1)
+        first, second = low + step, high - step
+        if first >= second:
+            first, second = low + 1, high - 1
+        low, high = (low, second) if function(first) < function(second) else (first, high)
+    for i in range(low, high + 1):
+        function(i)
+
+
+def _at(
+    case: Case, name: str, pose: Pose, loads: Sequence[Load], masses: Mapping[str, PartMass], count: int
+) -> LinkageModes:
+    frame = build_frame(case, pose, loads, held=case.pinned_drive)
+    return linkage_modes(case, name, frame, masses, count=count)
+
+
+def _history(
+    driving: float, found: Mapping[float, LinkageModes], left_out: tuple[float, ...], count: int
+) -> FrequencyHistory:
+    bands = [[mode.frequency for mode in modes.modes] for modes in found.values()]
+
+    def rows(end: str) -> Floats:
+        values = [[float(getattr(band, end)) for band in row] for row in bands]
+        return np.array([row + [math.inf] * (count - len(row)) for row in values])
+
+    lowest = min(found.values(), key=lambda modes: (modes.modes[0].frequency.low, modes.modes[0].frequency.value))
+    if left_out:
+        told = f"{len(left_out)} poses were left out, in which there is no equilibrium"
+        lowest = replace(lowest, notes=(*lowest.notes, told))
+    return FrequencyHistory(
+        driving=driving,
+        at=np.array(list(found)),
+        frequencies=rows("value"),
+        low=rows("low"),
+        high=rows("high"),
+        lowest=lowest,
+        left_out=left_out,
+    )
