@@ -28,7 +28,7 @@ from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import FrameModel
 from fea.frame.system import natural_deformations, natural_flexibility, to_ends
 from fea.nonlinear.large_displacement import blind_link
-from fea.vibration.modes import Eigenmodes, frequency
+from fea.vibration.modes import NaturalModes, frequency
 from loads.case.case import Case
 
 Floats = NDArray[np.float64]
@@ -48,7 +48,7 @@ def flexibility_doubt(
     frame: LinkageFrame,
     model: FrameModel,
     parents: NDArray[np.int64],
-    found: Eigenmodes,
+    found: NaturalModes,
     shapes: Floats,
     count: int,
 ) -> list[Band]:
@@ -62,7 +62,7 @@ def flexibility_doubt(
         Of the frame with divided beams.
     parents : ndarray of int, shape (m,)
         Element of the frame that each one is part of.
-    found : Eigenmodes
+    found : NaturalModes
         More than are asked for.
     shapes : ndarray, shape (c, n, 6)
         Motions of the nodes, of unit modal mass.
@@ -97,7 +97,7 @@ def _width(ends: tuple[float, float], causes: int) -> float:
     return high / low if causes == 1 and low > 0.0 else math.nan
 
 
-def _ends(found: Eigenmodes, change: _Change) -> list[tuple[float, float]]:
+def _ends(found: NaturalModes, change: _Change) -> list[tuple[float, float]]:
     """Least and largest frequency of every mode."""
     least, largest = (
         [frequency(1.0 / mu - found.shift) if mu > 0.0 else math.inf for mu in _sorted(found, more)]
@@ -106,7 +106,7 @@ def _ends(found: Eigenmodes, change: _Change) -> list[tuple[float, float]]:
     return list(zip(least, largest, strict=True))
 
 
-def _sorted(found: Eigenmodes, change: Floats) -> Floats:
+def _sorted(found: NaturalModes, change: Floats) -> Floats:
     compliance = 1.0 / (found.values + found.shift)
     mu = np.linalg.eigvalsh(np.diag(compliance) + change * np.outer(compliance, compliance))
     return np.asarray(mu[::-1])

@@ -27,7 +27,7 @@ from fea.nonlinear.equilibrium_path import EquilibriumPath
 from fea.nonlinear.stability import stiffness_parts
 from fea.vibration.flexibility_doubt import flexibility_doubt
 from fea.vibration.mass_matrix import MassMatrix, mass_matrix
-from fea.vibration.modes import Eigenmodes, Mode, lowest
+from fea.vibration.modes import Mode, NaturalModes, lowest
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import PartMass
@@ -120,7 +120,7 @@ def linkage_modes(
     return LinkageModes(pose=frame.pose, load_case=load_case, frame=frame, model=model, modes=modes, notes=notes)
 
 
-def frame_modes(path: EquilibriumPath, tangent: Floats, mass: MassMatrix, count: int) -> Eigenmodes:
+def frame_modes(path: EquilibriumPath, tangent: Floats, mass: MassMatrix, count: int) -> NaturalModes:
     """Return the lowest modes of a frame.
 
     Parameters
@@ -136,7 +136,7 @@ def frame_modes(path: EquilibriumPath, tangent: Floats, mass: MassMatrix, count:
 
     Returns
     -------
-    Eigenmodes
+    NaturalModes
         With vectors (k + g, c) in the unknowns of the path.
     """
     Z = path.allowed(tangent)
@@ -171,7 +171,7 @@ def _modes(
     frame: LinkageFrame,
     path: EquilibriumPath,
     mass: MassMatrix,
-    found: Eigenmodes,
+    found: NaturalModes,
     count: int,
     parents: NDArray[np.int64],
 ) -> tuple[tuple[Mode, ...], tuple[str, ...]]:

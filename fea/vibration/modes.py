@@ -43,7 +43,7 @@ class Mode:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Eigenmodes:
+class NaturalModes:
     """Lowest eigenvalues with their vectors.
 
     Attributes
@@ -61,7 +61,7 @@ class Eigenmodes:
     shift: float = 0.0
 
 
-def lowest(K: Floats, M: Floats, count: int) -> Eigenmodes:
+def lowest(K: Floats, M: Floats, count: int) -> NaturalModes:
     """Return the lowest eigenvalues of K x = λ M x.
 
     Parameters
@@ -75,7 +75,7 @@ def lowest(K: Floats, M: Floats, count: int) -> Eigenmodes:
 
     Returns
     -------
-    Eigenmodes
+    NaturalModes
 
     Raises
     ------
@@ -98,7 +98,7 @@ def lowest(K: Floats, M: Floats, count: int) -> Eigenmodes:
     vectors = solve_triangular(L, y, lower=True, trans=1, check_finite=False) / np.sqrt(mu)
     largest = np.abs(vectors).argmax(axis=0)
     vectors = vectors * np.sign(vectors[largest, np.arange(len(mu))])
-    return Eigenmodes(values=1.0 / mu - shift, vectors=vectors, shift=shift)
+    return NaturalModes(values=1.0 / mu - shift, vectors=vectors, shift=shift)
 
 
 def _factorised(K: Floats, M: Floats) -> tuple[Floats, float]:
