@@ -107,7 +107,7 @@ class VerdictChange:
     widest : tuple of Source
         Of an open check, what most of its band comes from; several where they are not known one by one.
     size : SizeRange or None
-        What to size with ``alula size``.
+        What to size with ``alula size``; None, too, where the check is open for its model rather than for its number.
     """
 
     check: CheckOutcome
@@ -158,8 +158,13 @@ def _change(result: CheckResult, check: CheckOutcome) -> VerdictChange:
         until=math.inf if load is None or _by_definition(check) else _linear_until(load_case.large_displacement),
         material=_material(case, load_case, check) if known else None,
         widest=widest(check.value.sources, width) if straddles else (),
-        size=_size(case, load_case, check),
+        size=_size(case, load_case, check) if straddles or _sizable(check) else None,
     )
+
+
+def _sizable(check: CheckOutcome) -> bool:
+    """False of what is open for its reason alone, such as a model that was not run: no other size decides it."""
+    return check.verdict is not Verdict.UNDECIDED or check.subject == LINKAGE
 
 
 def _by_definition(check: CheckOutcome) -> bool:

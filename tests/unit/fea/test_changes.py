@@ -4,6 +4,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from solved import by_hand
 
 from fea.check.run import check_case
 from fea.check.solid_result import _width
@@ -120,11 +121,24 @@ def test_nothing_is_told_of_what_does_not_go_with_the_loads(thick):
     check = found[Quantity.SAFETY_FACTOR, "crank"]
     assert _change(result, replace(check, value=replace(check.value, sources=(grown,)))).faster
     coupler = found[Quantity.SAFETY_FACTOR, "coupler"]
-    assert _change(result, coupler.left_open("no model decides it")).load is None
+    opened = _change(result, coupler.left_open("no model decides it"))
+    assert opened.load is None
+    assert opened.size is None
     assert _change(result, replace(check, value=Band.unknown("singular"))).load is None
     gap = replace(check, quantity=Quantity.CLEARANCE, value=Band.exact(0.1))
     assert _change(result, gap).load is None
     assert _change(result, gap).size is None
+
+
+def test_a_check_open_for_its_model_is_not_sized_and_one_open_for_its_band_is(thick):
+    """No size calibrates hand calculation: by solids the finger's plate has a number at the size that it has."""
+    opened = [change for change in changes(by_hand("finger")) if change.check.reason.endswith("run the solid model")]
+    assert {str(change.check.subject) for change in opened} == {"distal"}
+    assert [change.size for change in opened] == [None, None]
+    result, found = thick
+    check = found[Quantity.SAFETY_FACTOR, "crank"]
+    near = replace(check, limit=0.5 * (check.value.low + check.value.high), verdict=Verdict.UNDECIDED)
+    assert _change(result, near).size is not None
 
 
 def test_the_widest_sources_are_those_of_the_largest_factor():
