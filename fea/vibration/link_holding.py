@@ -1,0 +1,185 @@
+"""How joints hold a link for its own vibration: as if its neighbours, and all pins, did not yield.
+
+A link rings by itself at the frequencies that it has between neighbours that stand still. So what each joint keeps from
+moving in the frame of the linkage (``fea.frame.build``) is held here, at the place where its pin stands in the pose:
+
+pin            the pin's place does not move, and the bore keeps the direction of the pin; it is free to turn about it
+drive          at its joint the link does not turn about the pin either, nor slide along the guide
+bonded joint   nothing moves
+pin in a slot  on the link with the pin and on the one with the slot alike: no displacement across the slot, and no tilt
+               about the slot's direction; all else is free
+slider         all but the displacement along its guide
+
+A pin that slides in several slots is held in all their directions. The ground's part is held where its support holds
+it, and its joints hold nothing: the links there hang on it. What motions of the rigid link are left free by all that
+(a link with a single pin turns about it) are no vibration.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+
+Real = NDArray[np.float64]
+_SAME = 1e-6
+"""Sine of the angle below which two directions count as one, and share of a rigid motion that counts as none."""
+X, Y, Z = np.eye(3)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HeldPlace:
+    """What joints hold at one place of a link.
+
+    Attributes
+    ----------
+    point : str
+        Name of the link's point.
+    place : ndarray, shape (3,)
+        Where the pin stands, in the link's frame [mm].
+    moves : ndarray, shape (k, 3)
+        Directions in which it does not move: orthogonal unit vectors in the link's axes.
+    turns : ndarray, shape (l, 3)
+        Axes about which it does not turn, alike.
+    in_slot : bool
+        True where a pin bears on the flanks of a slot of the link, so that the wall moves on average alone.
+    """
+
+    point: str
+    place: Real
+    moves: Real
+    turns: Real
+    in_slot: bool = False
+
+    @property
+    def conditions(self) -> Real:
+        """Rows (k + l, 6) on the translation and the rotation of the rigid link about its origin."""
+        moved = np.hstack([self.moves, np.cross(self.place, self.moves)])
+        return np.vstack([moved, np.hstack([np.zeros_like(self.turns), self.turns])])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinkHolding:
+    """How a link is held.
+
+    Attributes
+    ----------
+    places : tuple of HeldPlace
+        At bores each point once; at flanks each pin.
+    free : int
+        Number of motions of the rigid link that are left.
+    words : str
+        For people.
+    """
+
+    places: tuple[HeldPlace, ...]
+    free: int
+    words: str
+
+
+def link_holding(case: Case, link: str, pose: Pose) -> LinkHolding:
+    """Return how joints hold a link in a pose.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+        With a part.
+    pose : Pose
+        In which pins stand in slots, and slots in their directions.
+
+    Returns
+    -------
+    LinkHolding
+    """
+    found: dict[tuple[str, str], tuple[list[Real], list[Real]]] = {}
+    at: dict[tuple[str, str], Real] = {}
+    support = case.links[link].held_at
+    if link == case.linkage.ground:
+        if support is not None:
+            found[support, ""], at[support, ""] = ([X, Y, Z], [X, Y, Z]), _point(case, link, support)
+    else:
+        for joint in case.linkage.joints_of(link):
+            point = case.linkage.point_of(joint, link)
+            carries = case.joints[joint].type == "pin-in-slot" and case.joints[joint].links[0] == link
+            key = (point, joint if carries and point in case.links[link].slots else "")
+            moves, turns = found.setdefault(key, ([], []))
+            more = _held(case, link, joint, pose)
+            moves += more[0]
+            turns += more[1]
+            at[key] = _pin_place(case, link, joint, pose) if key[1] else _point(case, link, point)
+    places = tuple(
+        HeldPlace(point=key[0], place=at[key], moves=_basis(moves), turns=_basis(turns), in_slot=bool(key[1]))
+        for key, (moves, turns) in found.items()
+    )
+    free = 6 - _rank(places, case.linkage.longest)
+    return LinkHolding(places=places, free=free, words=_words(case, link, places, free))
+
+
+def _held(case: Case, link: str, joint: str, pose: Pose) -> tuple[list[Real], list[Real]]:
+    """Directions in which a joint holds a link, and axes about which it does, in the link's axes."""
+    record, drive = case.linkage.joints[joint], case.pinned_drive
+    driven = drive is not None and drive.joint == joint and not drive.idle
+    if record.type == "revolute":
+        return [X, Y, Z], [X, Y, Z] if record.bonded or driven else [X, Y]
+    angle = pose.angles[record.links[0]] + record.direction - pose.angles[link]
+    along = np.array([np.cos(angle), np.sin(angle), 0.0])
+    across = np.array([-along[1], along[0], 0.0])
+    if record.type == "slider":
+        return [across, Z, *([along] if driven else [])], [X, Y, Z]
+    return [across], [X, Y, Z] if driven else [along]
+
+
+def _point(case: Case, link: str, point: str) -> Real:
+    return np.array([*case.links[link].points[point], 0.0])
+
+
+def _pin_place(case: Case, link: str, joint: str, pose: Pose) -> Real:
+    """Where a joint's pin stands in its slot, in the frame of the link that has it (3,)."""
+    other = case.joints[joint].links[1]
+    pin = pose.position(other, case.linkage.point_of(joint, other))
+    return np.array([*(pose.rotation(link).T @ (pin - pose.origins[link])), 0.0])
+
+
+def _basis(rows: Sequence[Real]) -> Real:
+    """Orthogonal unit vectors (k, 3) that span the same directions."""
+    if not rows:
+        return np.zeros((0, 3))
+    _, sizes, axes = np.linalg.svd(np.array(rows))
+    return np.asarray(axes[: np.count_nonzero(sizes > _SAME)])
+
+
+def _rank(places: Sequence[HeldPlace], size: float) -> int:
+    """Number of the six motions of the rigid link that are held."""
+    if not places:
+        return 0
+    rows = np.vstack([place.conditions for place in places]) * [1.0, 1.0, 1.0, *[1.0 / size] * 3]
+    rows /= np.linalg.norm(rows, axis=1, keepdims=True)
+    return int(np.linalg.matrix_rank(rows, tol=_SAME))
+
+
+def _words(case: Case, link: str, places: Sequence[HeldPlace], free: int) -> str:
+    groups: dict[str, list[str]] = {}
+    for place in places:
+        sizes = len(place.moves), len(place.turns)
+        if sizes == (3, 3):
+            kind = "built in at {}"
+        elif sizes == (3, 2):
+            kind = "on pins that do not yield at {}, free to turn about them"
+        elif sizes == (2, 3):
+            kind = "free to slide alone at {}"
+        else:
+            kind = "held across the slot at {}"
+        groups.setdefault(kind, []).append(place.point)
+    drive = case.pinned_drive
+    if drive is not None and not drive.idle and link in case.joints[drive.joint].links and places:
+        point = case.linkage.point_of(drive.joint, link)
+        groups = {k: ["the drive's joint " + p if p == point else p for p in names] for k, names in groups.items()}
+    told = [kind.format(" and ".join(dict.fromkeys(names))) for kind, names in groups.items()]
+    if free:
+        told.append(f"{free} rigid motion{'s' if free > 1 else ''} left free, which is no vibration" if free == 1 else
+                    f"{free} rigid motions left free, which are no vibrations")  # fmt: skip
+    return "; ".join(told) if told else "free"

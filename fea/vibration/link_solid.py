@@ -1,0 +1,346 @@
+"""A link by itself as a solid that vibrates: how its joints hold it, what it carries, and its modes on two meshes.
+
+The wall of a bore moves as a rigid cylinder, which the pin holds: pins are stiffer than what they stand in, and one
+that vibrates under a load keeps in touch with its wall. A body that a link carries moves with the bore, patch or face
+through which its weight enters, as one rigid piece. A pin in a slot holds the flanks on average, weighted as its
+pressure is (``fea.tractions.slot_traction``): the mean displacement across the slot is zero, and so is the mean tilt.
+What is spread along the link is mass without stiffness in its volume. Of a pair each plate bears half.
+
+The stress of loads, which stiffens what it pulls, is left out.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.band import Band
+from fea.common.source import Source, SourceKind
+from fea.elements.mass import consistent_mass
+from fea.elements.quadrature import Quadrature, surface_quadrature, volume_quadrature
+from fea.elements.space import DisplacementSpace, displacement_space
+from fea.refine.convergence import ALONE, SAFETY
+from fea.refine.error_estimate import estimate_error
+from fea.refine.link_series import CHORD
+from fea.refine.refinement import START
+from fea.solid.solution import require_compressible
+from fea.solid.stress import stress_field
+from fea.tractions.slot_traction import DEGREE, flank_pressure
+from fea.tractions.traction import line_density
+from fea.vibration.link_holding import HeldPlace, LinkHolding
+from fea.vibration.rigid_regions import RigidRegion
+from fea.vibration.solid_modes import SolidModes, solid_modes
+from geometry.base.errors import CannotRunError
+from geometry.materials.material import Material
+from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
+from geometry.parts.part import Body
+from loads.case.case import Case
+from loads.records.applied import LineLoad
+from loads.records.bearing import WIDE
+from loads.records.carried import Carried, CarriedSpread, mass_of
+
+Real = NDArray[np.float64]
+FINER = 1.6
+"""Element size of the first mesh over that of the second."""
+ORDER = 1.0
+"""Of convergence that the band assumes. Stress at the rim of a rigid bore grows as r^(a-1) with a above 0.5, and what a
+frequency misses falls with the size to the power of 2 a (Strang & Fix, 1973, section 8.1)."""
+RIGID = 1e-5
+"""Share of the first elastic ω² below which an ω² is that of a rigid motion: rounding leaves some 1e-9."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinkSolid:
+    """A link that is to vibrate as a solid.
+
+    Attributes
+    ----------
+    body : Body
+        Of one plate, where it is a pair.
+    material : Material
+        Its material.
+    holding : LinkHolding
+        How its joints hold it.
+    points : dict of str to tuple of 2 float
+        The link's points [mm].
+    carried : tuple of Carried
+        What it carries.
+    share : float
+        Of what it carries: half, where it is one plate of a pair.
+    """
+
+    body: Body
+    material: Material
+    holding: LinkHolding
+    points: dict[str, tuple[float, float]]
+    carried: tuple[Carried, ...] = ()
+    share: float = 1.0
+
+    @classmethod
+    def of(cls, case: Case, link: str, holding: LinkHolding, carried: Sequence[Carried]) -> "LinkSolid":
+        """Return the solid of a link of a case.
+
+        Parameters
+        ----------
+        case : Case
+        link : str
+        holding : LinkHolding
+        carried : sequence of Carried
+            What it carries.
+
+        Returns
+        -------
+        LinkSolid
+        """
+        return cls(
+            body=case.body(link),
+            material=case.material_of(link),
+            holding=holding,
+            points=dict(case.links[link].points),
+            carried=tuple(carried),
+            share=1.0 / case.links[link].count,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RefinedModes:
+    """The lowest modes of a link by its finest mesh, and how precise they are.
+
+    Attributes
+    ----------
+    space : DisplacementSpace
+        Of the finest mesh.
+    modes : SolidModes
+        On it.
+    frequencies : tuple of Band
+        With what the meshes leave open [Hz].
+    """
+
+    space: DisplacementSpace
+    modes: SolidModes
+    frequencies: tuple[Band, ...]
+
+
+def refined_modes(solid: LinkSolid, start: MeshSettings, count: int, threads: int | None = None) -> RefinedModes:
+    """Return the lowest modes of a link on two meshes.
+
+    Frequencies of a mesh are too high, so that the finer one's is the band's upper end, and what it fell by since the
+    coarser one tells how far the lower end lies below. The mesh of a part's file has no finer one: there the recovered
+    stress of each mode tells (``fea.refine.error_estimate``), taken fourfold.
+
+    Parameters
+    ----------
+    solid : LinkSolid
+    start : MeshSettings
+        Of the first mesh.
+    count : int
+        How many modes.
+    threads : int or None, optional
+        Upper bound on the threads of the solver.
+
+    Returns
+    -------
+    RefinedModes
+
+    Raises
+    ------
+    CaseError
+        Where the body cannot be built, or its material is nearly incompressible.
+    CannotRunError
+        Where meshes or solver fail.
+    """
+    require_compressible(solid.material.poissons_ratio)
+    meshes = [mesh_body(solid.body, start)]
+    if not solid.body.part.is_fixed:
+        meshes.append(mesh_body(solid.body, start.scaled(1.0 / FINER)))
+    spaces = [displacement_space(mesh) for mesh in meshes]
+    found = [modes_on(solid, space, count, threads) for space in spaces]
+    values = [np.sqrt(modes.squares) / (2.0 * np.pi) for modes in found]
+    if len(found) == 1:
+        missed = values[0] * np.array([_estimated(solid, spaces[0], shape) for shape in found[0].shapes])
+        detail = "estimated on the mesh of the file, fourfold"
+    else:
+        ratio = (len(spaces[1].cells) / len(spaces[0].cells)) ** (1.0 / 3.0)
+        missed = SAFETY * np.abs(values[1] - values[0]) / (ratio**ORDER - 1.0)
+        detail = f"meshes of {len(spaces[0].cells):,} and {len(spaces[1].cells):,} elements"
+    volume = mass_properties(solid.body).volume
+    chord = 0.5 * CHORD * abs(float(meshes[-1].volume) / volume - 1.0)
+    frequencies = []
+    for value, less in zip(values[-1], missed, strict=True):
+        low, high = max(value - less, 0.0) * (1.0 - chord), value * (1.0 + chord)
+        width = float(high / low) if low > 0.0 else np.inf
+        source = Source(kind=SourceKind.DISCRETISATION, detail=detail, width=width)
+        frequencies.append(Band(value=float(value), low=float(low), high=float(high), sources=(source,)))
+    return RefinedModes(space=spaces[-1], modes=found[-1], frequencies=tuple(frequencies))
+
+
+def first_mesh(case: Case) -> MeshSettings:
+    """Return the settings of the first mesh of a case's links, as a check takes them.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    MeshSettings
+    """
+    return replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
+
+
+def _estimated(solid: LinkSolid, space: DisplacementSpace, shape: Real) -> float:
+    """Share of its frequency that a mode may be too high: half of that of ω², the square of its error, fourfold."""
+    material = {"E": solid.material.youngs_modulus, "nu": solid.material.poissons_ratio}
+    return ALONE / 2.0 * estimate_error(stress_field(space, shape, **material), shape, **material).relative ** 2
+
+
+def modes_on(solid: LinkSolid, space: DisplacementSpace, count: int, threads: int | None = None) -> SolidModes:
+    """Return the lowest modes of a link on a mesh, rigid motions left out.
+
+    Parameters
+    ----------
+    solid : LinkSolid
+    space : DisplacementSpace
+        Of the mesh.
+    count : int
+        How many.
+    threads : int or None, optional
+        Upper bound on the threads of the solver.
+
+    Returns
+    -------
+    SolidModes
+
+    Raises
+    ------
+    CannotRunError
+        Where the iteration fails, or finds other rigid motions than joints leave.
+    """
+    volume, free, material = volume_quadrature(space), solid.holding.free, solid.material
+    density = np.full(volume.w.shape, material.density)
+    for one in solid.carried:
+        if isinstance(one, CarriedSpread):
+            density += _spread(solid, volume, one)
+    found = solid_modes(
+        space,
+        consistent_mass(volume, density, len(space.nodes)),
+        E=material.youngs_modulus,
+        nu=material.poissons_ratio,
+        density=material.density,
+        count=count + free,
+        regions=regions(solid, space),
+        conditions=conditions(solid, space),
+        threads=threads,
+    )
+    rigid = int(np.count_nonzero(found.squares < RIGID * found.squares[free]))
+    if rigid != free:
+        raise CannotRunError(f"its solid has {rigid} rigid motions, where its joints leave {free}; refine the mesh")
+    return SolidModes(squares=found.squares[free:], shapes=found.shapes[free:], in_plane=found.in_plane[free:])
+
+
+def _spread(solid: LinkSolid, volume: Quadrature, one: CarriedSpread) -> Real:
+    """Density (k, q) of a mass that is spread along the link [tonne/mm³]."""
+    start, end = sorted((solid.points[one.start][0], solid.points[one.end][0]))
+    per_length = np.array([0.0, 0.0, solid.share * one.mass / (end - start)])
+    line = LineLoad(link=one.link, start=start, end=end, at_start=per_length, at_end=per_length)
+    return np.asarray(line_density(volume, line)[..., 2])
+
+
+def regions(solid: LinkSolid, space: DisplacementSpace) -> list[RigidRegion]:
+    """Return the surfaces that move as rigid bodies: bores on pins, and where bodies are carried.
+
+    Parameters
+    ----------
+    solid : LinkSolid
+    space : DisplacementSpace
+        Of its mesh.
+
+    Returns
+    -------
+    list of RigidRegion
+    """
+    held = {place.point: place for place in solid.holding.places if not place.in_slot}
+    bodies = [one for one in solid.carried if not isinstance(one, CarriedSpread)]
+    found = []
+    for point in dict.fromkeys([*held, *(one.at for one in bodies)]):
+        name = f"bore:{point}" if f"bore:{point}" in space.surfaces else f"end:{point}"
+        at = np.array([*solid.points[point], 0.0])
+        inertia = np.zeros((6, 6))
+        for one in (one for one in bodies if one.at == point):
+            known = mass_of(one, solid.points)
+            arm = np.array([*known.centroid, 0.0]) - at
+            inertia += solid.share * body_inertia(known.mass, arm, known.inertia)
+        place = held.get(point, HeldPlace(point=point, place=at, moves=np.zeros((0, 3)), turns=np.zeros((0, 3))))
+        found.append(
+            RigidRegion(
+                name=name,
+                nodes=np.unique(space.faces(name)),
+                place=place.place,
+                move_axes=_completed(place.moves),
+                turn_axes=_completed(place.turns),
+                held=(*range(len(place.moves)), *range(3, 3 + len(place.turns))),
+                inertia=inertia,
+            )
+        )
+    return found
+
+
+def body_inertia(mass: float, arm: Real, inertia: float) -> Real:
+    """Return the mass matrix of a rigid body about a place.
+
+    Parameters
+    ----------
+    mass : float
+        [tonne]
+    arm : ndarray, shape (3,)
+        From the place to the centroid [mm].
+    inertia : float
+        About the centroid and z [tonne mm²]. About x and y it has what its arm gives alone.
+
+    Returns
+    -------
+    ndarray, shape (6, 6)
+        For the place's displacement and rotation.
+    """
+    moved = np.hstack([np.eye(3), np.cross(np.eye(3), arm).T])  # u + w × arm
+    found = mass * moved.T @ moved
+    found[5, 5] += inertia
+    return np.asarray(found)
+
+
+def _completed(axes: Real) -> Real:
+    """Three orthogonal unit vectors of which the first are those given."""
+    rest = np.linalg.svd(axes)[2][len(axes) :] if len(axes) else np.eye(3)
+    return np.vstack([axes, rest])
+
+
+def conditions(solid: LinkSolid, space: DisplacementSpace) -> Real:
+    """Return the conditions of pins in the link's slots on mean displacements of the flanks.
+
+    Parameters
+    ----------
+    solid : LinkSolid
+    space : DisplacementSpace
+        Of its mesh.
+
+    Returns
+    -------
+    ndarray, shape (c, 3 n)
+        Each sum is zero; two for each pin, across the slot and about it.
+    """
+    rows = []
+    for place in (place for place in solid.holding.places if place.in_slot):
+        [pin] = [pin for pin in solid.body.pins if pin.name == place.point]
+        wall = surface_quadrature(space, f"bore:{place.point}", degree=DEGREE)
+        length = WIDE.patch(pin.pin_diameter)
+        one, other = (flank_pressure(wall, place.place, length, side)[..., 1] for side in (1.0, -1.0))
+        pressure = one - other  # the first pushes along y, the other against it
+        if not np.any(pressure):
+            raise CannotRunError(f"the slot at {place.point} has no wall beside its pin; refine the mesh")
+        arm = wall.x - place.place
+        # About the slot heights count; about the pin, as a drive there holds it, distances along the slot.
+        ways = [*place.moves, *(np.cross(axis, arm) for axis in place.turns)]
+        rows += [wall.load_vector(pressure[..., None] * way, len(space.nodes)) for way in ways]
+    found = np.array(rows).reshape(-1, space.unknowns)
+    return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
