@@ -36,6 +36,8 @@ VOLATILE = ("schema_version", "timings", "timings_s", "seconds", "version", "nex
 """Entries that differ from run to run or from machine to machine."""
 DERIVED = ("margin", "changes")
 """Entries that follow from kept ones, by rules that have tests of their own (``tests/unit/fea/test_changes.py``)."""
+WHOLE = ("mass", "size")
+"""Entries of a whole result that closed forms are compared with (``tests/unit/fea/test_mass_and_size.py``)."""
 FRAMED = "linkage"
 """Entry whose numbers come from the frame; they are kept with hand calculations and motions alone."""
 
@@ -82,7 +84,7 @@ def numbers(data: Any, path: str = "") -> Iterator[tuple[str, float | str | None
     """Yield path and value of every number, verdict and finding in plain data."""
     if isinstance(data, dict):
         for key, value in data.items():
-            if key not in (*VOLATILE, *DERIVED):
+            if key not in (*VOLATILE, *DERIVED, *(() if path else WHOLE)):
                 yield from numbers(value, f"{path}.{key}" if path else key)
     elif isinstance(data, list):
         for i, value in enumerate(data):

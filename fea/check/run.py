@@ -39,7 +39,7 @@ from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
-from fea.whole.outcomes import whole_outcomes
+from fea.whole.outcomes import whole_numbers, whole_outcomes
 from geometry.base.errors import CaseError
 from geometry.bodies.body import PartKind
 from geometry.linkage.pose import NEAR_DEAD_POINT
@@ -47,7 +47,6 @@ from geometry.meshing.mesh import MeshSettings
 from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.case.case import Case
 from loads.records.check_spec import BearingCheck, DisplacementCheck, PinCheck
-from loads.states.clearance import clearance
 from loads.statics.statics import Reactions
 from loads.text.shares import parse_accuracy
 
@@ -252,8 +251,8 @@ def check_case(
     statics = solve_case_statics(case, name)
     case = statics.case
     clock("pose and statics")
-    apart = clearance(case, statics.pose)
-    clock("clearance")
+    whole = whole_numbers(case, statics.pose)
+    clock("clearance, mass and size")
     moved = frames or {
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
@@ -270,14 +269,16 @@ def check_case(
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:
         clock("solid models")
-    whole = whole_outcomes(case, apart)
-    load_cases = {load_case: one.judged(decided, whole[load_case]) for load_case, one in by_load_case.items()}
+    judged = whole_outcomes(whole)
+    load_cases = {load_case: one.judged(decided, judged[load_case]) for load_case, one in by_load_case.items()}
     clock("stress")
     return CheckResult(
         name=name,
         case=case,
         pose=statics.pose,
-        clearance=apart,
+        clearance=whole.clearance,
+        mass=whole.mass,
+        size=whole.size,
         load_cases=load_cases,
         hand={calculation: _cantilever(case, calculation) for calculation in case.hand_calculations},
         audit=statics.audit,

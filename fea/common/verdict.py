@@ -87,6 +87,11 @@ class Quantity(StrEnum):
     DRIVE_SPEED = "drive speed", "rpm", Sense.AT_MOST
     DRIVE_TORQUE = "drive torque over time", "N·mm", Sense.AT_MOST
     TORQUE_SHARE = "share of the motor's torque at its speed", "", Sense.AT_MOST
+    MASS = "total mass", "g", Sense.AT_MOST
+    SIZE_X = "size along x", "mm", Sense.AT_MOST
+    """Of the box about the linkage over all poses."""
+    SIZE_Y = "size along y", "mm", Sense.AT_MOST
+    SIZE_Z = "size along z", "mm", Sense.AT_MOST
 
     def margins(self, value: float, low: float, high: float, limit: float) -> tuple[float, float, float]:
         """Return by what factor a banded number keeps its limit: 1 at the limit, less where it misses it.
@@ -123,7 +128,8 @@ def _share(value: float, limit: float) -> float:
     return value / limit if limit > 0.0 else math.inf
 
 
-UNLOADED_QUANTITIES = (Quantity.CLEARANCE,)
+SIZES = (Quantity.SIZE_X, Quantity.SIZE_Y, Quantity.SIZE_Z)
+UNLOADED_QUANTITIES = (Quantity.CLEARANCE, Quantity.MASS, *SIZES)
 """What no load changes."""
 MOTOR_QUANTITIES = (Quantity.DRIVE_POWER, Quantity.DRIVE_SPEED, Quantity.DRIVE_TORQUE, Quantity.TORQUE_SHARE)
 """What is asked of a motor over the motion of a rigid linkage."""

@@ -35,13 +35,12 @@ from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
 from fea.refine.refinement import START, Effort, refine_links
 from fea.solid.solution import require_compressible
-from fea.whole.clearance import clearance_outcomes
+from fea.whole.outcomes import unloaded_outcomes, whole_numbers
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case
 from loads.case.forks import of_pair
 from loads.states.case_motion import CaseMotion, solve_case_motion
-from loads.states.clearance import clearance
 
 Real = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -225,7 +224,7 @@ def envelope_case(
     case = moved.case
     if moved.locks:
         raise CaseError(f"{moved.locks[0]}; shorten the motion, state less friction, or another direction or drive")
-    apart = clearance(case)
+    whole = whole_numbers(case)
     evaluated = _some_poses(moved, growth)
     over = _Envelope.of(moved, evaluated, threads, progress)
     moved = over.moved
@@ -235,7 +234,7 @@ def envelope_case(
     clock("solids")
     checks = over.outcomes(links)
     linkage = over_motion(moved, evaluated)
-    checks += [*limit_load_outcomes(moved, linkage), *clearance_outcomes(case, apart)]
+    checks += [*limit_load_outcomes(moved, linkage), *unloaded_outcomes(whole)]
     clock("frames")
     idle = [nothing_acts(load_case, over.sizes[load_case]) for load_case in over.idle]
     return EnvelopeResult(
@@ -249,7 +248,7 @@ def envelope_case(
         links=links,
         idle=tuple(link for link in case.checked_links if link not in over.loaded),
         linkage=linkage,
-        clearance=apart,
+        clearance=whole.clearance,
         checks=tuple(checks),
         verdict=overall(check.verdict for check in checks),
         warnings=(*idle, *_warnings(case, moved, evaluated, growth)),

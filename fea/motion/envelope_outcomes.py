@@ -25,7 +25,15 @@ from fea.outcomes.limits import layer_limit
 from fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of
 from fea.outcomes.solid_buckling import undecided_buckling
 from geometry.materials.material import Fatigue, Material
-from loads.records.check_spec import BearingCheck, ClearanceCheck, LimitLoadCheck, PinCheck, SafetyFactorCheck
+from loads.records.check_spec import (
+    BearingCheck,
+    ClearanceCheck,
+    LimitLoadCheck,
+    MassCheck,
+    PinCheck,
+    SafetyFactorCheck,
+    SizeCheck,
+)
 from loads.states.case_motion import CaseMotion
 from loads.statics.joint_reaction import JointReaction
 
@@ -34,7 +42,7 @@ LEFT_OUT = "poses near a dead point of the driven link were left out, where its 
 NOT_FOLLOWED = (
     "no beam stands for its buckling, and its solid is not looked at over a motion; check single poses with alula check"
 )
-FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, LimitLoadCheck, ClearanceCheck)
+FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, LimitLoadCheck, ClearanceCheck, MassCheck, SizeCheck)
 """Checks of the case that are decided over the motion."""
 
 

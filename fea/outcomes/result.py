@@ -28,7 +28,9 @@ from loads.records.applied import Load
 from loads.sources.published_statics import StaticsAudit
 from loads.states.clearance import Clearance
 from loads.states.drive_work import DriveWork
+from loads.states.extent import Extent
 from loads.states.standing import Standing
+from loads.states.weighed import Weighed
 from loads.statics.statics import Reactions
 
 
@@ -316,6 +318,10 @@ class CheckResult:
     pose : Pose
     clearance : Clearance or None
         The gaps between links over the motion, or in the pose; None where no layers are stated.
+    mass : Weighed or None
+        What the linkage weighs; None where no part was weighed.
+    size : Extent or None
+        The box about it; None where no outlines were made.
     load_cases : mapping of str to LoadCaseResult
     hand : mapping of str to CantileverCheck
         The case's own hand calculations.
@@ -335,6 +341,8 @@ class CheckResult:
     case: Case
     pose: Pose
     clearance: Clearance | None
+    mass: Weighed | None
+    size: Extent | None
     load_cases: Mapping[str, LoadCaseResult]
     hand: Mapping[str, CantileverCheck]
     audit: StaticsAudit | None

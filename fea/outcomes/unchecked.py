@@ -4,7 +4,9 @@ from collections.abc import Sequence
 
 from geometry.materials.plausible import unusual
 from loads.case.case import Case
-from loads.records.check_spec import PinCheck, SafetyFactorCheck, SustainedCheck
+from loads.records.check_spec import MassCheck, PinCheck, SafetyFactorCheck, SizeCheck, SustainedCheck
+from loads.states.extent import unmeasured
+from loads.states.weighed import unweighed
 
 Strength = type[SafetyFactorCheck] | type[SustainedCheck]
 
@@ -30,6 +32,10 @@ def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Sus
             pinned.update(check.joints or case.pinned_joints)
         elif isinstance(check, SafetyFactorCheck | SustainedCheck) and isinstance(check, tuple(strength)):
             stressed.update(check.links or case.checked_links)
+        elif isinstance(check, MassCheck) and check.others is None:
+            found += [f"mass of {what}" for what in unweighed(case)]
+        elif isinstance(check, SizeCheck):
+            found += [f"size of {what}" for what in unmeasured(case)]
     left = [link for link in case.checked_links if link not in stressed]
     if left:
         found.append(f"stress of {', '.join(left)} (no check)")

@@ -12,11 +12,10 @@ from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
 from fea.motion.envelope_result import EnvelopeResult
 from fea.motion.linkage_history import LinkageOverMotion, asked_over_motion, limit_load_outcomes
 from fea.outcomes.result import CheckResult, LinkageNumbers
-from fea.whole.outcomes import whole_outcomes
+from fea.whole.outcomes import whole_numbers, whole_outcomes
 from loads.case.case import Case
 from loads.case.layers import pin_masses
 from loads.states.case_motion import CaseMotion
-from loads.states.clearance import clearance
 from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
 from loads.states.masses import part_masses, rough_masses
 
@@ -215,7 +214,7 @@ def of_motion(result: CaseMotion, *, weighs: Weighs) -> tuple[Verdict | None, tu
     tuple of VariantNumber
     """
     case = result.case
-    whole = [outcome for outcomes in whole_outcomes(case, clearance(case)).values() for outcome in outcomes]
+    whole = [outcome for outcomes in whole_outcomes(whole_numbers(case)).values() for outcome in outcomes]
     linkage = asked_over_motion(result)
     checked = [*whole, *limit_load_outcomes(result, linkage)]
     verdict = overall(outcome.verdict for outcome in checked) if checked else None

@@ -1,31 +1,109 @@
-"""Every check of the linkage as a whole, in one place."""
+"""Every number and check of the linkage as a whole, in one place."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from fea.common.verdict import CheckOutcome
 from fea.whole.clearance import clearance_outcomes
+from fea.whole.mass import mass_outcomes
 from fea.whole.motor import motor_outcomes
+from fea.whole.size import size_outcomes
+from geometry.linkage.pose import Pose
 from loads.case.case import Case
-from loads.records.check_spec import MotorCheck
-from loads.states.clearance import Clearance
+from loads.records.check_spec import MassCheck, MotorCheck, SizeCheck
+from loads.states.clearance import Clearance, clearance
+from loads.states.extent import Extent, extent
+from loads.states.weighed import Weighed, weighed
 
 
-def whole_outcomes(case: Case, apart: Clearance | None) -> dict[str, tuple[CheckOutcome, ...]]:
-    """Return the outcomes of the checks of a linkage as a whole, with its links rigid.
+@dataclass(frozen=True, kw_only=True)
+class WholeNumbers:
+    """What a linkage is as a whole, with its links rigid.
+
+    Attributes
+    ----------
+    case : Case
+    clearance : Clearance or None
+        Its gaps; None where it has no layers.
+    mass : Weighed or None
+        None where no check asks for it and nothing weighs or moves, so that no part was weighed.
+    size : Extent or None
+        None where no check asks for it and no layers are stated, so that there are no outlines.
+    """
+
+    case: Case
+    clearance: Clearance | None
+    mass: Weighed | None
+    size: Extent | None
+
+
+def whole_numbers(case: Case, pose: Pose | None = None) -> WholeNumbers:
+    """Return gaps, mass and size of a linkage, as far as a check asks for them or they come at no cost.
 
     Parameters
     ----------
     case : Case
-    apart : Clearance or None
-        Its gaps; None where it has no layers.
+    pose : Pose, optional
+        The stated one, or where the linkage balances if it is let go; assembled anew when left out.
+
+    Returns
+    -------
+    WholeNumbers
+
+    Raises
+    ------
+    CaseError
+        As ``clearance``, ``weighed`` and ``extent``.
+    """
+    pose = pose or case.solve_pose()
+    apart = clearance(case, pose)
+    weighs = any(load_case.own_weight or load_case.speed for load_case in case.load_cases.values())
+    measures = apart is not None or _asks(case, SizeCheck)
+    return WholeNumbers(
+        case=case,
+        clearance=apart,
+        mass=weighed(case, pose) if weighs or _asks(case, MassCheck) else None,
+        size=extent(case, pose, apart.motion if apart is not None else None) if measures else None,
+    )
+
+
+def _asks(case: Case, kind: type[MassCheck] | type[SizeCheck]) -> bool:
+    return any(isinstance(check, kind) for check in case.checks.values())
+
+
+def unloaded_outcomes(found: WholeNumbers) -> Iterator[CheckOutcome]:
+    """Yield the outcomes that no load changes, in the name of the first load case.
+
+    Parameters
+    ----------
+    found : WholeNumbers
+
+    Yields
+    ------
+    CheckOutcome
+    """
+    yield from clearance_outcomes(found.case, found.clearance)
+    yield from mass_outcomes(found.case, found.mass)
+    yield from size_outcomes(found.case, found.size)
+
+
+def whole_outcomes(found: WholeNumbers) -> dict[str, tuple[CheckOutcome, ...]]:
+    """Return the outcomes of the checks of a linkage as a whole.
+
+    Parameters
+    ----------
+    found : WholeNumbers
 
     Returns
     -------
     dict of str to tuple of CheckOutcome
         Load case -> its outcomes; those that no load changes stand with the first one.
     """
-    found: dict[str, list[CheckOutcome]] = {load_case: [] for load_case in case.load_cases}
+    case = found.case
+    outcomes: dict[str, list[CheckOutcome]] = {load_case: [] for load_case in case.load_cases}
     for name, check in case.checks.items():
         if isinstance(check, MotorCheck):
-            for load_case, outcomes in motor_outcomes(case, name, check).items():
-                found[load_case] += outcomes
-    found[next(iter(found))] += clearance_outcomes(case, apart)
-    return {load_case: tuple(outcomes) for load_case, outcomes in found.items()}
+            for load_case, own in motor_outcomes(case, name, check).items():
+                outcomes[load_case] += own
+    outcomes[next(iter(outcomes))] += unloaded_outcomes(found)
+    return {load_case: tuple(own) for load_case, own in outcomes.items()}

@@ -39,6 +39,61 @@ class Spot:
     link: str
     point: str | None = None
 
+    def _arm(self, place: Placement) -> Complex | float:
+        return 0.0 if self.point is None else place.arm(self.link, self.point)
+
+    def origin(self, place: Placement) -> Complex:
+        """Return where the outline's origin is.
+
+        Parameters
+        ----------
+        place : Placement
+            At n poses.
+
+        Returns
+        -------
+        complex array (n,)
+            [mm]
+        """
+        return np.asarray(place.origin(self.link) + self._arm(place))
+
+    def velocity(self, place: Placement, centre: complex) -> Complex:
+        """Return how fast a point of the outline moves by the coordinate.
+
+        Parameters
+        ----------
+        place : Placement
+            At n poses, with rates by the coordinate.
+        centre : complex
+            The point, from the outline's origin in the link's axes [mm].
+
+        Returns
+        -------
+        complex array (n,)
+            [mm per rad or mm]
+        """
+        arm = self._arm(place) + place.direction(self.link) * centre
+        return np.asarray(place.velocity(self.link) + 1j * place.spin(self.link) * arm)
+
+    def acceleration(self, place: Placement, centre: complex) -> Complex:
+        """Return how fast that changes by the coordinate.
+
+        Parameters
+        ----------
+        place : Placement
+            At n poses, with rates by the coordinate.
+        centre : complex
+            The point, from the outline's origin in the link's axes [mm].
+
+        Returns
+        -------
+        complex array (n,)
+            [mm per rad² or mm²]
+        """
+        arm = self._arm(place) + place.direction(self.link) * centre
+        turn = 1j * place.spin_rate(self.link) - place.spin(self.link) ** 2
+        return np.asarray(place.acceleration(self.link) + turn * arm)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Gap:
@@ -129,7 +184,7 @@ class Pair:
         """
         first, second = self.at
         back = np.conj(place.direction(first.link))
-        return back * place.direction(second.link), back * (_origin(place, second) - _origin(place, first))
+        return back * place.direction(second.link), back * (second.origin(place) - first.origin(place))
 
     def circles(self, place: Placement) -> Real:
         """Return the gap of the circles about both outlines, which is no more than theirs.
@@ -165,32 +220,13 @@ class Pair:
         centre, reach = self.other.circle
         spins = [(place.spin(spot.link), place.spin_rate(spot.link)) for spot in self.at]
         (w, dw), (u, du) = spins
-        away = _origin(place, second) + place.direction(second.link) * centre - _origin(place, first)
-        rate = _velocity(place, second, centre) - _velocity(place, first, 0j)
-        bend = _acceleration(place, second, centre) - _acceleration(place, first, 0j)
+        away = second.origin(place) + place.direction(second.link) * centre - first.origin(place)
+        rate = second.velocity(place, centre) - first.velocity(place, 0j)
+        bend = second.acceleration(place, centre) - first.acceleration(place, 0j)
         seen = rate - 1j * w * away
         bent = bend - 2j * w * rate - (1j * dw + w**2) * away
         reach = reach if second.point is None else 0.0  # a pin that turns looks the same
         return np.abs(seen) + np.abs(u - w) * reach, np.abs(bent) + (np.abs(du - dw) + (u - w) ** 2) * reach
-
-
-def _arm(place: Placement, spot: Spot) -> Complex | float:
-    return 0.0 if spot.point is None else place.arm(spot.link, spot.point)
-
-
-def _origin(place: Placement, spot: Spot) -> Complex:
-    return np.asarray(place.origin(spot.link) + _arm(place, spot))
-
-
-def _velocity(place: Placement, spot: Spot, centre: complex) -> Complex:
-    arm = _arm(place, spot) + place.direction(spot.link) * centre
-    return np.asarray(place.velocity(spot.link) + 1j * place.spin(spot.link) * arm)
-
-
-def _acceleration(place: Placement, spot: Spot, centre: complex) -> Complex:
-    arm = _arm(place, spot) + place.direction(spot.link) * centre
-    turn = 1j * place.spin_rate(spot.link) - place.spin(spot.link) ** 2
-    return np.asarray(place.acceleration(spot.link) + turn * arm)
 
 
 def gap_at(pair: Pair, place: Placement) -> Gap:
@@ -220,7 +256,7 @@ def _place(pair: Pair, place: Placement) -> tuple[float, float]:
     """Return the place between two outlines at a single pose, in global axes."""
     turn, shift = pair.relative(place)
     local = nearest(pair.cores, turn[0], shift[0])
-    found = _origin(place, pair.at[0])[0] + place.direction(pair.at[0].link)[0] * local
+    found = pair.at[0].origin(place)[0] + place.direction(pair.at[0].link)[0] * local
     return float(found.real), float(found.imag)
 
 

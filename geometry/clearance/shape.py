@@ -49,6 +49,14 @@ class Core:
         """The whole as a polygon."""
         return self.geometry.buffer(self.radius, quad_segs=_SEGMENTS) if self.radius else self.geometry
 
+    @cached_property
+    def corners(self) -> Complex:
+        """Corners (n,) of the geometry's convex hull, which reach furthest to any side [mm]."""
+        import shapely
+
+        at = shapely.get_coordinates(self.geometry.convex_hull)
+        return np.asarray(at[:, 0] + 1j * at[:, 1])
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Shape:
@@ -142,6 +150,29 @@ def pin_shape(name: str, diameter: float, low: float, high: float) -> Shape:
     import shapely
 
     core = Core(geometry=shapely.Point(0.0, 0.0), radius=diameter / 2.0, low=low, high=high, error=0.0)
+    return Shape(name=name, cores=(core,))
+
+
+def point_shape(name: str, points: Sequence[tuple[float, float]], low: float, high: float) -> Shape:
+    """Return points as an outline, for a link of which no more is known.
+
+    Parameters
+    ----------
+    name : str
+        ``link AG``.
+    points : sequence of (x, y)
+        [mm]
+    low, high : float
+        z between which the link lies [mm].
+
+    Returns
+    -------
+    Shape
+        In the frame of the link.
+    """
+    import shapely
+
+    core = Core(geometry=shapely.MultiPoint(points), radius=0.0, low=low, high=high, error=0.0)
     return Shape(name=name, cores=(core,))
 
 

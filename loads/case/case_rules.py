@@ -11,7 +11,7 @@ from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
 from loads.case.forks import check_fork, check_pair
 from loads.case.joint_rules import check_clearances, check_friction
-from loads.case.layers import check_layers
+from loads.case.layers import check_layers, pin_masses
 from loads.case.load_rules import check_loads, check_masses, check_place, check_wings
 from loads.case.places import check_moving, check_point
 from loads.case.spring_rules import check_equilibrium, check_springs, check_stops
@@ -22,9 +22,11 @@ from loads.records.check_spec import (
     ClearanceCheck,
     DisplacementCheck,
     LimitLoadCheck,
+    MassCheck,
     MotorCheck,
     PinCheck,
     SafetyFactorCheck,
+    SizeCheck,
     SustainedCheck,
 )
 from loads.records.conditions import Conditions
@@ -234,10 +236,16 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
                 f"checks.{name}: a check of clearance needs to know which links lie at one height, but all lie in one "
                 'plane; give every link a layer or z, such as links.A.layer = 1 with layer_spacing = "7 mm"'
             )
+    elif isinstance(check, MassCheck):
+        if not (case.checked_links or case.carried or check.others or pin_masses(case)):
+            raise CaseError(
+                f"checks.{name}: no link has a part or carries a mass, and no others are stated, so nothing weighs "
+                "anything; give a link a part, or state others"
+            )
     elif isinstance(check, LimitLoadCheck):
         if not case.checked_links:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")
-    else:
+    elif not isinstance(check, SizeCheck):
         if isinstance(check, SustainedCheck) and case.conditions.duration is None:
             raise CaseError(
                 f"checks.{name}: a check of sustained load needs the duration of the load; "

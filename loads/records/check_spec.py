@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from geometry.base.model import CaseModel, Name, refusal
-from geometry.base.units import NOT_NEGATIVE, POSITIVE, AngularSpeed, Current, Length, Moment, Voltage
+from geometry.base.units import NOT_NEGATIVE, POSITIVE, AngularSpeed, Current, Length, Mass, Moment, Voltage
 
 
 class SafetyFactorCheck(CaseModel):
@@ -127,6 +127,32 @@ class ClearanceCheck(CaseModel):
     """The least gap between their outlines in the plane."""
 
 
+class MassCheck(CaseModel):
+    """All that the case models, and what it states besides, must weigh no more than the maximum.
+
+    Parts by volume and density (of a pair both plates, and of the ground where it has one), pins between layers from
+    face to face, and what links carry.
+    """
+
+    type: Literal["mass"]
+    maximum: Annotated[Mass, POSITIVE]
+    """The limit."""
+    others: Annotated[Mass, NOT_NEGATIVE] | None = None
+    """Mass of what the case does not model, such as motor and frame. Left out, what is not counted is named."""
+
+
+class SizeCheck(CaseModel):
+    """The linkage must fit into a box along the global axes, over all poses of the [motion] together.
+
+    In the pose where no motion is stated. Parts and pins count by their outlines and heights, links without a part by
+    their points, and [[wings]] as plates.
+    """
+
+    type: Literal["size"]
+    maximum: tuple[Annotated[Length, POSITIVE], Annotated[Length, POSITIVE], Annotated[Length, POSITIVE]]
+    """Its lengths along x, y and z."""
+
+
 Check = Annotated[
     SafetyFactorCheck
     | DisplacementCheck
@@ -135,6 +161,8 @@ Check = Annotated[
     | BearingCheck
     | LimitLoadCheck
     | ClearanceCheck
-    | MotorCheck,
+    | MassCheck
+    | MotorCheck
+    | SizeCheck,
     Field(discriminator="type"),
 ]

@@ -168,7 +168,7 @@ class Clearance:
         """
         if gap.at is None or self.motion is None:
             return self.stated
-        return _poses(self.motion)(np.array([gap.at]))
+        return along(self.motion)(np.array([gap.at]))
 
     def where(self, gap: Gap) -> str:
         """Say at which pose and place a gap was found.
@@ -194,8 +194,18 @@ def _single(pose: Pose) -> Placement:
     return Placement(closure=pose.closure, q=pose.q[None])
 
 
-def _poses(motion: Motion) -> Callable[[Real], Placement]:
-    """Return what takes values of the coordinate to poses with rates by it."""
+def along(motion: Motion) -> Callable[[Real], Placement]:
+    """Return what takes values of a motion's coordinate to poses with rates by it.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    callable
+        Of values (n,) [rad, mm].
+    """
 
     def at(values: Real) -> Placement:
         q = motion.track.at(values)
@@ -203,6 +213,40 @@ def _poses(motion: Motion) -> Callable[[Real], Placement]:
         return Placement(closure=motion.closure, q=q, qdot=first, qddot=second)
 
     return at
+
+
+def way_of(case: Case, pose: Pose) -> Motion:
+    """Return the motion that a case states, through a pose.
+
+    Parameters
+    ----------
+    case : Case
+        With a motion.
+    pose : Pose
+
+    Returns
+    -------
+    Motion
+    """
+    assert case.motion is not None
+    return solve_motion(
+        pose, drive_angles(case, pose), coordinate=case.motion_coordinate, slides=case.motion.travel is not None
+    )
+
+
+def start_of(motion: Motion) -> Real:
+    """Return the values of a motion's coordinate at which outlines are looked at first.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    array (181,)
+        From its first pose to its last [rad, mm].
+    """
+    return np.linspace(float(motion.angles[0]), float(motion.angles[-1]), _POSES)
 
 
 def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
@@ -235,12 +279,9 @@ def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
             raise CaseError(_through(case, pair, gap))
     if case.motion is None:
         return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(gaps))
-    motion = solve_motion(
-        pose, drive_angles(case, pose), coordinate=case.motion_coordinate, slides=case.motion.travel is not None
-    )
-    ends = float(motion.angles[0]), float(motion.angles[-1])
-    longest, start = case.linkage.longest, np.linspace(*ends, _POSES)
-    step, at = _STEP * (longest if motion.slides else 1.0), _poses(motion)
+    motion = way_of(case, pose)
+    longest, start = case.linkage.longest, start_of(motion)
+    step, at = _STEP * (longest if motion.slides else 1.0), along(motion)
     over: list[Gap] = []
     order = sorted(zip(found.pairs, gaps, strict=True), key=lambda entry: entry[1].value)
     for pair, _ in order:

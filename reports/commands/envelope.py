@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import Quantity
+from fea.common.verdict import UNLOADED_QUANTITIES
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.unchecked import unchecked
@@ -318,8 +318,8 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
         say(console, f"Load case {name}: {'; '.join(motion_friction_lines(result.moved, name))}.")
     say_checks(result.checks, console)
     for check in result.checks:
-        if check.quantity is Quantity.CLEARANCE:
-            say(console, sentence(f"clearance: {check.reason}"))
+        if check.quantity in UNLOADED_QUANTITIES:
+            say(console, sentence(f"{check.quantity}: {check.reason}"))
     if result.idle:
         say(console, f"Links without load: {', '.join(result.idle)}.")
     for warning in result.warnings:

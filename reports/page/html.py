@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict, by_nearness, reason_for
+from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject, Verdict, by_nearness, reason_for
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult, SolidResult
 from geometry.linkage.pose import NEAR_DEAD_POINT
 from geometry.materials.material import Material
@@ -187,7 +187,7 @@ def _reasons(checks: Sequence[CheckOutcome]) -> list[str]:
     """Return the reason of each check; "" where its row says the same, so not where the reason names the model."""
     return [
         ""
-        if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.DISPLACEMENT, Quantity.CLEARANCE)
+        if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.DISPLACEMENT, *UNLOADED_QUANTITIES)
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
         else check.reason
         for check in checks

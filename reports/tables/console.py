@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from fea.check.anchor import anchor_loads
-from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
+from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, by_nearness
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from loads.records.aero import AirForces
 from loads.statics.rounding import without_rounding
@@ -68,8 +68,8 @@ def print_result(result: CheckResult, console: "Console") -> None:
                 say(console, f"Motor: {check.reason}.")
             elif check.quantity is Quantity.DISPLACEMENT:
                 say(console, f"Displacement of {check.subject}: {check.reason}.")
-            elif check.quantity is Quantity.CLEARANCE:
-                say(console, sentence(f"clearance: {check.reason}"))
+            elif check.quantity in UNLOADED_QUANTITIES:
+                say(console, sentence(f"{check.quantity}: {check.reason}"))
         for line in _hand(case):
             say(console, line)
     for layers in build_directions_of(result).values():

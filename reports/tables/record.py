@@ -23,6 +23,7 @@ from reports.tables.mechanism import design_record
 from reports.tables.meshes import discretisation_record, solver_record
 from reports.tables.second_opinion import opinion_records
 from reports.tables.springs import standing_record
+from reports.tables.whole import mass_record, size_record
 
 _MATERIAL = "title density youngs_modulus poissons_ratio strength allowable sources status"
 
@@ -64,6 +65,8 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "changes": change_records(result),
         "hand_calculations": [*_cantilevers(result), *_comparisons(result.load_cases.values())],
         "clearance": clearance_record(result.clearance),
+        "mass": mass_record(result.mass),
+        "size": size_record(result.size),
         "load_cases": {name: _load_case(result, name) for name in result.load_cases},
         "materials": {
             name: entries(result.case.all_materials[name], _MATERIAL)

@@ -4,7 +4,7 @@ import math
 import shlex
 
 from fea.common.source import Source, SourceKind
-from fea.common.verdict import Quantity, Verdict
+from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from fea.outcomes.result import CheckResult
 from fea.sizing.changes import MaterialChange, VerdictChange
 from reports.words.wording import joined, named, number, plain, sentence
@@ -59,8 +59,8 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
         told.append(_of_sources(change.widest))
     if not told:
         told.append(
-            "It does not depend on the loads."
-            if check.quantity in (Quantity.CLEARANCE, Quantity.DRIVE_SPEED)
+            _of_itself(check)
+            if check.quantity in (Quantity.DRIVE_SPEED, *UNLOADED_QUANTITIES)
             else "It does not go in proportion to the loads, on the deformed shape or beside springs."
         )
     return told
@@ -86,6 +86,14 @@ def size_command(change: VerdictChange, result: CheckResult) -> str:
         if path != size.entry:
             words += ["--set", shlex.quote(f"{path}={value}")]
     return " ".join(words)
+
+
+def _of_itself(check: CheckOutcome) -> str:
+    """Say of a number that no load changes by what it would have to shrink."""
+    told = "It does not depend on the loads"
+    if check.at_least or check.verdict is Verdict.PASS or not 0.0 < check.margin < 1.0:
+        return f"{told}."
+    return f"{told}; it passes at {_rounded(check.margin, up=False)} times what it is."
 
 
 def _of_load(change: VerdictChange, result: CheckResult) -> list[str]:

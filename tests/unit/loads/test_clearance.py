@@ -11,7 +11,7 @@ from fea.common.verdict import Verdict
 from fea.whole.clearance import clearance_outcomes
 from geometry.base.errors import CaseError
 from geometry.clearance.shape import gaps
-from loads.states.clearance import _poses, clearance
+from loads.states.clearance import along, clearance
 
 
 def test_two_parallel_bars_touch_where_their_distance_is_their_width():
@@ -74,7 +74,7 @@ def test_no_pose_has_a_smaller_gap_than_the_bound(lengths):
     assert found is not None
     assert found.motion is not None
     values = np.linspace(float(found.motion.angles[0]), float(found.motion.angles[-1]), 4001)
-    place = _poses(found.motion)(values)
+    place = along(found.motion)(values)
     by_names = {pair.names: pair for pair in found.assembly.pairs}
     assert found.gaps
     for gap in found.gaps:
@@ -89,7 +89,7 @@ def test_the_speed_bound_is_that_of_the_fastest_point():
     found = clearance(case)
     assert found is not None
     assert found.motion is not None
-    at, step = _poses(found.motion), 1e-6
+    at, step = along(found.motion), 1e-6
     values = np.linspace(math.radians(80.0), math.radians(190.0), 12)
     for pair in found.assembly.pairs:
         centre, reach = pair.other.circle

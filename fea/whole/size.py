@@ -1,0 +1,85 @@
+"""Whether a linkage fits into a box along the global axes."""
+
+from fea.common.band import Band
+from fea.common.source import Source, SourceKind
+from fea.common.verdict import LINKAGE, SIZES, CheckOutcome
+from geometry.clearance.reach import Outermost
+from loads.case.case import Case
+from loads.records.check_spec import SizeCheck
+from loads.states.extent import Extent, unmeasured
+
+POSES = Source(kind=SourceKind.POSES, detail="bounded by the acceleration of the outlines")
+CHORDS = Source(kind=SourceKind.CHORDS, detail="of the outlines")
+_ROUNDING = 1e-9
+
+
+def size_band(found: Extent, axis: int) -> Band:
+    """Return the length of the box about a linkage.
+
+    Parameters
+    ----------
+    found : Extent
+    axis : int
+        0, 1 or 2 of x, y and z.
+
+    Returns
+    -------
+    Band
+        [mm]
+    """
+    first, last = found.reaches[axis]
+    value = last.value - first.value
+    less, more = first.less + last.less, first.more + last.more
+    sources = ((POSES, more > less + _ROUNDING), (CHORDS, less > 0.0))
+    told = tuple(source for source, holds in sources if holds)
+    return Band(value=value, low=max(value - less, 0.0), high=value + more, sources=told)
+
+
+def size_outcomes(case: Case, found: Extent | None) -> tuple[CheckOutcome, ...]:
+    """Return three outcomes of every check of size, in the name of the first load case: no load changes them.
+
+    Parameters
+    ----------
+    case : Case
+    found : Extent or None
+        The box about the linkage; None where no check asks for it.
+
+    Returns
+    -------
+    tuple of CheckOutcome
+        Along x, y and z.
+    """
+    load_case = next(iter(case.load_cases))
+    return tuple(
+        CheckOutcome.of(
+            name, LINKAGE, load_case, quantity, size_band(found, axis), check.maximum[axis], size_sentence(found, axis)
+        )
+        for name, check in case.checks.items()
+        if isinstance(check, SizeCheck) and found is not None
+        for axis, quantity in enumerate(SIZES)
+    )
+
+
+def size_sentence(found: Extent, axis: int) -> str:
+    """Say between which outlines a linkage is longest along an axis, and what is not counted.
+
+    Parameters
+    ----------
+    found : Extent
+    axis : int
+        0, 1 or 2 of x, y and z.
+
+    Returns
+    -------
+    str
+    """
+    first, last = (_side(found, side, "xyz"[axis]) for side in found.reaches[axis])
+    left = ", ".join(unmeasured(found.assembly.case))
+    return f"from {first} to {last}{f'; not counted: {left}' if left else ''}"
+
+
+def _side(found: Extent, side: Outermost, axis: str) -> str:
+    when = ""
+    if side.at is not None and found.motion is not None:
+        when = f" ({found.motion.coordinate} = {float(found.motion.told(side.at)):.2f} {found.motion.unit})"
+    return f"{side.name} at {axis} = {side.value:.5g} mm{when}".replace("= -", "= −")

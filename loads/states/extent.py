@@ -1,0 +1,133 @@
+"""The box that a linkage takes up along the global axes: at its pose, and over its motion."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from geometry.clearance.least import Spot
+from geometry.clearance.reach import Sides, Standing, reaches, reaches_at
+from geometry.clearance.shape import point_shape
+from geometry.linkage.motion import Motion
+from geometry.linkage.placement import Placement
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.case.layers import slab
+from loads.states.clearance import Assembly, along, assembly, start_of, way_of
+from loads.states.flapping import wing_span
+
+_NEAR = 1e-6
+"""Share of the longest link to which the box over a motion is found."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Extent:
+    """The box about all outlines of a linkage, over all poses.
+
+    Attributes
+    ----------
+    assembly : Assembly
+        The outlines of links with a part, and of pins.
+    pose : Pose
+        The stated one.
+    motion : Motion or None
+        Over which the box is; None where the case states none, and it is that of the pose.
+    reaches : tuple of (Outermost, Outermost)
+        Along x, y and z: how far outlines reach to the side of small values, and to that of large ones.
+    """
+
+    assembly: Assembly
+    pose: Pose
+    motion: Motion | None
+    reaches: Sides
+
+    @cached_property
+    def outlines(self) -> tuple[Standing, ...]:
+        """What the box is about."""
+        return tuple(_outlines(self.assembly))
+
+    def at(self, value: float) -> Placement:
+        """Return the pose, as one of one, at a value of the motion's coordinate.
+
+        Parameters
+        ----------
+        value : float
+            [rad, mm]
+
+        Returns
+        -------
+        Placement
+        """
+        assert self.motion is not None
+        return along(self.motion)(np.array([value]))
+
+
+def extent(case: Case, pose: Pose, motion: Motion | None = None) -> Extent:
+    """Return the box about the outlines of a case over its motion, or at its pose where it states none.
+
+    Parameters
+    ----------
+    case : Case
+    pose : Pose
+        The stated one, or where the linkage balances if it is let go.
+    motion : Motion, optional
+        That of the case, where it was solved before.
+
+    Returns
+    -------
+    Extent
+
+    Raises
+    ------
+    CaseError
+        Where the motion does not exist.
+    """
+    found = assembly(case)
+    outlines = tuple(_outlines(found))
+    if case.motion is None:
+        at_rest = Placement(closure=pose.closure, q=pose.q[None])
+        return Extent(assembly=found, pose=pose, motion=None, reaches=reaches_at(outlines, at_rest))
+    motion = motion or way_of(case, pose)
+    near = _NEAR * case.linkage.longest
+    told = reaches(outlines, along(motion), start_of(motion), near=near)
+    return Extent(assembly=found, pose=pose, motion=motion, reaches=told)
+
+
+def _outlines(found: Assembly) -> Iterator[Standing]:
+    """Yield the outlines of links, pins and wings; those of links without a part are their points.
+
+    A wing is a plate along its link's axis, with its chord to either side of the link's mid-plane.
+    """
+    case = found.case
+    for link, record in case.links.items():
+        if link in found.links:
+            yield found.links[link], Spot(link=link)
+        else:
+            yield point_shape(f"link {link}", list(record.points.values()), *slab(case, link)), Spot(link=link)
+    for joint, pin in found.pins.items():
+        yield pin, found.spot(joint)
+    for wing in case.wings:
+        first, last, chord = wing_span(wing, case)
+        level, half = case.heights[wing.link], max(chord) / 2.0
+        ends = [(first, 0.0), (last, 0.0)]
+        yield point_shape(f"wing of {wing.link}", ends, level - half, level + half), Spot(link=wing.link)
+
+
+def unmeasured(case: Case) -> tuple[str, ...]:
+    """Return what the box of a case does not hold, or not all of, in a few words each.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    tuple of str
+    """
+    found = [f"{link} beyond its points (no part)" for link in case.links if case.links[link].part is None]
+    winged = {wing.link for wing in case.wings}
+    carrying = [link for link in dict.fromkeys(carried.link for carried in case.carried) if link not in winged]
+    found += [f"what {', '.join(carrying)} carr{'ies' if len(carrying) == 1 else 'y'}"] if carrying else []
+    kinds = (("spring", case.springs), ("tendon", case.tendons))
+    return (*found, *(f"{kind} {name}" for kind, records in kinds for name in records))

@@ -1,0 +1,127 @@
+"""What a linkage weighs: its parts, the pins between layers and what links carry, link by link."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.pose import Pose
+from loads.case.case import Case
+from loads.case.layers import on_one_axis, pin_masses
+from loads.states.masses import laden_masses, part_masses
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkWeighed:
+    """What a link weighs.
+
+    Attributes
+    ----------
+    part, pins, carried : float
+        Its part, of a pair both plates; the pins that move with it; what it carries besides [tonne].
+    """
+
+    part: float = 0.0
+    pins: float = 0.0
+    carried: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """All of it [tonne]."""
+        return self.part + self.pins + self.carried
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weighed:
+    """What a linkage weighs.
+
+    Attributes
+    ----------
+    links : mapping of str to LinkWeighed
+        By link, of those that weigh anything.
+    centroid : array (2,)
+        Of all of it, in the stated pose and global axes [mm]; NaN where nothing weighs anything.
+    not_counted : tuple of str
+        What else has a mass, in a few words each, with the reason.
+    """
+
+    links: Mapping[str, LinkWeighed]
+    centroid: Real
+    not_counted: tuple[str, ...]
+
+    @property
+    def total(self) -> LinkWeighed:
+        """All links together."""
+        kinds = ("part", "pins", "carried")
+        return LinkWeighed(**{kind: sum(getattr(own, kind) for own in self.links.values()) for kind in kinds})
+
+
+def weighed(case: Case, pose: Pose) -> Weighed:
+    """Return what a linkage weighs; parts by the geometry kernel, each body once.
+
+    Parameters
+    ----------
+    case : Case
+    pose : Pose
+        Of the centroid.
+
+    Returns
+    -------
+    Weighed
+
+    Raises
+    ------
+    CaseError
+        For a body that cannot be built.
+    CannotRunError
+        Where the kernel fails.
+    """
+    parts, pins = part_masses(case), pin_masses(case).values()
+    laden, links, moment = laden_masses(case, parts), {}, 0j
+    for link, whole in laden.items():
+        links[link] = LinkWeighed(
+            part=parts[link].mass if link in parts else 0.0,
+            pins=sum(pin.mass for pin in pins if pin.link == link),
+            carried=sum(carried.mass for carried in case.carried if carried.link == link),
+        )
+        at = pose.placement.origin(link) + pose.placement.direction(link) * complex(*whole.centroid)
+        moment += whole.mass * complex(at)
+    total = sum(whole.mass for whole in laden.values())
+    centre = moment / total if total > 0.0 else complex(np.nan, np.nan)
+    return Weighed(links=links, centroid=np.array([centre.real, centre.imag]), not_counted=unweighed(case))
+
+
+def unweighed(case: Case) -> tuple[str, ...]:
+    """Return what has a mass that a case does not tell, in a few words each.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    tuple of str
+        Links that state to be massless are not among it.
+    """
+    carrying = {carried.link for carried in case.carried}
+    told = {*case.checked_links, *case.massless, *carrying}
+    found = [f"{link} (no part)" for link in case.links if link not in told]
+    found += [f"wing of {wing.link} (it carries no mass)" for wing in case.wings if wing.link not in carrying]
+    found += _pins_left(case) if case.layered else ["pins (no layers, hence no lengths)"]
+    kinds = (("spring", case.springs), ("tendon", case.tendons))
+    return (*found, *(f"{kind} {name}" for kind, records in kinds for name in records))
+
+
+def _pins_left(case: Case) -> Iterator[str]:
+    """Yield the pins of a layered case that ``pin_masses`` leaves out."""
+    known, ground = pin_masses(case), case.linkage.ground
+    own = [[name for name in group if case.joints[name].type != "slider"] for group in on_one_axis(case)]
+    left = [group for group in own if not set(group) & set(known)]
+    reasons = {True: "no diameter", False: f"in {ground}, which has no part"}
+    for unknown, why in reasons.items():
+        names = [name for group in left for name in group if (case.joints[name].pin_diameter is None) is unknown]
+        if names:
+            yield f"pin{'s' if len(names) > 1 else ''} {', '.join(names)} ({why})"
