@@ -31,6 +31,7 @@ class SourceKind(StrEnum):
     POSES = "what lies between the poses that were looked at"
     CHORDS = "chords in place of arcs"
     PLAY = "play of pins"
+    AIR = "air on wings that flap"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +68,21 @@ CONTACT = Source(
 TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail="by eye-faces and by bore-shear")
 
 COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in the one link or in the other"),)
+
+
+def air_source(least: float, largest: float) -> Source:
+    """Return the range of the normal coefficient of wings as a source of error.
+
+    Parameters
+    ----------
+    least, largest : float
+        C_N.
+
+    Returns
+    -------
+    Source
+    """
+    return Source(kind=SourceKind.AIR, detail=f"C_N from {least:g} to {largest:g}")
 
 
 def widest(sources: tuple[Source, ...], width: float) -> tuple[Source, ...]:

@@ -3,6 +3,8 @@
 A motor that turns evenly with a flywheel gives the mean of all power, for the flywheel lends what is above it and takes
 what is below, negative power too; a motor alone gives the peak. So the mean and the peak are the ends of a band. Play
 of pins moves both: each is taken with the drive torque at either end of what play makes of it, at all poses together.
+So does the air on wings that flap: each is taken at either end of the range of C_N, of which the mean is an affine and
+the peak a convex function.
 """
 
 import math
@@ -13,10 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
-from fea.common.source import Source, SourceKind, play_source
+from fea.common.convex import least_of_convex
+from fea.common.source import Source, SourceKind, air_source, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
+from loads.records.flapping import Flapping
+from loads.states.air_range import AirRange, air_range
 from loads.states.case_motion import CaseMotion, solve_case_motion
 from loads.states.kinetostatics import relative_motion
 from loads.states.loose_motion import loose_motion
@@ -129,24 +134,39 @@ def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[
 
 
 def _band(moved: CaseMotion, title: str, of: Callable[[Real], tuple[float, float, float]]) -> Band:
-    """Return what is calculated from the drive torque: value, low and high, with the torque as play may change it."""
-    torque = moved.forces[title].drive_torque
-    sources: tuple[Source, ...] = SOURCES
-    value, low, high = of(torque)
-    if (loose := loose_motion(moved)) is not None:
-        (least, most), forwards = loose.effort(title), _rate(moved, title) > 0.0
-        curves = (
-            np.where(forwards, least, most),  # least power
-            np.where(forwards, most, least),
-            np.clip(0.0, least, most),  # least size
-            np.where(np.abs(least) > np.abs(most), least, most),
-        )
-        with np.errstate(invalid="ignore"):
-            ends = [of(np.asarray(curve)) for curve in curves]
-        low, high = min(low, *(end[1] for end in ends)), max(high, *(end[2] for end in ends))
-        low, high = (bound if math.isnan(end) else end for end, bound in ((low, 0.0), (high, math.inf)))
-        sources = (*SOURCES, play_source(loose.clearances))
+    """Return what is calculated from the drive torque: value, low and high, with what air and play may make of it."""
+    value, low, high, sources = _loosened(moved, title, of)
+    air, airs = moved.case.load_cases[title].flapping, air_range(moved)
+    if air is not None and airs is not None and (others := airs.at(title)):
+        lows = {air.normal_coefficient: low}
+        for coefficient, other in zip(air.ends, others, strict=True):
+            _, lows[coefficient], most, _ = _loosened(other, title, of)
+            high = max(high, most)
+        low = max(least_of_convex(lows.items()), 0.0)
+        sources = (*sources, air_source(*air.ends))
     return Band(value=value, low=low, high=high, sources=sources)
+
+
+def _loosened(
+    moved: CaseMotion, title: str, of: Callable[[Real], tuple[float, float, float]]
+) -> tuple[float, float, float, tuple[Source, ...]]:
+    """Return value, low and high with the torque as play may change it, and what makes them differ."""
+    torque = moved.forces[title].drive_torque
+    value, low, high = of(torque)
+    if (loose := loose_motion(moved)) is None:
+        return value, low, high, SOURCES
+    (least, most), forwards = loose.effort(title), _rate(moved, title) > 0.0
+    curves = (
+        np.where(forwards, least, most),  # least power
+        np.where(forwards, most, least),
+        np.clip(0.0, least, most),  # least size
+        np.where(np.abs(least) > np.abs(most), least, most),
+    )
+    with np.errstate(invalid="ignore"):
+        ends = [of(np.asarray(curve)) for curve in curves]
+    low, high = min(low, *(end[1] for end in ends)), max(high, *(end[2] for end in ends))
+    low, high = (bound if math.isnan(end) else end for end, bound in ((low, 0.0), (high, math.inf)))
+    return value, low, high, (*SOURCES, play_source(loose.clearances))
 
 
 def _rate(moved: CaseMotion, title: str) -> Real:
@@ -221,11 +241,15 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
         Verdict.FAIL: "the motor's output is below the mean",
         Verdict.UNDECIDED: "the motor's output covers the mean but not the peak, so a flywheel decides",
     }[outcome.verdict]
-    reason = (
+    told = (
         f"the drive needs at most {found.peak_torque:.3g} N·mm and {found.peak_power:.3g} W, "
-        f"on average {found.mean_power:.3g} W; {side}, "
-        f"{check.voltage:g} V × {check.current * 1e3:g} mA × {check.efficiency:g} = {limit:.3g} W"
+        f"on average {found.mean_power:.3g} W"
     )
+    air = case.load_cases[title].flapping
+    if air is not None and (airs := air_range(laden)) is not None:
+        also, side = _of_air(air, airs, title, times, outcome.verdict, limit)
+        told += also
+    reason = f"{told}; {side}, {check.voltage:g} V × {check.current * 1e3:g} mA × {check.efficiency:g} = {limit:.3g} W"
     if case.load_cases[title].carried and case.carried:
         bare = empty.forces[title].drive_power
         factor = largest_factor(bare, solved.drive_power - bare, 1000.0 * limit)
@@ -233,6 +257,36 @@ def _power(case: Case, name: str, check: MotorCheck, title: str, laden: CaseMoti
         if 0.0 < factor < math.inf:
             reason += f"; it can drive {factor * carried:.3g} g of carried mass (now {carried:.3g} g)"
     return outcome.because(reason)
+
+
+def _of_air(air: Flapping, airs: AirRange, title: str, times: Real, verdict: Verdict, limit: float) -> tuple[str, str]:
+    """Return what air on wings makes of the drive, and whether the motor carries it."""
+    bare, *ends = (
+        demand(moved.forces[title].drive_power, moved.forces[title].drive_torque, times)
+        for moved in (airs.without, airs.least, airs.largest)
+    )
+    also = ""
+    if airs.at(title):
+        also = (
+            f" (C_N from {air.ends[0]:g} to {air.ends[1]:g}: at most {_span(e.peak_torque for e in ends)} N·mm and "
+            f"{_span(e.peak_power for e in ends)} W, on average {_span(e.mean_power for e in ends)} W)"
+        )
+    also += (
+        f"; without air at most {bare.peak_torque:.3g} N·mm and {bare.peak_power:.3g} W, "
+        f"on average {bare.mean_power:.3g} W"
+    )
+    if verdict is Verdict.PASS:
+        return also, "the motor carries the air as well, for its output covers the peak"
+    if verdict is Verdict.FAIL:
+        alone = "even without air" if bare.mean_power > limit else "with the air, which it does not carry"
+        return also, f"the motor's output is below the mean {alone}"
+    if max(end.mean_power for end in ends) <= limit:
+        return also, "the motor's output covers the mean with the air but not the peak, so a flywheel decides"
+    return also, "whether the motor carries the air depends on C_N, for its output covers the mean with the least alone"
+
+
+def _span(ends: Iterator[float]) -> str:
+    return " to ".join(f"{end:.3g}" for end in ends)
 
 
 def largest_factor(bare: Real, load: Real, limit: float) -> float:

@@ -18,6 +18,7 @@ _NARROWED: dict[SourceKind, str] = {
     SourceKind.GROWTH: "a narrower scatter of load and modulus",
     SourceKind.COUPLES: "tight_in of the joints, which says in which link a pin is tight",
     SourceKind.PLAY: "a smaller clearance of the joints",
+    SourceKind.AIR: "a narrower normal_coefficient_range of the load case's air",
     SourceKind.POSES: "more poses of the motion",
 }
 """What narrows a source of error, of those that an entry of the case or an option narrows."""

@@ -1,0 +1,44 @@
+"""The least that a convex function of one number may reach, from its values at a few places."""
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+
+def least_of_convex(found: Iterable[tuple[float, float]]) -> float:
+    """Return a lower bound of a convex function between the first and the last of some places.
+
+    Beyond a piece between two places, a convex function lies above the line through its ends. So between two
+    neighbours it lies above the lines of the pieces before and after.
+
+    Parameters
+    ----------
+    found : iterable of tuple of (float, float)
+        Places, in any order, with the values there.
+
+    Returns
+    -------
+    float
+        At most the least of the values.
+    """
+    known = sorted(dict(found).items())
+    least = min(value for _, value in known)
+    lines = [((b - a) / (x1 - x0), x0, a) for (x0, a), (x1, b) in pairwise(known)]
+    for i, (start, end) in enumerate(pairwise(known)):
+        before = lines[i - 1] if i > 0 else None
+        after = lines[i + 1] if i + 1 < len(lines) else None
+        if before and after:
+            steeper = after[0] - before[0]
+            if steeper > 0.0:
+                x = (_at(before, 0.0) - _at(after, 0.0)) / steeper
+                if start[0] < x < end[0]:
+                    least = min(least, _at(before, x))
+        elif before:
+            least = min(least, _at(before, end[0]))
+        elif after:
+            least = min(least, _at(after, start[0]))
+    return least
+
+
+def _at(line: tuple[float, float, float], x: float) -> float:
+    slope, x0, y0 = line
+    return y0 + slope * (x - x0)

@@ -1,0 +1,65 @@
+"""A motion without the air in which its wings flap, and at either end of the range of their C_N.
+
+Drive torque without friction is affine in C_N, its power likewise, and its peaks and root mean squares are convex in
+it: over the range they are largest at an end.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.flapping import in_air
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AirRange:
+    """Motions of the load cases with air alone.
+
+    Attributes
+    ----------
+    without : CaseMotion
+        Without the air.
+    least, largest : CaseMotion
+        With the least and with the largest C_N of each load case.
+    """
+
+    without: CaseMotion
+    least: CaseMotion
+    largest: CaseMotion
+
+    def at(self, load_case: str) -> tuple[CaseMotion, ...]:
+        """Return the motions at the ends of the range; none of a load case without air or with a C_N without range.
+
+        Parameters
+        ----------
+        load_case : str
+            Its name.
+
+        Returns
+        -------
+        tuple of CaseMotion
+        """
+        least, largest = (moved.case.load_cases.get(load_case) for moved in (self.least, self.largest))
+        return () if least == largest else (self.least, self.largest)
+
+
+@lru_cache(maxsize=4)
+def air_range(moved: CaseMotion) -> AirRange | None:
+    """Return a motion without air, and with the least and the largest C_N.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+
+    Returns
+    -------
+    AirRange or None
+        None where no load case has air.
+    """
+    if all(load_case.flapping is None for load_case in moved.case.load_cases.values()):
+        return None
+    found: Mapping[float | None, CaseMotion] = {
+        share: solve_case_motion(in_air(moved.case, share)) for share in (None, 0.0, 1.0)
+    }
+    return AirRange(without=found[None], least=found[0.0], largest=found[1.0])

@@ -1,0 +1,102 @@
+"""The range of the normal coefficient of flapping wings: what it makes of bands, against direct calculations."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from edited_cases import edited
+
+from fea.common.convex import least_of_convex
+from fea.common.source import SourceKind
+from fea.common.verdict import Verdict
+from fea.whole.motor import motor_outcomes
+from loads.case.case import Case
+from loads.states.case_motion import solve_case_motion
+
+WINGS = [
+    f'{{ link = "lever-{side}", at = "W", span = ["6 mm", "66 mm"], chord = "30 mm" }}' for side in ("right", "left")
+]
+RANDOM = np.random.default_rng(3).uniform(1.2, 5.0, 5)
+
+
+@cache
+def ornithopter(
+    coefficient: float | None = 3.5, least: float = 1.2, largest: float = 5.0, current: str = "170 mA"
+) -> Case:
+    """The ornithopter at 12 flaps a second, with air for its wings; without air at all for None."""
+    entries = [
+        f"wings=[{', '.join(WINGS)}]",
+        'checks.motor.stall_torque="2 N*mm"',
+        'checks.motor.rated_torque="1 N*mm"',
+        f'checks.motor.current="{current}"',
+    ]
+    if coefficient is not None:
+        entries += ['load_cases.wings-12.flapping.density="1.2 kg/m^3"']
+        entries += [f"load_cases.wings-12.flapping.normal_coefficient={coefficient}"]
+        entries += [f"load_cases.wings-12.flapping.normal_coefficient_range=[{least}, {largest}]"]
+    case = edited("ornithopter", entries)
+    return case.model_copy(update={"load_cases": {"wings-12": case.load_cases["wings-12"]}})
+
+
+def direct(coefficient: float) -> Case:
+    """The same at one coefficient, without a range."""
+    return ornithopter(coefficient, coefficient, coefficient)
+
+
+def motor(case: Case):
+    return {o.quantity: o for o in motor_outcomes(case, "motor", case.checks["motor"])["wings-12"]}
+
+
+def test_the_least_of_a_convex_function_from_some_of_its_values():
+    rng = np.random.default_rng(1)
+    fine = np.linspace(0.0, 1.0, 2001)
+    for _ in range(200):
+        slopes, places = rng.normal(size=6), rng.uniform(0.0, 1.0, 6)
+
+        def convex(x, slopes=slopes, places=places):
+            return np.max([s * (x - p) for s, p in zip(slopes, places, strict=True)], axis=0)
+
+        chosen = np.array([0.0, *rng.uniform(0.1, 0.9, rng.integers(0, 4)), 1.0])
+        bound = least_of_convex(zip(chosen, convex(chosen), strict=True))
+        assert bound <= convex(fine).min() + 1e-12
+    assert least_of_convex([(0.0, 2.0), (1.0, 3.0)]) == 2.0
+    # |x - 0.4| from five places: the lines on both sides meet at its least
+    places = np.array([0.0, 0.2, 0.3, 0.7, 1.0])
+    assert least_of_convex(zip(places, abs(places - 0.4), strict=True)) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_the_motors_bands_hold_what_every_coefficient_of_the_range_asks():
+    found = motor(ornithopter())
+    for coefficient in (1.2, 5.0, *RANDOM):
+        for quantity, one in motor(direct(float(coefficient))).items():
+            band = found[quantity].value
+            assert band.low <= one.value.low * (1.0 + 1e-12), quantity
+            assert band.high >= one.value.high * (1.0 - 1e-12), quantity
+    ends = [motor(direct(c)) for c in (1.2, 5.0)]
+    for quantity, one in found.items():
+        if one.value.high > one.value.low:
+            assert one.value.high == pytest.approx(max(end[quantity].value.high for end in ends), rel=1e-12)
+            assert SourceKind.AIR in {source.kind for source in one.value.sources}
+    power = found["drive power"].value
+    assert power.low == pytest.approx(ends[0]["drive power"].value.low, rel=1e-9)
+    assert power.value == pytest.approx(motor(direct(3.5))["drive power"].value.value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("current", "verdict", "told"),
+    [
+        ("170 mA", Verdict.PASS, "; the motor carries the air as well, for its output covers the peak, "),
+        ("8 mA", Verdict.UNDECIDED, "; the motor's output covers the mean with the air but not the peak"),
+        ("2 mA", Verdict.UNDECIDED, "; whether the motor carries the air depends on C_N, "),
+        ("0.4 mA", Verdict.FAIL, "; the motor's output is below the mean with the air, which it does not carry, "),
+    ],
+)
+def test_the_motor_says_whether_it_carries_the_air(current, verdict, told):
+    outcome = motor(ornithopter(current=current))["drive power"]
+    assert outcome.verdict is verdict
+    assert told in outcome.reason
+    bare, least = (solve_case_motion(case).forces["wings-12"] for case in (ornithopter(None), direct(1.2)))
+    torque = float(np.abs(bare.drive_torque).max())
+    assert f"without air at most {torque:.3g} N·mm and {bare.drive_power.max() / 1e3:.3g} W, " in outcome.reason
+    assert "(C_N from 1.2 to 5: at most " in outcome.reason
+    assert f" N·mm and {least.drive_power.max() / 1e3:.3g} to " in outcome.reason
