@@ -13,7 +13,7 @@ def least_of_convex(found: Iterable[tuple[float, float]]) -> float:
     Parameters
     ----------
     found : iterable of tuple of (float, float)
-        Places, in any order, with the values there.
+        Places, in any order, with the values there; at least three for a bound, of two the least is returned.
 
     Returns
     -------

@@ -56,7 +56,7 @@ def test_the_least_of_a_convex_function_from_some_of_its_values():
         def convex(x, slopes=slopes, places=places):
             return np.max([s * (x - p) for s, p in zip(slopes, places, strict=True)], axis=0)
 
-        chosen = np.array([0.0, *rng.uniform(0.1, 0.9, rng.integers(0, 4)), 1.0])
+        chosen = np.array([0.0, *rng.uniform(0.1, 0.9, rng.integers(1, 4)), 1.0])
         bound = least_of_convex(zip(chosen, convex(chosen), strict=True))
         assert bound <= convex(fine).min() + 1e-12
     assert least_of_convex([(0.0, 2.0), (1.0, 3.0)]) == 2.0
