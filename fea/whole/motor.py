@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.common.air_range import AirRange, air_range
 from fea.common.band import Band
 from fea.common.convex import least_of_convex
 from fea.common.source import Source, SourceKind, air_source, play_source
@@ -21,7 +22,6 @@ from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
 from loads.records.flapping import Flapping
-from loads.states.air_range import AirRange, air_range
 from loads.states.case_motion import CaseMotion, solve_case_motion
 from loads.states.kinetostatics import relative_motion
 from loads.states.loose_motion import loose_motion
