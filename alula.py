@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from reports.notebook.check_report import CheckReport
     from reports.notebook.claims_report import ClaimsReport
     from reports.notebook.envelope_report import EnvelopeReport
+    from reports.notebook.frequency_report import FrequencyReport
     from reports.notebook.motion_report import MotionReport
     from reports.notebook.part_report import PartReport
     from reports.notebook.study_report import StudyReport
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
     from reports.notebook.tolerance_report import ToleranceReport
 
 __all__ = [
-    "cases", "check", "claims", "envelope", "inspect", "motion", "read_case", "study", "synthesise", "tolerance",
+    "cases", "check", "claims", "envelope", "frequencies", "inspect", "motion", "read_case", "study", "synthesise",
+    "tolerance",
 ]  # fmt: skip
 __version__ = alula_version()
 
@@ -171,6 +173,44 @@ def motion(case: "Case | str | PathLike[str]", *, threads: int = 2) -> "MotionRe
 
     with bounded(threads):
         return MotionReport(solve_case_motion(_case(case)))
+
+
+def frequencies(
+    case: "Case | str | PathLike[str]", *, poses: int = 25, count: int = 4, solid: bool = False, threads: int = 2
+) -> "FrequencyReport":
+    """Find the natural frequencies of a linkage over its motion, and of each link by itself.
+
+    Parameters
+    ----------
+    case : Case, str or path
+        A case, the name of a built-in one, or the path of a case file.
+    poses : int
+        Over the motion, ends included.
+    count : int
+        Natural frequencies of every pose and link.
+    solid : bool
+        True for links by themselves as solids in place of beams.
+    threads : int
+        Threads that each library may use.
+
+    Returns
+    -------
+    FrequencyReport
+        Bands, table and pictures.
+
+    Raises
+    ------
+    CaseError
+        For a case without a part.
+    CannotRunError
+        Where a stage fails.
+    """
+    from fea.common.threads import bounded
+    from fea.vibration.over_motion import case_frequencies
+    from reports.notebook.frequency_report import FrequencyReport
+
+    with bounded(threads):
+        return FrequencyReport(case_frequencies(_case(case), poses=poses, count=count, solid=solid, threads=threads))
 
 
 def envelope(

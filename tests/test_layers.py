@@ -20,10 +20,12 @@ LAYERS = {
     "loads": ("text", "records", "statics", "sources", "case", "states", "plans", "exchange"),
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
-        *("refine", "outcomes", "vibration", "whole", "check", "superposition", "motion", "calculix", "claims"),
+        *("refine", "vibration", "outcomes", "whole", "check", "superposition", "motion", "calculix", "claims"),
         *("study", "sizing", "tolerance"),
     ),
-    "reports": ("words", "tables", "sheet", "figures", "turnable", "page", "study", "commands", "notebook"),
+    "reports": (
+        *("words", "tables", "sheet", "vibration", "figures", "turnable", "page", "study", "commands", "notebook"),
+    ),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""
 PACKAGES = tuple(LAYERS)

@@ -18,7 +18,7 @@ from fea.buckling.buckling import beyond_strength
 from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.source import Source, SourceKind
-from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, CheckOutcome, Quantity, Verdict
+from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
 from fea.nonlinear.stability import SNAP, growth
 
@@ -137,7 +137,7 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
 
 
 def _rests_on_it(outcome: CheckOutcome) -> bool:
-    return outcome.subject.kind in ("link", "pin") and outcome.quantity not in MOTOR_QUANTITIES
+    return outcome.subject.kind in ("link", "pin") and outcome.quantity not in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES)
 
 
 def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:

@@ -251,8 +251,8 @@ def check_case(
     statics = solve_case_statics(case, name)
     case = statics.case
     clock("pose and statics")
-    whole = whole_numbers(case, statics.pose)
-    clock("clearance, mass and size")
+    whole = whole_numbers(case, statics.pose, solid=fidelity == "solid", threads=threads)
+    clock("the linkage as a whole")
     moved = frames or {
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
@@ -279,6 +279,7 @@ def check_case(
         clearance=whole.clearance,
         mass=whole.mass,
         size=whole.size,
+        frequencies=whole.frequencies,
         load_cases=load_cases,
         hand={calculation: _cantilever(case, calculation) for calculation in case.hand_calculations},
         audit=statics.audit,

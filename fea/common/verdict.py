@@ -83,6 +83,8 @@ class Quantity(StrEnum):
     """Life over the repetitions that are wanted."""
     CLEARANCE = "clearance", "mm", Sense.AT_LEAST
     """Least gap between outlines that lie at one height; negative where they lie in each other."""
+    FREQUENCY_RATIO = "natural over driving frequency", "", Sense.AT_LEAST
+    """The lowest natural frequency over the motion, over that of the drive."""
     DRIVE_POWER = "drive power", "W", Sense.AT_MOST
     DRIVE_SPEED = "drive speed", "rpm", Sense.AT_MOST
     DRIVE_TORQUE = "drive torque over time", "N·mm", Sense.AT_MOST
@@ -129,8 +131,8 @@ def _share(value: float, limit: float) -> float:
 
 
 SIZES = (Quantity.SIZE_X, Quantity.SIZE_Y, Quantity.SIZE_Z)
-UNLOADED_QUANTITIES = (Quantity.CLEARANCE, Quantity.MASS, *SIZES)
-"""What no load changes."""
+UNLOADED_QUANTITIES = (Quantity.CLEARANCE, Quantity.FREQUENCY_RATIO, Quantity.MASS, *SIZES)
+"""What does not come from loads; they change frequencies alone, as far as they tighten links."""
 MOTOR_QUANTITIES = (Quantity.DRIVE_POWER, Quantity.DRIVE_SPEED, Quantity.DRIVE_TORQUE, Quantity.TORQUE_SHARE)
 """What is asked of a motor over the motion of a rigid linkage."""
 

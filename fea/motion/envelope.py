@@ -224,7 +224,7 @@ def envelope_case(
     case = moved.case
     if moved.locks:
         raise CaseError(f"{moved.locks[0]}; shorten the motion, state less friction, or another direction or drive")
-    whole = whole_numbers(case)
+    whole = whole_numbers(case, threads=threads)
     evaluated = _some_poses(moved, growth)
     over = _Envelope.of(moved, evaluated, threads, progress)
     moved = over.moved

@@ -28,6 +28,7 @@ from geometry.materials.material import Fatigue, Material
 from loads.records.check_spec import (
     BearingCheck,
     ClearanceCheck,
+    FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
     PinCheck,
@@ -42,7 +43,10 @@ LEFT_OUT = "poses near a dead point of the driven link were left out, where its 
 NOT_FOLLOWED = (
     "no beam stands for its buckling, and its solid is not looked at over a motion; check single poses with alula check"
 )
-FOLLOWED = (SafetyFactorCheck, PinCheck, BearingCheck, LimitLoadCheck, ClearanceCheck, MassCheck, SizeCheck)
+FOLLOWED = (
+    *(SafetyFactorCheck, PinCheck, BearingCheck),
+    *(LimitLoadCheck, ClearanceCheck, FrequencyCheck, MassCheck, SizeCheck),
+)
 """Checks of the case that are decided over the motion."""
 
 

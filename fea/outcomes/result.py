@@ -21,6 +21,7 @@ from fea.refine.discretisation import Discretisation
 from fea.refine.link_buckling import SolidBuckling
 from fea.solid.solution import SolidCase, SolidSolution
 from fea.solid.stress import StressField
+from fea.vibration.over_motion import CaseFrequencies
 from geometry.linkage.pose import Pose
 from geometry.materials.material import stress_measure
 from loads.case.case import Case
@@ -335,6 +336,8 @@ class CheckResult:
         One sentence each.
     second_opinions : tuple of SecondOpinion
         CalculiX beside our solid models, where it was asked for.
+    frequencies : CaseFrequencies or None
+        Natural frequencies, where a check asks for them.
     """
 
     name: str
@@ -350,6 +353,7 @@ class CheckResult:
     timings: Mapping[str, float]
     warnings: tuple[str, ...]
     second_opinions: tuple[SecondOpinion, ...] = ()
+    frequencies: CaseFrequencies | None = None
 
     @property
     def frames(self) -> Mapping[str, LargeDisplacement]:

@@ -10,6 +10,8 @@ does the same. That is told where it follows:
 * stress, deflection, buckling of a link and motor effort are in proportion to all loads, own weight and inertia among
   them, where the undeformed pose is good enough and no spring acts; displacement and buckling to one over the modulus
   where joint forces follow from equilibrium;
+* a natural frequency of a link by itself goes with the root of its modulus, and with no load; that of the linkage holds
+  what its joint forces add to its stiffness, so that no factor follows;
 * where a band holds what grows faster than the load (``SourceKind.GROWTH``) a load smaller by that factor suffices, and
   a load that may grow may do so by less.
 """
@@ -216,6 +218,11 @@ def _material(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> Mat
         joint = subject.name
         pin = case.pin_material(joint)
         return _needed(_NAMES[pin.strength], case.joints[joint].pin_material, pin.allowable, margin)
+    if quantity is Quantity.FREQUENCY_RATIO:
+        if subject.kind != "link":
+            return None  # what the loads make of the links' stiffness does not go with the modulus
+        young, card = case.material_of(subject.name).youngs_modulus, case.part_of(subject.name).material
+        return _needed("modulus", card, young, margin**2)
     if subject.kind == "link":
         material, name = case.material_of(subject.name), case.part_of(subject.name).material
         stated = _strength(material, quantity)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.common.threads import bounded
 from fea.frame.build import build_frame
 from fea.vibration.linkage_modes import LinkageModes, linkage_modes
 from geometry.base.errors import CannotRunError, CaseError
@@ -111,7 +112,8 @@ def case_frequencies(
     """
     case = _smooth(case)
     masses = part_masses(case)
-    histories = _moving(case, masses, poses, count) if case.motion is not None else _standing(case, masses, count)
+    with bounded(1):  # matrices are small, and threads would wait for one another
+        histories = _moving(case, masses, poses, count) if case.motion is not None else _standing(case, masses, count)
     return CaseFrequencies(case=case, histories=histories)
 
 

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from fea.common.verdict import CheckOutcome
+from fea.vibration.frequency_outcomes import asked_frequencies, frequency_outcomes
+from fea.vibration.over_motion import CaseFrequencies
 from fea.whole.clearance import clearance_outcomes
 from fea.whole.mass import mass_outcomes
 from fea.whole.motor import motor_outcomes
@@ -18,7 +20,7 @@ from loads.states.weighed import Weighed, weighed
 
 @dataclass(frozen=True, kw_only=True)
 class WholeNumbers:
-    """What a linkage is as a whole, with its links rigid.
+    """What a linkage is as a whole, and at which frequencies it vibrates.
 
     Attributes
     ----------
@@ -29,22 +31,29 @@ class WholeNumbers:
         None where no check asks for it and nothing weighs or moves, so that no part was weighed.
     size : Extent or None
         None where no check asks for it and no layers are stated, so that there are no outlines.
+    frequencies : CaseFrequencies or None
+        Its natural frequencies with flexible links; None where no check asks for them.
     """
 
     case: Case
     clearance: Clearance | None
     mass: Weighed | None
     size: Extent | None
+    frequencies: CaseFrequencies | None
 
 
-def whole_numbers(case: Case, pose: Pose | None = None) -> WholeNumbers:
-    """Return gaps, mass and size of a linkage, as far as a check asks for them or they come at no cost.
+def whole_numbers(case: Case, pose: Pose | None = None, *, solid: bool = False, threads: int = 2) -> WholeNumbers:
+    """Return gaps, mass, size and frequencies of a linkage, as far as a check asks for them or they come at no cost.
 
     Parameters
     ----------
     case : Case
     pose : Pose, optional
         The stated one, or where the linkage balances if it is let go; assembled anew when left out.
+    solid : bool, optional
+        True for natural frequencies of links by themselves as solids.
+    threads : int, optional
+        Of each library.
 
     Returns
     -------
@@ -64,6 +73,7 @@ def whole_numbers(case: Case, pose: Pose | None = None) -> WholeNumbers:
         clearance=apart,
         mass=weighed(case, pose) if weighs or _asks(case, MassCheck) else None,
         size=extent(case, pose, apart.motion if apart is not None else None) if measures else None,
+        frequencies=asked_frequencies(case, solid=solid, threads=threads),
     )
 
 
@@ -72,7 +82,7 @@ def _asks(case: Case, kind: type[MassCheck] | type[SizeCheck]) -> bool:
 
 
 def unloaded_outcomes(found: WholeNumbers) -> Iterator[CheckOutcome]:
-    """Yield the outcomes that no load changes, in the name of the first load case.
+    """Yield the outcomes that do not come from loads: of the first load case, or of those with a speed.
 
     Parameters
     ----------
@@ -85,6 +95,7 @@ def unloaded_outcomes(found: WholeNumbers) -> Iterator[CheckOutcome]:
     yield from clearance_outcomes(found.case, found.clearance)
     yield from mass_outcomes(found.case, found.mass)
     yield from size_outcomes(found.case, found.size)
+    yield from frequency_outcomes(found.frequencies)
 
 
 def whole_outcomes(found: WholeNumbers) -> dict[str, tuple[CheckOutcome, ...]]:
@@ -105,5 +116,6 @@ def whole_outcomes(found: WholeNumbers) -> dict[str, tuple[CheckOutcome, ...]]:
         if isinstance(check, MotorCheck):
             for load_case, own in motor_outcomes(case, name, check).items():
                 outcomes[load_case] += own
-    outcomes[next(iter(outcomes))] += unloaded_outcomes(found)
+    for outcome in unloaded_outcomes(found):
+        outcomes[outcome.load_case].append(outcome)
     return {load_case: tuple(own) for load_case, own in outcomes.items()}

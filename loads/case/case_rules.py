@@ -12,7 +12,7 @@ from loads.case.core import CoreCase
 from loads.case.forks import check_fork, check_pair
 from loads.case.joint_rules import check_clearances, check_friction
 from loads.case.layers import check_layers, pin_masses
-from loads.case.load_rules import check_loads, check_masses, check_place, check_wings
+from loads.case.load_rules import check_frequency, check_loads, check_masses, check_place, check_wings
 from loads.case.places import check_moving, check_point
 from loads.case.spring_rules import check_equilibrium, check_springs, check_stops
 from loads.case.toleranced import toleranced
@@ -21,6 +21,7 @@ from loads.records.check_spec import (
     Check,
     ClearanceCheck,
     DisplacementCheck,
+    FrequencyCheck,
     LimitLoadCheck,
     MassCheck,
     MotorCheck,
@@ -242,6 +243,8 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
                 f"checks.{name}: no link has a part or carries a mass, and no others are stated, so nothing weighs "
                 "anything; give a link a part, or state others"
             )
+    elif isinstance(check, FrequencyCheck):
+        check_frequency(case, name, check)
     elif isinstance(check, LimitLoadCheck):
         if not case.checked_links:
             raise CaseError(f"checks.{name}: no moving link has a part, so nothing gives way; give a link a part")

@@ -7,8 +7,10 @@ from loads.case.core import CoreCase
 from loads.case.places import check_moving, check_point
 from loads.records.aero import AirPatch, check_air
 from loads.records.carried import CarriedBody, CarriedSpread
+from loads.records.check_spec import FrequencyCheck
 from loads.records.flapping import WIDEST, Wing, check_flapping
 from loads.records.load_case import FacePressure, LoadCase, PointForce, PointMoment, SpreadForce
+from loads.text.explain import require
 
 Place = PointForce | PointMoment | FacePressure | SpreadForce | CarriedBody | CarriedSpread | AirPatch | Wing
 
@@ -98,6 +100,39 @@ def check_wings(case: CoreCase) -> None:
                 f"wings.{i}.chord: on average it is {chord:.4g} mm, more than {WIDEST:g} times the wing's span of "
                 f"{span:.4g} mm, and strips along the span describe no such plate; correct chord or span"
             )
+
+
+def check_frequency(case: CoreCase, name: str, check: FrequencyCheck) -> None:
+    """Check that there is something to vibrate, and a speed that drives it.
+
+    Parameters
+    ----------
+    case : CoreCase
+        The case.
+    name : str
+        Of the check.
+    check : FrequencyCheck
+        The check.
+
+    Raises
+    ------
+    CaseError
+        For a case without parts or without a speed, and for links without a part.
+    """
+    if not case.checked_links:
+        raise CaseError(f"checks.{name}: no moving link has a part, so nothing vibrates; give a link a part")
+    for link in check.links:
+        require(f"checks.{name}.links", link, case.checked_links, "is no link with a part")
+    if case.pose.travel is not None:
+        raise CaseError(
+            f"checks.{name}: the driving frequency is that of a link that turns, but the pose's coordinate "
+            f"'{case.pose.coordinate}' is a slider; fix the pose by the angle of a link, or remove the check"
+        )
+    if not any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
+        raise CaseError(
+            f"checks.{name}: no load case states the speed of the drive, so there is no driving frequency; "
+            f'add one, for example load_cases.{next(iter(case.load_cases), "turning")}.speed = "150 rpm"'
+        )
 
 
 def check_place(case: CoreCase, entry: str, place: Place) -> None:

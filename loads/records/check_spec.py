@@ -153,6 +153,22 @@ class SizeCheck(CaseModel):
     """Its lengths along x, y and z."""
 
 
+class FrequencyCheck(CaseModel):
+    """The lowest natural frequency must be well above the driving frequency, that it does not resonate.
+
+    Over the [motion], or in the pose where none is stated, in every load case with a speed: one turn of the
+    coordinate's link is one period, so that the driving frequency is its speed over 2π. Links of a drive that turns
+    evenly move unevenly, and so excite at multiples of the driving frequency (harmonics), the less the higher they are.
+    A minimum of 4 keeps the first two an octave below the lowest natural frequency.
+    """
+
+    type: Literal["frequency"]
+    minimum: Annotated[float, Field(gt=0)]
+    """The least lowest natural frequency of the linkage over the driving frequency."""
+    links: tuple[Name, ...] = ()
+    """The links that are checked by themselves as well; all that have a part when left out."""
+
+
 Check = Annotated[
     SafetyFactorCheck
     | DisplacementCheck
@@ -161,6 +177,7 @@ Check = Annotated[
     | BearingCheck
     | LimitLoadCheck
     | ClearanceCheck
+    | FrequencyCheck
     | MassCheck
     | MotorCheck
     | SizeCheck,

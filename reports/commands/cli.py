@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 import typer
 
 from reports.commands.ending import end_if_stopped, run
+from reports.commands.frequencies import app as frequencies
 from reports.commands.materials import app as materials
 from reports.commands.size import app as size
 from reports.commands.starters import app as starters
@@ -315,6 +316,7 @@ app.add_typer(starters)
 app.add_typer(materials)
 app.add_typer(study)
 app.add_typer(size)
+app.add_typer(frequencies)
 app.add_typer(tolerance)
 
 

@@ -153,6 +153,30 @@ class CheckReport:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")
         return Picture(contact_drawing(self.result.clearance))
 
+    def plot_frequencies(self, what: Literal["campbell", "shapes"] = "campbell") -> Picture:
+        """Draw natural frequencies over the motion and the speed of the drive, or the shapes that belong to them.
+
+        Parameters
+        ----------
+        what : {"campbell", "shapes"}
+
+        Returns
+        -------
+        Picture
+            Of the load case that decides.
+
+        Raises
+        ------
+        CaseError
+            For another picture, and for a case without a check of frequencies.
+        """
+        from reports.notebook.frequency_report import FrequencyReport
+
+        if self.result.frequencies is None:
+            raise CaseError('no check asks for natural frequencies; add one of type = "frequency"')
+        report = FrequencyReport(self.result.frequencies)
+        return pick({"campbell": report.plot_campbell, "shapes": report.plot_shapes}, what, "picture")()
+
     def plot_internal_forces(self, link: str) -> Picture:
         """Draw normal force, shear force and bending moment along a link, under the load case that stresses it most.
 

@@ -12,6 +12,7 @@ from reports.page.claims_page import CLAIMS, write_claims
 from reports.page.output import MARK, write_folder
 from reports.page.pictures import ASSEMBLY, CONTACT, diagram_name, layers_name, linkage_name, stress_name
 from reports.tables.record import as_json, worst_load_case
+from reports.vibration.pictures import campbell_name, shapes_name
 
 REPORT = "report.html"
 PICTURES = "pictures"
@@ -31,6 +32,7 @@ def report_names(case: Case) -> set[str]:
     set[str]
     """
     links, pictures = case.checked_links, {*map(linkage_name, case.load_cases), ASSEMBLY, CONTACT}
+    pictures |= {name(load_case) for load_case in case.load_cases for name in (shapes_name, campbell_name)}
     pictures |= {name(link) for link in links for name in (diagram_name, layers_name, stress_name)}
     return {
         REPORT,

@@ -11,6 +11,7 @@ from geometry.materials.material import Material
 from loads.case.forks import forked_link
 from loads.statics.rounding import without_rounding
 from reports.page.coverage import not_covered
+from reports.page.frequencies_page import frequencies_view
 from reports.page.pictures import (
     ASSEMBLY,
     CONTACT,
@@ -100,6 +101,7 @@ def render(
         drawings=_drawings(result, checks, figures),
         assembly=figures.get(ASSEMBLY),
         contact=figures.get(CONTACT),
+        frequencies=frequencies_view(result.frequencies, figures),
         clearance=clearance_record(result.clearance),
         clearance_line=clearance_line(result.clearance),
         most_gaps=MOST,

@@ -95,7 +95,7 @@ def draw_pictures(
 
     The linkage under every governing load case, and its links in layers; internal forces and, for a solid, stress of
     every link under its governing load case; of a printed link the safety factor of its layers over the direction of
-    building.
+    building. Shapes and diagram of natural frequencies under the load case that decides.
 
     Parameters
     ----------
@@ -114,6 +114,7 @@ def draw_pictures(
     from reports.figures.diagrams import internal_force_diagram
     from reports.figures.drawings import linkage_drawing
     from reports.figures.figures import stress_plots
+    from reports.vibration.pictures import frequency_pictures
 
     worst = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
     points = {link: result.case.links[link].points for link in worst}
@@ -126,6 +127,7 @@ def draw_pictures(
             pictures[ASSEMBLY] = assembly_drawing(result.clearance)
             if result.clearance.shown is not None:
                 pictures[CONTACT] = contact_drawing(result.clearance)
+        pictures |= frequency_pictures(result.frequencies)
         pictures |= {
             diagram_name(link): internal_force_diagram(found.beam, stations[link])
             for link, found in worst.items()

@@ -16,6 +16,7 @@ from loads.statics.statics import Reactions
 from reports.tables.clearance import clearance_record
 from reports.tables.data import change_records, check_records, data, entries, finite
 from reports.tables.frames import frame_record, reaction_records
+from reports.tables.frequencies import frequencies_record
 from reports.tables.friction import friction_record
 from reports.tables.layers import layer_record
 from reports.tables.loads import air_record, anchor_record
@@ -67,6 +68,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "clearance": clearance_record(result.clearance),
         "mass": mass_record(result.mass),
         "size": size_record(result.size),
+        "frequencies": frequencies_record(result.frequencies),
         "load_cases": {name: _load_case(result, name) for name in result.load_cases},
         "materials": {
             name: entries(result.case.all_materials[name], _MATERIAL)

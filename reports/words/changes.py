@@ -91,6 +91,8 @@ def size_command(change: VerdictChange, result: CheckResult) -> str:
 
 def _of_itself(check: CheckOutcome) -> str:
     """Say of a number that no load changes by what it would have to shrink."""
+    if check.quantity is Quantity.FREQUENCY_RATIO:
+        return "It goes with one over the speed of the drive, and with the root of stiffness over mass."
     told = "It does not depend on the loads"
     if check.at_least or check.verdict is Verdict.PASS or not 0.0 < check.margin < 1.0:
         return f"{told}."

@@ -1,0 +1,343 @@
+"""Whether natural frequencies stay well above that of the drive: outcomes of the linkage and of links by themselves."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fea.common.band import Band
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject
+from fea.vibration.harmonics import HIGHEST, Meeting, in_words, meetings
+from fea.vibration.linkage_modes import LinkageModes
+from fea.vibration.modes import Mode
+from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies
+from loads.case.case import Case
+from loads.records.check_spec import FrequencyCheck
+
+POSES = 13
+"""Over the motion, of which the least frequency is sought in between: every 30 degrees of a turn."""
+_ROUNDING = 1e-9
+_ENDINGS = {1: "st", 2: "nd", 3: "rd"}
+
+
+def asked_frequencies(case: Case, *, solid: bool = False, threads: int = 2) -> CaseFrequencies | None:
+    """Return the natural frequencies under the load cases with a speed, where a check asks for them.
+
+    Parameters
+    ----------
+    case : Case
+    solid : bool, optional
+        True for links by themselves as solids.
+    threads : int, optional
+
+    Returns
+    -------
+    CaseFrequencies or None
+    """
+    if not any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
+        return None
+    driven = {name: load_case for name, load_case in case.load_cases.items() if load_case.speed != 0.0}
+    driven_case = case.model_copy(update={"load_cases": driven})
+    return case_frequencies(driven_case, poses=POSES, solid=solid, threads=threads)
+
+
+def frequency_outcomes(found: CaseFrequencies | None) -> Iterator[CheckOutcome]:
+    """Yield the outcomes of every check of frequencies.
+
+    Parameters
+    ----------
+    found : CaseFrequencies or None
+        Of load cases with a speed.
+
+    Yields
+    ------
+    CheckOutcome
+        The linkage under every load case; links by themselves under the fastest, which decides on them.
+    """
+    if found is None:
+        return
+    case = found.case
+    fastest = max(found.histories, key=lambda name: found.histories[name].driving)
+    for name, check in case.checks.items():
+        if not isinstance(check, FrequencyCheck):
+            continue
+        for load_case, history in found.histories.items():
+            yield _linkage(case, name, check, load_case, history)
+        for link in check.links or case.checked_links:
+            if link in found.links:
+                yield _link(found, name, check, fastest, link)
+
+
+def deciding_load_case(found: CaseFrequencies) -> str:
+    """Return the load case whose lowest natural frequency is nearest to its driving frequency, or the lowest of all.
+
+    Parameters
+    ----------
+    found : CaseFrequencies
+
+    Returns
+    -------
+    str
+    """
+    cases, every = found.case.load_cases, found.histories
+    turning = {name: one for name, one in every.items() if cases[name].speed != 0.0}
+    driven = turning or {name: one for name, one in every.items() if one.driving > 0.0} or every
+    return min(driven, key=lambda name: least_frequency(driven[name]).low / (driven[name].driving or 1.0))
+
+
+def least_frequency(history: FrequencyHistory) -> Band:
+    """Return the lowest natural frequency over a motion.
+
+    Parameters
+    ----------
+    history : FrequencyHistory
+
+    Returns
+    -------
+    Band
+        [Hz]
+    """
+    value, low, high = (float(curve[:, 0].min()) for curve in (history.frequencies, history.low, history.high))
+    return replace(history.lowest.modes[0].frequency, value=value, low=low, high=high)
+
+
+def least_at(history: FrequencyHistory) -> float:
+    """Return where the lowest natural frequency is least: the first of the poses that differ by rounding alone.
+
+    Parameters
+    ----------
+    history : FrequencyHistory
+
+    Returns
+    -------
+    float
+        Value of the coordinate [rad, mm].
+    """
+    low = history.low[:, 0]
+    return float(history.at[int(np.argmax(low <= (1.0 + _ROUNDING) * low.min()))])
+
+
+def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, history: FrequencyHistory) -> CheckOutcome:
+    ratio = least_frequency(history).times(1.0 / history.driving)
+    reason = f"{lowest_sentence(case, history)}; {harmonic_sentence(case, history)}"
+    return CheckOutcome.of(name, LINKAGE, load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
+
+
+def _link(found: CaseFrequencies, name: str, check: FrequencyCheck, load_case: str, link: str) -> CheckOutcome:
+    own: Any = found.links[link]
+    driving = found.histories[load_case].driving
+    mode = own.modes[0]
+    reason = (
+        f"by itself, {own.held}, {link} vibrates at {_hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
+        f"the drive turns at {_plain(driving)} Hz"
+    )
+    ratio = mode.frequency.times(1.0 / driving)
+    return CheckOutcome.of(name, Subject.link(link), load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
+
+
+def lowest_sentence(case: Case, history: FrequencyHistory) -> str:
+    """Say where the lowest natural frequency is least, how large it is, and in which shape.
+
+    Parameters
+    ----------
+    case : Case
+    history : FrequencyHistory
+
+    Returns
+    -------
+    str
+    """
+    mode = history.lowest.modes[0]
+    frequency = least_frequency(history)
+    text = f"the lowest natural frequency is {_hertz(frequency)}{where(case, history)}, {in_words(mode.in_plane)}"
+    if frequency.value == 0.0:
+        return f"{text}: under its loads the linkage does not swing but departs"
+    if moved := most_moved(history.lowest, mode):
+        text += f", where {moved} moves most"
+    if history.driving > 0.0:
+        ratio = frequency.times(1.0 / history.driving)
+        text += f"; that is {_text(ratio)} times the driving frequency of {_plain(history.driving)} Hz"
+    return text
+
+
+def most_moved(found: LinkageModes, mode: Mode) -> str:
+    """Return the link that moves furthest in a shape; "" where no beam stands for any.
+
+    Parameters
+    ----------
+    found : LinkageModes
+    mode : Mode
+        One of its modes.
+
+    Returns
+    -------
+    str
+    """
+    sizes = np.linalg.norm(mode.shape[:, :3], axis=1)
+    far: dict[str, float] = {}
+    for node, link in _links_of_nodes(found).items():
+        far[link] = max(far.get(link, 0.0), float(sizes[node]))
+    return max(far, key=lambda link: far[link], default="")
+
+
+def _links_of_nodes(found: LinkageModes) -> dict[int, str]:
+    """Return the links of nodes: of those of the frame by its beams, of those that divide one by their neighbours."""
+    frame, own = found.frame, dict[int, str]()
+    for i, beam in frame.beams.items():
+        own |= dict.fromkeys(frame.model.elements[i].nodes, beam.link)
+    left = [element.nodes for element in found.model.elements]
+    while left:
+        known = [pair for pair in left if pair[0] in own or pair[1] in own]
+        if not known:
+            return own
+        left = [pair for pair in left if pair not in known]
+        for first, last in known:
+            own.setdefault(last, own.get(first, ""))
+            own.setdefault(first, own[last])
+    return own
+
+
+def harmonic_sentence(case: Case, history: FrequencyHistory) -> str:
+    """Say which harmonic of the drive meets a natural frequency first and where, or comes nearest to one.
+
+    Parameters
+    ----------
+    case : Case
+    history : FrequencyHistory
+        Driven.
+
+    Returns
+    -------
+    str
+    """
+    met = meetings(history)
+    if met:
+        first = met[0]
+        return f"the {ordinal(first.harmonic)} harmonic, {_plain(first.frequency)} Hz, {_meets(case, history, first)}"
+    driving, (low, high) = history.driving, (history.low, history.high)
+    if float(low.min()) > HIGHEST * driving:
+        return f"all harmonics up to the {ordinal(HIGHEST)}, {_plain(HIGHEST * driving)} Hz, stay below it"
+    apart = {n: np.maximum(low / (n * driving), n * driving / np.maximum(high, 1e-12)) for n in range(1, HIGHEST + 1)}
+    nearest = min(apart, key=lambda n: float(apart[n].min()))
+    i, k = np.unravel_index(int(np.argmin(apart[nearest])), low.shape)
+    return (
+        f"no harmonic up to the {ordinal(HIGHEST)} meets a natural frequency; the {ordinal(nearest)}, "
+        f"{_plain(nearest * driving)} Hz, comes nearest to the {ordinal(int(k) + 1)} one"
+        f"{at_value(case, float(history.at[i]))}"
+    )
+
+
+def _meets(case: Case, history: FrequencyHistory, met: Meeting) -> str:
+    first, last = sorted(told(case, end) for end in met.ranges[0])
+    if case.motion is None:
+        place = " in the stated pose"
+    elif met.ranges[0] == (history.at[0], history.at[-1]):
+        place = " in every pose"
+    elif last - first < 0.5:
+        place = f" at {case.motion_coordinate} = {(first + last) / 2.0:.1f} {unit(case)}"
+    else:
+        place = f" from {case.motion_coordinate} = {first:.0f} to {last:.0f} {unit(case)}"
+    more = " and elsewhere" if len(met.ranges) > 1 else ""
+    return f"meets the {ordinal(met.mode)} natural frequency{place}{more}"
+
+
+def where(case: Case, history: FrequencyHistory) -> str:
+    """Say in which pose the lowest natural frequency is least, with a blank before it.
+
+    Parameters
+    ----------
+    case : Case
+    history : FrequencyHistory
+
+    Returns
+    -------
+    str
+    """
+    return at_value(case, least_at(history))
+
+
+def at_value(case: Case, value: float) -> str:
+    """Return `` at crank = 85.0 deg``.
+
+    Parameters
+    ----------
+    case : Case
+    value : float
+        Of the coordinate [rad, mm].
+
+    Returns
+    -------
+    str
+    """
+    if case.motion is None:
+        return " in the stated pose"
+    return f" at {case.motion_coordinate} = {told(case, value):.1f} {unit(case)}"
+
+
+def told(case: Case, value: float) -> float:
+    """Return a value of the motion's coordinate as people read it.
+
+    Parameters
+    ----------
+    case : Case
+    value : float
+        [rad, mm]
+
+    Returns
+    -------
+    float
+        [deg, mm]
+    """
+    return value if unit(case) == "mm" else math.degrees(value)
+
+
+def unit(case: Case) -> str:
+    """Return the unit in which people read the motion's coordinate.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    {"deg", "mm"}
+    """
+    travels = case.pose.travel if case.motion is None else case.motion.travel
+    return "deg" if travels is None else "mm"
+
+
+def ordinal(n: int) -> str:
+    """Return ``1st``, ``2nd``, ``3rd``, ``4th``.
+
+    Parameters
+    ----------
+    n : int
+        From 1 to 20.
+
+    Returns
+    -------
+    str
+    """
+    return f"{n}{_ENDINGS.get(n, 'th')}"
+
+
+def _hertz(frequency: Band) -> str:
+    return f"{_text(frequency)} Hz"
+
+
+def _text(value: Band) -> str:
+    """Return ``43.2 (38.0 to 47.0)``."""
+    shown, low, high = (_three(end) for end in (value.value, value.low, value.high))
+    return shown if low == high else f"{shown} ({low} to {high})"
+
+
+def _three(value: float) -> str:
+    """Return a number with three digits, and without a power of ten."""
+    return f"{value:#.3g}".rstrip(".") if value < 999.5 else f"{float(f'{value:.3g}'):.0f}"
+
+
+def _plain(value: float) -> str:
+    """Return a stated number with three digits, without padding zeros."""
+    return f"{float(f'{value:.3g}'):g}"

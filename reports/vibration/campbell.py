@@ -1,0 +1,217 @@
+"""Natural frequencies over the motion, and over the speed of the drive (Campbell's diagram), as PNG.
+
+W. Campbell, The Protection of Steam-Turbine Disk Wheels from Axial Vibration, Transactions of the ASME 46 (1924).
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.vibration.harmonics import HIGHEST, Meeting, meetings
+from fea.vibration.over_motion import FrequencyHistory
+from reports.sheet.canvas import Canvas, faint
+from reports.sheet.plot import Axes, ticks, widest
+from reports.sheet.style import GROUND, INK, JOINT_FORCE, WIDTH
+
+Real = NDArray[np.float64]
+COLOURS = ("#0067a8", "#00795a", "#7a4fa3", "#8a5200")
+"""Of the natural frequencies, from the lowest up; they begin anew after the last."""
+_HEIGHT, _ABOVE, _BELOW, _RIGHT, _LETTERS = 230.0, 20.0, 75.0, 26.0, 8.5
+"""Of the panels, the room about them and the size of letters [points]."""
+_SHORT = 3.0
+"""Length of a mark at least [points]."""
+_FASTER = 1.5
+"""Times the stated speed up to which speeds are drawn."""
+_FAR = 6.0
+"""Natural frequencies that begin above so many times the least one and the driving frequency are not drawn."""
+
+
+def campbell_diagram(history: FrequencyHistory, *, coordinate: str, unit: str, load_case: str) -> bytes:
+    """Draw natural frequencies over the motion with the harmonics of the drive, and over the speed of the drive.
+
+    Parameters
+    ----------
+    history : FrequencyHistory
+        Of a load case.
+    coordinate : str
+        Of the motion, for people.
+    unit : {"deg", "mm"}
+        In which its values are told.
+    load_case : str
+        Its name.
+
+    Returns
+    -------
+    bytes
+        A PNG.
+    """
+    return campbell_sheet(history, coordinate=coordinate, unit=unit, load_case=load_case).png()
+
+
+def campbell_sheet(history: FrequencyHistory, *, coordinate: str, unit: str, load_case: str) -> Canvas:
+    """Return the sheet of ``campbell_diagram``.
+
+    Parameters
+    ----------
+    history, coordinate, unit, load_case
+        As of that.
+
+    Returns
+    -------
+    Canvas
+    """
+    shown = _shown(history)
+    top = 1.08 * max(float(history.high[:, shown - 1].max()), 1.2 * history.driving)
+    left = 40.0 + widest(ticks(0.0, top, most=8))
+    over_motion, over_speed = len(history.at) > 1, history.driving > 0.0
+    panels = over_motion + over_speed
+    sheet = Canvas(72.0 * WIDTH, _ABOVE + _HEIGHT + _BELOW)
+    if panels == 0:
+        panels, over_motion = 1, True
+    wide = (sheet.width - panels * (left + _RIGHT)) / panels
+    starts = [left + k * (wide + left + _RIGHT) for k in range(panels)]
+    if over_motion:
+        at = np.degrees(history.at) if unit == "deg" else history.at
+        ends = (float(min(at)), float(max(at))) if len(at) > 1 else (float(at[0]) - 1.0, float(at[0]) + 1.0)
+        axes = Axes(box=_box(starts[0], wide), x=ends, y=(0.0, top))
+        _over_motion(sheet, axes, history, at, shown, f"{coordinate} [{unit}]")
+    if over_speed:
+        rpm = 60.0 * history.driving
+        axes = Axes(box=_box(starts[-1], wide), x=(0.0, _FASTER * rpm), y=(0.0, top))
+        _over_speed(sheet, axes, history, shown)
+    _legend(sheet, history, shown, load_case)
+    return sheet
+
+
+def _box(left: float, wide: float) -> tuple[float, float, float, float]:
+    return left, _ABOVE, left + wide, _ABOVE + _HEIGHT
+
+
+def _shown(history: FrequencyHistory) -> int:
+    """Return how many natural frequencies fit on one scale beside the lowest one."""
+    least = max(float(history.low[:, 0].max()), history.driving)
+    near = history.low.min(axis=0) <= _FAR * least
+    return int(np.argmin(near)) if not near.all() else len(near)
+
+
+def _colour(k: int) -> str:
+    return COLOURS[k % len(COLOURS)]
+
+
+def _over_motion(sheet: Canvas, axes: Axes, history: FrequencyHistory, at: Real, shown: int, label: str) -> None:
+    sheet.write("Over the motion", (axes.box[0], axes.box[1] - 5.0), anchor="left bottom", bold=True)
+    x = at if len(at) > 1 else np.array(axes.x)
+    curves = [np.broadcast_to(c[:, :shown], (len(x), shown)) for c in (history.low, history.high, history.frequencies)]
+    low, high, value = curves
+    for k in reversed(range(shown)):
+        edge = np.vstack([np.column_stack([x, low[:, k]]), np.column_stack([x, high[:, k]])[::-1]])
+        sheet.area(axes.at(edge), faint(_colour(k), 0.28))
+    for _, level in _levels(history, axes):
+        sheet.line(axes.at([(axes.x[0], level), (axes.x[1], level)]), GROUND, 0.6, dashes=(4.0, 2.5))
+    for k in range(shown):
+        for curve, width in ((low, 0.5), (high, 0.5), (value, 1.5)):
+            sheet.line(axes.at(np.column_stack([x, curve[:, k]])), _colour(k), width)
+    _mark(sheet, axes, history, shown, at)
+    axes.frame(sheet)
+    axes.scale_x(sheet, label, most=6)
+    axes.scale_y(sheet, "frequency [Hz]", label_at=axes.box[0] - 30.0 - widest(ticks(*axes.y, most=8)), most=8)
+    _name_harmonics(sheet, axes, history)
+
+
+def _mark(sheet: Canvas, axes: Axes, history: FrequencyHistory, shown: int, at: Real) -> None:
+    """Draw the ranges of the coordinate over which harmonics meet the natural frequencies that are shown."""
+    told = np.degrees if at is not history.at else np.asarray
+    for met in _met(history, shown):
+        for ends in met.ranges:
+            first, last = sorted(axes.at(np.column_stack([told(np.array(ends)), [met.frequency] * 2])).tolist())
+            wider = max(_SHORT - (last[0] - first[0]), 0.0) / 2.0
+            inside = np.clip([first[0] - wider, last[0] + wider], axes.box[0], axes.box[2])
+            sheet.line([(x, first[1]) for x in inside], JOINT_FORCE, 2.4)
+
+
+def _met(history: FrequencyHistory, shown: int) -> list[Meeting]:
+    return [met for met in meetings(history) if met.mode <= shown]
+
+
+def _levels(history: FrequencyHistory, axes: Axes) -> list[tuple[int, float]]:
+    """Return the harmonics that lie on the scale."""
+    found = [(n, n * history.driving) for n in range(1, HIGHEST + 1) if history.driving > 0.0]
+    return [(n, level) for n, level in found if level < axes.y[1]]
+
+
+def _name_harmonics(sheet: Canvas, axes: Axes, history: FrequencyHistory) -> None:
+    """Write 1×, 2×, ... beside their lines, those that have room."""
+    last = math.inf
+    for harmonic, level in _levels(history, axes):
+        x, y = axes.at([axes.x[1], level])
+        if last - y >= 1.15 * _LETTERS:
+            sheet.write(f"{harmonic}×", (x + 4.0, y), anchor="left middle", colour=GROUND, size=_LETTERS)
+            last = float(y)
+
+
+def _over_speed(sheet: Canvas, axes: Axes, history: FrequencyHistory, shown: int) -> None:
+    sheet.write("Over the speed of the drive", (axes.box[0], axes.box[1] - 5.0), anchor="left bottom", bold=True)
+    low, high = history.low[:, :shown].min(axis=0), history.high[:, :shown].max(axis=0)
+    for k in reversed(range(shown)):
+        corners = [(x, y) for x, y in zip((*axes.x, *axes.x[::-1]), (low[k], low[k], high[k], high[k]), strict=True)]
+        sheet.area(axes.at(corners), faint(_colour(k), 0.28))
+        for level in (low[k], high[k]):
+            sheet.line(axes.at([(axes.x[0], level), (axes.x[1], level)]), _colour(k), 0.8)
+    for harmonic in range(1, HIGHEST + 1):
+        rise = harmonic / 60.0
+        end = min(axes.x[1], axes.y[1] / rise)
+        sheet.line(axes.at([(0.0, 0.0), (end, rise * end)]), GROUND, 0.6, dashes=(4.0, 2.5))
+        for k in range(shown):
+            first, last = low[k] / rise, min(high[k] / rise, end)
+            if first <= last:
+                ray = axes.at([(first, rise * first), (last, rise * last)])
+                sheet.line(ray, JOINT_FORCE, 2.0)
+    stated = 60.0 * history.driving
+    sheet.line(axes.at([(stated, 0.0), (stated, axes.y[1])]), INK, 1.2)
+    for _, level in _levels(history, axes):
+        if np.any((low <= level) & (level <= high)):
+            sheet.ring(axes.at([stated, level]), 3.6, JOINT_FORCE, 1.3)
+    axes.frame(sheet)
+    axes.scale_x(sheet, "speed of the drive [rpm]", most=5)
+    axes.scale_y(sheet, "frequency [Hz]", label_at=axes.box[0] - 30.0 - widest(ticks(*axes.y, most=8)), most=8)
+    _name_rays(sheet, axes)
+
+
+def _name_rays(sheet: Canvas, axes: Axes) -> None:
+    """Write 1×, 2×, ... at the ends of the rays: at the right side, then along the top; those that have room."""
+    last_y, last_x = math.inf, -math.inf
+    for harmonic in range(1, HIGHEST + 1):
+        rise = harmonic / 60.0
+        if rise * axes.x[1] <= axes.y[1]:
+            x, y = axes.at([axes.x[1], rise * axes.x[1]])
+            if last_y - y >= 1.15 * _LETTERS:
+                sheet.write(f"{harmonic}×", (x + 4.0, y), anchor="left middle", colour=GROUND, size=_LETTERS)
+                last_y = float(y)
+    for harmonic in range(HIGHEST, 0, -1):
+        rise = harmonic / 60.0
+        if rise * axes.x[1] > axes.y[1]:
+            x, y = axes.at([axes.y[1] / rise, axes.y[1]])
+            if x - last_x >= 2.2 * _LETTERS and x > axes.box[0] + 148.0:
+                sheet.write(f"{harmonic}×", (x, y - 3.0), anchor="center bottom", colour=GROUND, size=_LETTERS)
+                last_x = float(x)
+
+
+def _legend(sheet: Canvas, history: FrequencyHistory, shown: int, load_case: str) -> None:
+    """Say below the panels what the colours mean."""
+    x, y = 14.0, sheet.height - 35.0
+    for k in range(shown):
+        sheet.area([(x, y - 4.0), (x + 18.0, y - 4.0), (x + 18.0, y + 4.0), (x, y + 4.0)], faint(_colour(k), 0.28))
+        sheet.line([(x, y), (x + 18.0, y)], _colour(k), 1.5)
+        text = f"{k + 1}. natural frequency" if k == shown - 1 else f"{k + 1}."
+        x = sheet.write(text, (x + 23.0, y), anchor="left middle", size=_LETTERS).box[2] + 12.0
+    if history.driving > 0.0:
+        x, y = 14.0, y + 13.0
+        sheet.line([(x, y), (x + 18.0, y)], GROUND, 0.6, dashes=(4.0, 2.5))
+        x = sheet.write("harmonic of the drive", (x + 23.0, y), anchor="left middle", size=_LETTERS).box[2] + 12.0
+        sheet.line([(x, y), (x + 18.0, y)], JOINT_FORCE, 2.4)
+        sheet.write(
+            "harmonic within the band of a natural frequency", (x + 23.0, y), anchor="left middle", size=_LETTERS
+        )
+        speed = f"load case {load_case}: {60.0 * history.driving:.4g} rpm (upright line), {history.driving:.3g} Hz"
+        sheet.write(speed, (14.0, y + 13.0), anchor="left middle", size=_LETTERS)

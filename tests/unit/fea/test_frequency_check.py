@@ -1,0 +1,165 @@
+"""The check of natural frequencies: against a cantilever in closed form; harmonics, refusals, what would change it."""
+
+import math
+import tomllib
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import programs
+import pytest
+from frequency_cases import LEVER, cantilever, lever
+from slotted_cases import piston_entries
+
+from fea.check.run import check_case
+from fea.common.verdict import LINKAGE, Quantity, Verdict
+from fea.sizing.changes import _change
+from fea.vibration.frequency_outcomes import (
+    asked_frequencies,
+    frequency_outcomes,
+    harmonic_sentence,
+    lowest_sentence,
+    most_moved,
+)
+from fea.vibration.harmonics import meetings
+from geometry.base.errors import CaseError
+from loads.case.case_file import validate
+from reports.words.changes import change_sentences
+from reports.words.wording import headline
+
+
+@cache
+def found():
+    return asked_frequencies(lever())
+
+
+def outcome(minimum):
+    case = lever(minimum=minimum)
+    [one] = [o for o in frequency_outcomes(replace(found(), case=case)) if o.subject == LINKAGE]
+    return one
+
+
+def test_a_driven_lever_vibrates_as_a_cantilever_with_a_mass_at_its_tip():
+    one = outcome(4.0)
+    known = cantilever(8.0, tip=4e-6) / 10.0  # 600 rpm
+    assert one.quantity is Quantity.FREQUENCY_RATIO
+    assert one.value.low <= known <= one.value.high
+    assert one.value.value == pytest.approx(known, rel=0.01)
+    assert one.verdict is Verdict.PASS
+    assert "out of the plane, where lever moves most" in one.reason
+    assert "times the driving frequency of 10 Hz; all harmonics up to the 10th, 100 Hz, stay below it" in one.reason
+
+
+def test_the_whole_band_decides():
+    band = outcome(4.0).value
+    assert outcome(1.01 * band.high).verdict is Verdict.FAIL
+    assert outcome((band.low + band.value) / 2.0).verdict is Verdict.UNDECIDED
+
+
+def history(low, high, driving=10.0, at=None):
+    """A history of one natural frequency between curves."""
+    low, high = np.asarray(low, dtype=float)[:, None], np.asarray(high, dtype=float)[:, None]
+    at = np.radians(np.linspace(0.0, 90.0, len(low))) if at is None else at
+    own = found().histories["turning"]
+    return replace(own, driving=driving, at=at, low=low, high=high, frequencies=(low + high) / 2.0)
+
+
+def test_a_harmonic_meets_a_frequency_where_it_lies_in_its_band():
+    """Its band is 24 to 28 Hz, then 34 to 38 Hz: 30 Hz enters it after 20 %, and leaves it after 60 % of the way."""
+    [met] = meetings(history([24.0, 34.0], [28.0, 38.0]))
+    [(first, last)] = met.ranges
+    assert (met.harmonic, met.frequency, met.mode) == (3, 30.0, 1)
+    assert (math.degrees(first), math.degrees(last)) == (pytest.approx(0.2 * 90.0), pytest.approx(0.6 * 90.0))
+
+
+def test_ranges_of_a_harmonic_are_joined_over_poses_and_kept_apart_where_it_leaves():
+    met = meetings(history([28.0, 26.0, 28.0, 33.0, 27.0], [33.0, 31.0, 33.0, 37.0, 32.0]))
+    [third] = [one for one in met if one.harmonic == 3]
+    told = [[round(math.degrees(end), 6) for end in ends] for ends in third.ranges]
+    assert told == [[0.0, 54.0], [78.75, 90.0]]  # 28 to 33 reaches 30 after 2/5 of 22.5 deg, 33 to 27 after a half
+
+
+def test_no_driving_frequency_has_no_harmonics():
+    assert meetings(history([24.0, 34.0], [28.0, 38.0], driving=0.0)) == ()
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "told"),
+    [
+        ([24.0, 34.0], [28.0, 38.0], "the 3rd harmonic, 30 Hz, meets the 1st natural frequency from lever = 18 to "
+         "54 deg"),
+        ([29.0, 29.0], [31.0, 31.0], "the 3rd harmonic, 30 Hz, meets the 1st natural frequency in every pose"),
+        ([32.0, 33.0], [33.0, 37.0], "no harmonic up to the 10th meets a natural frequency; the 3rd, 30 Hz, comes "
+         "nearest to the 1st one at lever = 0.0 deg"),
+        ([101.0, 120.0], [110.0, 130.0], "all harmonics up to the 10th, 100 Hz, stay below it"),
+    ],
+)  # fmt: skip
+def test_the_sentence_names_the_harmonic_and_where(low, high, told):
+    assert harmonic_sentence(lever(), history(low, high)) == told
+
+
+def test_an_unstable_pose_has_no_frequency():
+    assert "does not swing but departs" in lowest_sentence(lever(), history([0.0, 20.0], [0.0, 24.0]))
+
+
+def test_the_link_that_moves_most_is_found_between_its_points_too():
+    """The first frame nodes carry little of a shape that swells in the middle of a beam: nodes that divide it tell."""
+    modes = found().histories["turning"].lowest
+    shape = np.zeros_like(modes.modes[0].shape)
+    shape[len(modes.frame.model.nodes), 2] = 1.0  # the first node of those that divide the lever
+    assert most_moved(modes, replace(modes.modes[0], shape=shape)) == "lever"
+
+
+@pytest.mark.parametrize(
+    ("entries", "told"),
+    [
+        ({"load_cases": {"still": {}}}, "no load case states the speed of the drive"),
+        ({"checks": {"r": {"type": "frequency", "minimum": 4, "links": ["base"]}}}, "is no link with a part"),
+        ({"checks": {"r": {"type": "frequency", "minimum": 0}}}, "checks.r.minimum"),
+        ({"checks": {"r": {"type": "frequency"}}}, "checks.r.minimum"),
+    ],
+)
+def test_refusals(entries, told):
+    with pytest.raises(CaseError, match=told):
+        validate(tomllib.loads(LEVER) | entries)
+
+
+def test_a_slider_has_no_turn_rate():
+    entries = piston_entries() | {"checks": {"r": {"type": "frequency", "minimum": 4}}}
+    with pytest.raises(CaseError, match="is a slider; fix the pose by the angle of a link"):
+        validate(entries)
+
+
+def checked(case):
+    """By hand, with the outcomes by subject."""
+    result = check_case(case, name="lever.toml", fidelity="beam", threads=1)
+    return result, {c.subject.kind: c for c in result.load_cases["turning"].checks}
+
+
+def test_a_linkage_that_resonates_does_not_give_way():
+    result, outcomes = checked(lever(speed="18000 rpm"))
+    assert result.verdict is Verdict.FAIL
+    assert not result.load_cases["turning"].gives_way
+    assert "gives way" not in headline(result)
+    assert outcomes["the linkage"].verdict is Verdict.FAIL
+
+
+def test_no_factor_is_told_of_the_linkage():
+    """What its loads make of its stiffness does not go with a modulus, and no load by itself changes it."""
+    result, outcomes = checked(lever(speed="3000 rpm"))
+    told = _change(result, outcomes["the linkage"])
+    assert (told.load, told.material, told.size) == (None, None, None)
+    assert change_sentences(told, result) == [
+        "It goes with one over the speed of the drive, and with the root of stiffness over mass."
+    ]
+
+
+def test_the_least_thickness_that_passes_is_found(tmp_path):
+    """The ratio goes with thickness over the root of mass: the closed form tells that 2 mm fails and 4 mm passes."""
+    (tmp_path / "lever.toml").write_text(LEVER, encoding="utf-8")
+    vary = ("--vary", 'parts.bar.thickness="2 mm..4 mm"', "--step", "2 mm", "--fidelity", "beam", "--set")
+    done = programs.inside("size", "lever.toml", *vary, "checks.resonance.minimum=11", folder=tmp_path)
+    assert "Least parts.bar.thickness that passes: 4 mm.\nThe greatest that fails: 2 mm." in done.stdout
+    assert "natural over driving frequency of the linkage" in done.stdout
+    known = [cantilever(8.0, tip=4e-6, height=h) / 10.0 for h in (2.0, 4.0)]
+    assert known[0] < 11.0 < known[1]
