@@ -13,6 +13,7 @@ NAMED = {
     "joints",
     "timings_s",
     "motion.points",
+    "rates.points",
     "points.branches",
     "link_points",
     "link_bores",
@@ -24,9 +25,10 @@ NAMED = {
     "play.drive_torque",
     "play.drive_force",
 }
-"""Keys whose own keys are names: by their last part, or by the whole."""
+"""Keys whose own keys are names: by their last part or the last two, or by the whole."""
 SHAPES = {
     "extremes": {"first", "last", "smallest", "largest", "unbounded"},
+    "vector": {"largest", "largest_at", "x", "y"},
     "band": {"value", "low", "high", "holds", "kinds"},
 }
 TYPES = {
@@ -56,7 +58,7 @@ def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any, str | None]]:
             yield path, value, shape
             return
         for key, item in value.items():
-            named = path in NAMED or path.rpartition(".")[2] in NAMED
+            named = path in NAMED or not NAMED.isdisjoint({path.rpartition(".")[2], ".".join(path.split(".")[-2:])})
             yield from leaves(item, f"{path}.{'*' if named else key}".lstrip("."))
     elif isinstance(value, list) and value and isinstance(value[0], dict):
         for item in value:

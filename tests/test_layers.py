@@ -24,7 +24,8 @@ LAYERS = {
         *("study", "sizing", "tolerance"),
     ),
     "reports": (
-        *("words", "tables", "sheet", "vibration", "figures", "turnable", "page", "study", "commands", "notebook"),
+        *("words", "tables", "sheet", "vibration", "figures", "turnable"),
+        *("motion", "page", "study", "commands", "notebook"),
     ),
 }
 """Each package with its sub-packages, in the order in which they may import one another: the first is the lowest."""

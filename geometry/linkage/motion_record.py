@@ -80,6 +80,11 @@ class Motion:
         return self.track.driven.slides
 
     @property
+    def moves(self) -> bool:
+        """True where the coordinate has a speed or an acceleration."""
+        return bool(np.any(self.speed) or np.any(self.acceleration))
+
+    @property
     def unit(self) -> str:
         """Unit in which the coordinate is told to people."""
         return "mm" if self.slides else "deg"

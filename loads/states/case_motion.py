@@ -23,10 +23,12 @@ from loads.states.kinetostatics import (
     dead_points,
     energies,
     is_determinate,
+    relative_motion,
     solve_kinetostatics,
     torque_by_virtual_work,
 )
 from loads.states.masses import laden_masses, part_masses
+from loads.states.momentum import LinkageMomentum, linkage_momentum
 from loads.states.rubbing import Rubbing, each_direction, lock_sentence, motion_friction
 from loads.states.springs import spring_loads
 from loads.states.standing import refuse_stops
@@ -45,10 +47,14 @@ class CaseMotion:
     motion : Motion
         The n poses of its linkage.
     drive : Drive
+    moved : mapping of str to Motion
+        Load case -> the same poses at its own speed, where it states one.
     masses : mapping of str to PartMass
         Of the parts, by link; empty where weight and inertia are left out.
     loads : mapping of str to tuple of Load
         Load case -> all that acts on the links at every pose, inertia included.
+    power : mapping of str to Power
+        Load case -> energies and powers; kinetic energy is left out where inertia is.
     forces : mapping of str to Kinetostatics
         Load case -> joint forces; empty where they do not follow from equilibrium (redundant linkages).
     torque : mapping of str to array (n,)
@@ -65,8 +71,10 @@ class CaseMotion:
     case: Case
     motion: Motion
     drive: Drive
+    moved: Mapping[str, Motion]
     masses: Mapping[str, PartMass]
     loads: Mapping[str, tuple[Load, ...]]
+    power: Mapping[str, Power]
     forces: Mapping[str, Kinetostatics]
     torque: Mapping[str, Real]
     dead_points: tuple[float, ...]
@@ -87,6 +95,52 @@ class CaseMotion:
         """
         way, without = self.rubbing[load_case].way, self.frictionless[load_case]
         return drive_work(self.motion, self.drive, way, without, self.torque[load_case])
+
+    def drive_power(self, load_case: str) -> Real:
+        """Return the power of the drive.
+
+        Parameters
+        ----------
+        load_case : str
+
+        Returns
+        -------
+        array (n,)
+            [N mm/s]; NaN at dead points.
+        """
+        moved = self.moved[load_case]
+        return np.asarray(self.torque[load_case] * relative_motion(moved, self.drive) * moved.speed)
+
+    def momentum(self, load_case: str | None = None) -> LinkageMomentum | None:
+        """Return momentum, kinetic energy and shaking of the linkage at the speed of a load case.
+
+        Parameters
+        ----------
+        load_case : str, optional
+            The speed of the motion, and all masses, unless given.
+
+        Returns
+        -------
+        LinkageMomentum or None
+            None without a speed, and where nothing was weighed since no load case asks for weight or inertia.
+        """
+        moved = self.motion if load_case is None else self.moved[load_case]
+        stated = load_case is None or self.case.load_cases[load_case].carried
+        if not moved.moves or not _weighed(self.case):
+            return None
+        masses = laden_masses(self.case, self.masses, stated=stated)
+        return linkage_momentum(moved.placement, masses, self.moment_point[1])
+
+    @property
+    def moment_point(self) -> tuple[str | None, complex]:
+        """The fixed point about which moments are taken, its name and place x + iy [mm].
+
+        The drive's joint, where the ground is one of its links, else the global origin, which has no name.
+        """
+        ground, name = self.case.linkage.ground, self.drive.joint
+        if ground not in self.case.linkage.joints[name].links:
+            return None, 0j
+        return name, complex(*self.case.linkage.links[ground].points[self.case.linkage.point_of(name, ground)])
 
     @property
     def locks(self) -> tuple[str, ...]:
@@ -136,7 +190,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
     motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate, slides=slides)
     refuse_turning_bonds(motion.virtual)
     refuse_stops(case, motion)
-    masses = part_masses(case) if spec.inertia or needs_masses(case) else {}
+    masses = part_masses(case) if _weighed(case) else {}
     for name, load_case in case.load_cases.items():
         if load_case.speed != 0.0 and (slides or coordinate != case.pose.coordinate):
             raise CaseError(
@@ -152,14 +206,10 @@ def solve_case_motion(case: Case) -> CaseMotion:
             rubbing[name] = motion_friction(case, name, moved[name], drive, loads[name])
             frictionless[name] = torque_by_virtual_work(moved[name], drive, loads[name])
             loads[name] += rubbing[name].loads
+    power = {n: _energies(case, n, moved[n], masses, rubbing[n].loads if rubbing else ()) for n in loads}
     forces: dict[str, Kinetostatics] = {}
     if is_determinate(case.linkage):
-        forces = {
-            n: solve_kinetostatics(
-                moved[n], drive, acting, _energies(case, n, moved[n], masses, rubbing[n].loads if rubbing else ())
-            )
-            for n, acting in loads.items()
-        }
+        forces = {n: solve_kinetostatics(moved[n], drive, acting, power[n]) for n, acting in loads.items()}
     torque = {
         n: drive_effort(forces[n]) if forces else torque_by_virtual_work(moved[n], drive, acting)
         for n, acting in loads.items()
@@ -168,14 +218,21 @@ def solve_case_motion(case: Case) -> CaseMotion:
         case=case,
         motion=motion,
         drive=drive,
+        moved=moved,
         masses=masses,
         loads=loads,
+        power=power,
         forces=forces,
         torque=torque,
         dead_points=dead_points(motion, drive),
         rubbing=rubbing,
         frictionless=frictionless,
     )
+
+
+def _weighed(case: Case) -> bool:
+    """Return True where the parts of a motion are weighed: where weight or inertia acts."""
+    return needs_masses(case) or (case.motion is not None and case.motion.inertia)
 
 
 def drive_effort(solved: Kinetostatics) -> Real:

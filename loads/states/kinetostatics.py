@@ -16,6 +16,7 @@ from geometry.linkage.linkage import Linkage
 from geometry.linkage.motion import Motion
 from geometry.linkage.placement import Placement
 from loads.records.applied import BodyForce, Load, PartMass, at_poses, chosen, in_axes
+from loads.states.momentum import centroid_motion
 from loads.statics.statics import (
     NEARLY_SINGULAR,
     Drive,
@@ -317,17 +318,14 @@ def energies(place: Placement, loads: Sequence[Load], masses: Mapping[str, PartM
     """
     kinetic, kinetic_rate, potential, potential_rate = (np.zeros(place.shape) for _ in range(4))
     for link, own in masses.items():
-        arm = place.direction(link) * complex(*own.centroid)
         spin, rate = place.spin(link), place.spin_rate(link)
-        velocity = place.velocity(link) + 1j * spin * arm
-        acceleration = place.acceleration(link) + (1j * rate - spin**2) * arm
+        _, velocity, acceleration = centroid_motion(place, link, own)
         kinetic += 0.5 * own.mass * np.abs(velocity) ** 2 + 0.5 * own.inertia * spin**2
         kinetic_rate += own.mass * (np.conj(velocity) * acceleration).real + own.inertia * spin * rate
     for load in loads:
         if isinstance(load, BodyForce):
             pull = load.mass.mass * in_axes(load, "global", place).specific_force
-            arm = place.direction(load.link) * complex(*load.mass.centroid)
-            at, velocity = place.origin(load.link) + arm, place.velocity(load.link) + 1j * place.spin(load.link) * arm
+            at, velocity, _ = centroid_motion(place, load.link, load.mass)
             potential -= pull[..., 0] * at.real + pull[..., 1] * at.imag
             potential_rate -= pull[..., 0] * velocity.real + pull[..., 1] * velocity.imag
     return Power(

@@ -1,10 +1,11 @@
 """Figures of a motion, drawn without a display: link directions, joint paths, drive torque, joint forces."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path as Folder
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -41,7 +42,7 @@ def quiet_glyphs() -> Iterator[None]:
         yield
 
 
-def draw_figures(result: CaseMotion, folder: Folder) -> list[Folder]:
+def draw_figures(result: CaseMotion, folder: Folder, more: Mapping[str, Figure] = MappingProxyType({})) -> list[Folder]:
     """Draw all figures of a motion as PNG files.
 
     Parameters
@@ -49,6 +50,8 @@ def draw_figures(result: CaseMotion, folder: Folder) -> list[Folder]:
     result : CaseMotion
     folder : Path
         Folder to write into.
+    more : mapping of str to Figure, optional
+        Name of the file, without its ending -> further figures.
 
     Returns
     -------
@@ -63,6 +66,7 @@ def draw_figures(result: CaseMotion, folder: Folder) -> list[Folder]:
     for i, load_case in enumerate(result.forces):
         name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
         figures[name] = forces_figure(result, load_case)
+    figures |= more
     paths = []
     with quiet_glyphs():
         for name, figure in figures.items():
@@ -83,11 +87,11 @@ def angles_figure(result: CaseMotion) -> Figure:
     Figure
     """
     motion = result.motion
-    figure, axes = _over_angle(motion, "direction of the link [deg]")
+    figure, [axes] = over_angle(motion, ["direction of the link [deg]"])
     for i, link in enumerate(motion.linkage.moving):
         _line(axes, motion, np.degrees(motion.angle(link)), link, i)
     _dead_points(axes, result)
-    _legend(axes, "link")
+    legend(axes, "link")
     return figure
 
 
@@ -105,7 +109,7 @@ def torque_figure(result: CaseMotion) -> Figure:
     Figure
     """
     motion = result.motion
-    figure, axes = _over_angle(motion, f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]")
+    figure, [axes] = over_angle(motion, [f"drive {result.effort[0]} on {result.drive.link} [{result.effort[1]}]"])
     for i, (load_case, torque) in enumerate(result.torque.items()):
         _line(axes, motion, _broken(result, torque), load_case, i)
     _with_play(axes, result)
@@ -114,7 +118,7 @@ def torque_figure(result: CaseMotion) -> Figure:
     _clip(axes, result, list(result.torque.values()), symmetric=True)
     _dead_points(axes, result)
     _locked(axes, result)
-    _legend(axes, "load case")
+    legend(axes, "load case")
     return figure
 
 
@@ -173,7 +177,7 @@ def forces_figure(result: CaseMotion, load_case: str) -> Figure:
     Figure
     """
     motion, forces = result.motion, result.forces[load_case].forces
-    figure, axes = _over_angle(motion, "joint force [N]")
+    figure, [axes] = over_angle(motion, ["joint force [N]"])
     sizes = {joint: np.linalg.norm(force, axis=1) for joint, force in forces.items()}
     for i, joints in enumerate(_equal(sizes)):
         _line(axes, motion, _broken(result, sizes[joints[0]]), ", ".join(joints), i)
@@ -181,7 +185,7 @@ def forces_figure(result: CaseMotion, load_case: str) -> Figure:
     _clip(axes, result, list(sizes.values()), symmetric=False)
     axes.set_title(f"load case {load_case}", parse_math=False, loc="left", fontsize=10)
     _dead_points(axes, result)
-    _legend(axes, "joint")
+    legend(axes, "joint")
     return figure
 
 
@@ -222,7 +226,7 @@ def paths_figure(motion: Motion, loose: LooseMotion | None = None) -> Figure:
         loc="left",
         fontsize=10,
     )
-    _legend(axes, "path of" if loose is None else "path of, with play")
+    legend(axes, "path of" if loose is None else "path of, with play")
     return figure
 
 
@@ -321,16 +325,30 @@ def ground(axes: Any, motion: Motion) -> None:
         axes.annotate(name, (x, y), xytext=(7, -13), textcoords="offset points", fontsize=10, parse_math=False)
 
 
-def _over_angle(motion: Motion, label: str) -> tuple[Figure, Any]:
-    figure = Figure(figsize=_SIZE, layout="constrained")
-    axes = figure.add_subplot()
+def over_angle(motion: Motion, labels: Sequence[str], size: tuple[float, float] = _SIZE) -> tuple[Figure, list[Any]]:
+    """Return a figure with axes below each other over the coordinate of a motion.
+
+    Parameters
+    ----------
+    motion : Motion
+    labels : sequence of str
+        Of the y axes, the top one first.
+    size : tuple of float, optional
+        Width and height [inches].
+
+    Returns
+    -------
+    tuple of Figure and list of Axes
+    """
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(len(labels), 1, sharex=True, squeeze=False)[:, 0].tolist()
+    for axes, label in zip(panels, labels, strict=True):
+        axes.set_ylabel(label, parse_math=False)
+        axes.set_xlim(*motion.told(motion.angles[[0, -1]]))
+        axes.grid(color="0.9", linewidth=0.8)
     what = "travel" if motion.slides else "direction"
-    axes.set_xlabel(f"{what} of {motion.coordinate} [{motion.unit}]", parse_math=False)
-    axes.set_ylabel(label, parse_math=False)
-    first, last = motion.told(motion.angles[[0, -1]])
-    axes.set_xlim(first, last)
-    axes.grid(color="0.9", linewidth=0.8)
-    return figure, axes
+    panels[-1].set_xlabel(f"{what} of {motion.coordinate} [{motion.unit}]", parse_math=False)
+    return figure, panels
 
 
 def _line(axes: Any, motion: Motion, values: Real, label: str, index: int) -> None:
@@ -387,7 +405,16 @@ def _dead_points(axes: Any, result: CaseMotion) -> None:
         )
 
 
-def _legend(axes: Any, title: str) -> None:
-    legend = axes.legend(title=title, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, borderaxespad=0.0)
-    for text in legend.get_texts():
+def legend(axes: Any, title: str) -> None:
+    """Name the lines beside the axes.
+
+    Parameters
+    ----------
+    axes : object
+        A matplotlib Axes.
+    title : str
+        Above the names.
+    """
+    names = axes.legend(title=title, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, borderaxespad=0.0)
+    for text in names.get_texts():
         text.set_parse_math(False)

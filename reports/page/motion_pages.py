@@ -3,9 +3,12 @@
 import base64
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from fea.motion.envelope_result import EnvelopeResult
 from loads.states.case_motion import CaseMotion
+from reports.motion.rate_rows import ends, link_columns, places, point_columns, told_speed, whole_rows
+from reports.motion.rates import rates_record
 from reports.page.template import fill
 from reports.turnable.moving import ENVELOPE_CAPTION, MOTION_CAPTION, envelope_linkage, motion_linkage
 from reports.turnable.pack import data_block
@@ -18,7 +21,12 @@ TITLES = {
     "paths": "Paths of the joints",
     "torque": "Drive",
     "clearance": "Gap between links",
+    "joint-forces": "Joint forces",
+    "link-speeds": "Angular speeds and accelerations of the links",
+    "point-speeds": "Speeds and accelerations of the points, as sizes",
+    "energy": "Energies, power of the drive and force on the ground",
 }
+"""What a figure shows, by the name of its file without the number of a load case."""
 
 
 def envelope_page(result: EnvelopeResult, curves: bytes, plots: Mapping[str, bytes]) -> str:
@@ -86,13 +94,41 @@ def motion_page(result: CaseMotion, pictures: Mapping[str, bytes], animation: by
         name=name,
         first=float(motion.told(motion.angles[0])),
         last=float(motion.told(motion.angles[-1])),
-        pictures=[(TITLES.get(key, "Joint forces"), picture) for key, picture in pictures.items()],
+        pictures=[(TITLES[key.rstrip("-0123456789")], picture) for key, picture in pictures.items()],
         turns=[
             (link, *(math.degrees(f) for f in (angle[0], angle[-1], angle.min(), angle.max())))
             for link in motion.linkage.moving
             for angle in [motion.angle(link)]
         ],
+        rates=_rates(result),
         linkage_model=data_block(motion_linkage(result)),
         linkage_caption=MOTION_CAPTION,
         linkage_still="data:image/gif;base64," + base64.b64encode(animation).decode("ascii"),
     )
+
+
+def _rates(result: CaseMotion) -> list[dict[str, Any]]:
+    """Tables of every load case with a speed; where links and points move as in another, its name in their place."""
+    found: list[dict[str, Any]] = []
+    for name in result.torque:
+        rates = rates_record(result, name)
+        if rates is None:
+            continue
+        shared = {key: rates[key] for key in ("links", "points")}
+        same = next((other["name"] for other in found if other["shared"] == shared), None)
+        tables = [] if same else [link_columns(rates), point_columns(rates, result.motion.unit)]
+        found.append(
+            {
+                "name": name,
+                "shared": shared,
+                "same": same,
+                "speed": told_speed(result, name),
+                "tables": [
+                    ([head for head, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))
+                    for columns in tables
+                ],
+                "whole": [(what, unit, ends(row), " and ".join(places(row))) for what, unit, row in whole_rows(rates)],
+                "massless": rates["whole"]["momentum"] is None,
+            }
+        )
+    return found

@@ -27,8 +27,9 @@ from loads.case.case_file import validate
 from loads.states.case_motion import CaseMotion, solve_case_motion
 from loads.states.dead_point_reach import pose_at
 from loads.states.loose_motion import LooseMotion, loose_motion
-from reports.commands.motion import record, write_tables
-from reports.commands.motion_play import drive_line, motion_play_record, play_lines
+from reports.motion.csv_tables import write_tables
+from reports.motion.play import drive_line, motion_play_record, play_lines
+from reports.motion.record import record
 
 Real = NDArray[np.float64]
 A, B, C, D = 40.0, 120.0, 80.0, 100.0

@@ -16,7 +16,9 @@ from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.states.case_motion import solve_case_motion
-from reports.commands.motion import print_motion, record, write_tables
+from reports.commands.motion import print_motion
+from reports.motion.csv_tables import write_tables
+from reports.motion.record import record
 
 A = 40.0
 

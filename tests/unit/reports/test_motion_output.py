@@ -13,7 +13,9 @@ from PIL import Image
 
 from loads.case.case_file import read_case
 from loads.states.case_motion import solve_case_motion
-from reports.commands.motion import print_motion, record, write_motion, write_tables
+from reports.commands.motion import print_motion, write_motion
+from reports.motion.csv_tables import write_tables
+from reports.motion.record import record
 
 CASE = """
 schema_version = 1
@@ -90,7 +92,7 @@ def test_everything_is_there(folder):
     assert {path.name for path in folder.iterdir()} == {
         ".alula-motion.json", "result.json", "links.csv", "points.csv", "torque.csv", "joint-forces.csv",
         "link-angles.png", "paths.png", "torque.png", "joint-forces-1.png", "joint-forces-2.png", "linkage.gif",
-        "motion.html",
+        "motion.html", "rates.csv", "link-speeds.png", "point-speeds.png", "energy-1.png", "energy-2.png",
     }  # fmt: skip
 
 
@@ -131,7 +133,9 @@ def test_the_record_matches_the_tables(folder):
     assert found["motion"]["returns_to_start"] is True
 
 
-@pytest.mark.parametrize("name", ["link-angles", "paths", "torque", "joint-forces-1", "joint-forces-2"])
+@pytest.mark.parametrize(
+    "name", ["link-angles", "paths", "torque", "joint-forces-1", "link-speeds", "point-speeds", "energy-2"]
+)
 def test_pictures_show_something_and_nothing_is_cut_off(folder, name):
     pixels = np.asarray(Image.open(folder / f"{name}.png").convert("L"))
     assert pixels.shape[1] > 800

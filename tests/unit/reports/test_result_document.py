@@ -8,9 +8,9 @@ from slotted_cases import piston_entries
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case, validate
 from loads.states.case_motion import solve_case_motion
-from reports.commands.motion import record as motion_record
 from reports.commands.synthesis import PUBLISHED_GROUND, PUBLISHED_POINTS, read_synthesis
 from reports.commands.synthesis import record as synthesis_record
+from reports.motion.record import record as motion_record
 
 
 def moved(name, *overrides):

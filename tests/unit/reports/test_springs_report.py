@@ -10,9 +10,9 @@ from fea.check.anchor import anchor_loads
 from fea.check.run import check_case
 from loads.case.case_file import read_case
 from loads.states.case_motion import solve_case_motion
-from reports.commands.motion import write_tables
 from reports.figures.drawings import linkage_drawing
 from reports.figures.sprung import coil, spiral, stop_mark
+from reports.motion.csv_tables import write_tables
 from reports.page.coverage import not_covered
 from reports.page.html import render
 from reports.sheet.style import SPRING

@@ -1,0 +1,162 @@
+"""Tables of a motion as CSV files, with every pose."""
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.linkage.motion import Motion
+from loads.states.case_motion import CaseMotion
+from reports.figures.joint_paths import moving_points, owners
+from reports.motion.play import drive_play, point_play
+from reports.motion.rates import QUANTITIES, Series, Values, series
+from reports.tables.springs import motion_springs
+
+Real = NDArray[np.float64]
+ANGULAR = ("angular_speed", "angular_acceleration")
+"""Quantities of a link whose columns have shorter names in ``links.csv``."""
+
+
+def write_tables(result: CaseMotion, folder: Path) -> None:
+    """Write ``links.csv``, ``points.csv``, ``torque.csv`` and ``joint-forces.csv``, with springs ``springs.csv``.
+
+    Torques and joint forces have one load case below the other. So has ``rates.csv``, where load cases have a speed:
+    speeds, accelerations, momentum and energy at the speed of each.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    folder : Path
+        An existing folder.
+    """
+    motion = result.motion
+    _write(folder / "links.csv", {**_base(motion), **_link_columns(result)})
+    _write(folder / "points.csv", {**_base(motion), **_point_columns(result)})
+    if springs := motion_springs(result):
+        _write(folder / "springs.csv", {**_base(motion), **dict(springs)})
+    below: dict[str, dict[str, Mapping[str, Real]]] = {
+        "torque.csv": {n: _torque_columns(result, n) for n in result.torque},
+        "rates.csv": {n: _rate_columns(found) for n in result.torque if (found := series(result, n)) is not None},
+        "joint-forces.csv": {n: _force_columns(result, n) for n in result.forces},
+    }
+    for file, cases in below.items():
+        if cases:
+            _write_cases(folder / file, {n: {**_base(result.moved[n]), **columns} for n, columns in cases.items()})
+
+
+def _base(motion: Motion) -> dict[str, Real]:
+    columns = {
+        f"{motion.coordinate} {'travel' if motion.slides else 'angle'} [{motion.unit}]": motion.told(motion.angles)
+    }
+    return columns if motion.times is None else columns | {"time [s]": motion.times}
+
+
+def _link_columns(result: CaseMotion) -> dict[str, Real]:
+    motion, own, columns = result.motion, series(result), dict[str, Real]()
+    for i, link in enumerate(motion.linkage.moving):
+        if motion.slides or link != motion.coordinate:
+            columns[f"{link} angle [deg]"] = np.degrees(motion.angle(link))
+        columns[f"{link} speed over speed of {motion.coordinate} [{'rad/mm' if motion.slides else '1'}]"] = (
+            motion.first[:, i]
+        )
+        if motion.times is not None:
+            columns[f"{link} speed [rad/s]"] = motion.angular_speed(link)
+            columns[f"{link} acceleration [rad/s^2]"] = motion.angular_acceleration(link)
+    for joint in motion.closure.slots:
+        if motion.slides and joint == motion.coordinate:
+            continue
+        columns[f"{joint} travel [mm]"] = motion.travel(joint)
+    for link, values in {} if own is None else own.links.items():
+        columns |= _named(link, {key: found for key, found in values.items() if key not in ANGULAR})
+    return columns
+
+
+def _rate_columns(found: Series) -> dict[str, Real]:
+    """Columns of all rates of a load case."""
+    columns: dict[str, Real] = {}
+    for of in (found.links, found.points, {"linkage": found.whole}):
+        for name, values in of.items():
+            columns |= _named(name, values)
+    return columns
+
+
+def _named(name: str, values: Mapping[str, Values]) -> dict[str, Real]:
+    """Columns of some quantities of a link or point, two for a vector."""
+    columns: dict[str, Real] = {}
+    for key, found in values.items():
+        unit, what = QUANTITIES[key].replace("·", " ").replace("²", "^2"), key.replace("_", " ")
+        if np.iscomplexobj(found):
+            columns |= {f"{name} {what} x [{unit}]": found.real, f"{name} {what} y [{unit}]": found.imag}
+        else:
+            columns[f"{name} {what} [{unit}]"] = found
+    return columns
+
+
+def _point_columns(result: CaseMotion) -> dict[str, Real]:
+    motion, columns = result.motion, dict[str, Real]()
+    fields = [("", "mm", motion.position)]
+    if motion.times is not None:
+        fields += [("v", "mm/s", motion.velocity), ("a", "mm/s^2", motion.linear_acceleration)]
+    for label in moving_points(motion):
+        for prefix, unit, of in fields:
+            values = of(*owners(motion, label)[0])
+            columns[f"{label} {prefix}x [{unit}]"] = values[:, 0]
+            columns[f"{label} {prefix}y [{unit}]"] = values[:, 1]
+            if prefix:
+                columns[f"{label} {prefix} [{unit}]"] = np.linalg.norm(values, axis=1)
+        columns |= point_play(result, label)
+    return columns
+
+
+def _torque_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
+    what, unit = result.effort
+    columns = {f"{what} on {result.drive.link} [{unit.replace('·', ' ')}]": result.torque[load_case]}
+    if result.rubbing:
+        columns[f"{what} without friction [{unit.replace('·', ' ')}]"] = result.frictionless[load_case]
+        columns["efficiency [1]"] = result.work(load_case).efficiency
+    columns |= drive_play(result, load_case)
+    if any(np.any(moved.speed) for moved in result.moved.values()):
+        columns["drive power [N mm/s]"] = result.drive_power(load_case)
+        columns["kinetic energy [N mm]"] = result.power[load_case].kinetic
+        columns["potential energy [N mm]"] = result.power[load_case].potential
+    return columns
+
+
+def _force_columns(result: CaseMotion, load_case: str) -> dict[str, Real]:
+    columns: dict[str, Real] = {}
+    solved = result.forces[load_case]
+    for name, force in solved.forces.items():
+        first, second = result.case.joints[name].links
+        columns[f"{name} Fx of {first} on {second} [N]"] = force[:, 0]
+        columns[f"{name} Fy of {first} on {second} [N]"] = force[:, 1]
+        columns[f"{name} size [N]"] = np.linalg.norm(force, axis=1)
+        if name in solved.moments:
+            columns[f"{name} M of {first} on {second} [N mm]"] = solved.moments[name]
+    return columns
+
+
+def _write(path: Path, columns: Mapping[str, Real]) -> None:
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(_rows(columns))
+
+
+def _write_cases(path: Path, cases: Mapping[str, Mapping[str, Real]]) -> None:
+    """Write tables below each other; a column that one lacks is empty there."""
+    names = dict.fromkeys(name for columns in cases.values() for name in columns)
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(["load case", *names])
+        for load_case, columns in cases.items():
+            none = np.full(len(next(iter(columns.values()))), np.nan)
+            writer.writerows([load_case, *row] for row in _rows({name: columns.get(name, none) for name in names}))
+
+
+def _rows(columns: Mapping[str, Real]) -> Sequence[list[str]]:
+    """Rows of a table with twelve digits; an unbounded value is left empty."""
+    table = np.column_stack(list(columns.values()))
+    return [[f"{v:.12g}" if math.isfinite(v) else "" for v in row] for row in table.tolist()]

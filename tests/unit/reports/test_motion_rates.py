@@ -1,0 +1,213 @@
+"""Speeds, momentum and energy of a slider-crank in record, tables, lines and notebook, against its closed form.
+
+A block of 50 g is all of its mass: at constant ω, x = r cos φ + √(l² - (r sin φ - e)²) and its derivatives tell all.
+"""
+
+import csv
+import math
+import tomllib
+
+import numpy as np
+import pytest
+
+from geometry.base.errors import CaseError
+from loads.case.case_file import validate
+from loads.states.case_motion import solve_case_motion
+from reports.motion.csv_tables import write_tables
+from reports.motion.lines import motion_lines
+from reports.motion.rate_rows import ends
+from reports.motion.rates import series, vector_extremes
+from reports.motion.record import record
+from reports.notebook.motion_report import MotionReport
+
+CASE = """
+schema_version = 1
+title = "Slider-crank"
+massless = ["crank", "rod"]
+[links.frame]
+ground = true
+points.O = ["0 mm", "0 mm"]
+points.S = ["0 mm", "10 mm"]
+[links.crank]
+points.O = ["0 mm", "0 mm"]
+points.A = ["40 mm", "0 mm"]
+[links.rod]
+points.A = ["0 mm", "0 mm"]
+points.B = ["130 mm", "0 mm"]
+[links.block]
+points.B = ["0 mm", "0 mm"]
+points.P = ["20 mm", "12 mm"]
+[joints]
+O = { links = ["frame", "crank"] }
+A = { links = ["crank", "rod"] }
+B = { links = ["rod", "block"] }
+S = { type = "slider", links = ["frame", "block"], points = ["S", "B"], friction = 0.1 }
+[springs.back]
+between = [{ link = "frame", at = "S" }, { link = "block", at = "P" }]
+stiffness = "0.01 N/mm"
+free_length = "45 mm"
+[pose]
+coordinate = "crank"
+angle = "30 deg"
+near = { rod = "0 deg", block = "0 deg" }
+[drive]
+link = "crank"
+joint = "O"
+[motion]
+turn = true
+poses = 73
+[[carried]]
+link = "block"
+at = "B"
+mass = "50 g"
+[load_cases.slow]
+speed = "60 rpm"
+own_weight = true
+forces = [{ link = "block", at = "P", force = ["-5 N", "0 N"] }]
+[load_cases.empty]
+speed = "60 rpm"
+carried = false
+[load_cases.again]
+speed = "60 rpm"
+[load_cases.fast]
+speed = "600 rpm"
+[load_cases.still]
+direction = "forward"
+"""
+GRAMS, MASS = 50.0, 5e-5
+R, L, E = 40.0, 130.0, 10.0
+
+
+@pytest.fixture(scope="module")
+def moved():
+    return solve_case_motion(validate(tomllib.loads(CASE)))
+
+
+@pytest.fixture(scope="module")
+def told(moved):
+    return record(moved, "slider-crank")["load_cases"]
+
+
+def block(omega):
+    """Speed and acceleration (73,) of the block along its slide."""
+    phi = math.radians(30.0) + np.linspace(0.0, 2.0 * math.pi, 73)
+    height, root = R * np.sin(phi) - E, np.sqrt(L**2 - (R * np.sin(phi) - E) ** 2)
+    first = -R * np.sin(phi) - height * R * np.cos(phi) / root
+    second = -R * np.cos(phi) - (R**2 * np.cos(phi) ** 2 - height * R * np.sin(phi)) / root
+    second -= (height * R * np.cos(phi)) ** 2 / root**3
+    return omega * first, omega**2 * second
+
+
+@pytest.mark.parametrize(("load_case", "rpm"), [("slow", 60.0), ("fast", 600.0)])
+def test_rates_are_those_of_the_block(told, load_case, rpm):
+    speed, rate = block(rpm * math.pi / 30.0)
+    found = told[load_case]["rates"]
+    point, link, whole = found["points"]["B"], found["links"]["block"], found["whole"]
+    assert point["speed"]["largest"] == pytest.approx(np.abs(speed).max())
+    assert point["speed"]["x"] == pytest.approx([speed.min(), speed.max()])
+    assert point["speed"]["y"] == [0.0, 0.0]
+    assert point["acceleration"]["x"] == pytest.approx([rate.min(), rate.max()])
+    assert link["mass"] == pytest.approx(GRAMS)
+    assert link["momentum"]["largest"] == pytest.approx(np.abs(GRAMS * speed).max() / 1e3)  # g·mm/s to mN·s
+    assert link["angular_momentum"]["largest"] == 0.0
+    assert whole["kinetic_energy"]["largest"] == pytest.approx(0.5 * MASS * np.max(speed**2))
+    assert whole["angular_momentum"]["largest"] == pytest.approx(np.max(-E * MASS * speed))
+    assert whole["shaking_force"]["x"] == pytest.approx([(-MASS * rate).min(), (-MASS * rate).max()])
+    assert whole["shaking_moment"]["smallest"] == pytest.approx(np.min(E * MASS * rate))
+    assert found["about"] == {"joint": "O", "place": [0.0, 0.0]}
+    crank = found["links"]["crank"]
+    assert crank["angular_speed"]["largest"] == pytest.approx(rpm * math.pi / 30.0)
+    assert crank["mass"] is crank["momentum"] is crank["kinetic_energy"] is None
+
+
+def test_the_ground_bears_load_weight_and_inertia_and_nothing_of_spring_or_friction(moved):
+    found, (_, rate) = series(moved, "slow"), block(2.0 * math.pi)
+    np.testing.assert_allclose(found.whole["ground_force"], -5.0 - MASS * rate - 1j * MASS * 9810.0, rtol=1e-10)
+    place = moved.motion.position("block", "B")[:, 0]
+    moment = 5.0 * (E + 12.0) + E * MASS * rate - place * MASS * 9810.0
+    np.testing.assert_allclose(found.whole["ground_moment"], moment, rtol=1e-10)
+
+
+def test_without_speed_or_mass_nothing_is_told(told):
+    assert told["still"]["rates"] is None
+    assert told["empty"]["rates"]["whole"]["potential_energy"] is None
+    assert told["empty"]["rates"]["whole"]["kinetic_energy"]["largest"] == 0.0
+    assert told["empty"]["rates"]["links"]["block"]["mass"] is None
+    unweighed = (
+        CASE.replace("own_weight = true\n", "").replace('speed = "60 rpm"\n', "").replace('"600 rpm"', '"0 rpm"')
+    )
+    still = record(solve_case_motion(validate(tomllib.loads(unweighed))), "")
+    assert still["motion"]["points"]["B"]["speed"] is still["motion"]["links"]["rod"]["angular_speed"] is None
+    moving = solve_case_motion(validate(tomllib.loads(unweighed.replace("poses = 73", 'poses = 73\nspeed = "60 rpm"'))))
+    found = record(moving, "")
+    [rates] = {row["rates"]["whole"]["momentum"] for row in found["load_cases"].values()}
+    assert rates is None
+    assert found["motion"]["points"]["B"]["speed"]["largest"] == pytest.approx(np.abs(block(2.0 * math.pi)[0]).max())
+    assert "left out: no load case asks for their weight or inertia" in "\n".join(motion_lines(moving, found))
+
+
+def test_tables_hold_every_pose_at_the_speed_of_its_load_case(moved, tmp_path):
+    write_tables(moved, tmp_path)
+    with (tmp_path / "rates.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    for name, rpm in (("slow", 60.0), ("fast", 600.0)):
+        mine = [row for row in rows if row["load case"] == name]
+        speed, rate = block(rpm * math.pi / 30.0)
+
+        def column(head, mine=mine):
+            return np.array([float(row[head]) for row in mine])
+
+        np.testing.assert_allclose(column("B speed x [mm/s]"), speed, atol=1e-8 * np.abs(speed).max())
+        np.testing.assert_allclose(column("block momentum x [mN s]"), GRAMS / 1e3 * speed, atol=1e-8)
+        np.testing.assert_allclose(column("linkage kinetic energy [N mm]"), 0.5 * MASS * speed**2, atol=1e-8)
+        np.testing.assert_allclose(column("linkage shaking force x [N]"), -MASS * rate, atol=1e-8)
+        assert column("time [s]")[-1] == pytest.approx(60.0 / rpm)
+    assert {row["linkage potential energy [N mm]"] for row in rows if row["load case"] == "fast"} == {""}
+    assert {row["load case"] for row in rows} == {"slow", "empty", "again", "fast"}
+    with (tmp_path / "torque.csv").open(encoding="utf-8", newline="") as stream:
+        torque = list(csv.DictReader(stream))
+    assert {row["time [s]"] for row in torque if row["load case"] == "still"} == {""}
+    assert float([row["time [s]"] for row in torque if row["load case"] == "fast"][-1]) == pytest.approx(0.1)
+
+
+def test_lines_say_once_what_load_cases_share(moved):
+    text = "\n".join(motion_lines(moved, record(moved, "slider-crank")))
+    assert "as in load case slow" in text.split("Load case again")[1].split("Load case")[0]
+    slow = text.split("Load case slow")[1].split("Load case")[0]
+    head, unit, *_ = [line for line in slow.split("\n") if "angular speed" in line or "[rad/s]" in line]
+    assert head.index("angular speed") + len("angular speed") == unit.index("[rad/s]") + len("[rad/s]")
+    assert "linkage, shaking moment about O:" in slow
+    assert max(map(len, slow.split("\n"))) < 160
+
+
+def test_numbers_of_tables():
+    extremes = {"smallest": -4.7, "largest": 4.7, "unbounded": False}
+    assert ends(extremes) == "±4.700"
+    assert ends(extremes | {"largest": 4.8}) == "−4.700 to 4.800"
+    assert ends(extremes | {"smallest": 4.7}) == "4.700"
+    assert ends(extremes | {"smallest": -1e-15}) == "0 to 4.700"
+    assert ends(None) == ""
+
+
+def test_a_vector_is_told_by_its_size_and_components(moved):
+    found = vector_extremes(moved.motion, np.linspace(0.0, 72.0, 73) * (3.0 - 4.0j))
+    assert found == {"largest": 360.0, "largest_at": pytest.approx(390.0), "x": [0.0, 216.0], "y": [-288.0, 0.0]}
+
+
+def test_a_notebook_has_the_same(moved, told):
+    report = MotionReport(moved)
+    links = {(row["load case"], row["link"]): row for row in report.table("links")}
+    rod = told["fast"]["rates"]["links"]["rod"]["angular_speed"]
+    assert links["fast", "rod"]["angular speed, largest [rad/s]"] == rod["largest"]
+    assert links["fast", "rod"]["momentum, largest [mN·s]"] is None
+    [point] = [row for row in report.table("points") if (row["load case"], row["point"]) == ("fast", "B")]
+    assert point["speed, largest [mm/s]"] == told["fast"]["rates"]["points"]["B"]["speed"]["largest"]
+    energy = {(row["load case"], row["quantity"]): row for row in report.table("energy")}
+    assert energy["fast", "kinetic energy"]["largest"] == told["fast"]["rates"]["whole"]["kinetic_energy"]["largest"]
+    assert ("still", "kinetic energy") not in energy
+    assert {row["quantity"] for row in report.table()} >= {"drive torque on crank", "joint A"}
+    assert report.plot_energy("fast").png.startswith(b"\x89PNG")
+    with pytest.raises(CaseError, match="there is no load case with a speed 'still'"):
+        report.plot_energy("still")
+    with pytest.raises(CaseError, match="there is no table 'forces'"):
+        report.table("forces")
