@@ -28,10 +28,10 @@ from loads.states.kinetostatics import (
     torque_by_virtual_work,
 )
 from loads.states.masses import laden_masses, part_masses
-from loads.states.momentum import LinkageMomentum, linkage_momentum
 from loads.states.rubbing import Rubbing, each_direction, lock_sentence, motion_friction
 from loads.states.springs import spring_loads
 from loads.states.standing import refuse_stops
+from loads.statics.momentum import LinkageMomentum, linkage_momentum
 from loads.statics.statics import Drive
 
 Real = NDArray[np.float64]

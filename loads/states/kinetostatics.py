@@ -16,7 +16,7 @@ from geometry.linkage.linkage import Linkage
 from geometry.linkage.motion import Motion
 from geometry.linkage.placement import Placement
 from loads.records.applied import BodyForce, Load, PartMass, at_poses, chosen, in_axes
-from loads.states.momentum import centroid_motion
+from loads.statics.momentum import centroid_motion
 from loads.statics.statics import (
     NEARLY_SINGULAR,
     Drive,

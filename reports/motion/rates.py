@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from geometry.linkage.motion import Motion
 from loads.states.case_motion import CaseMotion
-from loads.states.momentum import LinkageMomentum, on_ground
+from loads.statics.momentum import LinkageMomentum, on_ground
 from reports.figures.joint_paths import moving_points, owners
 
 Real = NDArray[np.float64]

@@ -28,7 +28,7 @@ from geometry.linkage.motion import solve_motion
 from geometry.linkage.pose import solve_pose
 from loads.records.applied import PartMass
 from loads.states.actions import inertia_loads
-from loads.states.momentum import linkage_momentum, on_ground
+from loads.statics.momentum import linkage_momentum, on_ground
 
 TURNING = {
     "four-bar": four_bar_pose,
