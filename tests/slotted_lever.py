@@ -32,6 +32,8 @@ thickness = "{thickness} mm"
 eye_diameter = "10 mm"
 eye_thickness = "{thickness} mm"
 fillet_radius = "1 mm"
+[solid]
+mesh_size = {mesh_size}
 [load_cases.tip]
 forces = [{{ link = "lever", at = "H", force = ["{pull} N", "{force} N"] }}]
 [checks.stiff]
@@ -46,5 +48,5 @@ def slotted_lever(**changes: Any) -> Case:
     """Return the case; the pin stands in the middle of a slot from 12 to 50 mm where nothing else is said."""
     first, last = changes.get("first", 12.0), changes.get("last", 50.0)
     entries = {"first": first, "last": last, "middle": (first + last) / 2.0, "at": 31.0, "tip": 80.0}
-    entries |= {"thickness": 5.0, "force": -1.0, "pull": 0.0} | changes
+    entries |= {"thickness": 5.0, "force": -1.0, "pull": 0.0, "mesh_size": 1.0} | changes
     return validate(tomllib.loads(LEVER.format(**entries)))

@@ -19,7 +19,7 @@ load that is held is the same number, up to 1.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
@@ -322,18 +322,21 @@ def stated_scatter(case: Case, load_case: str) -> Scatter:
     return slack.times(load_scatter(case, load_case))
 
 
-def blind_link(case: Case) -> str:
+def blind_link(case: Case, links: Iterable[str] | None = None) -> str:
     """Return a link for which a beam along its axis does not tell how far it gives; "" where there is none.
 
     Parameters
     ----------
     case : Case
+    links : iterable of str, optional
+        Among which it is sought; by default all that bend.
 
     Returns
     -------
     str
     """
-    return next((link for link in case.bending_links if not case.part_of(link).has_centre_line(case.body(link))), "")
+    among = case.bending_links if links is None else links
+    return next((link for link in among if not case.part_of(link).has_centre_line(case.body(link))), "")
 
 
 def _end(frame: LinkageFrame, held: float) -> tuple[float, float]:

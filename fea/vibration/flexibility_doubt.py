@@ -13,7 +13,7 @@ the forces, else to first order in dF, as displacements have it; and but for the
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,6 +58,7 @@ def flexibility_doubt(
     ----------
     case : Case
     frame : LinkageFrame
+        Of the linkage, or of one of its links.
     model : FrameModel
         Of the frame with divided beams.
     parents : ndarray of int, shape (m,)
@@ -75,13 +76,14 @@ def flexibility_doubt(
         [Hz]
     """
     values = [frequency(value) for value in found.values[:count]]
-    blind = blind_link(case)
+    links = list(dict.fromkeys(beam.link for beam in frame.beams.values()))
+    blind = blind_link(case, links)
     if blind:
         why = f"the frame takes link {blind} for a beam along its axis, which does not tell how far it gives"
         return [Band(value=value, low=0.0, high=math.inf, without=why) for value in values]
     modulus, eyes, both = _Forces(case, frame, model, parents, shapes).changes()
     ends = [_ends(found, change) for change in (modulus, eyes, both)]
-    scatters = [compliance_scatter(case.material_of(link)) for link in case.bending_links]
+    scatters = [compliance_scatter(case.material_of(link)) for link in links]
     ranges = distinct(*(one.sources for one in scatters))
     bands = []
     for k, value in enumerate(values):
@@ -90,6 +92,33 @@ def flexibility_doubt(
         sources.append(Source(kind=SourceKind.EYES, width=_width(plain, 1)))
         bands.append(Band(value=value, low=min(low, value), high=max(high, value), sources=tuple(sources)))
     return bands
+
+
+def stiffest(case: Case, frame: LinkageFrame, model: FrameModel, parents: NDArray[np.int64]) -> Floats:
+    """Return the natural stiffness of every element where modulus, eyes, bores and holes make it stiffest.
+
+    With it no frequency is beyond what the doubt leaves, exactly and not to first order: what is held by more than
+    equilibrium needs, such as a beam between two built-in eyes, gains more than that.
+
+    Parameters
+    ----------
+    case : Case
+    frame : LinkageFrame
+        Of the linkage, or of one of its links.
+    model : FrameModel
+        Of the frame with divided beams.
+    parents : ndarray of int, shape (m,)
+        Element of the frame that each one is part of.
+
+    Returns
+    -------
+    ndarray, shape (m, 6, 6)
+    """
+    known = _Forces(case, frame, model, parents, np.zeros((0, len(model.nodes), 6)))
+    found = [natural_flexibility(e.section, e.young, e.poisson, model.length(i)) for i, e in enumerate(model.elements)]
+    for i, (_, low, _), scatter in known.doubtful():
+        found[i] = scatter.low * low
+    return np.asarray(np.linalg.inv(np.array(found)))
 
 
 def _width(ends: tuple[float, float], causes: int) -> float:
@@ -147,15 +176,7 @@ class _Forces:
         """By the moduli alone, by eyes, bores and holes alone, and by both together."""
         c = self.natural.shape[2]
         less, more = np.zeros((3, c, c)), np.zeros((3, c, c))
-        passed: dict[int, float] = {}
-        for i, parent in enumerate(map(int, self.parents)):
-            start, end = passed.get(parent, 0.0), passed.get(parent, 0.0) + self.model.length(i)
-            passed[parent] = end
-            scatter = self._scatter(parent)
-            if scatter is None:
-                continue
-            whole = (Zone(start=0.0, end=math.inf, least=_PLAIN, most=_PLAIN),)
-            F, low, high = _flexibilities(self.model, i, self.zones.get(parent, whole), start, end)
+        for i, (F, low, high), scatter in self.doubtful():
             q = self.natural[i]
             for into, eyes, factor in ((less, low, scatter.low), (more, high, scatter.high)):
                 for row, own in enumerate((factor * F, eyes, factor * eyes)):
@@ -167,6 +188,17 @@ class _Forces:
             more[2] += factor * sunk
         first, second, third = (_Change(less=a, more=b) for a, b in zip(less, more, strict=True))
         return first, second, third
+
+    def doubtful(self) -> Iterator[tuple[int, tuple[Floats, Floats, Floats], Scatter]]:
+        """Yield the elements of links and pins: natural flexibilities, plain, least and most, and what 1/E may be."""
+        passed: dict[int, float] = {}
+        for i, parent in enumerate(map(int, self.parents)):
+            start, end = passed.get(parent, 0.0), passed.get(parent, 0.0) + self.model.length(i)
+            passed[parent] = end
+            scatter = self._scatter(parent)
+            if scatter is not None:
+                whole = (Zone(start=0.0, end=math.inf, least=_PLAIN, most=_PLAIN),)
+                yield i, _flexibilities(self.model, i, self.zones.get(parent, whole), start, end), scatter
 
     def _scatter(self, parent: int) -> Scatter | None:
         if parent in self.frame.beams:

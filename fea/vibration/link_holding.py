@@ -44,15 +44,15 @@ class HeldPlace:
         Directions in which it does not move: orthogonal unit vectors in the link's axes.
     turns : ndarray, shape (l, 3)
         Axes about which it does not turn, alike.
-    in_slot : bool
-        True where a pin bears on the flanks of a slot of the link, so that the wall moves on average alone.
+    joint : str
+        Whose pin bears on the flanks of a slot of the link, so that the wall is held on average alone; "" elsewhere.
     """
 
     point: str
     place: Real
     moves: Real
     turns: Real
-    in_slot: bool = False
+    joint: str = ""
 
     @property
     def conditions(self) -> Real:
@@ -112,7 +112,7 @@ def link_holding(case: Case, link: str, pose: Pose) -> LinkHolding:
             turns += more[1]
             at[key] = _pin_place(case, link, joint, pose) if key[1] else _point(case, link, point)
     places = tuple(
-        HeldPlace(point=key[0], place=at[key], moves=_basis(moves), turns=_basis(turns), in_slot=bool(key[1]))
+        HeldPlace(point=key[0], place=at[key], moves=_basis(moves), turns=_basis(turns), joint=key[1])
         for key, (moves, turns) in found.items()
     )
     free = 6 - _rank(places, case.linkage.longest)
@@ -168,7 +168,7 @@ def _words(case: Case, link: str, places: Sequence[HeldPlace], free: int) -> str
         if sizes == (3, 3):
             kind = "built in at {}"
         elif sizes == (3, 2):
-            kind = "on pins that do not yield at {}, free to turn about them"
+            kind = "on rigid pins at {}"
         elif sizes == (2, 3):
             kind = "free to slide alone at {}"
         else:
@@ -178,8 +178,9 @@ def _words(case: Case, link: str, places: Sequence[HeldPlace], free: int) -> str
     if drive is not None and not drive.idle and link in case.joints[drive.joint].links and places:
         point = case.linkage.point_of(drive.joint, link)
         groups = {k: ["the drive's joint " + p if p == point else p for p in names] for k, names in groups.items()}
-    told = [kind.format(" and ".join(dict.fromkeys(names))) for kind, names in groups.items()]
+    told = " and ".join(kind.format(" and ".join(dict.fromkeys(names))) for kind, names in groups.items())
     if free:
-        told.append(f"{free} rigid motion{'s' if free > 1 else ''} left free, which is no vibration" if free == 1 else
-                    f"{free} rigid motions left free, which are no vibrations")  # fmt: skip
-    return "; ".join(told) if told else "free"
+        told = (
+            f"{told}, {'a rigid motion' if free == 1 else f'{free} rigid motions'} of it left free" if told else "free"
+        )
+    return told

@@ -2,9 +2,10 @@
 
 The wall of a bore moves as a rigid cylinder, which the pin holds: pins are stiffer than what they stand in, and one
 that vibrates under a load keeps in touch with its wall. A body that a link carries moves with the bore, patch or face
-through which its weight enters, as one rigid piece. A pin in a slot holds the flanks on average, weighted as its
-pressure is (``fea.tractions.slot_traction``): the mean displacement across the slot is zero, and so is the mean tilt.
-What is spread along the link is mass without stiffness in its volume. Of a pair each plate bears half.
+through which its weight enters, as one rigid piece. A pin in a slot bears on one flank, that at y > 0, as in the frame
+of the linkage. It holds it on average, weighted as its pressure is (``fea.tractions.slot_traction``): the mean
+displacement across the slot is zero, and so is the mean tilt. What is spread along the link is mass without stiffness
+in its volume. Of a pair each plate bears half.
 
 The stress of loads, which stiffens what it pulls, is left out.
 """
@@ -29,6 +30,7 @@ from fea.solid.stress import stress_field
 from fea.tractions.slot_traction import DEGREE, flank_pressure
 from fea.tractions.traction import line_density
 from fea.vibration.link_holding import HeldPlace, LinkHolding
+from fea.vibration.mass_matrix import body_mass
 from fea.vibration.rigid_regions import RigidRegion
 from fea.vibration.solid_modes import SolidModes, solid_modes
 from geometry.base.errors import CannotRunError
@@ -260,7 +262,7 @@ def regions(solid: LinkSolid, space: DisplacementSpace) -> list[RigidRegion]:
     -------
     list of RigidRegion
     """
-    held = {place.point: place for place in solid.holding.places if not place.in_slot}
+    held = {place.point: place for place in solid.holding.places if not place.joint}
     bodies = [one for one in solid.carried if not isinstance(one, CarriedSpread)]
     found = []
     for point in dict.fromkeys([*held, *(one.at for one in bodies)]):
@@ -270,7 +272,7 @@ def regions(solid: LinkSolid, space: DisplacementSpace) -> list[RigidRegion]:
         for one in (one for one in bodies if one.at == point):
             known = mass_of(one, solid.points)
             arm = np.array([*known.centroid, 0.0]) - at
-            inertia += solid.share * body_inertia(known.mass, arm, known.inertia)
+            inertia += solid.share * body_mass(known.mass, arm, known.inertia)
         place = held.get(point, HeldPlace(point=point, place=at, moves=np.zeros((0, 3)), turns=np.zeros((0, 3))))
         found.append(
             RigidRegion(
@@ -286,29 +288,6 @@ def regions(solid: LinkSolid, space: DisplacementSpace) -> list[RigidRegion]:
     return found
 
 
-def body_inertia(mass: float, arm: Real, inertia: float) -> Real:
-    """Return the mass matrix of a rigid body about a place.
-
-    Parameters
-    ----------
-    mass : float
-        [tonne]
-    arm : ndarray, shape (3,)
-        From the place to the centroid [mm].
-    inertia : float
-        About the centroid and z [tonne mm²]. About x and y it has what its arm gives alone.
-
-    Returns
-    -------
-    ndarray, shape (6, 6)
-        For the place's displacement and rotation.
-    """
-    moved = np.hstack([np.eye(3), np.cross(np.eye(3), arm).T])  # u + w × arm
-    found = mass * moved.T @ moved
-    found[5, 5] += inertia
-    return np.asarray(found)
-
-
 def _completed(axes: Real) -> Real:
     """Three orthogonal unit vectors of which the first are those given."""
     rest = np.linalg.svd(axes)[2][len(axes) :] if len(axes) else np.eye(3)
@@ -316,7 +295,7 @@ def _completed(axes: Real) -> Real:
 
 
 def conditions(solid: LinkSolid, space: DisplacementSpace) -> Real:
-    """Return the conditions of pins in the link's slots on mean displacements of the flanks.
+    """Return the conditions of pins in the link's slots on mean displacements of a flank.
 
     Parameters
     ----------
@@ -330,17 +309,18 @@ def conditions(solid: LinkSolid, space: DisplacementSpace) -> Real:
         Each sum is zero; two for each pin, across the slot and about it.
     """
     rows = []
-    for place in (place for place in solid.holding.places if place.in_slot):
+    for place in (place for place in solid.holding.places if place.joint):
         [pin] = [pin for pin in solid.body.pins if pin.name == place.point]
         wall = surface_quadrature(space, f"bore:{place.point}", degree=DEGREE)
         length = WIDE.patch(pin.pin_diameter)
-        one, other = (flank_pressure(wall, place.place, length, side)[..., 1] for side in (1.0, -1.0))
-        pressure = one - other  # the first pushes along y, the other against it
+        pressure = flank_pressure(wall, place.place, length, 1.0)[..., 1]
         if not np.any(pressure):
             raise CannotRunError(f"the slot at {place.point} has no wall beside its pin; refine the mesh")
         arm = wall.x - place.place
-        # About the slot heights count; about the pin, as a drive there holds it, distances along the slot.
         ways = [*place.moves, *(np.cross(axis, arm) for axis in place.turns)]
+        if len(place.turns) == 1:  # a tilt about the slot: the pin bears across it, and slides along itself
+            [across] = place.moves
+            ways[-1] = (ways[-1] @ across)[..., None] * across
         rows += [wall.load_vector(pressure[..., None] * way, len(space.nodes)) for way in ways]
     found = np.array(rows).reshape(-1, space.unknowns)
     return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))

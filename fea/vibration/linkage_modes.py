@@ -176,7 +176,7 @@ def _modes(
     parents: NDArray[np.int64],
 ) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
     """Modes with the bands of their frequencies, and notes."""
-    shapes = np.array([_shape(path, vector) for vector in found.vectors.T])
+    shapes = np.array([node_motion(path, vector) for vector in found.vectors.T])
     bands = flexibility_doubt(case, frame, path.model, parents, found, shapes, count)
     modes = []
     for shape, band in zip(shapes, bands, strict=False):
@@ -193,8 +193,21 @@ def _modes(
     return tuple(modes), tuple(notes)
 
 
-def _shape(path: EquilibriumPath, vector: Floats) -> Floats:
-    """Motion of the nodes (n, 6) in the unknowns of a path."""
+def node_motion(path: EquilibriumPath, vector: Floats) -> Floats:
+    """Return the motion of the nodes by the unknowns of a path.
+
+    Parameters
+    ----------
+    path : EquilibriumPath
+        Of the frame, at its start.
+    vector : ndarray, shape (k + g,)
+        Its unknowns.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+        Displacements and rotations, global axes [mm, rad].
+    """
     chain = path.chain
     axes = chain.axes(path.state.rotations)
     found = np.zeros((len(path.model.nodes), 6))

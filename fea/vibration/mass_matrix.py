@@ -1,10 +1,11 @@
 """The mass of a linkage on its frame: consistent mass matrices of Timoshenko beams, and rigid bodies at nodes.
 
-What moves in the frame weighs as the kernel says. The mass of a part lies along its beams, arms and flanks of slots
-included, in proportion to their sections, and changes linearly along the link so that its centroid is that of the part;
-where it would become negative for that, or the centroid lies beside the beams, its line is shifted as a rigid body
-beside them. Sections have rotary inertia, and where the part's moment of inertia about z is more than this gives, as
-that of eyes and discs, what is missing is spread along the beams as rotary inertia. Where it is less, it is left so.
+What moves in the frame weighs as the kernel says. Eyes are rigid bodies about their pins (``eye_masses``). What is left
+of a part's mass lies along its beams, arms and flanks of slots included, in proportion to their sections, and changes
+linearly along the link so that the centroid is that of the part; where it would become negative for that, or the
+centroid lies beside the beams, its line is shifted as a rigid body beside them. Sections have rotary inertia, and where
+the part's moment of inertia about z is more than this gives, as that of a wide plate, what is missing is spread along
+the beams as rotary inertia. Where it is less, it is left so.
 Masses that are spread along a link lie on its axis; bodies stand at a node, with their centroid beside it.
 
 The matrix of a beam is the integral of Nᵀ m N with the shape functions N that its stiffness has, in bending
@@ -29,6 +30,7 @@ from fea.frame.model import FrameElement, FrameModel
 from fea.frame.system import to_ends
 from fea.nonlinear.equilibrium_path import EquilibriumPath
 from fea.nonlinear.kinematic_chain import Places
+from fea.vibration.eye_masses import eye_bodies, with_rims
 from loads.case.case import Case
 from loads.records.applied import PartMass
 from loads.records.carried import Carried, CarriedSpread, mass_of
@@ -39,6 +41,8 @@ Floats = NDArray[np.float64]
 _XI, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _XI, _WEIGHTS = (1.0 + _XI) / 2.0, _WEIGHTS / 2.0
 """Places and weights along a beam; exact for cubic shapes and a density that changes linearly."""
+MOST_IN_EYES = 0.8
+"""Share of a part's mass that eyes may have beside its beams; beyond it the part is no beam with eyes."""
 IN_PLANE = np.array([True, True, False, False, False, True] * 2)
 """What of the motion of two nodes lies in the linkage's plane."""
 
@@ -225,7 +229,7 @@ def mass_matrix(
     ----------
     case : Case
     frame : LinkageFrame
-        Of the linkage.
+        Of the linkage, or of one of its links.
     divided : FrameModel
         Its model with beams divided, whose first nodes are those of the frame.
     parents : ndarray of int, shape (m,)
@@ -240,10 +244,11 @@ def mass_matrix(
     MassMatrix
     """
     mass = _Mass(case, frame, divided, parents)
-    for link in case.bending_links:
+    for link in mass.own:
         mass.part(link, masses[link])
+    links = {link for link, _ in frame.points}
     for one in all_carried(case, stated=carried):
-        if one.link != case.linkage.ground:
+        if one.link in links:
             mass.carried(one)
     return MassMatrix(model=divided, beams=mass.beams, bodies=tuple(mass.bodies))
 
@@ -279,19 +284,38 @@ class _Mass:
     def part(self, link: str, mass: PartMass) -> None:
         """Add a link's part."""
         elements, at, sizes = self._grains(link)
-        sizes = sizes * (mass.mass / sizes.sum())
-        factors, aside = _matched(at, sizes, mass)
+        turn, origin = self.frame.pose.rotation(link), self.frame.pose.origins[link]
+        eyes = self._eyes(link, mass, float(sizes.sum()))
+        self.bodies += eyes
+        weights = np.array([matrix[0, 0] for _, matrix in eyes])
+        places = np.array([(self.divided.nodes[node, :2] - origin) @ turn for node, _ in eyes]).reshape(-1, 2)
+        offsets = np.array([np.array([matrix[1, 5], -matrix[0, 5]]) @ turn for _, matrix in eyes]).reshape(-1, 2)
+        left = mass.mass - float(weights.sum())
+        middle = (mass.mass * mass.centroid - (weights @ places + offsets.sum(axis=0))) / left
+        sizes = sizes * (left / sizes.sum())
+        factors, aside = _matched(at, sizes, PartMass(mass=left, centroid=middle))
         grains = sizes * factors
-        turn = self.frame.pose.rotation(link)
         line = np.array([*(turn @ aside), 0.0])
         about = at + aside - mass.centroid
         own = [self.divided.elements[i].section for i in elements]
         known = float((grains * (about**2).sum(axis=-1)).sum())
         known += sum(float(g.sum()) * s.i_z / s.area for g, s in zip(grains, own, strict=True))
-        missing = max(mass.inertia - known, 0.0) / mass.mass
+        for (_, matrix), place, offset in zip(eyes, places - mass.centroid, offsets, strict=True):
+            known += float(matrix[5, 5] + 2.0 * offset @ place + matrix[0, 0] * place @ place)
+        missing = max(mass.inertia - known, 0.0) / left
         for i, own_grains in zip(elements, grains, strict=True):
             density = own_grains / (self.divided.length(i) * _WEIGHTS)
             self.beams[i] += beam_mass(self.divided, i, density, missing, line)
+
+    def _eyes(self, link: str, mass: PartMass, beams: float) -> list[tuple[int, Floats]]:
+        """Eyes of a link whose beams have this volume; none where they would be the whole part."""
+        case, flanks = self.case, {i: self.frame.beams[int(self.parents[i])].flank for i in self.own[link]}
+        density = case.links[link].count * case.material_of(link).density
+        eyes = eye_bodies(case.body(link), density, self.frame, link, self.divided, flanks)
+        known = float(sum(matrix[0, 0] for _, matrix in eyes))
+        if not eyes or known >= MOST_IN_EYES * mass.mass:
+            return []
+        return with_rims(eyes, case.body(link), max(mass.mass - known - density * beams, 0.0))
 
     def carried(self, one: Carried) -> None:
         """Add what a link carries."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fea.common.threads import bounded
 from fea.frame.build import build_frame
+from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes, linkage_modes
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
@@ -73,13 +74,13 @@ class CaseFrequencies:
     case : Case
     histories : mapping of str to FrequencyHistory
         By load case.
-    links : mapping of str to object
-        Natural modes of each link by itself.
+    links : mapping of str to LinkModes
+        Of each link with a part, by itself.
     """
 
     case: Case
     histories: Mapping[str, FrequencyHistory]
-    links: Mapping[str, object] = field(default_factory=dict)
+    links: Mapping[str, LinkModes] = field(default_factory=dict)
 
 
 def case_frequencies(
@@ -114,7 +115,9 @@ def case_frequencies(
     masses = part_masses(case)
     with bounded(1):  # matrices are small, and threads would wait for one another
         histories = _moving(case, masses, poses, count) if case.motion is not None else _standing(case, masses, count)
-    return CaseFrequencies(case=case, histories=histories)
+    own = threads if solid else 1
+    links = {x: link_modes(case, x, count=count, solid=solid, threads=own) for x in case.checked_links}
+    return CaseFrequencies(case=case, histories=histories, links=links)
 
 
 def _smooth(case: Case) -> Case:

@@ -17,7 +17,8 @@ from fea.elements.quadrature import volume_quadrature
 from fea.elements.space import displacement_space
 from fea.elements.supports import rigid_motions
 from fea.vibration.link_holding import HeldPlace, LinkHolding, link_holding
-from fea.vibration.link_solid import LinkSolid, body_inertia, modes_on, refined_modes
+from fea.vibration.link_solid import LinkSolid, modes_on, refined_modes
+from fea.vibration.mass_matrix import body_mass
 from fea.vibration.rigid_regions import RigidRegion
 from fea.vibration.solid_modes import solid_modes
 from geometry.base.errors import CannotRunError
@@ -81,7 +82,7 @@ def test_a_cantilever_with_a_body_at_its_tip(tip):
     length, width, height, reach = 60.0, 2.0, 1.0, 10.0
     box = solid_meshes.box((0.0, -width / 2, -height / 2), (length, width / 2, height / 2), (30, 1, 1))
     space = displacement_space(box)
-    own = body_inertia(tip, np.array([reach, 0.0, 0.0]), 0.0)
+    own = body_mass(tip, np.array([reach, 0.0, 0.0]), 0.0)
     regions = [region(space, "end:0", (0.0, 0.0, 0.0), tuple(range(6)))]
     if tip:
         regions.append(region(space, "end:1", (length, 0.0, 0.0), (), own))
