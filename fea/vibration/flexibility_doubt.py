@@ -23,7 +23,7 @@ from fea.beam.deflection import flexibility
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter
 from fea.common.source import Source, SourceKind, distinct
-from fea.frame.displacement_band import Zone, give_of_links
+from fea.frame.displacement_band import STIFFEST, Zone, give_of_links
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import FrameModel
 from fea.frame.system import natural_deformations, natural_flexibility, to_ends
@@ -116,8 +116,8 @@ def stiffest(case: Case, frame: LinkageFrame, model: FrameModel, parents: NDArra
     """
     known = _Forces(case, frame, model, parents, np.zeros((0, len(model.nodes), 6)))
     found = [natural_flexibility(e.section, e.young, e.poisson, model.length(i)) for i, e in enumerate(model.elements)]
-    for i, (_, low, _), scatter in known.doubtful():
-        found[i] = scatter.low * low
+    for i, (plain, low, _), scatter in known.doubtful():
+        found[i] = scatter.low * (low + STIFFEST * plain)  # eyes may leave nothing of it
     return np.asarray(np.linalg.inv(np.array(found)))
 
 

@@ -55,6 +55,12 @@ def test_a_tube_between_its_pins_rings_as_its_solid_does():
     assert found[0].value == pytest.approx(1087.1, rel=0.01)
 
 
+def test_a_link_that_is_all_eye_has_a_band_that_ends():
+    """The disc of the ornithopter: 17.7 kHz by its solid, of which a strip between two near pins knows little."""
+    found = link_modes(read_case("ornithopter"), "crank", count=1).modes[0].frequency
+    assert 0.0 < found.low < 17712.0 < found.high < math.inf
+
+
 @pytest.mark.parametrize(
     ("case", "link"),
     [(tomllib.loads(TOML), "rocker"), pytest.param(None, "lever", marks=pytest.mark.converged)],
