@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
+from fea.check.air_doubt import AirDoubt, air_warnings
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
@@ -109,9 +110,10 @@ class _LoadCase:
     plates: Mapping[str, Sequence[tuple[LinkLoads, LinkByHand]]]
     uneven: Growths
     size: float
+    air: AirDoubt
 
     @classmethod
-    def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement) -> "_LoadCase":
+    def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement, air: AirDoubt) -> "_LoadCase":
         case, loads = statics.standing[load_case].case, statics.loads[load_case]
         reactions = statics.reactions[load_case]
         plates = {
@@ -128,8 +130,10 @@ class _LoadCase:
             plates=plates,
             uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands)
             .times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=grown))
-            .times(play_doubt(case, load_case, statics.forces[load_case], loads)),
+            .times(play_doubt(case, load_case, statics.forces[load_case], loads))
+            .times(air.growths),
             size=load_size(loads, case.linkage.longest),
+            air=air,
         )
 
     def acts_on(self, link: str) -> bool:
@@ -172,16 +176,20 @@ class _LoadCase:
         reactions = moved.reactions or self.statics.reactions[load_case]
         links, pins = self.links(decided), _pins(case, reactions, self.forces)
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
-        found = (
+        columns = {x: slenderest(case, x, self.air.slenderest(case, x, found)) for x, found in self.plates.items()}
+        solids = {x: found for x, found in links.items() if self.acts_on(x)}
+        buckling = (
+            *buckling_outcomes(case, load_case, columns, moved),
+            *solid_buckling_outcomes(case, load_case, solids),
+        )
+        every = (
             *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
             *_bearing(case, load_case, reactions, self.forces, self.uneven),
-            *buckling_outcomes(
-                case, load_case, {x: slenderest(case, x, found) for x, found in self.plates.items()}, moved
-            ),
-            *solid_buckling_outcomes(case, load_case, {x: found for x, found in links.items() if self.acts_on(x)}),
+            *buckling,
             *limit_load_outcomes(case, load_case, linkage),
             *whole,
         )
+        found = [self.air.on_buckling(one) for one in every]
         checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())
         if self.idle:
             joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
@@ -257,14 +265,17 @@ def check_case(
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])
         for load_case, forces in statics.forces.items()
     }
-    moved = {x: shaken(statics.standing[x].case, x, statics.forces[x], one) for x, one in moved.items()}
+    airs = {x: AirDoubt.of(statics, x, one) for x, one in moved.items()}
+    moved = {
+        x: airs[x].on_shape(shaken(statics.standing[x].case, x, statics.forces[x], one)) for x, one in moved.items()
+    }
     clock("frames")
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
     first: Mapping[str, TaggedMesh] = {}
     if fidelity not in BY_HAND:
         statics, first = with_solids(statics, moved, start, always=fidelity == "solid", threads=threads)
         clock("frames of solids")
-    by_load_case = {x: _LoadCase.of(statics, x, what) for x, what in moved.items()}
+    by_load_case = {x: _LoadCase.of(statics, x, what, airs[x]) for x, what in moved.items()}
     clock("hand calculations")
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:
@@ -290,6 +301,7 @@ def check_case(
             *_shared_couples(list(by_load_case.values()), load_cases),
             *_warnings(case, statics, moved),
             *play_warnings(moved, statics.forces),
+            *air_warnings(moved),
         ),
     )
 

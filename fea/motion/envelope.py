@@ -29,7 +29,7 @@ from fea.motion.layered import with_couples
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
-from fea.motion.loosened import loosened
+from fea.motion.loosened import in_other_air, loosened
 from fea.outcomes.limits import layers_of
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
@@ -66,8 +66,9 @@ class _Envelope:
     def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
         layered = with_couples(moved, evaluated)
         shares = dict(layered.shares)
-        for key, play in loosened(layered.moved, evaluated).items():
-            shares[key] = shares.get(key, Scatter()).times(play)
+        for doubt in (loosened(layered.moved, evaluated), in_other_air(layered.moved, evaluated)):
+            for key, scatter in doubt.items():
+                shares[key] = shares.get(key, Scatter()).times(scatter)
         moved, case, loaded = layered.moved, moved.case, {}
         sizes = {load_case: stated_size(case, load_case) for load_case in case.load_cases}
         for link in case.checked_links:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.buckling.buckling import column_outcome, worst_column
+from fea.check.air_doubt import widened
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.ties import first_largest
@@ -16,7 +17,7 @@ from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.motion.layered import forces_at
-from fea.motion.loosened import joint_growth
+from fea.motion.loosened import column_growth, joint_growth
 from fea.outcomes.bearing import bearing_outcome, pressing
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
@@ -270,7 +271,7 @@ def column_outcomes(
                 column = min(columns, key=lambda one: one.value)
                 where = f" at {_when(moved, column.pose)}"
                 outcome = column_outcome(moved.case, load_case, link, column, where=where)
-                yield _complete(outcome, evaluated)
+                yield _complete(widened(outcome, column_growth(moved, load_case, link, evaluated)), evaluated)
 
 
 def _when(moved: CaseMotion, pose: int) -> str:

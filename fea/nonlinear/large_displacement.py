@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
+from fea.common.convex import least_of_convex
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind, distinct
@@ -111,6 +112,10 @@ class LargeDisplacement:
         What becomes of it where play brings the linkage nearest to a dead point, and furthest off.
     passes : bool
         True where play may take it through a dead point, so that no load is sure to be held.
+    air : Source or None
+        The range of C_N of wings that flap, where one is stated.
+    airs : tuple of tuple of (float, LargeDisplacement)
+        C_N -> what becomes of it: first at the stated one, then at others of the range.
     """
 
     state: State
@@ -133,6 +138,8 @@ class LargeDisplacement:
     play: Source | None = None
     shaken: tuple["LargeDisplacement", ...] = ()
     passes: bool = False
+    air: Source | None = None
+    airs: tuple[tuple[float, "LargeDisplacement"], ...] = ()
 
     @property
     def share(self) -> float:
@@ -161,17 +168,41 @@ class LargeDisplacement:
 
     @property
     def limit_load(self) -> Band:
-        """Factor on all loads at which the linkage gives way, wherever its pins stand in their play."""
-        found = self._limit_load
-        if self.play is None or found.unknowable:
+        """Factor on all loads at which the linkage gives way, wherever its pins stand in their play, in any air."""
+        found, doubts = self._limit_load, tuple(source for source in (self.play, self.air) if source is not None)
+        if not doubts or found.unknowable:
             return found
-        every = [found, *(one.limit_load for one in self.shaken if not one.limit_load.unknowable)]
+        others = [one.limit_load for one in (*self.shaken, *(other for _, other in self.airs[1:]))]
+        every = [found, *(one for one in others if not one.unknowable)]
         return replace(
             found,
             low=0.0 if self.passes else min(one.low for one in every),
             high=max(one.high for one in every),
-            sources=distinct(found.sources, (self.play,)),
+            sources=distinct(found.sources, doubts),
         )
+
+    def in_any_air(self, link: str, point: str) -> Scatter:
+        """Return what the range of C_N makes of the displacement of a point, which is convex in it.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        Scatter
+        """
+        if self.air is None:
+            return Scatter()
+        if any((link, point) not in one.points for _, one in self.airs):
+            return Scatter(low=0.0, high=math.inf, sources=(self.air,))
+        found = [(c, float(np.linalg.norm(one.points[link, point]))) for c, one in self.airs]
+        value = found[0][1]
+        if not value > 0.0:
+            return Scatter(high=math.inf, sources=(self.air,)) if max(found, key=lambda one: one[1])[1] else Scatter()
+        least, most = max(least_of_convex(found), 0.0), max(size for _, size in found)
+        return Scatter(low=least / value, high=most / value, sources=(self.air,))
 
     @cached_property
     def _limit_load(self) -> Band:
@@ -230,6 +261,7 @@ def examine(
     title: str,
     forces: JointForces,
     loads: Sequence[Load],
+    buckling: float | None = None,
 ) -> LargeDisplacement:
     """Solve the linear frame of a load case and, where it moves far or may give way, its deformed shape.
 
@@ -243,6 +275,8 @@ def examine(
         Joint forces in the pose as it stands.
     loads : sequence of Load
         That act on the links, global axes.
+    buckling : float, optional
+        Lowest factor at which the linear frame becomes unstable, where it is known.
 
     Returns
     -------
@@ -263,7 +297,7 @@ def examine(
         if frame is None or solution is None:
             frame = build_frame(case, pose, loads, held=case.pinned_drive)
             solution = solve_frame(frame.model)
-        factor = linkage_factor(frame)
+        factor = linkage_factor(frame) if buckling is None else buckling
     except (CaseError, CannotRunError) as error:
         return left("off", as_said) if off else left("unknown", f": {error}")
     scatter = stated_scatter(case, title)

@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 from edited_cases import edited
 
+from fea.beam.cut_free import link_loads
+from fea.check.force_doubt import measures
+from fea.check.run import check_case
 from fea.common.convex import least_of_convex
 from fea.common.source import SourceKind
 from fea.common.verdict import Verdict
+from fea.motion.buckling_history import factors_over_motion
+from fea.motion.link_history import link_histories
+from fea.motion.loosened import column_growth, in_other_air, joint_growth
 from fea.whole.motor import motor_outcomes
 from loads.case.case import Case
 from loads.states.case_motion import solve_case_motion
@@ -100,3 +106,73 @@ def test_the_motor_says_whether_it_carries_the_air(current, verdict, told):
     assert f"without air at most {torque:.3g} N·mm and {bare.drive_power.max() / 1e3:.3g} W, " in outcome.reason
     assert "(C_N from 1.2 to 5: at most " in outcome.reason
     assert f" N·mm and {least.drive_power.max() / 1e3:.3g} to " in outcome.reason
+
+
+def swept(coefficient: float = 3.5, least: float = 1.2, largest: float = 5.0) -> Case:
+    """The four-bar of the starter with a wide wing on its rocker in mid-stroke, so that air is most of its load."""
+    entries = [
+        'wings=[{ link = "rocker", at = "P", span = ["120 mm", "320 mm"], chord = ["100 mm", "140 mm"] }]',
+        'load_cases.air.speed="900 rpm"',
+        'load_cases.air.flapping.density="1.2 kg/m^3"',
+        f"load_cases.air.flapping.normal_coefficient={coefficient}",
+        f"load_cases.air.flapping.normal_coefficient_range=[{least}, {largest}]",
+        'checks.point={ type = "displacement", at = "P", maximum = "1 mm" }',
+        'checks.pins={ type = "pins", minimum = 1.5 }',
+        'checks.limit={ type = "limit-load", minimum = 1.5 }',
+        "motion.turn=true",
+        "motion.poses=25",
+    ]
+    case = edited("four-bar", entries)
+    return case.model_copy(update={"load_cases": {"air": case.load_cases["air"]}})
+
+
+def told(case: Case):
+    result = check_case(case, fidelity="beam")
+    return {(o.name, str(o.subject), o.quantity): o for o in result.load_cases["air"].checks}
+
+
+def test_a_checks_bands_hold_every_coefficient_of_the_range():
+    """The favourable end within 5 %, since the place of the peak, hence its calibration, may change with C_N."""
+    found = told(swept())
+    kinds = {key[2].value for key, o in found.items() if SourceKind.AIR in {s.kind for s in o.value.sources}}
+    assert kinds >= {"safety factor", "displacement", "buckling factor", "limit-load factor"}
+    wider = dict.fromkeys(found, False)
+    for coefficient in (1.2, 5.0, *RANDOM[:2]):
+        other = told(swept(coefficient, coefficient, coefficient))
+        assert other.keys() == found.keys()
+        for key, one in other.items():
+            band, direct_band = found[key].value, one.value
+            assert band.low <= direct_band.low * (1.0 + 1e-3), (key, coefficient)
+            assert band.high >= direct_band.high / 1.05, (key, coefficient)
+            wider[key] |= direct_band.value < 0.8 * band.value or direct_band.value > 1.2 * band.value
+    assert sum(wider.values()) > 5  # the air is most of the load
+
+
+def test_over_a_motion_shares_hold_every_coefficient_at_every_pose():
+    moved = solve_case_motion(swept())
+    every = np.ones(len(moved.motion.angles), dtype=bool)
+    shares = in_other_air(moved, every)
+
+    def worst(one, link: str) -> float:
+        body = one.case.body(link)
+        acting = link_loads("air", link, body, one.forces["air"], one.loads["air"])
+        return max(measures(one.case, link, acting.chosen(i))[0] for i in range(len(every)))
+
+    others = [solve_case_motion(swept(c, c, c)) for c in (1.2, 5.0, *RANDOM[:2])]
+    for link in moved.case.checked_links:
+        plain, share = worst(moved, link), shares["air", link]
+        found = [worst(one, link) / plain for one in others]
+        assert share.low <= min(found) * (1.0 + 1e-9)
+        assert share.high == pytest.approx(max(found), rel=1e-9)
+        assert share.high > 1.2
+        column = column_growth(moved, "air", link, every)
+        for one in others:
+            [history] = link_histories(one, link)
+            [plain_history] = link_histories(moved, link)
+            inverse = [1.0 / factors_over_motion(one.case, link, h).value.min() for h in (history, plain_history)]
+            assert column.low - 1e-9 <= inverse[0] / inverse[1] <= column.high + 1e-9
+    for joint in moved.case.joints:
+        growth = joint_growth(moved, "air", joint, every)
+        largest = [np.linalg.norm(one.forces["air"].forces[joint], axis=1).max() for one in (moved, *others)]
+        assert growth.low - 1e-9 <= min(largest[1:]) / largest[0]
+        assert growth.high == pytest.approx(max(largest) / largest[0], rel=1e-9)
