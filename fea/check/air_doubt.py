@@ -172,12 +172,16 @@ class AirDoubt:
         """By how much stress, displacement of links and joint forces may differ."""
         if self.stated is None:
             return Growths()
-        links, joints = self.stated.plates, self.stated.reactions.joints
-        stress, displacement = (
-            {link: self._scatter(lambda air, link=link, i=i: air.numbers[link][i]) for link in links} for i in (0, 1)
-        )
-        forces = {name: self._scatter(lambda air, name=name: air.reactions.joints[name].magnitude) for name in joints}
-        return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(forces))
+
+        def of_link(link: str, i: int) -> Scatter:
+            return self._scatter(lambda air: air.numbers[link][i])
+
+        def of_joint(name: str) -> Scatter:
+            return self._scatter(lambda air: air.reactions.joints[name].magnitude)
+
+        stress, displacement = ({link: of_link(link, i) for link in self.stated.plates} for i in (0, 1))
+        joints = {name: of_joint(name) for name in self.stated.reactions.joints}
+        return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
 
     def slenderest(self, case: Case, link: str, plates: Plates) -> Plates:
         """Return the plates of a link of which the slenderest is judged as a column: at another C_N where none buckles.
