@@ -1,7 +1,6 @@
 """Reading a case: a TOML file or a built-in name, overrides, and errors in one sentence each."""
 
 import json
-import os
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -20,9 +19,7 @@ from loads.case.part_points import with_part_points
 from loads.case.revisable import Origin
 from loads.text.entries import alike, names_tables
 from loads.text.explain import printable, sentence
-
-LARGEST_FILE = 1 << 20
-"""Bytes; a case file is some kilobytes."""
+from loads.text.file_text import LARGEST_FILE, file_text
 
 
 class Change(NamedTuple):
@@ -188,28 +185,14 @@ def read_text(name_or_path: str) -> tuple[str, str]:
     """
     if name_or_path in built_in_cases():
         return files("loads.cases").joinpath(f"{name_or_path}.toml").read_text(encoding="utf-8"), name_or_path
-    path, shown = Path(name_or_path), printable(name_or_path)
-    try:
-        exists = path.is_file()
-    except (OSError, ValueError):
-        exists = False
-    if not exists:
-        what = "there is no such file or built-in case"
-        if os.path.lexists(name_or_path):
-            what = "it is a folder" if os.path.isdir(name_or_path) else "it is no regular file that can be reached"
-        choice = ", ".join(built_in_cases())
-        raise CaseError(f"case '{shown}': {what}; give a path to a case file or one of {choice}")
-    try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise CaseError(f"case '{shown}': the file is larger than 1 MiB, the limit; check that it is a case file")
-        text = path.read_bytes().decode("utf-8-sig")  # Windows editors put a byte order mark
-    except OSError as error:
-        raise CaseError(f"case '{shown}': it cannot be read ({error.strerror}); check its permissions") from None
-    except UnicodeDecodeError:
-        raise CaseError(f"case '{shown}': it is not UTF-8 text; save it as UTF-8") from None
-    if not text.strip():
-        raise CaseError(f"case '{shown}': the file is empty; start from 'alula new'")
-    return text, printable(path.name)
+    text = file_text(
+        name_or_path,
+        "case",
+        missing="there is no such file or built-in case; give a path to a case file or one of "
+        + ", ".join(built_in_cases()),
+        empty="the file is empty; start from 'alula new'",
+    )
+    return text, printable(Path(name_or_path).name)
 
 
 def read_companion(case_path: str, name: str) -> str:

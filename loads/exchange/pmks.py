@@ -13,6 +13,7 @@ from urllib.parse import unquote
 
 from geometry.base.errors import CaseError
 from loads.exchange.sketch import MALFORMED, Push, Rider, Sketch, plain_name
+from loads.text.explain import printable
 
 _LETTERS = string.digits + string.ascii_uppercase + string.ascii_lowercase
 _DIGITS = _LETTERS + "_-"
@@ -61,7 +62,7 @@ def read_pmks(text: str, name: str) -> Sketch:
     try:
         return _read(code[:-1], name)
     except MALFORMED as error:
-        raise CaseError(f"'{name}': it is no link of PMKS+ ({error!r}); copy it anew") from None
+        raise CaseError(f"'{name}': it is no link of PMKS+ ({printable(repr(error))}); copy it anew") from None
 
 
 def _read(code: str, name: str) -> Sketch:
@@ -132,8 +133,8 @@ def _rider(own: Sequence[str], joints: dict[str, _Joint], ids: dict[str, str], n
     pin, guide = sorted(own, key=lambda one: joints[one].has(_PRISMATIC))
     if not joints[guide].has(_GROUNDED) or joints[guide].carrier:
         raise CaseError(
-            f"'{name}': joint {guide} slides on a moving link, which is not taken over; leave it out, and state it in "
-            "the case as a joint of type pin-in-slot"
+            f"'{name}': joint {printable(guide)} slides on a moving link, which is not taken over; leave it out, and "
+            "state it in the case as a joint of type pin-in-slot"
         )
     return Rider(point=ids[pin], through=joints[guide].at, along=cmath.rect(1.0, joints[guide].angle))
 
@@ -142,9 +143,9 @@ def _driven(joints: dict[str, _Joint], ids: dict[str, str], links: dict[str, lis
     inputs = [one for one, joint in joints.items() if joint.has(_INPUT)]
     turning = [one for one in inputs if joints[one].has(_GROUNDED) and not joints[one].has(_PRISMATIC)]
     if len(inputs) != 1 or not turning:
+        found = printable(", ".join(inputs)) or "none"
         raise CaseError(
-            f"'{name}': the input has to be one pin on the ground, and here it is {', '.join(inputs) or 'none'}; "
-            "change it in PMKS+"
+            f"'{name}': the input has to be one pin on the ground, and here it is {found}; change it in PMKS+"
         )
     pivot = ids[turning[0]]
     return next(link for link, points in links.items() if pivot in points), pivot

@@ -7,6 +7,7 @@ from typing import Any
 
 from geometry.base.errors import CaseError
 from loads.exchange.sketch import MALFORMED, Rider, Sketch, plain_name
+from loads.text.explain import printable
 
 _LEGACY = {"Static", "Crank", "Revolute", "Fixed", "Prismatic"}
 _SAVE = "save it with pylinkage.mechanism.mechanism_to_json"
@@ -36,7 +37,7 @@ def read_pylinkage(text: str, name: str, millimetres: float) -> Sketch:
     try:
         return _read(json.loads(text), name, millimetres)
     except MALFORMED as error:
-        raise CaseError(f"'{name}': it is no mechanism of pylinkage ({error!r}); {_SAVE}") from None
+        raise CaseError(f"'{name}': it is no mechanism of pylinkage ({printable(repr(error))}); {_SAVE}") from None
 
 
 def _read(data: Mapping[str, Any], name: str, millimetres: float) -> Sketch:
@@ -59,7 +60,9 @@ def _read(data: Mapping[str, Any], name: str, millimetres: float) -> Sketch:
         links[called] = own
         if link["type"] in ("driver", "arc_driver"):
             if driven is not None:
-                raise CaseError(f"'{name}': links '{driven[0]}' and '{called}' have motors; leave one of them")
+                raise CaseError(
+                    f"'{name}': links '{printable(driven[0])}' and '{printable(called)}' have motors; leave one of them"
+                )
             driven = called, short[link["motor_joint"]]
     if driven is None:
         raise CaseError(f"'{name}': no link has a motor; make one a DriverLink, since it fixes the pose")
@@ -87,5 +90,6 @@ def _read(data: Mapping[str, Any], name: str, millimetres: float) -> Sketch:
 def _place(joint: Mapping[str, Any], name: str) -> complex:
     x, y = joint["position"]
     if x is None or y is None or not (math.isfinite(x) and math.isfinite(y)):
-        raise CaseError(f"'{name}': joint '{joint['id']}' has no position; assemble the mechanism before it is saved")
+        shown = printable(str(joint["id"]))
+        raise CaseError(f"'{name}': joint '{shown}' has no position; assemble the mechanism before it is saved")
     return complex(x, y)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from geometry.base.errors import CaseError
+from loads.text.explain import printable
 
 GUIDED = 10.0
 """Distance of the second point of a sliding block from its pin [mm]; it only shows along what the block slides."""
@@ -193,7 +194,8 @@ def _body(name: str, points: Sequence[str], places: Mapping[str, complex]) -> _B
     at = [places[point] for point in points]
     far = max(at, key=lambda place: abs(place - at[0]), default=0j)
     if len(at) < 2 or abs(far - at[0]) <= _SAME:
-        raise CaseError(f"link '{name}': it has no two points that lie apart; give it a length, or leave it out")
+        shown = printable(name)
+        raise CaseError(f"link '{shown}': it has no two points that lie apart; give it a length, or leave it out")
     axis = (far - at[0]) / abs(far - at[0])
     return _Body(
         origin=at[0], axis=axis, points={point: (place - at[0]) / axis for point, place in zip(points, at, strict=True)}

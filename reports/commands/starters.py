@@ -104,32 +104,20 @@ def sketched(pylinkage: Path | None, pmks: Path | None, unit: Unit) -> bytes:
     CaseError
         For a file that cannot be read, or whose linkage is no case.
     """
-    import tomllib
-
-    from geometry.base.errors import CaseError
-    from loads.case.case_file import validate
-    from loads.exchange.pmks import read_pmks
-    from loads.exchange.pylinkage import read_pylinkage
-    from loads.exchange.sketch import MALFORMED, case_text
+    from loads.exchange.exchange import case_of_linkage
     from loads.text.explain import printable
+    from loads.text.file_text import file_text
 
     source = pylinkage or pmks
     assert source is not None
-    try:
-        text = source.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
-        told = f"'{printable(str(source))}' cannot be read as text ({why})"
-        raise CaseError(f"{told}; name the file that was saved") from None
+    text = file_text(
+        str(source),
+        "mechanism",
+        missing="there is no such file; name the file that was saved",
+        empty="the file is empty; save the mechanism anew",
+    )
     name = printable(source.name)  # it stands in a comment of the case
-    sketch = read_pylinkage(text, name, _MILLIMETRES[unit]) if pylinkage else read_pmks(text, name)
-    try:
-        found = case_text(sketch)
-        tables = tomllib.loads(found)
-    except MALFORMED as error:
-        raise CaseError(f"'{name}': its linkage makes no case ({error!r}); save it anew") from None
-    validate(tables).solve_pose()
-    return found.encode()
+    return case_of_linkage("pylinkage" if pylinkage else "pmks", text, name, _MILLIMETRES[unit]).encode()
 
 
 def case_files(name: str, path: Path) -> dict[Path, bytes]:

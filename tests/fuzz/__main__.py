@@ -26,6 +26,8 @@ PLAN = (
     ("guided", "claim", 150_000),
     ("guided", "quantity", 200_000),
     ("guided", "expression", 400_000),
+    ("mutations", "pylinkage", 30_000),
+    ("mutations", "pmks", 30_000),
     ("properties", "companion", 5_000),
     ("properties", "varied", 30_000),
 )

@@ -1,9 +1,11 @@
 """Structure-aware mutation of cases: of their tables and of their text."""
 
 import datetime
+import json
 import math
 import random
 import re
+import string
 from copy import deepcopy
 from typing import Any
 
@@ -106,6 +108,8 @@ _UNITS = (
     "m/s^2 W degC kelvin V A mA percent parsec yottameter dB octet mm*deg mm^-4 N*m*s"
 )
 UNITS = tuple(_UNITS.split(" "))
+LENGTHS = string.digits + string.ascii_uppercase + string.ascii_lowercase
+"""Letters by which a link of PMKS+ tells its length."""
 QUANTITY = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 _TOKENS = (
     "[",
@@ -275,3 +279,44 @@ def text(rng: random.Random, source: bytes) -> bytes:
             lines[i] = key + sign + f" {rng.choice(HOSTILE_NUMBERS)!r}".lower().encode() if sign else key
         data = b"\n".join(lines)
     return data
+
+
+def json_text(rng: random.Random, source: str) -> str:
+    """Return the text of a JSON file with entries changed, or one time in four with bytes changed."""
+    if rng.random() < 0.25:
+        return text(rng, source.encode()).decode("utf-8", "replace")
+    found = json.dumps(tables(rng, json.loads(source)), default=str)
+    if rng.random() < 0.1:  # what JSON escapes and TOML does not hold, at the beginning of a text
+        parts = found.split('"')
+        i = rng.randrange(len(parts))
+        parts[i] = rng.choice(("\\ud800", "\\u007f", "\\u0000", "\\n", "\\u2028")) + parts[i]
+        found = '"'.join(parts)
+    return found
+
+
+def code(rng: random.Random, source: str) -> str:
+    """Return a link of PMKS+ with one to four of its fields changed; its last letter mostly tells its length anew."""
+    parts = [part.split(",") for part in source.strip()[:-1].split(".")]
+    for _ in range(rng.choice((1, 1, 1, 2, 2, 3, 4))):
+        part = rng.choice(parts)
+        i, kind = rng.randrange(len(part)), rng.randrange(9)
+        other = rng.choice(rng.choice(parts))
+        if kind == 0:
+            del part[i]
+            part += [] if part else [""]
+        elif kind == 1:
+            part.insert(i, other)
+        elif kind == 2:
+            part[i] = rng.choice((*HOSTILE_TEXT, "0", "0" * 40, "_" * rng.randrange(1, 60)))
+        elif kind == 3:
+            parts.insert(rng.randrange(len(parts) + 1), list(rng.choice(parts)))
+        elif kind == 4 and len(parts) > 1:
+            parts.remove(part)
+        elif kind <= 6:
+            part[i] = other
+        else:
+            at = rng.randrange(len(part[i]) + 1)
+            part[i] = part[i][:at] + rng.choice("0159AKYRPZaz_-,.?%\x7f") + part[i][at + rng.randrange(2) :]
+    whole = ".".join(",".join(part) for part in parts)
+    told = LENGTHS[len(whole) % len(LENGTHS)]
+    return whole + (told if rng.random() < 0.95 else rng.choice(LENGTHS))

@@ -1,4 +1,4 @@
-"""Inputs by mutation of every case that ships, without guidance: fast, and repeatable by its seed.
+"""Inputs by mutation of every case that ships and of linkages of other programs, fast, and repeatable by their seed.
 
 Every second one keeps to the grammar (``fuzz.grammar``), the others do not (``fuzz.mutate``).
 
@@ -8,6 +8,7 @@ python -m fuzz.mutations TARGET INPUTS SEED FOLDER
 import random
 import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +16,29 @@ from fuzz import grammar, guard, mutate, targets
 from fuzz.findings import Findings
 
 
+def inputs_of(name: str, rng: random.Random) -> Callable[[], Any]:
+    """Return what makes an input of a target anew at every call."""
+    if name in ("pylinkage", "pmks"):
+        texts = targets.linkages(name)
+        changed = mutate.json_text if name == "pylinkage" else mutate.code
+        return lambda: changed(rng, rng.choice(texts))
+    cases = [(text.encode(), tomllib.loads(text)) for text in targets.seeds().values()]
+
+    def one() -> Any:
+        (text, tables), keeping = rng.choice(cases), rng.random() < 0.5
+        if name == "case_tables":
+            return (grammar if keeping else mutate).tables(rng, tables)
+        return grammar.case(rng, tables) if keeping else mutate.text(rng, text)
+
+    return one
+
+
 def try_many(name: str, inputs: int, start: int, findings: Findings) -> None:
-    """Try so many mutations of the shipped cases' tables or text."""
-    rng = random.Random(start)
-    texts = [text.encode() for text in targets.seeds().values()]
-    tables = [tomllib.loads(text.decode()) for text in texts]
+    """Try so many mutations of what ships."""
+    make = inputs_of(name, random.Random(start))
     while findings.tried < inputs and not findings.full:
         findings.tried += 1
-        i, keeping = rng.randrange(len(tables)), rng.random() < 0.5
-        if name == "case_tables":
-            data: Any = (grammar if keeping else mutate).tables(rng, tables[i])
-        else:
-            data = grammar.case(rng, tables[i]) if keeping else mutate.text(rng, texts[i])
+        data = make()
         try:
             findings.accepted += targets.TARGETS[name](data)
         except KeyboardInterrupt:

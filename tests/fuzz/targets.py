@@ -20,6 +20,7 @@ from geometry.base.units import EXAMPLES, parse
 from loads.case.case import Case
 from loads.case.case_file import built_in_cases, read_case, read_companion, validate
 from loads.case.part_points import KINDS
+from loads.exchange.exchange import case_of_linkage
 from loads.sources.claim import Claim, read_printed
 from loads.sources.expression import Path as NamePath
 from loads.sources.expression import evaluate
@@ -42,6 +43,12 @@ def seeds() -> dict[str, str]:
     """Return the text of every valid case there is."""
     folder = files("loads.cases")
     return {name: folder.joinpath(f"{name}.toml").read_text(encoding="utf-8") for name in built_in_cases()}
+
+
+def linkages(program: str) -> list[str]:
+    """Return the text of every linkage that another program saved."""
+    files_of = sorted((Path(__file__).resolve().parents[1] / "data" / "exchange").glob(f"{program}-*"))
+    return [path.read_text(encoding="utf-8") for path in files_of]
 
 
 _STARTER: dict[str, Any] = tomllib.loads(starter())
@@ -187,8 +194,30 @@ def varied(text: str) -> bool:
     return accepted
 
 
+def exchanged(program: str, text: str) -> bool:
+    """Any text as the file of a linkage that another program saved."""
+    with watched():
+        try:
+            found = case_of_linkage(program, text, "file", 10.0)
+            _used(validate(tomllib.loads(found.encode().decode())))
+        except CaseError as error:
+            return _told(error)
+    return True
+
+
+def pylinkage(text: str) -> bool:
+    """Any text as a mechanism of pylinkage."""
+    return exchanged("pylinkage", text)
+
+
+def pmks(text: str) -> bool:
+    """Any text as a link of PMKS+."""
+    return exchanged("pmks", text)
+
+
 TARGETS: dict[str, Callable[[Any], bool]] = {
-    f.__name__: f for f in (case_bytes, case_tables, override, expression, claim, quantity, companion, varied)
+    f.__name__: f
+    for f in (case_bytes, case_tables, override, expression, claim, quantity, companion, varied, pylinkage, pmks)
 }
 
 
@@ -205,6 +234,9 @@ def warm() -> None:
     for text in ("sqrt(2 N) + given.x", "word", "1 mm", "0.25 N", "?", 'pose.angle="30 deg"'):
         for target in (expression, claim, quantity, override, companion, varied):
             target(text)
+    for program in ("pylinkage", "pmks"):
+        for text in linkages(program):
+            exchanged(program, text)
     case_bytes(b"\xff")
     case_tables({"schema_version": 1})
     for kind in KINDS.values():  # imported parts are validated by themselves too

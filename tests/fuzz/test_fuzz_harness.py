@@ -52,6 +52,7 @@ targets.warm()
 guard.install()
 for engine, name, inputs in (
     (mutations, "case_tables", 150), (mutations, "case_bytes", 100), (properties, "override", 50),
+    (mutations, "pylinkage", 100), (mutations, "pmks", 100),
     (properties, "expression", 100), (properties, "claim", 50), (properties, "quantity", 50),
     (properties, "companion", 25), (properties, "varied", 50), (properties, "case_tables", 25),
 ):
@@ -89,5 +90,5 @@ def test_a_few_inputs_of_every_kind(tmp_path: Path) -> None:
     done = child(FEW, str(tmp_path))
     assert done.returncode == 0, done.stderr
     records = [json.loads(path.read_text()) for path in tmp_path.iterdir()]
-    assert len(records) == 9
+    assert len(records) == 11
     assert [record["faults"] for record in records if record["faults"]] == []

@@ -2,6 +2,8 @@
 
 import json
 import math
+import os
+import string
 import tomllib
 from pathlib import Path
 
@@ -16,21 +18,19 @@ from loads.exchange.pylinkage import read_pylinkage
 from loads.exchange.sketch import case_text
 
 DATA = Path(__file__).resolve().parents[2] / "data" / "exchange"
-"""Written by pylinkage 1.3.0: ``fourbar(1, 3, 3, 4, initial_angle=0.7)``, ``slider_crank(1, 3, initial_angle=0.9)``."""
-FOUR_BAR = (
-    "2P.Ay,1E8.K,0.1011.MA,A,0mv,0VU,0.GB,B,0e_,E6,0.GC,C,l1,WW,0.KD,D,qD,0Pk,0..YRAB,AB,Fe,Fe,0ix,08i,c5cae9,A,B,,."
-    "YRBC,BC,Fe,Fe,32,NJ,303e9f,B,C,,.YRCD,CD,Fe,Fe,nd,3P,0d125a,C,D,,...N_v"
+"""Written by pylinkage 1.3.0: ``fourbar(1, 3, 3, 4, initial_angle=0.7)``, ``slider_crank(1, 3, initial_angle=0.9)``;
+those of PMKS+ are templates of its own (PMKS-Web/PMKSWeb, ``template-linkages.ts``)."""
+FOUR_BAR, PUNCH, WATT = (
+    (DATA / f"pmks-{name}.txt").read_text(encoding="utf-8").strip() for name in ("four-bar", "punch", "watt")
 )
-PUNCH = (
-    "2P.Ay,1E8.K,0.1011.MA,A,0,0,0.GB,B,0,Im,0.GC,C,0,0r8,0.LP,P,0,0r8,OZ..YRAB,Crank,VG,o,0,9O,c5cae9,A,B,,."
-    "YRBC,Connecting rod,ku,6G,0,0HC,303e9f,B,C,,.YPCP,CP,1Tm,0,0,0,,C,P,,..2F1,BC,F1,0,0r8,0,0bW,1Xg0..N_J"
-)
-"""Two templates of PMKS+ (PMKS-Web/PMKSWeb, ``template-linkages.ts``)."""
-WATT = (
-    "2P.Ay,1E8.K,0.1011.MA,A,0Qh,0Kn,0.GB,B,0e1,9i,0.GC,C,bT,LF,0.GD,D,0G5,tZ,0.GE,E,V5,1_z,0.GF,F,1mM,1Gv,0.KG,G,1rt,"
-    "0ey,0..YRAB,AB,Fe,Fe,0XM,05Z,c5cae9,A,B,,.YRBCD,BCD,Fe,Fe,06D,Sr,303e9f,B,C,D,,.YRDE,DE,Fe,Fe,7W,1RG,0d125a,D,E,,."
-    "YREF,EF,Fe,Fe,17j,1dx,B2DFDB,E,F,,.YRFCG,FCG,Fe,Fe,1PE,KQ,26A69A,F,C,G,,...N_u"
-)
+
+
+def whole(code: str, *changes: tuple[str, str]) -> str:
+    """A link of PMKS+ with texts changed, whose last letter tells its length anew, as ``string-transcoder.ts`` does."""
+    for old, new in changes:
+        assert old in code
+        code = code.replace(old, new)
+    return code[:-1] + (string.digits + string.ascii_uppercase + string.ascii_lowercase)[len(code[:-1]) % 62]
 
 
 def case_of(sketch):
@@ -101,11 +101,19 @@ def test_a_punch_of_pmks_presses_with_its_force():
         ("x" * 62 + "0", "no link of PMKS"),
         (FOUR_BAR.replace(".MA,", ".KA,"), "the input has to be one pin on the ground"),
         (PUNCH.replace("0r8,0,0bW", "0r8,0,0r8"), "no link of PMKS"),  # a force without direction
+        (whole(PUNCH, ("YRAB,Crank,VG,o,0,9O,c5cae9,A,B", "YRAB,Crank,VG,o,0,9O,c5cae9," + "A" * 9000)), "no link of"),
+        (
+            whole(PUNCH, (",A,B,,", ",A\x1b[2J,B,,"), ("MA,A,", "MA\x1b[2J,A,"), ("GB,", "MB,")),
+            r"it is A\?\[2J, B; change it",
+        ),
+        (whole(PUNCH, ("YPCP,CP,1Tm,0,0,0,,C,P", "YPCP,CP,1Tm,0,0,0,,C,B\x1b")), "no link of PMKS"),
     ],
 )
 def test_what_is_no_mechanism_of_pmks_is_refused(text, words):
-    with pytest.raises(CaseError, match=words):
+    with pytest.raises(CaseError, match=words) as told:
         read_pmks(text, "link.txt")
+    assert str(told.value).isprintable()
+    assert len(str(told.value)) < 400
 
 
 @pytest.mark.parametrize(
@@ -117,6 +125,11 @@ def test_what_is_no_mechanism_of_pmks_is_refused(text, words):
         ('{"joints": [], "links": []}', "no link has a motor"),
         ("[" * 100_000, "no mechanism of pylinkage"),
         (
+            '{"joints": [{"id": "A\\n", "type": "ground", "position": [null, 0]}], "links": []}',
+            r"joint 'A\?' has no position",
+        ),
+        ('{"joints": [], "links": [{"id": "c", "type": "link", "joints": ["' + "A" * 9000 + '"]}]}', "no mechanism of"),
+        (
             '{"joints": [{"id": "A", "type": "ground", "position": [0, 0]}, {"id": "B", "type": "tracker", "position": '
             '[1, 0], "ref_joint1_id": "A", "ref_joint2_id": "B"}], "links": [{"id": "c", "type": "driver", "joints": '
             '["A"], "motor_joint": "A"}]}',
@@ -125,8 +138,10 @@ def test_what_is_no_mechanism_of_pmks_is_refused(text, words):
     ],
 )
 def test_what_is_no_mechanism_of_pylinkage_is_refused(text, words):
-    with pytest.raises(CaseError, match=words):
+    with pytest.raises(CaseError, match=words) as told:
         read_pylinkage(text, "mechanism.json", 1.0)
+    assert str(told.value).isprintable()
+    assert len(str(told.value)) < 400
 
 
 def test_the_name_of_a_file_stays_a_name(tmp_path: Path) -> None:
@@ -137,10 +152,21 @@ def test_the_name_of_a_file_stays_a_name(tmp_path: Path) -> None:
     assert tomllib.loads((tmp_path / "case.toml").read_text(encoding="utf-8"))["schema_version"] == 1
 
 
-@pytest.mark.parametrize("name", ["nowhere.json", "bytes.json", "bad.json"])
-def test_a_file_that_is_none_ends_in_one_sentence(name: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("nowhere.json", "there is no such file"),
+        ("bytes.json", "it is not UTF-8 text"),
+        ("bad.json", "no mechanism of pylinkage"),
+        ("large.json", "larger than 1 MiB"),
+        (os.devnull, "it is no regular file"),  # a reader of /dev/zero would never end
+    ],
+)
+def test_a_file_that_is_none_ends_in_one_sentence(name: str, words: str, tmp_path: Path) -> None:
     (tmp_path / "bytes.json").write_bytes(b"\xff\xfe\x00")
     (tmp_path / "bad.json").write_text('{"joints": 3}', encoding="utf-8")
+    (tmp_path / "large.json").write_bytes((DATA / "pylinkage-four-bar.json").read_bytes() + b" " * 2**20)
     done = programs.inside("new", "--from-pylinkage", name, "case.toml", folder=tmp_path)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert words in done.stderr
     assert not (tmp_path / "case.toml").exists()
