@@ -24,7 +24,7 @@ LAYERS = {
         *("study", "sizing", "tolerance"),
     ),
     "reports": (
-        *("words", "tables", "sheet", "vibration", "figures", "turnable"),
+        *("words", "tables", "sheet", "vibration", "figures", "outlines", "turnable"),
         *("motion", "page", "study", "commands", "notebook"),
     ),
 }

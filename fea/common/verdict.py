@@ -131,7 +131,9 @@ def _share(value: float, limit: float) -> float:
 
 
 SIZES = (Quantity.SIZE_X, Quantity.SIZE_Y, Quantity.SIZE_Z)
-UNLOADED_QUANTITIES = (Quantity.CLEARANCE, Quantity.FREQUENCY_RATIO, Quantity.MASS, *SIZES)
+SHARED_QUANTITIES = (Quantity.CLEARANCE, Quantity.MASS, *SIZES)
+"""What is the same under every load case, and stands with the first one."""
+UNLOADED_QUANTITIES = (*SHARED_QUANTITIES, Quantity.FREQUENCY_RATIO)
 """What does not come from loads; they change frequencies alone, as far as they tighten links."""
 MOTOR_QUANTITIES = (Quantity.DRIVE_POWER, Quantity.DRIVE_SPEED, Quantity.DRIVE_TORQUE, Quantity.TORQUE_SHARE)
 """What is asked of a motor over the motion of a rigid linkage."""
@@ -314,6 +316,11 @@ class CheckOutcome:
         """True where it says that the linkage as a whole does not hold the load."""
         asked = self.subject == LINKAGE and self.quantity not in (Quantity.LIMIT_LOAD, *UNLOADED_QUANTITIES)
         return asked and self.verdict is Verdict.FAIL
+
+    @property
+    def shared(self) -> bool:
+        """True where it is the same under every load case, and stands with the first one for all of them."""
+        return self.quantity in SHARED_QUANTITIES
 
     @property
     def unit(self) -> str:

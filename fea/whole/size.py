@@ -60,6 +60,22 @@ def size_outcomes(case: Case, found: Extent | None) -> tuple[CheckOutcome, ...]:
     )
 
 
+def size_limits(case: Case) -> tuple[float, ...]:
+    """Return the least limits of all checks of size.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    tuple of 3 float
+        Along x, y and z [mm]; empty where no check of size is stated.
+    """
+    stated = [check.maximum for check in case.checks.values() if isinstance(check, SizeCheck)]
+    return tuple(min(lengths) for lengths in zip(*stated, strict=True))
+
+
 def size_sentence(found: Extent, axis: int) -> str:
     """Say between which outlines a linkage is longest along an axis, and what is not counted.
 

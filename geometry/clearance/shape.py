@@ -153,7 +153,9 @@ def pin_shape(name: str, diameter: float, low: float, high: float) -> Shape:
     return Shape(name=name, cores=(core,))
 
 
-def point_shape(name: str, points: Sequence[tuple[float, float]], low: float, high: float) -> Shape:
+def point_shape(
+    name: str, points: Sequence[tuple[float, float]], low: float, high: float, *, joined: bool = False
+) -> Shape:
     """Return points as an outline, for a link of which no more is known.
 
     Parameters
@@ -164,6 +166,8 @@ def point_shape(name: str, points: Sequence[tuple[float, float]], low: float, hi
         [mm]
     low, high : float
         z between which the link lies [mm].
+    joined : bool, optional
+        True for the line through the points.
 
     Returns
     -------
@@ -172,7 +176,8 @@ def point_shape(name: str, points: Sequence[tuple[float, float]], low: float, hi
     """
     import shapely
 
-    core = Core(geometry=shapely.MultiPoint(points), radius=0.0, low=low, high=high, error=0.0)
+    geometry = shapely.LineString(points) if joined else shapely.MultiPoint(points)
+    core = Core(geometry=geometry, radius=0.0, low=low, high=high, error=0.0)
     return Shape(name=name, cores=(core,))
 
 

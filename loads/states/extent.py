@@ -47,20 +47,29 @@ class Extent:
         """What the box is about."""
         return tuple(_outlines(self.assembly))
 
-    def at(self, value: float) -> Placement:
-        """Return the pose, as one of one, at a value of the motion's coordinate.
+    @property
+    def stated(self) -> Placement:
+        """The stated pose, as one of one."""
+        return Placement(closure=self.pose.closure, q=self.pose.q[None])
+
+    def shown(self, count: int) -> Placement:
+        """Return poses for a picture: some over the motion, and those at which it reaches furthest.
 
         Parameters
         ----------
-        value : float
-            [rad, mm]
+        count : int
+            Of poses that are evenly spread.
 
         Returns
         -------
         Placement
+            The stated pose alone where there is no motion.
         """
-        assert self.motion is not None
-        return along(self.motion)(np.array([value]))
+        if self.motion is None:
+            return self.stated
+        first, last = float(self.motion.angles[0]), float(self.motion.angles[-1])
+        furthest = [side.at for sides in self.reaches for side in sides if side.at is not None]
+        return along(self.motion)(np.array([*np.linspace(first, last, count), *furthest]))
 
 
 def extent(case: Case, pose: Pose, motion: Motion | None = None) -> Extent:
@@ -111,7 +120,7 @@ def _outlines(found: Assembly) -> Iterator[Standing]:
         first, last, chord = wing_span(wing, case)
         level, half = case.heights[wing.link], max(chord) / 2.0
         ends = [(first, 0.0), (last, 0.0)]
-        yield point_shape(f"wing of {wing.link}", ends, level - half, level + half), Spot(link=wing.link)
+        yield point_shape(f"wing of {wing.link}", ends, level - half, level + half, joined=True), Spot(link=wing.link)
 
 
 def unmeasured(case: Case) -> tuple[str, ...]:

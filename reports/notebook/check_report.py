@@ -8,6 +8,7 @@ from typing import Literal
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
+from fea.whole.size import size_limits
 from geometry.base.errors import CannotRunError, CaseError
 from loads.statics.rounding import without_rounding
 from reports.notebook.shown import Picture, Row, Table, pick, summary
@@ -129,11 +130,29 @@ class CheckReport:
         CaseError
             For a case without layers.
         """
-        from reports.figures.assembly import assembly_drawing
+        from reports.outlines.assembly import assembly_drawing
 
         if self.result.clearance is None:
             raise CaseError("the case states no layers, so all links lie in one plane; state links.A.layer = 1")
         return Picture(assembly_drawing(self.result.clearance))
+
+    def plot_box(self) -> Picture:
+        """Draw the box about the linkage over its motion, from above and from the side, with the limits of its checks.
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        CaseError
+            For a case without layers and without a check of size.
+        """
+        from reports.outlines.box import box_drawing
+
+        if self.result.size is None:
+            raise CaseError('the box was not found; state layers, or a check with type = "size" and its maximum')
+        return Picture(box_drawing(self.result.size, size_limits(self.result.case)))
 
     def plot_clearance(self) -> Picture:
         """Draw the two outlines that touch first over the motion, or come nearest.
@@ -147,7 +166,7 @@ class CheckReport:
         CaseError
             For a case without layers, and where nothing lies at one height.
         """
-        from reports.figures.contact import contact_drawing
+        from reports.outlines.contact import contact_drawing
 
         if self.result.clearance is None or self.result.clearance.shown is None:
             raise CaseError("no two links lie at one height, so there is no gap to draw; state layers that links share")

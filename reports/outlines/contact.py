@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry.clearance.least import Gap
 from loads.states.clearance import Clearance
-from reports.figures.assembly import FILL, LAYERS, Placed, border, dark, draw
+from reports.outlines.assembly import FILL, LAYERS, Placed, border, dark, draw
 from reports.sheet.canvas import Canvas, extent, faint
 from reports.sheet.labels import place_labels
 from reports.sheet.plot import Axes, ticks, widest

@@ -14,6 +14,7 @@ from reports.page.coverage import not_covered
 from reports.page.frequencies_page import frequencies_view
 from reports.page.pictures import (
     ASSEMBLY,
+    BOX,
     CONTACT,
     diagram_name,
     governing_load_cases,
@@ -32,6 +33,7 @@ from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
 from reports.tables.record import worst_load_case
 from reports.tables.springs import holding_sentence, spring_sentences
+from reports.tables.whole import whole_table
 from reports.turnable.link import link_name
 from reports.turnable.moving import CHECK_CAPTION, LINKAGE
 from reports.turnable.script import viewer
@@ -105,6 +107,8 @@ def render(
         clearance=clearance_record(result.clearance),
         clearance_line=clearance_line(result.clearance),
         most_gaps=MOST,
+        whole=whole_table(result),
+        box=figures.get(BOX),
         dead_points=_dead_points(result),
         near_dead_point=NEAR_DEAD_POINT,
         anchors={name: anchor_record(case) for name, case in result.load_cases.items()},

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 from fea.outcomes.result import CheckResult
+from fea.whole.size import size_limits
 from reports.tables.layers import build_directions_of
 from reports.tables.record import worst_load_case
 
@@ -23,8 +24,8 @@ def linkage_name(load_case: str) -> str:
     return f"linkage-{load_case}"
 
 
-ASSEMBLY, CONTACT = "assembly", "clearance"
-"""Names of the drawings of links in layers, and of two outlines where they touch or come nearest."""
+ASSEMBLY, CONTACT, BOX = "assembly", "clearance", "box"
+"""Names of the drawings of links in layers, of two outlines where they touch or come nearest, and of all in a box."""
 
 
 def diagram_name(link: str) -> str:
@@ -108,12 +109,13 @@ def draw_pictures(
     tuple
         Name -> PNG, and warnings.
     """
-    from reports.figures.assembly import assembly_drawing
     from reports.figures.build_map import build_map
-    from reports.figures.contact import contact_drawing
     from reports.figures.diagrams import internal_force_diagram
     from reports.figures.drawings import linkage_drawing
     from reports.figures.figures import stress_plots
+    from reports.outlines.assembly import assembly_drawing
+    from reports.outlines.box import box_drawing
+    from reports.outlines.contact import contact_drawing
     from reports.vibration.pictures import frequency_pictures
 
     worst = {link: worst_load_case(result, link).links[link] for link in next(iter(result.load_cases.values())).links}
@@ -128,6 +130,8 @@ def draw_pictures(
             if result.clearance.shown is not None:
                 pictures[CONTACT] = contact_drawing(result.clearance)
         pictures |= frequency_pictures(result.frequencies)
+        if result.size is not None and (limits := size_limits(result.case)):
+            pictures[BOX] = box_drawing(result.size, limits)
         pictures |= {
             diagram_name(link): internal_force_diagram(found.beam, stations[link])
             for link, found in worst.items()

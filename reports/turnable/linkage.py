@@ -15,8 +15,8 @@ from loads.case.layers import on_one_axis, slab
 from loads.records.applied import LineLoad, PointLoad
 from loads.records.springs import Attachment, LineSpring
 from loads.states.actions import stated_loads
-from reports.figures.assembly import LAYERS
 from reports.figures.figures import COLOURS
+from reports.outlines.assembly import LAYERS
 from reports.turnable.bodies import PlateBody, plate_body
 from reports.turnable.pack import quantised, shades
 from reports.words.wording import plain

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from fea.common.band import Band
-from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict, by_nearness
+from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
 from fea.outcomes.unchecked import unchecked
 
 if TYPE_CHECKING:
@@ -290,7 +290,7 @@ def named(check: CheckOutcome, *, long: bool = False) -> str:
 
 
 def _under(result: "CheckResult", check: CheckOutcome) -> str:
-    if check.quantity in UNLOADED_QUANTITIES or len(result.load_cases) == 1:
+    if check.shared or len(result.load_cases) == 1:
         return ""
     return f"under load case {check.load_case} "
 

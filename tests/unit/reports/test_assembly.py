@@ -7,10 +7,13 @@ from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 from legible import assert_legible, written
 
 from loads.states.clearance import clearance
-from reports.figures.assembly import LAYERS, Placed, assembly_sheet, layer_colours
-from reports.figures.contact import contact_sheet
+from loads.states.extent import extent
+from reports.outlines.assembly import LAYERS, Placed, assembly_sheet, layer_colours
+from reports.outlines.box import box_sheet
+from reports.outlines.contact import contact_sheet
 from reports.sheet.canvas import faint
 from reports.sheet.marks import Area, Stroke
+from reports.sheet.style import INK, JOINT_FORCE
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +53,7 @@ def test_outlines_are_drawn_to_scale(found):
 
 
 def test_a_hole_is_cut_out_of_what_is_drawn():
-    from reports.figures.assembly import rings
+    from reports.outlines.assembly import rings
 
     square = shapely.box(0.0, 0.0, 10.0, 10.0).difference(shapely.box(4.0, 4.0, 6.0, 6.0))
     [ring] = rings(square)
@@ -83,3 +86,20 @@ def test_a_pin_that_is_touched_has_its_name():
     sheet = contact_sheet(clearance(bar_on_a_pin()))
     assert {"link crank", "pin D", "first contact of link crank and pin D"} <= written(sheet)
     assert_legible(sheet)
+
+
+def test_the_box_is_drawn_to_scale_with_its_lengths_and_limits():
+    """From 60 to 5 degrees: 100 + 120 cos 5° + 16 mm by 120 sin 60° + 16 mm, by 23 mm of layers."""
+    case = parallel_bars()
+    sheet = box_sheet(extent(case, case.solve_pose()), (230.0, 150.0, 20.0))
+    texts = {text.text: text.colour for text in sheet.texts}
+    assert texts["235.5 mm of 230 mm"] == texts["23 mm of 20 mm"] == JOINT_FORCE
+    assert texts["119.9 mm of 150 mm"] == INK
+    assert {"From above, to scale", "the limits, about the middle of the box"} <= texts.keys()
+    assert_legible(sheet)
+    lines = [mark for mark in sheet.marks if isinstance(mark, Stroke) and len(mark.points) == 5]
+    [plan, side] = [mark.points for mark in lines if mark.colour == INK and mark.width == 1.2][:2]
+    wide, tall = np.ptp(plan, axis=0)
+    lengths = 116.0 + 120.0 * np.cos(np.radians(5.0)), 16.0 + 60.0 * np.sqrt(3.0)
+    assert wide / tall == pytest.approx(lengths[0] / lengths[1], rel=1e-4)
+    assert np.ptp(side, axis=0)[0] == pytest.approx(wide)
