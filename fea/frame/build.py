@@ -190,7 +190,10 @@ class _Builder:
                 self.notes.append(f"link {link} has no part and is rigid in the frame")
             for load in own:
                 if isinstance(load, PointLoad):
-                    self.node_loads.append(NodeLoad(node=self.points[link, load.point], wrench=load.wrench))
+                    lever = np.array([load.arm, load.wrench[:3]])
+                    self.node_loads.append(
+                        NodeLoad(node=self.points[link, load.point], wrench=load.wrench, lever=lever)
+                    )
         self.pins = {name: (self._pin(name, 0), self._pin(name, 1)) for name in case.joints}
 
     def _pin(self, name: str, which: int) -> int | None:
@@ -381,7 +384,8 @@ class _Builder:
         _, node = min(solid, key=lambda station: abs(station[0] - centroid))
         missing = load.resultant(place) - line.resultant(place)
         arm = self._place(link, 0.0, 0.0) - self.places[node]
-        self.node_loads.append(NodeLoad(node=node, wrench=shifted(missing, arm)))
+        aside = place.axes(link) @ np.array([0.0, height, 0.0])
+        self.node_loads.append(NodeLoad(node=node, wrench=shifted(missing, arm), lever=np.array([aside, force])))
         return line
 
     def _rigid(self, link: str, loads: Sequence[Load]) -> None:
@@ -401,7 +405,9 @@ class _Builder:
         for load in loads:
             if not isinstance(load, PointLoad):
                 arm = self._place(link, 0.0, 0.0) - place
-                self.node_loads.append(NodeLoad(node=node, wrench=shifted(load.resultant(self.pose.placement), arm)))
+                wrench = shifted(load.resultant(self.pose.placement), arm)
+                at = arm + self.pose.placement.axes(link) @ _acts_at(load)
+                self.node_loads.append(NodeLoad(node=node, wrench=wrench, lever=np.array([at, wrench[:3]])))
 
     def _stiff(self, a: int, b: int, z_axis: Real = ALONG_PINS) -> None:
         links = self.case.bending_links
@@ -421,6 +427,14 @@ class _Builder:
         self.elements.append(
             FrameElement(nodes=(a, b), section=section, young=young, poisson=0.3, z_axis=z_axis, rigid=True)
         )
+
+
+def _acts_at(load: BodyForce | LineLoad) -> Real:
+    """Return where a spread load's force acts (3,), in the frame of its link."""
+    if isinstance(load, BodyForce):
+        return np.array([*load.mass.centroid, 0.0])
+    size = float(load.force @ load.force)
+    return ALONG_X * (float(load.first_moment @ load.force) / size if size > 0.0 else 0.0)
 
 
 def _line_between(lines: Sequence[LineLoad], x0: float, x1: float) -> tuple[Real, Real]:

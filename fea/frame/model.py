@@ -177,14 +177,25 @@ class NodeLoad:
         Its number.
     wrench : ndarray, shape (6,)
         Global axes: Fx, Fy, Fz [N], Mx, My, Mz [N·mm].
+    lever : ndarray, shape (2, 3)
+        An arm that turns with the node, and the force at its end, whose moment is in the wrench; that moment so changes
+        as the node turns [mm, N].
     """
 
     node: int
     wrench: Floats
+    lever: Floats = field(default_factory=lambda: np.zeros((2, 3)))
 
     def __post_init__(self) -> None:
         """Copy and check."""
         object.__setattr__(self, "wrench", _array(self.wrench, "the wrench of a node load", 6))
+        object.__setattr__(self, "lever", _array(self.lever, "the lever of a node load", 2, 3))
+
+    @property
+    def stiffness(self) -> Floats:
+        """(3, 3) by which the moment of the lever resists turns of the node: (F · r) 1 - r Fᵀ [N·mm]."""
+        arm, force = self.lever
+        return np.asarray(float(arm @ force) * np.eye(3) - np.outer(arm, force))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

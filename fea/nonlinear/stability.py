@@ -92,7 +92,7 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
 
 
 def stiffness_parts(path: EquilibriumPath, end_forces: Floats, guide_forces: Floats) -> tuple[Floats, Floats]:
-    """Return the stiffness of a frame as it stands, and the geometric stiffness of the forces in it.
+    """Return the stiffness of a frame as it stands, and the geometric stiffness of the forces in it and on it.
 
     Parameters
     ----------
@@ -109,9 +109,9 @@ def stiffness_parts(path: EquilibriumPath, end_forces: Floats, guide_forces: Flo
         K and K_g (k + g, k + g) with the guides' rows and columns, for ``EquilibriumPath.free``.
     """
     start, f = path.state, end_forces
-    natural = np.column_stack(
-        [(f[:, 1, 0] - f[:, 0, 0]) / 2.0, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]]
-    )
+    first, last = (path.elements.loads @ path.elements.axes)[..., 0].T
+    mean = (f[:, 1, 0] - f[:, 0, 0]) / 2.0 + (last - first) * path.elements.lengths / 12.0
+    natural = np.column_stack([mean, f[:, 0, 5], f[:, 1, 5], f[:, 0, 4], f[:, 1, 4], f[:, 1, 3]])
     K = path.assemble(path.respond(start, 0.0), start, 0.0)[1]
     loaded = replace(start, guide_forces=guide_forces)
     bent = path.assemble(path.elements.geometric(natural), loaded, 1.0)[1]
@@ -119,6 +119,10 @@ def stiffness_parts(path: EquilibriumPath, end_forces: Floats, guide_forces: Flo
         # Their stiffness is in K already; what their forces make of it is left.
         elastic = path.springs.tangent(start.displacements, path.chain.axes(start.rotations), 0.0)
         bent[: path.chain.count, : path.chain.count] -= elastic
+    axes = path.chain.axes(start.rotations)
+    for load in path.model.loads:
+        numbers = [step.number for step in path.chain.nodes[load.node]]
+        np.add.at(bent, np.ix_(numbers, numbers), axes[numbers] @ load.stiffness @ axes[numbers].T)
     return K, bent
 
 

@@ -38,6 +38,8 @@ SUBDIVISIONS = 4
 """Elements along the longest beam; shorter ones have fewer in proportion."""
 BASIS = 12
 """Modes beyond those asked for in which the doubt about flexibilities is resolved."""
+_ROUNDING = 1e-12
+"""Negative eigenvalue over the largest that was found, above which it may be rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -184,7 +186,7 @@ def _modes(
         size = float(np.linalg.norm(shape[:, :3], axis=1).max()) or 1.0
         modes.append(Mode(frequency=band, shape=shape / size, in_plane=plane / whole))
     notes = list(frame.notes)
-    unstable = found.values[:count] < -1e-9 * abs(found.values[-1])
+    unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
     if unstable.any():
         rate = float(np.sqrt(-found.values[0]))
         notes.append(

@@ -3,7 +3,7 @@
 Every record serves one pose or n of them, along a leading axis of its arrays, in global axes or in its link's own.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
@@ -46,14 +46,22 @@ class PointLoad:
         Fx, Fy, Fz [N] and Mx, My, Mz [N mm] about the point.
     axes : str
         Axes of the components: "global", or "link" for a load that turns with its link.
+    arm : array (..., 3)
+        From the point to where the force acts, which turns with the link as it deforms; the moment of the force about
+        the point is in the wrench [mm].
     """
 
-    VECTORS: ClassVar[tuple[str, ...]] = ("wrench",)
+    VECTORS: ClassVar[tuple[str, ...]] = ("wrench", "arm")
     SCALARS: ClassVar[tuple[str, ...]] = ()
     link: str
     point: str
     wrench: Real
     axes: Axes = "global"
+    arm: Real = field(default_factory=lambda: np.zeros(3))
+
+    def __post_init__(self) -> None:
+        """Have the arm at every pose of the wrench."""
+        object.__setattr__(self, "arm", np.broadcast_to(self.arm, (*np.shape(self.wrench)[:-1], 3)))
 
     def resultant(self, place: Placement) -> Real:
         """Return the wrench about the origin of the link's frame, in global axes.

@@ -224,4 +224,4 @@ def _carried_load(place: Placement, carried: Carried, gravity: Real) -> Load:
         return LineLoad(link=link, start=start, end=end, at_start=first, at_end=last)
     wrench = force.at_centroid(vector(turn * complex(*own.centroid)))
     arm = vector(turn * complex(*(own.centroid - np.array(points[carried.at]))))
-    return PointLoad(link=link, point=carried.at, wrench=shifted(wrench, arm))
+    return PointLoad(link=link, point=carried.at, wrench=shifted(wrench, arm), arm=arm)

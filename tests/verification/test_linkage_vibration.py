@@ -1,0 +1,289 @@
+"""Natural frequencies of linkages against rigid-body mechanics: pendulums, and drives that give.
+
+Links of a material so stiff that they bend by nothing swing as f = √(k/I)/(2π). The reduced inertia I comes from poses
+on both sides by differences (kinetic energy), the stiffness k from the drive's own and from how the drive torque of
+statics changes with the pose (virtual work): neither knows of the frame.
+"""
+
+import math
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from materials import SOURCED_ENTRIES
+from scipy.linalg import eigh
+from vibrating_frames import DENSITY, LENGTH, POISSON, YOUNG, eigenvalues, rectangle, straight
+
+from fea.frame.build import build_frame
+from fea.frame.case_statics import solve_case_statics
+from fea.frame.linear import solve_frame
+from fea.frame.model import ALL_DOFS, PIN_DOFS, FrameElement, FrameModel, Support, Tie
+from fea.nonlinear.corotational import subdivide
+from fea.nonlinear.equilibrium_path import EquilibriumPath
+from fea.nonlinear.stability import stiffness_parts
+from fea.vibration.linkage_modes import divide, frame_modes
+from fea.vibration.mass_matrix import MassMatrix, beam_mass, body_mass, mass_matrix
+from fea.vibration.over_motion import case_frequencies
+from loads.case.case_file import read_case, validate
+from loads.states.masses import laden_masses, part_masses
+
+STOUT, SLIM = rectangle(4.0, 3.0), rectangle(0.5, 0.5)
+STIFF = f"""
+[parts.bar]
+shape = "bar"
+material = "stiff"
+width = "8 mm"
+thickness = "6 mm"
+fillet_radius = "1 mm"
+[materials.stiff]
+title = "stiff"
+density = "4 g/cm^3"
+youngs_modulus = "90000 GPa"
+poissons_ratio = 0.3
+strength = "yield"
+yield_strength = "90 GPa"
+{chr(10).join(SOURCED_ENTRIES)}
+"""
+LEVER = """
+schema_version = 1
+title = "A lever"
+links.base = { ground = true, points = { O = ["0 mm", "0 mm"], Z = ["9 mm", "0 mm"] } }
+links.lever = { part = "bar", points = { O = ["0 mm", "0 mm"], P = ["90 mm", "0 mm"] } }
+joints.O = { links = ["base", "lever"], pin_diameter = "3 mm" }
+carried = [{ link = "lever", at = "P", mass = "30 g", centroid = ["70 mm", "40 mm"], radius_of_gyration = "12 mm" }]
+"""
+FOUR_BAR = """
+schema_version = 1
+title = "A four-bar with springs and weights"
+links.base.ground = true
+links.base.points = { A = ["0 mm", "0 mm"], D = ["90 mm", "0 mm"], S = ["30 mm", "80 mm"], E = ["60 mm", "-20 mm"] }
+links.crank = { part = "bar", points = { A = ["0 mm", "0 mm"], B = ["30 mm", "0 mm"] } }
+links.coupler = { part = "bar", points = { B = ["0 mm", "0 mm"], P = ["40 mm", "0 mm"], C = ["80 mm", "0 mm"] } }
+links.rocker = { part = "bar", points = { D = ["0 mm", "0 mm"], Q = ["40 mm", "0 mm"], C = ["60 mm", "0 mm"] } }
+joints.A = { links = ["base", "crank"], pin_diameter = "3 mm", pin_material = "stiff" }
+joints.B = { links = ["crank", "coupler"], pin_diameter = "3 mm", pin_material = "stiff" }
+joints.C = { links = ["coupler", "rocker"], pin_diameter = "3 mm", pin_material = "stiff" }
+joints.D = { links = ["base", "rocker"], pin_diameter = "3 mm", pin_material = "stiff" }
+pose = { coordinate = "crank", angle = "60 deg", near = { coupler = "20 deg", rocker = "90 deg" } }
+drive = { link = "crank", joint = "A", stiffness = "3 N*m/rad" }
+springs.hinge = { joint = "C", stiffness = "1500 N*mm/rad", free_angle = "60 deg" }
+tendons.pull = { through = [{ link = "base", at = "S" }, { link = "rocker", at = "C" }], tension = "25 N" }
+[springs.line]
+between = [{ link = "coupler", at = "P" }, { link = "base", at = "S" }]
+stiffness = "3 N/mm"
+free_length = "5 mm"
+[[carried]]
+link = "coupler"
+at = "P"
+mass = "40 g"
+centroid = ["45 mm", "30 mm"]
+radius_of_gyration = "15 mm"
+[[carried]]
+link = "rocker"
+start = "D"
+end = "C"
+mass = "25 g"
+[load_cases.heavy]
+own_weight = true
+gravity = "2000 m/s^2"
+forces = [{ link = "rocker", at = "Q", force = ["30 N", "10 N"] }]
+"""
+PRESS = """
+schema_version = 1
+title = "A slider that is pushed against its spring of a drive"
+links.base = { ground = true, points = { O = ["0 mm", "0 mm"], G = ["0 mm", "0 mm"] } }
+links.upper = { part = "bar", points = { O = ["0 mm", "0 mm"], A = ["80 mm", "0 mm"] } }
+links.lower = { part = "bar", points = { A = ["0 mm", "0 mm"], B = ["70 mm", "0 mm"] } }
+links.ram = { points = { B = ["0 mm", "0 mm"], T = ["20 mm", "0 mm"] } }
+joints.O = { links = ["base", "upper"], pin_diameter = "5 mm" }
+joints.A = { links = ["upper", "lower"], pin_diameter = "5 mm" }
+joints.B = { links = ["lower", "ram"], pin_diameter = "5 mm" }
+joints.guide = { type = "slider", links = ["base", "ram"], points = ["G", "B"] }
+pose = { coordinate = "guide", travel = "120 mm", near = { upper = "30 deg", lower = "-35 deg", ram = "0 deg" } }
+drive = { link = "ram", joint = "guide", stiffness = "300 N/mm" }
+load_cases.heavy = { forces = [{ link = "upper", at = "A", force = ["0 N", "-200 N"] }] }
+carried = [{ link = "ram", at = "T", mass = "50 g" }]
+"""
+
+
+def case_of(text, **tables):
+    return validate({**tomllib.loads(text + STIFF), **tables})
+
+
+def at(case, **pose):
+    """The case in another pose near its own, with its springs as they are."""
+    return case.model_copy(update={"pose": case.pose.model_copy(update=pose)})
+
+
+def reduced(case, entry, value, step):
+    """Inertia and change of the drive's effort, per unit of the coordinate, by differences."""
+    masses = laden_masses(case, part_masses(case))
+    near = [at(case, **{entry: value + s * step}) for s in (-1.0, 1.0)]
+    poses = [one.solve_pose() for one in near]
+    inertia = 0.0
+    for link, mass in masses.items():
+        places = [p.origins[link] + p.rotation(link) @ mass.centroid for p in poses]
+        speed = (places[1] - places[0]) / (2.0 * step)
+        spin = (poses[1].angles[link] - poses[0].angles[link]) / (2.0 * step)
+        inertia += mass.mass * float(speed @ speed) + mass.inertia * spin**2
+    efforts = []
+    for one in near:
+        [found] = solve_case_statics(one).reactions.values()
+        efforts.append(float(found.drive_torque + found.drive_force))
+    return inertia, (efforts[1] - efforts[0]) / (2.0 * step)
+
+
+def first(case, in_plane=True):
+    """Lowest mode in the plane."""
+    [history] = case_frequencies(case).histories.values()
+    return next(mode for mode in history.lowest.modes if (mode.in_plane > 0.5) is in_plane)
+
+
+LAYERS = {"base": 0, "crank": 1, "coupler": 2, "rocker": 1}
+
+
+@pytest.mark.parametrize("layers", [{}, LAYERS])
+def test_a_four_bar_swings_on_its_drive_springs_and_weights(layers):
+    tables = tomllib.loads(FOUR_BAR + STIFF)
+    for name, layer in layers.items():
+        tables["links"][name]["layer"] = layer
+    case = validate({**tables, **({"layer_spacing": "7 mm"} if layers else {})})
+    inertia, more = reduced(case, "angle", case.pose.angle, 1e-4)
+    drive = case.drive.stiffness.value
+    assert abs(more) > 0.1 * drive  # springs and weights count
+    assert first(case).frequency.value == pytest.approx(math.sqrt((drive + more) / inertia) / (2 * math.pi), rel=1e-4)
+
+
+def test_a_slider_swings_on_its_drive():
+    case = case_of(PRESS)
+    inertia, more = reduced(case, "travel", case.pose.travel, 1e-3)
+    expected = math.sqrt((case.drive.stiffness.value + more) / inertia) / (2 * math.pi)
+    assert first(case).frequency.value == pytest.approx(expected, rel=1e-4)
+
+
+def hanging(**load):
+    """A lever that is let go, and swings below its pin."""
+    tables = {
+        "pose": {"coordinate": "lever", "angle": "-80 deg", "equilibrium": True},
+        "load_cases": {"hang": {"own_weight": True, **load}},
+    }
+    return case_of(LEVER, **tables)
+
+
+@pytest.mark.parametrize("gravity", ["9.81 m/s^2", "40 m/s^2"])
+def test_a_compound_pendulum_that_nothing_but_its_weight_holds(gravity):
+    """f = √(m g c/I_O)/(2π), with mass, centroid and inertia of bar and body by the kernel and by hand."""
+    case = hanging(gravity=gravity)
+    mass = laden_masses(case, part_masses(case))["lever"]
+    arm = float(np.linalg.norm(mass.centroid))
+    pull = float(gravity.split()[0]) * 1000.0
+    expected = math.sqrt(mass.mass * pull * arm / (mass.inertia + mass.mass * arm**2)) / (2 * math.pi)
+    found = first(case)
+    assert found.frequency.value == pytest.approx(expected, rel=1e-5)
+    assert found.frequency.low == pytest.approx(expected, rel=1e-4)  # no flexibility is in doubt that counts
+
+
+def test_two_pendulums_in_a_row():
+    """|K - ω² M| = 0 with M of two rods, K = g diag(m1 c1 + m2 L1, m2 c2): the double pendulum, linearised."""
+    pull, line, lengths = 9810.0, DENSITY * SLIM.area, (60.0, 100.0)
+    weight = np.array([0.0, -pull * line, 0.0])
+    nodes = np.array([[0.0, 0, 0], [0, -60, 0], [0, -60, 0], [0, -160, 0]])
+    bars = tuple(
+        FrameElement(nodes=ends, section=SLIM, young=1e6 * YOUNG, poisson=POISSON, load_first=weight, load_last=weight)
+        for ends in ((0, 1), (2, 3))
+    )
+    fixed = FrameModel(
+        nodes=nodes, elements=bars, supports=(Support(node=0),), ties=(Tie(nodes=(1, 2), dofs=ALL_DOFS),)
+    )
+    swinging = replace(fixed, supports=(Support(node=0, dofs=PIN_DOFS),), ties=(Tie(nodes=(1, 2)),))
+    held, path = solve_frame(subdivide(fixed, 6)), EquilibriumPath(subdivide(swinging, 6))
+    K, G = stiffness_parts(path, held.end_forces, held.guide_forces)
+    mass = MassMatrix(model=path.model, beams=np.array([beam_mass(path.model, i, np.full(4, line)) for i in range(12)]))
+    found = frame_modes(path, K + G, mass, 2).values
+    (one, two), (a, b) = (line * length for length in lengths), lengths
+    M = np.array([[one * a**2 / 3.0 + two * a**2, two * a * b / 2.0], [two * a * b / 2.0, two * b**2 / 3.0]])
+    expected = eigh(pull * np.diag([one * a / 2.0 + two * a, two * b / 2.0]), M, eigvals_only=True)
+    assert found == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_weight_above_a_soft_drive_falls_over_and_is_told():
+    """Above its pin: K = k - m g c < 0; it departs as exp(√(|K|/I) t)."""
+    tables = {
+        "pose": {"coordinate": "lever", "angle": "90 deg"},
+        "drive": {"link": "lever", "joint": "O", "stiffness": "5 N*mm/rad"},
+        "load_cases": {"stand": {"own_weight": True}},
+        "carried": [{"link": "lever", "at": "P", "mass": "30 g"}],
+    }
+    case = case_of(LEVER, **tables)
+    mass = laden_masses(case, part_masses(case))["lever"]
+    fall = mass.mass * 9810.0 * mass.centroid[0] - 5.0
+    rate = math.sqrt(fall / (mass.inertia + mass.mass * mass.centroid[0] ** 2))
+    [history] = case_frequencies(case).histories.values()
+    assert history.frequencies[0, 0] == history.low[0, 0] == 0.0
+    assert f"every {1.0 / rate:.3g} s" in " ".join(history.lowest.notes)
+    stiff = case_of(LEVER, **{**tables, "drive": {**tables["drive"], "stiffness": "500 N*mm/rad"}})
+    expected = math.sqrt(500.0 - 5.0 - fall) / math.sqrt(fall) * rate / (2 * math.pi)
+    assert first(stiff).frequency.value == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_turn_of_the_whole_changes_nothing():
+    tables, turn = tomllib.loads(FOUR_BAR + STIFF), math.radians(37.0)
+    plain = validate({**tables, "materials": {"stiff": {**tables["materials"]["stiff"], "youngs_modulus": "3 GPa"}}})
+    points = {
+        name: (math.cos(turn) * x - math.sin(turn) * y, math.sin(turn) * x + math.cos(turn) * y)
+        for name, (x, y) in plain.links["base"].points.items()
+    }
+    base = plain.links["base"].model_copy(update={"points": points})
+    pose = plain.pose.model_copy(
+        update={"angle": plain.pose.angle + turn, "near": {k: v + turn for k, v in plain.pose.near.items()}}
+    )
+    [load_case] = plain.load_cases.values()
+    [force] = load_case.forces
+    spin = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    turned_force = force.model_copy(update={"force": tuple(spin @ np.array(force.force))})
+    turned = load_case.model_copy(
+        update={"gravity_direction": load_case.gravity_direction + turn, "forces": (turned_force,)}
+    )
+    other = plain.model_copy(
+        update={"links": {**plain.links, "base": base}, "pose": pose, "load_cases": {"heavy": turned}}
+    )
+    one, two = (case_frequencies(case).histories["heavy"] for case in (plain, other))
+    for end in ("frequencies", "low", "high"):
+        assert getattr(one, end) == pytest.approx(getattr(two, end), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["flapping-wing-chosen", "knee"])
+def test_the_mass_matrix_weighs_as_the_kernel_says(name):
+    """Moved and turned as a whole, in layers and pairs, with arms, pins and what links carry."""
+    case = read_case(name)
+    masses = part_masses(case)
+    frame = build_frame(case, case.stated_pose, (), held=case.pinned_drive)
+    divided, parents = divide(frame, 4)
+    mass = mass_matrix(case, frame, divided, parents, masses)
+    ladens = {link: one for link, one in laden_masses(case, masses).items() if link != case.linkage.ground}
+    total = sum(one.mass for one in ladens.values())
+    pose, inertia = case.stated_pose, 0.0
+    for link, one in ladens.items():
+        place = pose.origins[link] + pose.rotation(link) @ one.centroid
+        inertia += one.inertia + one.mass * float(place @ place)
+    n = len(divided.nodes)
+    for axis in range(3):
+        shape = np.zeros((n, 6))
+        shape[:, axis] = 1.0
+        assert mass.energies(shape)[0] == pytest.approx(total, rel=1e-9)
+    turned = np.zeros((n, 6))
+    turned[:, 0], turned[:, 1], turned[:, 5] = -divided.nodes[:, 1], divided.nodes[:, 0], 1.0
+    whole, plane = mass.energies(turned)
+    assert plane == pytest.approx(whole, rel=1e-9)
+    assert whole == pytest.approx(inertia, rel=2e-3)
+
+
+def test_what_has_no_mass_gives_no_spurious_value():
+    """A beam without mass and a body at its tip: as many modes as the body has motions with mass."""
+    body = body_mass(1e-5, np.array([0.0, 0.0, 0.0]), 4e-3)
+    found = eigenvalues(straight(STOUT, ALL_DOFS, set()), 12, bodies=[(1, body)], density=0.0)
+    assert len(found) == 4
+    i_y = STOUT.i_y
+    across = 3.0 * YOUNG * i_y / LENGTH**3 / 1e-5  # out of the plane, where the body has no inertia
+    assert min(found, key=lambda v: abs(v - across)) == pytest.approx(across, rel=1e-2)
