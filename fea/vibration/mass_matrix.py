@@ -5,7 +5,7 @@ of a part's mass lies along its beams, arms and flanks of slots included, in pro
 linearly along the link so that the centroid is that of the part; where it would become negative for that, or the
 centroid lies beside the beams, its line is shifted as a rigid body beside them. Sections have rotary inertia, and where
 the part's moment of inertia about z is more than this gives, as that of a wide plate, what is missing is spread along
-the beams as rotary inertia. Where it is less, it is left so.
+the beams as rotary inertia. Where it is less, that of the sections is taken off, as far as there is any.
 Masses that are spread along a link lie on its axis; bodies stand at a node, with their centroid beside it.
 
 The matrix of a beam is the integral of Nᵀ m N with the shape functions N that its stiffness has, in bending
@@ -302,7 +302,7 @@ class _Mass:
         known += sum(float(g.sum()) * s.i_z / s.area for g, s in zip(grains, own, strict=True))
         for (_, matrix), place, offset in zip(eyes, places - mass.centroid, offsets, strict=True):
             known += float(matrix[5, 5] + 2.0 * offset @ place + matrix[0, 0] * place @ place)
-        missing = max(mass.inertia - known, 0.0) / left
+        missing = max((mass.inertia - known) / left, -min(s.i_z / s.area for s in own))
         for i, own_grains in zip(elements, grains, strict=True):
             density = own_grains / (self.divided.length(i) * _WEIGHTS)
             self.beams[i] += beam_mass(self.divided, i, density, missing, line)
