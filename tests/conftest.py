@@ -19,6 +19,13 @@ def pytest_configure(config):
         os.environ["ALULA_TESTS_SHARE"] = tempfile.mkdtemp(prefix="alula-tests-")
 
 
+def pytest_collection_finish(session):
+    """Let the processes of a run share what the kernel says of bodies that several tests weigh."""
+    import solved
+
+    solved.share_masses()
+
+
 def pytest_unconfigure(config):
     """Remove it."""
     if not hasattr(config, "workerinput"):

@@ -16,8 +16,11 @@ from fea.claims.audit import ClaimResult
 from fea.claims.sources import check_all
 from fea.outcomes.result import CheckResult
 from geometry.base.locks import locked
+from geometry.meshing.mesh import MassProperties, mass_properties
+from geometry.parts.part import Body
 from loads.case.case import Case
 from loads.case.case_file import read_case
+from loads.states import masses
 
 T = TypeVar("T")
 
@@ -39,6 +42,17 @@ def shared(name: str, solve: Callable[[], T]) -> T:
         if held is not None:
             os.close(held)
     return found
+
+
+def share_masses() -> None:
+    """Measure equal bodies once per run: ``loads.states.masses`` measures them once per process."""
+
+    @cache
+    def measured(body: Body) -> MassProperties:
+        fixed = body.part.is_fixed  # a part from a file, whose content its name does not tell
+        return mass_properties(body) if fixed else shared(f"mass {body!r}", lambda: mass_properties(body))
+
+    masses._measured = measured
 
 
 @cache

@@ -30,7 +30,7 @@ def four_bar(tmp_path_factory):
     return path
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def shown(browser, four_bar):
     browser.open(four_bar)
     browser.run(f"document.querySelector('{FIGURE}').scrollIntoView()")

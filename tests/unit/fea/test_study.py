@@ -8,6 +8,7 @@ from contextlib import closing, nullcontext
 from pathlib import Path
 
 import pytest
+import solved
 
 from fea.common.verdict import Verdict
 from fea.study.engine import CrashError, Engine, local_engine
@@ -219,19 +220,13 @@ def test_a_part_whose_content_changed_on_its_way_is_not_computed():
 
 def test_workers_compute_what_a_check_computes(tmp_path):
     """A real worker's numbers are those of the check in this process; what the case's rules refuse comes back so."""
-    from fea.check.run import check_case
-    from loads.case.case_file import read_case
-
     found = variants("1 mm, 5 mm", fidelity="beam")
     with local_engine(1, {}, folder=tmp_path) as engine, Store.writing(tmp_path / "s") as store:
         Study(variants=found, store=store).run(lambda: nullcontext(engine))
         refused, done = (answer for _, _, answer, _ in store.rows())
     assert refused.state == "refused"
     assert "inner_diameter" in refused.sentence
-    case = read_case(CASE)
-    expected = [
-        check for case_ in check_case(case, name=CASE, fidelity="beam").load_cases.values() for check in case_.checks
-    ]
+    expected = [check for case in solved.by_hand(CASE).load_cases.values() for check in case.checks]
     checked = [f for f in done.numbers if f.check]
     assert [(f.check, f.subject, f.verdict) for f in checked] == [(c.name, str(c.subject), c.verdict) for c in expected]
     assert [f.value for f in checked] == pytest.approx([c.value.value for c in expected], rel=1e-12, nan_ok=True)

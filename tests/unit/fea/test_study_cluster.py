@@ -9,9 +9,9 @@ from pathlib import Path
 
 import programs
 import pytest
+import studies
 
 from fea.study.cluster import _require_fit, cluster_engine
-from fea.study.engine import local_engine
 from fea.study.evaluate import versions
 from fea.study.store import Store
 from fea.study.study import Study
@@ -69,9 +69,9 @@ def rows(store: Store):
 
 def test_a_cluster_answers_as_this_machine_does_and_survives_what_dies(tmp_path):
     """A killed worker costs its point an attempt; a killed scheduler ends the study, and this machine goes on."""
-    few, many = variants("5..8 by 1"), variants("5..34 by 1")
-    with Store.writing(tmp_path / "local") as store:
-        Study(variants=few, store=store).run(lambda: local_engine(1, {}, folder=tmp_path / "local"))
+    few, many = variants("5..8 by 1"), variants("5..24 by 1")
+    with Store.writing(tmp_path / "here") as store:
+        Study(variants=few, store=store).run(studies.here)
         expected = rows(store)
     with cluster(tmp_path) as (file, (scheduler, killed, _)):
         address = address_of(file)
@@ -80,21 +80,21 @@ def test_a_cluster_answers_as_this_machine_does_and_survives_what_dies(tmp_path)
             assert rows(store) == expected
 
         def kill(progress):
-            if progress.computed == 5:
+            if progress.computed == 3:
                 os.kill(killed.pid, signal.SIGKILL)
-            if progress.computed == 12:
+            if progress.computed == 8:
                 os.kill(scheduler.pid, signal.SIGKILL)
 
         with Store.writing(tmp_path / "many") as store:
             with pytest.raises(CannotRunError, match=r"goes? on with the study"):
-                Study(variants=many, store=store, tell=kill).run(lambda: cluster_engine(address, {}, patience=5.0))
+                Study(variants=many, store=store, tell=kill).run(lambda: cluster_engine(address, {}, patience=2.0))
             stood = rows(store)
-            assert 12 <= len(stood) < 30
+            assert 8 <= len(stood) < 20
     with Store.writing(tmp_path / "many") as store:
-        done = Study(variants=many, store=store).run(lambda: local_engine(1, {}, folder=tmp_path / "many"))
+        done = Study(variants=many, store=store).run(studies.here)
         assert done.stood >= len([row for row in stood if row[2] == "done"])
-        assert [(position, state) for position, _, state, _ in rows(store)] == [(i, "done") for i in range(30)]
-        assert set(map(repr, stood[:12])) <= set(map(repr, rows(store)))
+        assert [(position, state) for position, _, state, _ in rows(store)] == [(i, "done") for i in range(20)]
+        assert {repr(row) for row in stood if row[2] == "done"} <= set(map(repr, rows(store)))
 
 
 class Client:

@@ -8,12 +8,13 @@ import programs
 import pytest
 
 LOAD = "load_cases.lift.forces.0=10 %"
+ONE_LINK = 'checks={strength={type="safety-factor",minimum=1.5,links=["crank"]}}'
 
 
 def test_a_starter_is_sampled_printed_and_written(tmp_path: Path) -> None:
     """The record and the samples say the same; the same seed gives the same samples."""
     assert programs.inside("new", "bar.toml", folder=tmp_path).returncode == 0
-    stated = ("--tolerance", LOAD, "--tolerance", "pins=0.1 mm", "--set", "checks.strength.minimum=1.5")
+    stated = ("--tolerance", LOAD, "--tolerance", "pins=0.1 mm", "--set", ONE_LINK)
     command = ("tolerance", "bar.toml", *stated, "--samples", "500")
     done = programs.inside(*command, "-o", "out", folder=tmp_path)
     assert done.returncode == 0, done.stderr
