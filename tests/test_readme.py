@@ -32,7 +32,17 @@ def words(command: str) -> list[str]:
 
 def is_slow(command: str) -> bool:
     """Whether ``make verify`` runs it: it computes or draws for seconds, and has tests of its own in ``make test``."""
-    return words(command)[0] in ("check", "envelope", "claims", "tolerance", "size", "study", "motion", "inspect")
+    return words(command)[0] in (
+        "check",
+        "envelope",
+        "claims",
+        "tolerance",
+        "size",
+        "study",
+        "motion",
+        "inspect",
+        "frequencies",
+    )
 
 
 def writes_a_case(command: str) -> bool:

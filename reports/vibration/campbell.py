@@ -23,7 +23,7 @@ _SHORT = 3.0
 """Length of a mark at least [points]."""
 _FASTER = 1.5
 """Times the stated speed up to which speeds are drawn."""
-_FAR = 6.0
+_FAR = 4.0
 """Natural frequencies that begin above so many times the least one and the driving frequency are not drawn."""
 
 

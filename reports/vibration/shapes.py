@@ -24,6 +24,8 @@ _TURN, _RISE = math.radians(-20.0), math.radians(28.0)
 """How a view from the side is turned about the pins, and how high the eye stands above the linkage's plane."""
 _GAP, _TITLE, _BELOW, _LETTERS = 14.0, 30.0, 26.0, 8.5
 """Room between the panels, above each and below all, and size of letters [points]."""
+_AXES = 36.0
+"""Width beside the shape in which the axes are shown [points]."""
 _STEPS = 6
 """Straight pieces in which an element is drawn."""
 
@@ -64,7 +66,10 @@ def shapes_sheet(found: LinkageModes) -> Canvas:
     flat = [np.vstack([line @ view.T for line in still]) for view in views]
     spans = [np.ptp(points, axis=0) for points in flat]
     room = 1.0 + 2.0 * _REACH
-    tall = min(max(wide * float(max((s[1] + _REACH * max(s)) / (room * s[0]) for s in spans)), 0.3 * wide), 1.1 * wide)
+    tall = min(
+        max((wide - _AXES) * float(max((s[1] + _REACH * max(s)) / (room * s[0]) for s in spans)), 0.3 * wide),
+        1.1 * wide,
+    )
     rows = math.ceil(len(modes) / columns)
     sheet = Canvas(72.0 * WIDTH, rows * (tall + _TITLE + _GAP) + _BELOW)
     for k, (mode, view, points) in enumerate(zip(modes, views, flat, strict=True)):
@@ -136,8 +141,9 @@ def _panel(
     moved = [line @ view.T + grown * d for line, d in zip(still, seen, strict=True)]
     every = np.vstack([points, *moved])
     low, high = every.min(axis=0), every.max(axis=0)
-    per_mm = min(np.array([right - left, bottom - top]) / np.maximum(1.06 * (high - low), 1e-9 * size))
-    middle, centre = (low + high) / 2.0, np.array([left + right, top + bottom]) / 2.0
+    room = np.array([right - _AXES - left, bottom - top])
+    per_mm = min(room / np.maximum(1.06 * (high - low), 1e-9 * size))
+    middle, centre = (low + high) / 2.0, np.array([left, top]) + room / 2.0
 
     def at(places: Real) -> Real:
         return np.asarray(centre + (places - middle) * per_mm * np.array([1.0, -1.0]))
@@ -160,7 +166,7 @@ def _panel(
         else:
             sheet.disc(place, 2.0, "#ffffff", GROUND, 0.8)
     _scale(sheet, per_mm, (left, bottom), right - left)
-    _triad(sheet, view, np.array([right - 22.0, top + 18.0]))
+    _triad(sheet, view, np.array([right - 24.0, top + 18.0]))
 
 
 def _scale(sheet: Canvas, per_mm: float, corner: tuple[float, float], wide: float) -> None:
