@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -66,8 +65,7 @@ def frequency_outcomes(found: CaseFrequencies | None) -> Iterator[CheckOutcome]:
         for load_case, history in found.histories.items():
             yield _linkage(case, name, check, load_case, history)
         for link in check.links or case.checked_links:
-            if link in found.links:
-                yield _link(found, name, check, fastest, link)
+            yield _link(found, name, check, fastest, link)
 
 
 def deciding_load_case(found: CaseFrequencies) -> str:
@@ -126,8 +124,7 @@ def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, histo
 
 
 def _link(found: CaseFrequencies, name: str, check: FrequencyCheck, load_case: str, link: str) -> CheckOutcome:
-    own: Any = found.links[link]
-    driving = found.histories[load_case].driving
+    own, driving = found.links[link], found.histories[load_case].driving
     mode = own.modes[0]
     reason = (
         f"by itself, {own.held}, {link} vibrates at {_hertz(mode.frequency)}, {in_words(mode.in_plane)}; "

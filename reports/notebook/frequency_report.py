@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from fea.common.band import Band
 from fea.vibration.frequency_outcomes import deciding_load_case, least_frequency, unit
@@ -31,8 +30,7 @@ class FrequencyReport:
     @property
     def links(self) -> Mapping[str, tuple[Band, ...]]:
         """Natural frequencies of every link by itself, its joints held [Hz]."""
-        each: Mapping[str, Any] = self.result.links
-        return {name: tuple(mode.frequency for mode in found.modes) for name, found in each.items()}
+        return {name: tuple(mode.frequency for mode in found.modes) for name, found in self.result.links.items()}
 
     @property
     def sentences(self) -> Mapping[str, str]:

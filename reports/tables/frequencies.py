@@ -1,6 +1,5 @@
 """Natural frequencies as records, and as rows of a table."""
 
-from collections.abc import Mapping
 from typing import Any
 
 from fea.vibration.frequency_outcomes import (
@@ -13,6 +12,7 @@ from fea.vibration.frequency_outcomes import (
     unit,
 )
 from fea.vibration.harmonics import HIGHEST, in_words, meetings
+from fea.vibration.link_modes import LinkModes
 from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory
 from loads.case.case import Case
 from reports.tables.data import data, entries
@@ -83,7 +83,7 @@ def _history(case: Case, history: FrequencyHistory) -> dict[str, Any]:
     }
 
 
-def _link(modes: Any) -> dict[str, Any]:
+def _link(modes: LinkModes) -> dict[str, Any]:
     return entries(modes, "model held") | {"modes": [entries(mode, "frequency in_plane") for mode in modes.modes]}
 
 
@@ -130,8 +130,7 @@ def mode_rows(found: CaseFrequencies) -> list[dict[str, Any]]:
                     "most": most_moved(history.lowest, mode),
                 }
             )
-    each: Mapping[str, Any] = found.links
-    for link, modes in each.items():
+    for link, modes in found.links.items():
         for k, own in enumerate(modes.modes):
             rows.append(
                 {

@@ -144,20 +144,36 @@ def test_a_linkage_that_resonates_does_not_give_way():
     assert outcomes["the linkage"].verdict is Verdict.FAIL
 
 
-def test_no_factor_is_told_of_the_linkage():
-    """What its loads make of its stiffness does not go with a modulus, and no load by itself changes it."""
+def test_what_would_change_it_is_the_root_of_the_modulus():
+    """A link by itself keeps its limit at the modulus that is told; the linkage is told none."""
     result, outcomes = checked(lever(speed="3000 rpm"))
-    told = _change(result, outcomes["the linkage"])
-    assert (told.load, told.material, told.size) == (None, None, None)
-    assert change_sentences(told, result) == [
+    own, whole = _change(result, outcomes["link"]), _change(result, outcomes["the linkage"])
+    assert (own.load, whole.load, whole.material, own.size) == (None, None, None, None)
+    assert change_sentences(whole, result) == [
         "It goes with one over the speed of the drive, and with the root of stiffness over mass."
     ]
+    assert own.material is not None
+    changed = lever(speed="3000 rpm")
+    card = changed.all_materials["aluminium-6061-t6"].model_copy(update={"youngs_modulus": own.material.needed})
+    changed = changed.model_copy(update={"materials": {"aluminium-6061-t6": card}})
+    again = checked(changed)[1]["link"]
+    assert again.value.low == pytest.approx(4.0, rel=1e-6)
 
 
 def test_the_least_thickness_that_passes_is_found(tmp_path):
     """The ratio goes with thickness over the root of mass: the closed form tells that 2 mm fails and 4 mm passes."""
     (tmp_path / "lever.toml").write_text(LEVER, encoding="utf-8")
-    vary = ("--vary", 'parts.bar.thickness="2 mm..4 mm"', "--step", "2 mm", "--fidelity", "beam", "--set")
+    vary = (
+        "--vary",
+        'parts.bar.thickness="2 mm..4 mm"',
+        "--step",
+        "2 mm",
+        "--fidelity",
+        "beam",
+        "--workers",
+        "1",
+        "--set",
+    )
     done = programs.inside("size", "lever.toml", *vary, "checks.resonance.minimum=11", folder=tmp_path)
     assert "Least parts.bar.thickness that passes: 4 mm.\nThe greatest that fails: 2 mm." in done.stdout
     assert "natural over driving frequency of" in done.stdout  # the linkage is that lever
