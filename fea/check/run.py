@@ -383,20 +383,23 @@ def _of(names: Sequence[str]) -> str:
 
 
 def _shared_couples(load_cases: Sequence[_LoadCase], results: Mapping[str, LoadCaseResult]) -> list[str]:
-    """Say of which links the sharing of couples between layers leaves the strength open, and what would tell."""
-    found = []
+    """Say once of each link whose strength the sharing of couples between layers leaves open what would tell."""
+    found: dict[str, dict[str, float]] = {}
+    joints_of: dict[str, list[str]] = {}
     for one in load_cases:
         open_links = {c.subject.name for c in results[one.load_case].checks if c.verdict is Verdict.UNDECIDED}
         for link, growth in one.uneven.stress.items():
             joints = [name for name in one.case.linkage.joints_of(link) if one.case.linkage.rise(name) != 0.0]
             unknown = [name for name in joints if one.case.joints[name].tight_in is None]
             if link in open_links and unknown and set(COUPLES) <= set(growth.sources) and growth.high > TELLING:
-                found.append(
-                    f"load case {one.load_case}: how pins share the couples between layers may make the stress of "
-                    f"{link} {growth.high:.3g} times as large; tight_in of joints {', '.join(unknown)} would narrow "
-                    "its band"
-                )
-    return found
+                found.setdefault(link, {})[one.load_case] = growth.high
+                joints_of[link] = unknown
+    return [
+        f"{_of(list(times))}: how pins share the couples between layers may make the stress of {link} "
+        f"{'up to ' if len(times) > 1 else ''}{max(times.values()):.3g} times as large; tight_in of joints "
+        f"{', '.join(joints_of[link])} would narrow its band"
+        for link, times in found.items()
+    ]
 
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:

@@ -20,7 +20,7 @@ Real = NDArray[np.float64]
 
 POSES = 17
 """At which outlines are drawn, besides those that reach furthest."""
-_TALLEST, _LOWEST = 400.0, 60.0
+_TALLEST, _LOWEST = 320.0, 60.0
 """Height of the view from above at most, and of the view from the side at least [points]."""
 _RIGHT, _ABOVE, _BELOW, _LETTERS, _ROW = 12.0, 18.0, 40.0, 8.5, 13.0
 _PAD = (14.0, 24.0, 30.0, 14.0)

@@ -1,8 +1,10 @@
 """A check of links in layers: its bands, what narrows them, what its report says."""
 
+import re
 from functools import cache
 
 import pytest
+import solved
 from edited_cases import edited
 
 from fea.check.run import check_case
@@ -53,3 +55,12 @@ def test_the_report_says_what_would_narrow_an_open_check() -> None:
     assert any("stress of GF" in text and "tight_in of joints F, G" in text for text in found)
     assert not any("stress of GF" in text for text in checked().warnings)  # where it passes all the same
     assert dict(not_covered(checked())).keys() >= {"Layers"}
+
+
+def test_what_would_narrow_them_is_said_once_of_each_link() -> None:
+    """Of the ornithopter under its load cases together, not once for every one."""
+    result = solved.by_hand("ornithopter")
+    told = [text for text in result.warnings if "how pins share the couples" in text]
+    links = [re.findall(r"stress of (\S+) ", text) for text in told]
+    assert sorted(links) == sorted([link] for link in result.case.checked_links)
+    assert all(text.startswith("load cases slow, fast, ") for text in told)
