@@ -81,7 +81,7 @@ def test_stress_at_every_place_of_the_pin_equals_a_direct_solution() -> None:
     assert solved.imbalance.max() < 1e-9
     assert solved.reaction.max() < 1e-6
     places = units.slots["slot"].places[NARROW.span]
-    for pose in (4, 9, 12, 21, 33):
+    for pose in (4, 12, 33):
         gap = np.abs(places - history.pins[0].centre[pose, 0]).min()
         assert gap > 1e-4  # between the places of the unit loads, not at one of them
         for number, field in enumerate(direct(mesh, history, pose, material)):

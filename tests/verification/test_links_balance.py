@@ -19,7 +19,7 @@ CASES = {
     "spring-pedal": [],
     "four-bar-synthesis": ["load_cases.weight.own_weight=true", "load_cases.weight.speed=300 rpm"],
 }
-POSES = 13
+POSES = 7
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -38,4 +38,4 @@ def test_the_loads_on_every_link_sum_to_nothing(name: str) -> None:
             if one is not None:
                 assert one.resultant().shape == (6,)
                 compared += int(held.sum())
-    assert compared > 20
+    assert compared >= 2 * POSES

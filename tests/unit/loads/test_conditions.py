@@ -1,6 +1,7 @@
 """How long and how warm: strengths, moduli, and what a material must state for them."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -89,6 +90,7 @@ def test_what_cannot_be_known(overrides, sentence):
         edited(WING, overrides)
 
 
+@cache
 def checked(*overrides):
     return check_case(edited(WING, [PLANAR, *OF_PVC_U, *overrides]), name=WING, fidelity="beam").load_cases["weight"]
 
@@ -121,6 +123,14 @@ def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
     assert warm.links["AE"].safety_factor.value == pytest.approx(0.7 * long.links["AE"].safety_factor.value)
 
 
+@cache
+def checked_by(strength):
+    """The wing under a load of ten years, of a material whose card says which of its strengths counts."""
+    card = PVC.model_copy(update={"strength": strength})
+    case = with_material(edited(WING, [PLANAR, *OF_PVC_U, 'conditions.duration="10 year"']), "pvc-u", card)
+    return case, check_case(case, name=WING, fidelity="beam").load_cases["weight"]
+
+
 @pytest.mark.parametrize(
     ("strength", "von_mises", "principal", "verdict"),
     [
@@ -132,10 +142,7 @@ def test_the_root_of_ae_bears_its_stress_but_not_for_long_in_the_warm():
 )
 def test_sustained_stress_is_the_one_that_decides_the_material(strength, von_mises, principal, verdict):
     """Von Mises against a yield strength, the largest principal stress against an ultimate one; 11 MPa are allowed."""
-    card = PVC.model_copy(update={"strength": strength})
-    case = edited(WING, [*OF_PVC_U, 'conditions.duration="10 year"'])
-    case = with_material(case, "pvc-u", card)
-    result = check_case(case, name=WING, fidelity="beam").load_cases["weight"]
+    case, result = checked_by(strength)
     stresses = {"von_mises_max": Band.exact(von_mises), "principal_max": Band.exact(principal)}
     links = {name: replace(link, decided_by="beam", **stresses) for name, link in result.links.items()}
     found = outcomes(case, "weight", links, result.pins, result.large_displacement, {})
