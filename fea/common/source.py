@@ -25,6 +25,7 @@ class SourceKind(StrEnum):
     RESTRAINT = "restraint by the neighbouring links"
     SNAP_THROUGH = "snap-through of a shallow toggle"
     EYES = "flexibility of eyes, bores and holes"
+    MASS = "place of the mass of fillets"
     EYE_SHARING = "load sharing between the two eyes of a pin"
     COUPLES = "sharing of the couples between layers"
     FLYWHEEL = "energy that a flywheel stores"

@@ -5,6 +5,7 @@ or press would raise or lower the frequencies of the beams and of the solid alik
 the one that buckles it.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter
-from fea.common.source import distinct
+from fea.common.source import Source, SourceKind, distinct
 from fea.common.threads import bounded_run
 from fea.nonlinear.equilibrium_path import EquilibriumPath
 from fea.nonlinear.stability import stiffness_parts
@@ -157,9 +158,11 @@ def _by_beams(case: Case, link: str, pose: Pose, holding: LinkHolding, count: in
     model, parents = divide(frame, SUBDIVISIONS)
     path = EquilibriumPath(model)
     K, _ = stiffness_parts(path, np.zeros((len(model.elements), 2, 6)), np.zeros(len(model.guides)))
-    mass = mass_matrix(case, frame, model, parents, {link: part_mass(case, link)}, carried=carried)
+    known = {link: part_mass(case, link)}
+    mass, even = (mass_matrix(case, frame, model, parents, known, carried=carried, rims=rims) for rims in (True, False))
     found, free = frame_modes(path, K, mass, holding.free + count + BASIS), holding.free
     found = replace(found, values=found.values[free:], vectors=found.vectors[:, free:])
+    spread = frame_modes(path, K, even, free + count).values[free:]
     path.elements.stiffness = stiffest(case, frame, model, parents)
     K, _ = stiffness_parts(path, np.zeros((len(model.elements), 2, 6)), np.zeros(len(model.guides)))
     highest = frame_modes(path, K, mass, free + count).values[free:]
@@ -167,8 +170,8 @@ def _by_beams(case: Case, link: str, pose: Pose, holding: LinkHolding, count: in
     bands = flexibility_doubt(case, frame, model, parents, found, shapes, count)
     turn = pose.placement.axes(link)
     modes = []
-    for shape, band, most in zip(shapes, bands, highest, strict=False):
-        band = replace(band, high=max(band.high, frequency(float(most))))
+    for shape, band, most, other in zip(shapes, bands, highest, spread, strict=False):
+        band = _weighed(replace(band, high=max(band.high, frequency(float(most)))), frequency(float(other)))
         whole, plane = mass.energies(shape)
         own = np.hstack([shape[:, :3] @ turn, shape[:, 3:] @ turn])
         modes.append(Mode(frequency=band, shape=_scaled(own), in_plane=plane / whole))
@@ -181,6 +184,15 @@ def _by_beams(case: Case, link: str, pose: Pose, holding: LinkHolding, count: in
         nodes=(model.nodes - origin) @ turn,
         pieces=np.array([element.nodes for element in model.elements]),
     )
+
+
+def _weighed(band: Band, other: float) -> Band:
+    """Return the band of a frequency that is another where what fillets weigh is spread along the beams."""
+    low, high = sorted((1.0, other / band.value))
+    if low == high or not math.isfinite(band.high):
+        return band
+    source = Source(kind=SourceKind.MASS, detail="at the rims of eyes or along the beams", width=high / low)
+    return replace(band, low=band.low * low, high=band.high * high, sources=distinct(band.sources, (source,)))
 
 
 def _scaled(shape: Real) -> Real:

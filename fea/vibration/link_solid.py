@@ -1,11 +1,11 @@
 """A link by itself as a solid that vibrates: how its joints hold it, what it carries, and its modes on two meshes.
 
 The wall of a bore moves as a rigid cylinder, which the pin holds: pins are stiffer than what they stand in, and one
-that vibrates under a load keeps in touch with its wall. A body that a link carries moves with the bore, patch or face
-through which its weight enters, as one rigid piece. A pin in a slot bears on one flank, that at y > 0, as in the frame
-of the linkage. It holds it on average, weighted as its pressure is (``fea.tractions.slot_traction``): the mean
-displacement across the slot is zero, and so is the mean tilt. What is spread along the link is mass without stiffness
-in its volume. Of a pair each plate bears half.
+that vibrates under a load keeps in touch with its wall. A body that a link carries moves with the bore through which
+its weight enters, or with the mean motion of a patch or face; this is dual to how loads enter there, and stiffens
+nothing. A pin in a slot bears on one flank, that at y > 0, as in the frame of the linkage. It holds it on average,
+weighted as its pressure is (``fea.tractions.slot_traction``): the mean displacement across the slot is zero, and so is
+the mean tilt. What is spread along the link is mass without stiffness in its volume. Of a pair each plate bears half.
 
 The stress of loads, which stiffens what it pulls, is left out.
 """
@@ -28,11 +28,11 @@ from fea.refine.refinement import START
 from fea.solid.solution import require_compressible
 from fea.solid.stress import stress_field
 from fea.tractions.slot_traction import DEGREE, flank_pressure
-from fea.tractions.traction import line_density
-from fea.vibration.link_holding import HeldPlace, LinkHolding
+from fea.tractions.traction import line_density, wrench_density
+from fea.vibration.link_holding import LinkHolding
 from fea.vibration.mass_matrix import body_mass
 from fea.vibration.rigid_regions import RigidRegion
-from fea.vibration.solid_modes import SolidModes, solid_modes
+from fea.vibration.solid_modes import CarriedOn, SolidModes, solid_modes
 from geometry.base.errors import CannotRunError
 from geometry.materials.material import Material
 from geometry.meshing.mesh import MeshSettings, mass_properties, mesh_body
@@ -233,6 +233,7 @@ def modes_on(solid: LinkSolid, space: DisplacementSpace, count: int, threads: in
         count=count + free,
         regions=regions(solid, space),
         conditions=conditions(solid, space),
+        bodies=bodies_on_patches(solid, space),
         threads=threads,
     )
     rigid = int(np.count_nonzero(found.squares < RIGID * found.squares[free]))
@@ -250,7 +251,7 @@ def _spread(solid: LinkSolid, volume: Quadrature, one: CarriedSpread) -> Real:
 
 
 def regions(solid: LinkSolid, space: DisplacementSpace) -> list[RigidRegion]:
-    """Return the surfaces that move as rigid bodies: bores on pins, and where bodies are carried.
+    """Return the surfaces that move as rigid bodies: bores on pins with the bodies there, and what a support holds.
 
     Parameters
     ----------
@@ -262,18 +263,11 @@ def regions(solid: LinkSolid, space: DisplacementSpace) -> list[RigidRegion]:
     -------
     list of RigidRegion
     """
-    held = {place.point: place for place in solid.holding.places if not place.joint}
-    bodies = [one for one in solid.carried if not isinstance(one, CarriedSpread)]
     found = []
-    for point in dict.fromkeys([*held, *(one.at for one in bodies)]):
-        name = f"bore:{point}" if f"bore:{point}" in space.surfaces else f"end:{point}"
-        at = np.array([*solid.points[point], 0.0])
-        inertia = np.zeros((6, 6))
-        for one in (one for one in bodies if one.at == point):
-            known = mass_of(one, solid.points)
-            arm = np.array([*known.centroid, 0.0]) - at
-            inertia += solid.share * body_mass(known.mass, arm, known.inertia)
-        place = held.get(point, HeldPlace(point=point, place=at, moves=np.zeros((0, 3)), turns=np.zeros((0, 3))))
+    for place in solid.holding.places:
+        if place.joint:
+            continue
+        name = _surface(space, place.point)
         found.append(
             RigidRegion(
                 name=name,
@@ -282,9 +276,48 @@ def regions(solid: LinkSolid, space: DisplacementSpace) -> list[RigidRegion]:
                 move_axes=_completed(place.moves),
                 turn_axes=_completed(place.turns),
                 held=(*range(len(place.moves)), *range(3, 3 + len(place.turns))),
-                inertia=inertia,
+                inertia=sum((matrix for at, matrix in _bodies(solid) if at == place.point), np.zeros((6, 6))),
             )
         )
+    return found
+
+
+def bodies_on_patches(solid: LinkSolid, space: DisplacementSpace) -> list[CarriedOn]:
+    """Return the bodies that a link carries elsewhere: on patches, faces and walls of slots.
+
+    Parameters
+    ----------
+    solid : LinkSolid
+    space : DisplacementSpace
+        Of its mesh.
+
+    Returns
+    -------
+    list of CarriedOn
+    """
+    rigid = {place.point for place in solid.holding.places if not place.joint}
+    found = []
+    for point, inertia in _bodies(solid):
+        if point not in rigid:
+            surface, at = surface_quadrature(space, _surface(space, point)), np.array([*solid.points[point], 0.0])
+            rows = [surface.load_vector(wrench_density(surface, at, unit), len(space.nodes)) for unit in np.eye(6)]
+            found.append(CarriedOn(motion=np.array(rows), inertia=inertia))
+    return found
+
+
+def _surface(space: DisplacementSpace, point: str) -> str:
+    """Name of the surface about a point."""
+    return f"bore:{point}" if f"bore:{point}" in space.surfaces else f"end:{point}"
+
+
+def _bodies(solid: LinkSolid) -> list[tuple[str, Real]]:
+    """Points at which a link carries bodies, with their mass matrices (6, 6) about them."""
+    found = []
+    for one in solid.carried:
+        if not isinstance(one, CarriedSpread):
+            known = mass_of(one, solid.points)
+            arm = np.array([*(known.centroid - np.array(solid.points[one.at])), 0.0])
+            found.append((one.at, solid.share * body_mass(known.mass, arm, known.inertia)))
     return found
 
 

@@ -222,6 +222,7 @@ def mass_matrix(
     masses: Mapping[str, PartMass],
     *,
     carried: bool = True,
+    rims: bool = True,
 ) -> MassMatrix:
     """Return the mass of a linkage on its divided frame.
 
@@ -238,12 +239,14 @@ def mass_matrix(
         Of the parts, by link.
     carried : bool, optional
         False to leave out what the case states as carried; pins are always there.
+    rims : bool, optional
+        Whether what fillets weigh is at the rims of the eyes; else along the beams.
 
     Returns
     -------
     MassMatrix
     """
-    mass = _Mass(case, frame, divided, parents)
+    mass = _Mass(case, frame, divided, parents, rims=rims)
     for link in mass.own:
         mass.part(link, masses[link])
     links = {link for link, _ in frame.points}
@@ -256,8 +259,10 @@ def mass_matrix(
 class _Mass:
     """Collects the mass of all links."""
 
-    def __init__(self, case: Case, frame: LinkageFrame, divided: FrameModel, parents: NDArray[np.int64]) -> None:
-        self.case, self.frame, self.divided = case, frame, divided
+    def __init__(
+        self, case: Case, frame: LinkageFrame, divided: FrameModel, parents: NDArray[np.int64], *, rims: bool
+    ) -> None:
+        self.case, self.frame, self.divided, self.rims = case, frame, divided, rims
         self.beams = np.zeros((len(divided.elements), 12, 12))
         self.bodies: list[tuple[int, Floats]] = []
         self.own: dict[str, list[int]] = {}
@@ -315,7 +320,8 @@ class _Mass:
         known = float(sum(matrix[0, 0] for _, matrix in eyes))
         if not eyes or known >= MOST_IN_EYES * mass.mass:
             return []
-        return with_rims(eyes, case.body(link), max(mass.mass - known - density * beams, 0.0))
+        left = max(mass.mass - known - density * beams, 0.0)
+        return with_rims(eyes, case.body(link), left) if self.rims else eyes
 
     def carried(self, one: Carried) -> None:
         """Add what a link carries."""

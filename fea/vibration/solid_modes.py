@@ -2,10 +2,11 @@
 
     K u = ω² M u,   u = T q,   C u = 0
 
-with T from rigid regions (``rigid_regions``) and few conditions C on mean displacements. The least ω² are found by the
-Lanczos method on the inverse of K + s M, whose shift s > 0 makes it positive definite whatever is held (Ericsson &
-Ruhe, Mathematics of Computation 35 (1980) 1251-1268). The inverse under C u = 0 takes off the displacements by the
-conditions' own forces: A⁻¹ - W (C W)⁻¹ Wᵀ with W = A⁻¹ Cᵀ.
+with T from rigid regions (``rigid_regions``) and few conditions C on mean displacements. Bodies may move with the mean
+motion B u of a surface, which adds Bᵀ m B to M. The least ω² are found by the Lanczos method on the inverse of K + s M,
+whose shift s > 0 makes it positive definite whatever is held (Ericsson & Ruhe, Mathematics of Computation 35 (1980)
+1251-1268). The inverse under C u = 0 takes off the displacements by the conditions' own forces, A⁻¹ - W (C W)⁻¹ Wᵀ with
+W = A⁻¹ Cᵀ; bodies are added to it by Woodbury's formula.
 
 By Rayleigh's principle each ω of such a mesh is above that of the body that it fills (Strang & Fix, An Analysis of the
 Finite Element Method, 1973, section 6.3).
@@ -29,6 +30,22 @@ from geometry.base.errors import CannotRunError
 Real = NDArray[np.float64]
 TOLERANCE = 1e-8
 """Of the eigenvalues 1/(ω² + s), relative."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CarriedOn:
+    """A rigid body that moves as a surface does on average.
+
+    Attributes
+    ----------
+    motion : ndarray, shape (6, 3 n)
+        From displacements of the nodes to the mean displacement and rotation (``fea.solid.bore_motion``).
+    inertia : ndarray, shape (6, 6)
+        Its mass matrix for these.
+    """
+
+    motion: Real
+    inertia: Real
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,6 +77,7 @@ def solid_modes(
     count: int,
     regions: Sequence[RigidRegion] = (),
     conditions: Real | None = None,
+    bodies: Sequence[CarriedOn] = (),
     threads: int | None = None,
 ) -> SolidModes:
     """Return the lowest modes of a body.
@@ -78,6 +96,8 @@ def solid_modes(
         Surfaces that move as rigid bodies.
     conditions : ndarray, shape (c, 3 n), optional
         C; by default none.
+    bodies : sequence of CarriedOn, optional
+        What surfaces carry.
     threads : int or None, optional
         Upper bound on the threads of the solver.
 
@@ -90,6 +110,7 @@ def solid_modes(
     CannotRunError
         Where the body has fewer modes, the matrices do not fit into memory, or the iteration does not end.
     """
+    from scipy.linalg import block_diag
     from scipy.sparse import kron
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
@@ -109,15 +130,25 @@ def solid_modes(
     C = np.zeros((0, T.shape[1])) if conditions is None else (T.T @ conditions.T).T * keep
     if count >= int(keep.sum()) - len(C) - 1:
         raise CannotRunError(f"a mesh of {int(keep.sum())} unknowns has no {count} modes; refine the mesh")
-    W = factor.solve(C.T) if len(C) else np.zeros((T.shape[1], 0))
+    B = np.vstack([np.zeros((0, T.shape[1])), *((T.T @ body.motion.T).T * keep for body in bodies)])
+    m = block_diag(*(body.inertia for body in bodies)) if bodies else np.zeros((0, 0))
+    V = factor.solve(B.T) if bodies else B.T
+    added = np.linalg.solve(np.eye(len(B)) + shift * m @ (B @ V), shift * m)
+
+    def laden(force: Real) -> Real:
+        moved = factor.solve(force)
+        return np.asarray(moved - V @ (added @ (B @ moved)))
+
+    W = laden(C.T) if len(C) else C.T
     borne = np.linalg.inv(C @ W)
 
     def inverse(force: Real) -> Real:
-        moved = factor.solve(keep * force.ravel())
+        moved = laden(keep * force.ravel())
         return np.asarray(keep * (moved - W @ (borne @ (C @ moved))))
 
     def inertia(moved: Real) -> Real:
-        return np.asarray(keep * (M @ (keep * moved.ravel())))
+        moved = keep * moved.ravel()
+        return np.asarray(keep * (M @ moved) + B.T @ (m @ (B @ moved)))
 
     size = T.shape[1]
     stand_in = LinearOperator((size, size), matvec=lambda x: x, dtype=np.float64)  # K itself is never applied
@@ -139,7 +170,7 @@ def solid_modes(
     values, q = values[order], q[:, order]
     q = q / np.sqrt(np.einsum("ik,ik->k", q, np.stack([inertia(v) for v in q.T], axis=1)))
     shapes = (T @ q).T.reshape(count, -1, 3)
-    return SolidModes(squares=values, shapes=shapes, in_plane=_in_plane(shapes, q, mass, regions, reduction))
+    return SolidModes(squares=values, shapes=shapes, in_plane=_in_plane(shapes, q, mass, regions, reduction, bodies))
 
 
 def _upper(matrix: Any) -> SymmetricBlockMatrix:
@@ -161,14 +192,24 @@ def _shift(space: DisplacementSpace, E: float, density: float) -> float:
     return float(E * extent.min() ** 2 / (density * np.linalg.norm(extent) ** 4))
 
 
-def _in_plane(shapes: Real, q: Real, mass: Any, regions: Sequence[RigidRegion], reduction: Reduction) -> Real:
+def _in_plane(
+    shapes: Real,
+    q: Real,
+    mass: Any,
+    regions: Sequence[RigidRegion],
+    reduction: Reduction,
+    bodies: Sequence[CarriedOn],
+) -> Real:
     """Share (k,) of the kinetic energy in the plane."""
     parts = np.array([[mode[:, i] @ (mass @ mode[:, i]) for i in range(3)] for mode in shapes])
     plane, total = parts[:, :2].sum(axis=1), parts.sum(axis=1)
-    flat = np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])
-    for region, motion, first in zip(regions, reduction.motions, reduction.first, strict=True):
-        moved = motion @ q[first : first + 6]
-        total = total + np.einsum("ik,ij,jk->k", moved, region.inertia, moved)
-        moved = flat[:, None] * moved
-        plane = plane + np.einsum("ik,ij,jk->k", moved, region.inertia, moved)
+    moving = [
+        (motion @ q[first : first + 6], region.inertia)
+        for region, motion, first in zip(regions, reduction.motions, reduction.first, strict=True)
+    ]
+    moving += [(body.motion @ shapes.reshape(len(shapes), -1).T, body.inertia) for body in bodies]
+    flat = np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])[:, None]
+    for moved, inertia in moving:
+        total = total + np.einsum("ik,ij,jk->k", moved, inertia, moved)
+        plane = plane + np.einsum("ik,ij,jk->k", flat * moved, inertia, flat * moved)
     return np.asarray(plane / total)
