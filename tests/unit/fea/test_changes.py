@@ -4,6 +4,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from edited_cases import PLANAR
 from solved import by_hand
 
 from fea.check.run import check_case
@@ -87,8 +88,8 @@ def test_the_linkage_holds_the_told_share_of_its_load():
 
     The path to the limit load is followed in steps of about 2 %.
     """
-    case = read_case("owl-wing-static")
-    result = by_hand("owl-wing-static")
+    case = read_case("owl-wing-static", [PLANAR])
+    result = by_hand("owl-wing-static", PLANAR)
     [change] = changes(result)
     assert change.check.quantity is Quantity.LOAD_SHARE
     assert change.load == pytest.approx(result.load_cases["weight"].linkage.limit_load.low)
@@ -105,7 +106,7 @@ def test_the_softest_link_is_sized(thick):
     shares = shares_of_work(case, moved.frame, moved.solution)
     assert sum(shares.values()) == pytest.approx(1.0)
     assert set(shares) == {"crank", "coupler", "rocker"}
-    owl = changes(by_hand("owl-wing-static"))[0].size
+    owl = changes(by_hand("owl-wing-static", PLANAR))[0].size
     assert owl.entry == "parts.tube.outer_diameter"
     assert owl.first == "5 mm"
     read_case("owl-wing-static").with_values({owl.entry: owl.last})

@@ -4,7 +4,7 @@ import tomllib
 from functools import cache
 
 import pytest
-from edited_cases import edited
+from edited_cases import PLANAR, edited
 from rocker_case import TOML
 
 from fea.check.run import check_case
@@ -130,7 +130,7 @@ def test_the_limit_load_holds_that_of_the_linkage_with_other_lengths() -> None:
     """Play at both ends of link ED is as if it were longer or shorter by half of both."""
 
     def limit(*entries: str) -> LoadCaseResult:
-        return check_case(edited(OWL, entries), fidelity="beam").load_cases["weight"]
+        return check_case(edited(OWL, [PLANAR, *entries]), fidelity="beam").load_cases["weight"]
 
     loose = limit('joints.D.clearance="0.1 mm"', 'joints.E.clearance="0.1 mm"').linkage.limit_load
     assert SourceKind.PLAY in {source.kind for source in loose.sources}
@@ -140,7 +140,7 @@ def test_the_limit_load_holds_that_of_the_linkage_with_other_lengths() -> None:
 
 def test_ways_to_hold_tell_their_own_play() -> None:
     wing = "owl-wing-static"
-    found = check_case(edited(wing, ['joints.C.clearance="0.1 mm"']), name=wing, fidelity="beam")
+    found = check_case(edited(wing, [PLANAR, 'joints.C.clearance="0.1 mm"']), name=wing, fidelity="beam")
     held = {way.name: way.play for way in found.load_cases["weight"].ways_to_hold}
     assert held["pinned, held at AE"] > 0.05
     assert held["bonded, A, G built in"] == 0.0

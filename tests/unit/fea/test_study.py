@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import solved
+from edited_cases import PLANAR
 
 from fea.common.verdict import Verdict
 from fea.study.engine import CrashError, Engine, local_engine
@@ -220,13 +221,13 @@ def test_a_part_whose_content_changed_on_its_way_is_not_computed():
 
 def test_workers_compute_what_a_check_computes(tmp_path):
     """A real worker's numbers are those of the check in this process; what the case's rules refuse comes back so."""
-    found = variants("1 mm, 5 mm", fidelity="beam")
+    found = variants("1 mm, 5 mm", fidelity="beam", set={"layer_spacing": "0 mm"})
     with local_engine(1, {}, folder=tmp_path) as engine, Store.writing(tmp_path / "s") as store:
         Study(variants=found, store=store).run(lambda: nullcontext(engine))
         refused, done = (answer for _, _, answer, _ in store.rows())
     assert refused.state == "refused"
     assert "inner_diameter" in refused.sentence
-    expected = [check for case in solved.by_hand(CASE).load_cases.values() for check in case.checks]
+    expected = [check for case in solved.by_hand(CASE, PLANAR).load_cases.values() for check in case.checks]
     checked = [f for f in done.numbers if f.check]
     assert [(f.check, f.subject, f.verdict) for f in checked] == [(c.name, str(c.subject), c.verdict) for c in expected]
     assert [f.value for f in checked] == pytest.approx([c.value.value for c in expected], rel=1e-12, nan_ok=True)

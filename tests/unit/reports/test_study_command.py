@@ -81,7 +81,14 @@ def test_the_least_size_is_told_with_what_limits_it(tmp_path: Path) -> None:
     """A tie under weight by hand calculation: status, JSON and text agree; a wrong range is one sentence."""
     wrong = programs.inside("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=4 mm", folder=tmp_path)
     assert (wrong.returncode, "is no range" in wrong.stderr) == (2, True)
-    arguments = ("size", "owl-wing-closed", "--vary", "parts.tube.outer_diameter=3.5 mm..4 mm by 0.5 mm")
+    arguments = (
+        "size",
+        "owl-wing-closed",
+        "--vary",
+        "parts.tube.outer_diameter=3.5 mm..4 mm by 0.5 mm",
+        "--set",
+        PLANAR,
+    )
     found = programs.inside(*arguments, "--fidelity", "beam", "--json", "--workers", "1", folder=tmp_path)
     record = json.loads(found.stdout)
     assert found.returncode == 0
@@ -94,7 +101,16 @@ def test_the_lightest_part_of_a_catalogue_is_told(tmp_path: Path) -> None:
     """A rod of 4 mm has less of a section than a tube of 5 mm over 2.5 mm, 16 < 25 - 6.25, and passes as well."""
     wrong = programs.inside("size", "owl-wing-closed", "--choose", "parts.tube=rod-4mm,rod-5mm", folder=tmp_path)
     assert (wrong.returncode, "no part 'rod-5mm'" in wrong.stderr) == (2, True)
-    arguments = ("size", "owl-wing-closed", "--choose", "parts.tube=tube,rod-4mm", "--fidelity", "beam")
+    arguments = (
+        "size",
+        "owl-wing-closed",
+        "--choose",
+        "parts.tube=tube,rod-4mm",
+        "--fidelity",
+        "beam",
+        "--set",
+        PLANAR,
+    )
     found = programs.inside(*arguments, "--json", "--workers", "1", folder=tmp_path)
     record = json.loads(found.stdout)
     assert found.returncode == 0
