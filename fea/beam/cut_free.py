@@ -290,4 +290,7 @@ def beam_loads(loads: LinkLoads, body: Body, density: float) -> beam.BeamLoads:
         on_line += sum(lump * (x - mass.centroid[0]) ** 2 for x, lump in lumps)
         off_axis[2] -= (mass.inertia - on_line) * force.angular_acceleration
         points.append(beam.PointLoad(point=np.array([first, 0.0, 0.0]), wrench=np.concatenate([np.zeros(3), off_axis])))
+    if not lines and len({float(point.point[0]) for point in points}) < 2:  # loaded at its only pin, or not at all
+        stations = (np.array([x, 0.0, 0.0]) for x in extent(body))
+        points += [beam.PointLoad(point=at, wrench=np.zeros(6)) for at in stations]
     return beam.BeamLoads(points=tuple(points), lines=tuple(lines))

@@ -1,14 +1,16 @@
 """A check of which nothing is asked is undecided: loads of zero, or that cancel at one point; others are a load."""
 
+import tomllib
 from importlib.resources import files
 
 import pytest
 from edited_cases import edited
 
 from fea.check.run import check_case
-from fea.common.verdict import Verdict
+from fea.common.verdict import Quantity, Verdict
 from fea.motion.envelope import envelope_case
 from geometry.base.errors import CaseError
+from loads.case.case_file import validate
 
 STARTER = files("loads") / "cases" / "four-bar.toml"
 MOTION = ["motion.turn=true", "motion.poses=13"]
@@ -127,3 +129,27 @@ def test_a_load_on_the_ground_is_refused(path, load):
     kind = load.partition("=")[0]
     with pytest.raises(CaseError, match=rf"load_cases.lift.{kind}.0.link: 'base' is not a moving link; choose one of"):
         edited(path, [f"load_cases.lift={{{load}}}"])
+
+
+def test_an_arm_that_a_load_case_leaves_alone_is_undecided_there() -> None:
+    """Held by one pin it has no second loaded place; the case could not be run for it."""
+    arm = validate(
+        tomllib.loads("""
+schema_version = 1
+title = "An arm"
+links.base = { ground = true, points = { O = ["0 mm", "0 mm"], X = ["9 mm", "0 mm"] } }
+links.arm = { part = "bar", end_patch = "2 mm", points = { O = ["0 mm", "0 mm"], W = ["30 mm", "0 mm"] } }
+joints.O = { links = ["base", "arm"], pin_diameter = "4 mm" }
+pose = { coordinate = "arm", angle = "0 deg" }
+drive = { link = "arm", joint = "O" }
+load_cases.lift = { forces = [{ link = "arm", at = "W", force = ["0 N", "-1 N"] }] }
+load_cases.still = {}
+parts.bar = { shape = "bar", material = "pla-fdm-xy", width = "10 mm", thickness = "3 mm", fillet_radius = "0 mm" }
+""")
+    )
+    found = check_case(arm, fidelity="beam").load_cases
+    [idle] = [one for one in found["still"].checks if one.quantity is Quantity.SAFETY_FACTOR]
+    assert idle.verdict is Verdict.UNDECIDED
+    assert "nothing acts inside any link" in idle.reason
+    # A force of 1 N at 30 mm on 10 by 3 mm, at the middle of the pin by beam theory: M / W = 30 / (3 * 10² / 6) MPa.
+    assert found["lift"].links["arm"].beam.worst.equivalent == pytest.approx(0.6, rel=0.05)
