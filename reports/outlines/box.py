@@ -139,7 +139,7 @@ def _side(one: Standing, place: Placement) -> Any:
 def _one(sheet: Canvas, axes: Axes, shape: Any, fill: str, edge: str) -> None:
     import shapely
 
-    if shape.geom_type == "MultiPoint":
+    if shape.geom_type in ("MultiPoint", "Point"):
         for point in shapely.get_parts(shape) if edge else ():
             sheet.disc(axes.at(np.asarray(point.coords[0])), 1.6, edge)
     elif shape.geom_type == "LineString":

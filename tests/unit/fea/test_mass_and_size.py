@@ -1,6 +1,7 @@
 """Total mass and the box about a linkage over its motion: closed forms, bounds between poses, and what is refused."""
 
 import math
+import re
 import tomllib
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -24,6 +25,7 @@ from loads.records.check_spec import MassCheck, SizeCheck
 from loads.states.case_motion import solve_case_motion
 from loads.states.extent import Extent
 from loads.states.weighed import Weighed
+from reports.page.html import render
 from reports.tables.data import change_records
 from reports.tables.record import result_record
 
@@ -322,6 +324,17 @@ def test_mass_and_size_are_in_the_record(heavy):
     alone = result_record(check_case(parallel_bars(), fidelity="beam"))
     assert alone["mass"] is None  # nothing weighs or moves
     assert alone["size"]["x"]["value"] == pytest.approx(100.0 + 120.0 * math.cos(math.radians(5.0)) + 16.0, abs=1e-3)
+
+
+def test_the_page_says_what_is_counted_where_a_check_asks(heavy):
+    page = render(heavy, {"box": b"a picture"})
+    assert "<h2>Mass and size</h2>" in page
+    row = re.search(r"<tr><td>crank</td>(.*?)</tr>", page.partition("Mass of each link [g]")[2])
+    assert row is not None
+    total = bar(120.0) + rod(8.0, 16.0)
+    assert re.findall(r">([^<]+)</td>", row[1]) == [f"{bar(120.0):.2f}", f"{rod(8.0, 16.0):.3f}", "–", f"{total:.2f}"]
+    assert "The box about all parts over the motion of crank" in page
+    assert "Mass and size" not in render(check_case(bars((0, 1, 2, 1), {}, ""), fidelity="beam"), {})
 
 
 def test_where_nothing_acts_mass_and_size_keep_their_verdict():
