@@ -45,7 +45,9 @@ class HeldPlace:
     turns : ndarray, shape (l, 3)
         Axes about which it does not turn, alike.
     joint : str
-        Whose pin bears on the flanks of a slot of the link, so that the wall is held on average alone; "" elsewhere.
+        Of a slot or guide that the link has, whose pin stands there; "" at the link's own points.
+    flank : bool
+        True where that pin bears on the flank of a slot in the part, which is held on average alone.
     """
 
     point: str
@@ -53,6 +55,7 @@ class HeldPlace:
     moves: Real
     turns: Real
     joint: str = ""
+    flank: bool = False
 
     @property
     def conditions(self) -> Real:
@@ -68,7 +71,7 @@ class LinkHolding:
     Attributes
     ----------
     places : tuple of HeldPlace
-        At bores each point once; at flanks each pin.
+        The link's own points once each, and every pin in its slots and guides.
     free : int
         Number of motions of the rigid link that are left.
     words : str
@@ -104,16 +107,23 @@ def link_holding(case: Case, link: str, pose: Pose) -> LinkHolding:
     else:
         for joint in case.linkage.joints_of(link):
             point = case.linkage.point_of(joint, link)
-            carries = case.joints[joint].type == "pin-in-slot" and case.joints[joint].links[0] == link
-            key = (point, joint if carries and point in case.links[link].slots else "")
+            carries = case.joints[joint].type != "revolute" and case.joints[joint].links[0] == link
+            key = (point, joint if carries else "")
             moves, turns = found.setdefault(key, ([], []))
             more = _held(case, link, joint, pose)
             moves += more[0]
             turns += more[1]
             at[key] = _pin_place(case, link, joint, pose) if key[1] else _point(case, link, point)
     places = tuple(
-        HeldPlace(point=key[0], place=at[key], moves=_basis(moves), turns=_basis(turns), joint=key[1])
-        for key, (moves, turns) in found.items()
+        HeldPlace(
+            point=point,
+            place=at[point, joint],
+            moves=_basis(moves),
+            turns=_basis(turns),
+            joint=joint,
+            flank=bool(joint) and point in case.links[link].slots,
+        )
+        for (point, joint), (moves, turns) in found.items()
     )
     free = 6 - _rank(places, case.linkage.longest)
     return LinkHolding(places=places, free=free, words=_words(case, link, places, free))
@@ -170,10 +180,10 @@ def _words(case: Case, link: str, places: Sequence[HeldPlace], free: int) -> str
         elif sizes == (3, 2):
             kind = "on rigid pins at {}"
         elif sizes == (2, 3):
-            kind = "free to slide alone at {}"
+            kind = "in the guide at {}"
         else:
             kind = "held across the slot at {}"
-        groups.setdefault(kind, []).append(place.point)
+        groups.setdefault(kind, []).append(place.joint or place.point)
     drive = case.pinned_drive
     if drive is not None and not drive.idle and link in case.joints[drive.joint].links and places:
         point = case.linkage.point_of(drive.joint, link)

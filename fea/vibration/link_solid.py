@@ -264,22 +264,24 @@ def regions(solid: LinkSolid, space: DisplacementSpace) -> list[RigidRegion]:
     list of RigidRegion
     """
     found = []
-    for place in solid.holding.places:
-        if place.joint:
-            continue
-        name = _surface(space, place.point)
+    for point in _rigid(solid):
+        name, at = _surface(space, point), np.array([*solid.points[point], 0.0])
+        held = [place for place in solid.holding.places if place.point == point and not place.flank]
         found.append(
             RigidRegion(
                 name=name,
                 nodes=np.unique(space.faces(name)),
-                place=place.place,
-                move_axes=_completed(place.moves),
-                turn_axes=_completed(place.turns),
-                held=(*range(len(place.moves)), *range(3, 3 + len(place.turns))),
-                inertia=sum((matrix for at, matrix in _bodies(solid) if at == place.point), np.zeros((6, 6))),
+                place=at,
+                held=np.vstack([replace(place, place=place.place - at).conditions for place in held]),
+                inertia=sum((matrix for where, matrix in _bodies(solid) if where == point), np.zeros((6, 6))),
             )
         )
     return found
+
+
+def _rigid(solid: LinkSolid) -> list[str]:
+    """Points whose surfaces are rigid, since pins or supports hold them."""
+    return list(dict.fromkeys(place.point for place in solid.holding.places if not place.flank))
 
 
 def bodies_on_patches(solid: LinkSolid, space: DisplacementSpace) -> list[CarriedOn]:
@@ -295,8 +297,7 @@ def bodies_on_patches(solid: LinkSolid, space: DisplacementSpace) -> list[Carrie
     -------
     list of CarriedOn
     """
-    rigid = {place.point for place in solid.holding.places if not place.joint}
-    found = []
+    rigid, found = _rigid(solid), []
     for point, inertia in _bodies(solid):
         if point not in rigid:
             surface, at = surface_quadrature(space, _surface(space, point)), np.array([*solid.points[point], 0.0])
@@ -321,12 +322,6 @@ def _bodies(solid: LinkSolid) -> list[tuple[str, Real]]:
     return found
 
 
-def _completed(axes: Real) -> Real:
-    """Three orthogonal unit vectors of which the first are those given."""
-    rest = np.linalg.svd(axes)[2][len(axes) :] if len(axes) else np.eye(3)
-    return np.vstack([axes, rest])
-
-
 def conditions(solid: LinkSolid, space: DisplacementSpace) -> Real:
     """Return the conditions of pins in the link's slots on mean displacements of a flank.
 
@@ -342,7 +337,7 @@ def conditions(solid: LinkSolid, space: DisplacementSpace) -> Real:
         Each sum is zero; two for each pin, across the slot and about it.
     """
     rows = []
-    for place in (place for place in solid.holding.places if place.joint):
+    for place in (place for place in solid.holding.places if place.flank):
         [pin] = [pin for pin in solid.body.pins if pin.name == place.point]
         wall = surface_quadrature(space, f"bore:{place.point}", degree=DEGREE)
         length = WIDE.patch(pin.pin_diameter)

@@ -1,7 +1,8 @@
 """Surfaces of a solid that move as rigid bodies: the reduction of all displacements to those of the rest and to theirs.
 
-Every region has two sets of three unknowns in place of its nodes': the displacement t of its place, and its rotation w
-times the region's size l, each in axes of the region's own. A node at r from the place moves by u = t + w × r.
+Every region has six unknowns in place of its nodes': orthogonal sums of the displacement t of its place and of its
+rotation w times the region's size, of which the first are those that are held. A node at r from the place moves by
+u = t + w × r.
 """
 
 from collections.abc import Sequence
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 from geometry.base.errors import CannotRunError
 
 Real = NDArray[np.float64]
+SAME = 1e-6
+"""Share of what is held below which it is held already."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -28,10 +31,8 @@ class RigidRegion:
         Their numbers.
     place : ndarray, shape (3,)
         Whose displacement is unknown [mm].
-    move_axes, turn_axes : ndarray, shape (3, 3)
-        Orthogonal unit vectors, by rows, of the displacement's and of the rotation's components.
-    held : tuple of int
-        Which of the six components are zero.
+    held : ndarray, shape (k, 6)
+        Sums of the place's displacement and rotation, by rows, that are zero.
     inertia : ndarray, shape (6, 6)
         Mass matrix of what it carries, about the place and in global axes [tonne, tonne mm, tonne mm²].
     """
@@ -39,9 +40,7 @@ class RigidRegion:
     name: str
     nodes: NDArray[np.int64]
     place: Real
-    move_axes: Real
-    turn_axes: Real
-    held: tuple[int, ...]
+    held: Real
     inertia: Real
 
 
@@ -103,25 +102,24 @@ def reduced(nodes: Real, regions: Sequence[RigidRegion]) -> Reduction:
     size = 3 * (len(free) + 2 * len(regions))
     same = (3 * free[:, None] + np.arange(3)).ravel()
     rows, columns, values = [same], [np.arange(len(same))], [np.ones(len(same))]
-    held, motions, firsts = [], [], []
+    held: list[int] = []
+    motions, firsts = [], []
     inertia = np.zeros((6 * len(regions), 6 * len(regions)))
     for number, region in enumerate(regions):
         first = len(same) + 6 * number
         arm = nodes[region.nodes] - region.place
         reach = float(np.linalg.norm(arm, axis=1).max())
-        motion = np.zeros((6, 6))
-        motion[:3, :3], motion[3:, 3:] = region.move_axes.T, region.turn_axes.T / reach
-        moved = np.concatenate(
-            [
-                np.broadcast_to(region.move_axes, (len(arm), 3, 3)),
-                np.cross(region.turn_axes[None] / reach, arm[:, None]),
-            ],
-            axis=1,
-        )  # displacement of each node (k, 6, 3) by each unknown
+        unit = np.array([1.0, 1.0, 1.0, *[1.0 / reach] * 3])
+        axes, fixed = _axes(region.held * unit)
+        motion = unit[:, None] * axes.T
+        carried = np.concatenate(
+            [np.broadcast_to(np.eye(3), (len(arm), 3, 3)), np.cross(np.eye(3), arm[:, None])], axis=1
+        )
+        moved = np.einsum("cj,kci->kji", motion, carried)  # displacement of each node (k, 6, 3) by each unknown
         rows.append((3 * region.nodes[:, None, None] + np.arange(3) + np.zeros((6, 1), dtype=int)).ravel())
         columns.append(np.broadcast_to(first + np.arange(6)[:, None], moved.shape).ravel())
         values.append(moved.ravel())
-        held += [first + component for component in region.held]
+        held += range(first, first + fixed)
         motions.append(motion)
         firsts.append(first)
         inertia[6 * number : 6 * number + 6, 6 * number : 6 * number + 6] = motion.T @ region.inertia @ motion
@@ -136,3 +134,11 @@ def reduced(nodes: Real, regions: Sequence[RigidRegion]) -> Reduction:
         motions=tuple(motions),
         first=tuple(firsts),
     )
+
+
+def _axes(held: Real) -> tuple[Real, int]:
+    """Orthogonal unit vectors (6, 6), by rows, of which the first span what is held, and how many these are."""
+    if not len(held):
+        return np.eye(6), 0
+    _, sizes, axes = np.linalg.svd(held)
+    return axes, int(np.count_nonzero(sizes > SAME * sizes[0]))

@@ -46,9 +46,7 @@ def region(space, name, place, held, inertia=None):
         name=name,
         nodes=np.unique(space.faces(name)),
         place=np.array(place),
-        move_axes=np.eye(3),
-        turn_axes=np.eye(3),
-        held=held,
+        held=np.eye(6)[list(held)],
         inertia=np.zeros((6, 6)) if inertia is None else inertia,
     )
 

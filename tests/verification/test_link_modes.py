@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from held_ground import THICKNESS, WIDTH, L, bracket
 from rocker_case import TOML
+from slotted_cases import quick_return
 from slotted_lever import slotted_lever
 
 from fea.vibration.link_frame import link_frame
@@ -14,6 +15,7 @@ from fea.vibration.link_holding import link_holding
 from fea.vibration.link_modes import link_modes
 from fea.vibration.linkage_modes import divide
 from fea.vibration.mass_matrix import mass_matrix
+from fea.vibration.over_motion import case_frequencies
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case, validate
 from loads.states.masses import laden_masses, part_mass
@@ -105,6 +107,19 @@ def test_a_beam_on_one_pin_turns_freely():
 def test_a_link_without_part_has_no_frequency_of_its_own():
     with pytest.raises(CaseError, match=r"links\.crank: no link of that name has a part"):
         link_modes(validate(tomllib.loads(TOML)), "crank")
+
+
+def test_a_slot_holds_its_link_where_the_pin_stands():
+    """A quick return: its lever's slot has the lever's own pivot as its point, and the crank's pin stands further out.
+
+    The lever is the softest link, and the linkage's lowest frequency is its own.
+    """
+    case = quick_return()
+    found = case_frequencies(case, count=1)
+    lever = found.links["lever"]
+    assert lever.held == "on rigid pins at O and held across the slot at B"
+    [history] = found.histories.values()
+    assert lever.modes[0].frequency.value == pytest.approx(history.frequencies[0, 0], rel=0.01)
 
 
 def test_beams_leave_the_grounds_part_open_and_its_solid_tells():
