@@ -11,7 +11,7 @@ from reports.figures.motion_figures import COLOURS, DASHES, legend, over_angle
 from reports.motion.rate_rows import told_speed
 from reports.motion.rates import QUANTITIES, Series, Values, series
 
-_SIZE = (8.0, 6.6)
+_SIZE = (8.0, 5.4)
 _NEAR = 1e-9
 
 
@@ -85,9 +85,11 @@ def energy_figure(result: CaseMotion, load_case: str, rates: Series) -> Figure:
         if name in rates.whole
     }
     power = np.where(np.isfinite(result.torque[load_case]), result.drive_power(load_case) / 1000.0, np.nan)
-    rows = [("energy [N·mm]", energy), ("drive power [W]", {"": power}), ("force on the ground [N]", borne)]
+    rows = [("energy [N·mm]", energy), ("drive power [W]", {"": power})]
+    if np.any(list(borne.values())):
+        rows.append(("force on the ground [N]", borne))
     shown = [(label, lines) for label, lines in rows if lines]
-    figure, panels = over_angle(rates.motion, [label for label, _ in shown], (_SIZE[0], 2.4 * len(shown) + 0.6))
+    figure, panels = over_angle(rates.motion, [label for label, _ in shown], (_SIZE[0], 1.9 * len(shown) + 0.5))
     for axes, (_, lines) in zip(panels, shown, strict=True):
         for i, (label, values) in enumerate(lines.items()):
             _line(axes, rates, values, label, i)

@@ -145,7 +145,7 @@ def test_speeds_and_momentum_told_are_those_of_closed_forms(case, moved) -> None
     assert math.degrees(slow["links"]["lever-right"]["angular_acceleration"]["largest"]) == pytest.approx(
         6610.13, abs=0.01
     )
-    assert slow["whole"]["angular_momentum"]["largest"] < 1e-4
+    assert slow["whole"]["angular_momentum"]["largest"] == pytest.approx(4.8e-5, rel=0.01)  # as the claim's note says
     laden = told["load_cases"]["wings-10"]["rates"]["links"]["lever-right"]["mass"]
     assert laden - lever["mass"] == pytest.approx(0.1)  # the wing, which is carried there alone
 
