@@ -28,13 +28,14 @@ if TYPE_CHECKING:
     from reports.notebook.frequency_report import FrequencyReport
     from reports.notebook.motion_report import MotionReport
     from reports.notebook.part_report import PartReport
+    from reports.notebook.size_report import SizeReport
     from reports.notebook.study_report import StudyReport
     from reports.notebook.synthesis_report import SynthesisReport
     from reports.notebook.tolerance_report import ToleranceReport
 
 __all__ = [
-    "cases", "check", "claims", "envelope", "frequencies", "inspect", "motion", "read_case", "study", "synthesise",
-    "tolerance",
+    "cases", "check", "claims", "envelope", "frequencies", "inspect", "motion", "read_case", "size", "study",
+    "synthesise", "tolerance",
 ]  # fmt: skip
 __version__ = alula_version()
 
@@ -355,6 +356,81 @@ def study(
     )
     _, counts = compute_study(Variants(plan, Path()), Path(folder), workers=workers)
     return StudyReport(Path(folder), counts)
+
+
+def size(
+    case: "str | PathLike[str]",
+    vary: Mapping[str, str] | None = None,
+    *,
+    choose: Mapping[str, str] | None = None,
+    step: str | None = None,
+    minimise: str | None = None,
+    maximise: str | None = None,
+    link: Mapping[str, str] | None = None,
+    values: Mapping[str, object] | None = None,
+    analysis: str = "check",
+    fidelity: str = "auto",
+    accuracy: str | None = None,
+    workers: int | None = None,
+    folder: "str | PathLike[str] | None" = None,
+    progress: Callable[[str], None] | None = None,
+) -> "SizeReport":
+    """Find the least value of an entry that passes over its whole band; of several entries the least mass.
+
+    Parameters
+    ----------
+    case : str or path
+        Name of a built-in case, or path of a case file.
+    vary : mapping of str to str, optional
+        Entry -> its range, such as ``"2 mm..8 mm"``.
+    choose : mapping of str to str, optional
+        Entry -> its values, or a part -> those of the case that may stand for it: ``"tube-4,tube-5"``.
+    step : str, optional
+        Distance of two values of a range; a hundredth of it when left out.
+    minimise, maximise : str, optional
+        What shall be least or greatest: mass, or a number such as ``"largest drive torque"``.
+    link, values, analysis, fidelity, workers
+        As for ``study``; ``analysis`` is check or envelope.
+    accuracy, progress
+        As for ``check``.
+    folder : str or path, optional
+        That keeps what was computed, as of a study.
+
+    Returns
+    -------
+    SizeReport
+        What passes and what fails, with a table of what was solved.
+
+    Raises
+    ------
+    CaseError
+        For a wrong case, entry or range.
+    CannotRunError
+        Where the disk refuses.
+    """
+    from pathlib import Path
+
+    from reports.commands.size import find_size
+    from reports.notebook.size_report import SizeReport
+
+    return SizeReport(
+        find_size(
+            fspath(case),
+            vary or {},
+            choose or {},
+            step=step,
+            minimise=minimise,
+            maximise=maximise,
+            link=link or {},
+            values=values or {},
+            analysis=analysis,
+            fidelity=fidelity,
+            accuracy=accuracy,
+            workers=workers,
+            folder=None if folder is None else Path(folder),
+            tell=progress or _silent,
+        )
+    )
 
 
 def tolerance(

@@ -2,10 +2,11 @@
 
 import json as jsonlib
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from fea.sizing.least import Sized
+    from fea.sizing.lightest import Lightest
     from loads.plans.axis import Axis
 
 app = typer.Typer()
@@ -76,6 +78,90 @@ def size(
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Find the least value of an entry that passes over its whole band, or of several entries the least mass."""
+    from loads.case.case_file import stated_changes
+
+    found = find_size(
+        case,
+        stated(vary, "--vary"),
+        stated(choose, "--choose"),
+        step=step,
+        minimise=minimise,
+        maximise=maximise,
+        most=most,
+        seed=seed,
+        link=stated(link, "--link"),
+        values={change.path: change.value for change in stated_changes(overrides or ())},
+        fidelity=fidelity,
+        accuracy=accuracy,
+        analysis=analysis,
+        workers=workers,
+        folder=output,
+        tell=_tell,
+    )
+    if json:
+        print(jsonlib.dumps(_record(found), indent=2, allow_nan=False))
+    else:
+        from rich.console import Console
+
+        print_found(found, Console())
+    raise SystemExit(_status(found))
+
+
+def find_size(
+    case: str,
+    vary: Mapping[str, str],
+    choose: Mapping[str, str],
+    *,
+    step: str | None = None,
+    minimise: str | None = None,
+    maximise: str | None = None,
+    most: int = 24,
+    seed: int = 0,
+    link: Mapping[str, str] = MappingProxyType({}),
+    values: Mapping[str, object] = MappingProxyType({}),
+    fidelity: str = "auto",
+    accuracy: str | None = None,
+    analysis: str = "check",
+    workers: int | None = None,
+    folder: Path | None = None,
+    tell: Callable[[str], None],
+) -> "Sized | Lightest":
+    """Find the least value of an entry that passes, or the best values of several.
+
+    Parameters
+    ----------
+    case : str
+        Path of a case file, or the name of a built-in case.
+    vary, choose : mapping of str to str
+        Entry -> its range, and entry -> its values.
+    step : str, optional
+        Distance of two values of a range.
+    minimise, maximise : str, optional
+        The quantity that shall be least or greatest; mass, where several entries vary.
+    most, seed : int, optional
+        How many combinations the model that decides solves, and seed of the search, of several entries.
+    link : mapping of str to str, optional
+        Entry -> expression of others.
+    values : mapping of str to object, optional
+        Other values for some entries.
+    fidelity, accuracy, analysis : str, optional
+        As of a study.
+    workers : int, optional
+        Processes; one a core unless given.
+    folder : Path, optional
+        That keeps what was computed.
+    tell : callable
+        Called with a sentence before each batch.
+
+    Returns
+    -------
+    Sized or Lightest
+
+    Raises
+    ------
+    CaseError
+        For options that do not go together, and for a wrong case, entry or range.
+    """
     from fea.sizing.candidates import Objective
     from fea.sizing.least import least_size
     from fea.sizing.lightest import lightest
@@ -83,52 +169,69 @@ def size(
     from fea.study.compute import engine_for
     from fea.study.store import Store
     from geometry.base.errors import CaseError
-    from loads.case.case_file import stated_changes
     from loads.plans.plan import plan_of
     from loads.plans.variants import Variants
-    from reports.commands.lightest import print_lightest, record_of, status_of
 
-    axes = _axes(stated(vary, "--vary"), stated(choose, "--choose"), step)
+    axes = _axes(vary, choose, step)
     if minimise and maximise:
         raise CaseError("size: both --minimise and --maximise are stated; leave one of the two out")
     objective = Objective(quantity=maximise or minimise or "mass", largest=bool(maximise))
     several = len(axes) > 1 or not axes[0].is_range or bool(minimise or maximise)
     if several and analysis != "check":
         raise CaseError(f"size: several entries or an objective go with --analysis check alone, not '{analysis}'")
-    data: dict[str, Any] = {
-        "case": case,
-        "vary": {a.path: list(a.values) for a in axes},
-        "link": stated(link, "--link"),
-    }
+    data: dict[str, Any] = {"case": case, "vary": {a.path: list(a.values) for a in axes}, "link": dict(link)}
     data["mass"] = several and objective.quantity == "mass"
-    data |= {"fidelity": fidelity, "accuracy": accuracy, "analysis": analysis}
-    data["set"] = {change.path: change.value for change in stated_changes(overrides or ())}
+    data |= {"fidelity": fidelity, "accuracy": accuracy, "analysis": analysis, "set": dict(values)}
     plan = plan_of(data)
     with ExitStack() as stack:
-        folder = output or Path(stack.enter_context(TemporaryDirectory(prefix="alula-")))
+        kept = folder or Path(stack.enter_context(TemporaryDirectory(prefix="alula-")))
         longest = max(1 if a.is_range else len(a.values) for a in axes)
         points = [{a.path: a.values[max(i - longest, -len(a.values))] for a in axes} for i in range(longest)]
         variants = Variants(plan, Path(), points=points)
         for point in points:
             variants.tables(point)
-        store = stack.enter_context(Store.writing(folder))
-        engine = stack.enter_context(engine_for(variants, folder, workers=workers))
-        search = Search(plan, Path(), store, engine, tell=_tell)
-        found = lightest(search, axes, objective, most=most, seed=seed) if several else None
-        sized = None if several else least_size(search, axes[0].path, axes[0].values)
-        if output is not None:
+        store = stack.enter_context(Store.writing(kept))
+        engine = stack.enter_context(engine_for(variants, kept, workers=workers))
+        search = Search(plan, Path(), store, engine, tell=tell)
+        found: Sized | Lightest = (
+            lightest(search, axes, objective, most=most, seed=seed)
+            if several
+            else least_size(search, axes[0].path, axes[0].values)
+        )
+        if folder is not None:
             search.finish()
-    if json:
-        told = record_of(found) if found else record(sized) if sized else {}
-        print(jsonlib.dumps(told, indent=2, allow_nan=False))
-    else:
-        from rich.console import Console
+    return found
 
-        if found:
-            print_lightest(found, Console())
-        if sized:
-            print_size(sized, Console())
-    raise SystemExit(status_of(found) if found else exit_status(sized) if sized else 0)
+
+def print_found(found: "Sized | Lightest", console: "Console") -> None:
+    """Print the result of either search.
+
+    Parameters
+    ----------
+    found : Sized or Lightest
+    console : rich.console.Console
+    """
+    from fea.sizing.least import Sized
+    from reports.commands.lightest import print_lightest
+
+    if isinstance(found, Sized):
+        print_size(found, console)
+    else:
+        print_lightest(found, console)
+
+
+def _record(found: "Sized | Lightest") -> Mapping[str, Any]:
+    from fea.sizing.least import Sized
+    from reports.commands.lightest import record_of
+
+    return record(found) if isinstance(found, Sized) else record_of(found)
+
+
+def _status(found: "Sized | Lightest") -> int:
+    from fea.sizing.least import Sized
+    from reports.commands.lightest import status_of
+
+    return exit_status(found) if isinstance(found, Sized) else status_of(found)
 
 
 def _axes(varied: Mapping[str, str], chosen: Mapping[str, str], step: str | None) -> "list[Axis]":

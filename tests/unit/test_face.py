@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from concurrent.futures import Future
+from contextlib import nullcontext
 
 import numpy as np
 import programs
@@ -14,6 +16,9 @@ import pytest
 from PIL import Image
 
 import alula
+from fea.common.verdict import Verdict
+from fea.study.engine import Engine
+from fea.study.numbers import VariantNumber, VariantResult
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case, read_text, validate
 
@@ -143,6 +148,42 @@ def test_a_study_is_kept_and_shown(tmp_path):
     assert dict(report.counts) == {"pass": 2}  # of the clearance between its layers
     assert "<table>" in report._repr_html_()
     assert alula.study("four-bar-synthesis", {"motion.poses": "3, 5"}, tmp_path / "s", analysis="motion") == report
+
+
+def test_a_size_is_found_and_told(monkeypatch):
+    """By a rule in place of checks: 6 mm is the least that passes, and of a choice the lightest."""
+
+    def submit(task):
+        diameter = float(task.tables["parts"]["tube"]["outer_diameter"].split()[0])
+        verdict = Verdict.PASS if diameter >= 6.0 else Verdict.FAIL
+        told = {"subject": "AE", "low": diameter / 6.0, "high": diameter / 6.0, "value": diameter / 6.0}
+        factor = VariantNumber(
+            check="strength", quantity="safety factor", unit="1", limit=1.0, verdict=verdict, **shared
+        )
+        future = Future()
+        future.set_result(
+            VariantResult(
+                state="done", verdict=verdict, numbers=(factor, VariantNumber.exact("mass", "g", diameter, "the links"))
+            )
+        )
+        return future
+
+    engine = Engine(submit=submit, capacity=lambda: 4)
+    monkeypatch.setattr("fea.study.compute.engine_for", lambda *_, **__: nullcontext(engine))
+    found = alula.size(OWL, {TUBE: "4 mm..8 mm"}, step="1 mm", fidelity="beam")
+    assert (found.passing, found.failing) == ({TUBE: "6 mm"}, {TUBE: "5 mm"})
+    rows = {row[TUBE]: row for row in found.table()}
+    assert rows["5 mm"]["verdict"] == "fail"
+    assert rows["5 mm"]["margin"] == pytest.approx(5.0 / 6.0)
+    assert str(found).startswith(f"Least {TUBE} that passes: 6 mm.\nThe greatest that fails: 5 mm.")
+    assert "6 mm" in repr(found)
+    best = alula.size(OWL, choose={TUBE: "7 mm, 6 mm, 5 mm"}, fidelity="beam")
+    assert best.passing == {TUBE: "6 mm"}
+    assert best.failing is None
+    assert "Least mass that passes: 6.000 g" in str(best)
+    assert {row[TUBE]: row["verdict"] for row in best.table()}.items() >= {"6 mm": "pass"}.items()
+    with pytest.raises(CaseError, match="nothing varies"):
+        alula.size(OWL)
 
 
 def test_inspect_says_what_the_command_says_of_a_file():
