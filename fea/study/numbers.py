@@ -18,6 +18,7 @@ from loads.case.layers import pin_masses
 from loads.states.case_motion import CaseMotion
 from loads.states.dead_point_reach import least_dead_point_distance, way_to_dead_point
 from loads.states.masses import part_masses, rough_masses
+from loads.statics.rounding import without_rounding
 
 State = Literal["done", "refused", "crashed"]
 Weighs = bool | Literal["rough"]
@@ -169,7 +170,7 @@ def of_check(result: CheckResult, *, weighs: Weighs) -> tuple[Verdict, tuple[Var
     found: list[VariantNumber] = []
     for name, load_case in result.load_cases.items():
         found += map(VariantNumber.of, load_case.checks)
-        reactions = load_case.large_displacement.reactions or load_case.forces.reactions
+        reactions = without_rounding(load_case.large_displacement.reactions or load_case.forces.reactions)
         largest = max((joint.magnitude for joint in reactions.joints.values()), default=0.0)
         found.append(VariantNumber.exact("drive torque", "N·mm", reactions.driving[0], "the drive", name))
         found.append(VariantNumber.exact("largest joint force", "N", largest, LINKED, name))

@@ -157,9 +157,7 @@ def test_a_size_is_found_and_told(monkeypatch):
         diameter = float(task.tables["parts"]["tube"]["outer_diameter"].split()[0])
         verdict = Verdict.PASS if diameter >= 6.0 else Verdict.FAIL
         told = {"subject": "AE", "low": diameter / 6.0, "high": diameter / 6.0, "value": diameter / 6.0}
-        factor = VariantNumber(
-            check="strength", quantity="safety factor", unit="1", limit=1.0, verdict=verdict, **shared
-        )
+        factor = VariantNumber(check="strength", quantity="safety factor", unit="1", limit=1.0, verdict=verdict, **told)
         future = Future()
         future.set_result(
             VariantResult(

@@ -10,6 +10,7 @@ from legible import written
 
 from fea.check.run import check_case
 from fea.frame.case_statics import solve_case_statics
+from fea.study.numbers import of_check
 from loads.case.case_file import validate
 from loads.statics.rounding import size_of, without_rounding
 from reports.commands.statics import print_statics
@@ -76,6 +77,11 @@ def test_page_and_tables_tell_zero(checked, straight, capsys):
     text = capsys.readouterr().out.split("system")[0]
     assert "drive torque on crank: 0 N·mm" in text
     assert "frame pushes piston with (    0.0000,     0.0000) N, 0.0000 N" in text
+
+
+def test_a_study_keeps_zero(checked):
+    _, numbers = of_check(checked, weighs=False)
+    assert [one.value for one in numbers if one.quantity == "drive torque"] == [0.0]
 
 
 def test_a_couple_alone_is_no_rounding(slider_text):
