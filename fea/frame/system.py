@@ -147,11 +147,15 @@ def to_ends(model: FrameModel, i: int) -> Floats:
     ndarray, shape (12, 12)
         From global axes to local ones.
     """
-    R = model.axes(i)
-    turned, across = np.kron(np.eye(4), R), np.eye(12)
-    for end, (x, y, z) in enumerate(model.elements[i].offsets @ R.T):
-        across[6 * end : 6 * end + 3, 6 * end + 3 : 6 * end + 6] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
-    return np.asarray(across @ turned)
+    R, found = model.axes(i), np.zeros((12, 12))
+    for first in range(0, 12, 3):
+        found[first : first + 3, first : first + 3] = R
+    offsets = model.elements[i].offsets
+    if offsets.any():
+        for end, (x, y, z) in enumerate(offsets @ R.T):
+            across = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+            found[6 * end : 6 * end + 3, 6 * end + 3 : 6 * end + 6] = across @ R
+    return found
 
 
 class FrameSystem:

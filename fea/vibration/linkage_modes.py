@@ -38,6 +38,10 @@ SUBDIVISIONS = 4
 """Elements along the longest beam; shorter ones have fewer in proportion."""
 BASIS = 12
 """Modes beyond those asked for in which the doubt about flexibilities is resolved."""
+TIGHT_PINS = (
+    "pins between layers are taken to be tight in both of their links; where one tilts in a hole, frequencies of "
+    "motions out of the plane are lower"
+)
 _ROUNDING = 1e-12
 """Negative eigenvalue over the largest that was found, above which it may be rounding."""
 
@@ -186,6 +190,8 @@ def _modes(
         size = float(np.linalg.norm(shape[:, :3], axis=1).max()) or 1.0
         modes.append(Mode(frequency=band, shape=shape / size, in_plane=plane / whole))
     notes = list(frame.notes)
+    if any(not frame.model.elements[i].rigid for i in frame.pin_beams.values()):
+        notes.append(TIGHT_PINS)
     unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
     if unstable.any():
         rate = float(np.sqrt(-found.values[0]))

@@ -152,37 +152,37 @@ def beam_mass(model: FrameModel, i: int, density: Floats, turning: float = 0.0, 
     if aside is not None:
         shapes[:, :3] -= _cross(R @ aside) @ shapes[:, 3:]
     grains = density * length * _WEIGHTS
-    local = np.einsum("p,pai,paj->ij", grains, shapes[:, :3], shapes[:, :3])
-    local += np.einsum("p,pai,ab,pbj->ij", grains, shapes[:, 3:], inertia, shapes[:, 3:])
-    across = to_ends(model, i)
-    return np.asarray(across.T @ local @ across)
+    borne = np.concatenate([shapes[:, :3], inertia @ shapes[:, 3:]], axis=1) * grains[:, None, None]
+    across = shapes.reshape(-1, 12) @ to_ends(model, i)
+    return np.asarray(across.T @ (borne.reshape(-1, 12) @ to_ends(model, i)))
 
 
 def _shapes(element: FrameElement, length: float) -> Floats:
     """Displacement and rotation (4, 6, 12) at the places of integration by those of both ends, local axes."""
     _, shear, _, _, about_y, about_z = flexibility(element.section, element.young, element.poisson)
-    x, found = _XI, np.zeros((len(_XI), 6, 12))
+    found, size = np.zeros((len(_XI), 6, 12)), np.array([1.0, length, 1.0, length])
     for row in (0, 3):
-        found[:, row, row], found[:, row, row + 6] = 1.0 - x, x
+        found[:, row, row], found[:, row, row + 6] = 1.0 - _XI, _XI
     for w, turn, sign, bending in ((1, 5, 1.0, about_z), (2, 4, -1.0, about_y)):
         phi = 12.0 * shear / (bending * length**2)
-        moved = [
-            1.0 - 3.0 * x**2 + 2.0 * x**3 + phi * (1.0 - x),
-            length * (x - 2.0 * x**2 + x**3 + phi * (x - x**2) / 2.0),
-            3.0 * x**2 - 2.0 * x**3 + phi * x,
-            length * (-(x**2) + x**3 - phi * (x - x**2) / 2.0),
-        ]
-        turned = [
-            6.0 * (x**2 - x) / length,
-            1.0 - 4.0 * x + 3.0 * x**2 + phi * (1.0 - x),
-            6.0 * (x - x**2) / length,
-            -2.0 * x + 3.0 * x**2 + phi * x,
-        ]
-        for k, column in enumerate((w, turn, w + 6, turn + 6)):
-            by_turn = sign if k % 2 else 1.0
-            found[:, w, column] = by_turn * moved[k] / (1.0 + phi)
-            found[:, turn, column] = sign * by_turn * turned[k] / (1.0 + phi)
+        columns, signs = [w, turn, w + 6, turn + 6], np.array([1.0, sign, 1.0, sign])
+        found[:, w, columns] = (_BENT + phi * _SHEARED) * (signs * size / (1.0 + phi))
+        found[:, turn, columns] = (_TURNED + phi * _TILTED) * (sign * signs * size / (length * (1.0 + phi)))
     return found
+
+
+_ZERO = np.zeros(len(_XI))
+_BENT = np.array(
+    [1.0 - 3.0 * _XI**2 + 2.0 * _XI**3, _XI - 2.0 * _XI**2 + _XI**3, 3.0 * _XI**2 - 2.0 * _XI**3, _XI**3 - _XI**2]
+).T
+"""N1 to N4 without shear at the places of integration, of a beam of unit length."""
+_SHEARED = np.array([1.0 - _XI, (_XI - _XI**2) / 2.0, _XI, (_XI**2 - _XI) / 2.0]).T
+"""What shear adds to them, over Φ."""
+_TURNED = np.array(
+    [6.0 * (_XI**2 - _XI), 1.0 - 4.0 * _XI + 3.0 * _XI**2, 6.0 * (_XI - _XI**2), 3.0 * _XI**2 - 2.0 * _XI]
+).T
+"""The turns of sections that go with them."""
+_TILTED = np.array([_ZERO, 1.0 - _XI, _ZERO, _XI]).T
 
 
 def _cross(arm: Floats) -> Floats:

@@ -29,7 +29,7 @@ from loads.states.standing import stand
 
 Floats = NDArray[np.float64]
 
-FINE = 16
+FINE = 8
 """Poses of the fine grid from one pose to the next."""
 _GOLDEN = (3.0 - math.sqrt(5.0)) / 2.0
 

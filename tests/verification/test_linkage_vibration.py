@@ -15,16 +15,20 @@ from materials import SOURCED_ENTRIES
 from scipy.linalg import eigh
 from vibrating_frames import DENSITY, LENGTH, POISSON, YOUNG, eigenvalues, rectangle, straight
 
+from fea.common.source import SourceKind
 from fea.frame.build import build_frame
 from fea.frame.case_statics import solve_case_statics
+from fea.frame.displacement_band import Zone
 from fea.frame.linear import solve_frame
 from fea.frame.model import ALL_DOFS, PIN_DOFS, FrameElement, FrameModel, Support, Tie
 from fea.nonlinear.corotational import subdivide
 from fea.nonlinear.equilibrium_path import EquilibriumPath
 from fea.nonlinear.stability import stiffness_parts
+from fea.vibration import flexibility_doubt
 from fea.vibration.linkage_modes import divide, frame_modes
 from fea.vibration.mass_matrix import MassMatrix, beam_mass, body_mass, mass_matrix
-from fea.vibration.over_motion import case_frequencies
+from fea.vibration.over_motion import FINE, case_frequencies
+from geometry.base.errors import CaseError
 from loads.case.case_file import read_case, validate
 from loads.states.masses import laden_masses, part_masses
 
@@ -287,3 +291,101 @@ def test_what_has_no_mass_gives_no_spurious_value():
     i_y = STOUT.i_y
     across = 3.0 * YOUNG * i_y / LENGTH**3 / 1e-5  # out of the plane, where the body has no inertia
     assert min(found, key=lambda v: abs(v - across)) == pytest.approx(across, rel=1e-2)
+
+
+def springless(**tables):
+    """The four-bar without springs and weights, held rigidly, of a plastic."""
+    found = tomllib.loads(FOUR_BAR + STIFF)
+    for entry in ("springs", "tendons", "carried"):
+        del found[entry]
+    found["materials"]["stiff"] |= {"youngs_modulus": "3 GPa", "youngs_modulus_range": ["2 GPa", "4.5 GPa"]}
+    found["drive"] = {"link": "crank", "joint": "A"}
+    return validate({**found, "load_cases": {"own": {"title": "nothing"}}, **tables})
+
+
+def test_frequencies_go_with_the_root_of_the_modulus():
+    """All links of one range, √(4.5/2) from end to end, whatever eyes add to it."""
+    mode = first(springless())
+    widths = {source.kind: source.width for source in mode.frequency.sources}
+    assert widths[SourceKind.MODULUS] == pytest.approx(math.sqrt(4.5 / 2.0), rel=1e-6)
+    eyes = widths[SourceKind.EYES]
+    assert eyes * widths[SourceKind.MODULUS] == pytest.approx(mode.frequency.high / mode.frequency.low, rel=0.02)
+
+
+def test_beams_four_times_as_soft_ring_an_octave_lower(monkeypatch):
+    """Every zone between a quarter and four times its flexibility, and bores that do not give."""
+
+    def give(case, frame):
+        zones = {i: (Zone(start=0.0, end=math.inf, least=np.full(6, 0.25), most=np.full(6, 4.0)),) for i in frame.beams}
+        return zones, []
+
+    monkeypatch.setattr(flexibility_doubt, "give_of_links", give)
+    found = tomllib.loads(FOUR_BAR + STIFF)["materials"]["stiff"] | {"youngs_modulus": "3 GPa"}
+    band = first(springless(materials={"stiff": found})).frequency
+    assert (band.low, band.high) == pytest.approx((band.value / 2.0, band.value * 2.0), rel=1e-6)
+
+
+def test_a_bore_gives_in_series_with_the_drive(monkeypatch):
+    """A stiff lever: 1/k = 1/k_drive + c of its bore, on which the eye beside it counts as if it bore."""
+    soft, give = 1e-4, np.zeros(6)
+    give[5] = soft
+
+    def give_of_links(case, frame):
+        return {}, [("lever", frame.points["lever", "O"], give)]
+
+    monkeypatch.setattr(flexibility_doubt, "give_of_links", give_of_links)
+    drive = {"link": "lever", "joint": "O", "stiffness": "8000 N*mm/rad"}
+    tables = {"pose": {"coordinate": "lever", "angle": "0 deg"}, "drive": drive}
+    case = case_of(LEVER, **tables, load_cases={"own": {"title": "nothing"}})
+    mass = laden_masses(case, part_masses(case))["lever"]
+    inertia = mass.inertia + mass.mass * float(mass.centroid @ mass.centroid)
+    band = first(case).frequency
+    ends = [math.sqrt(k / inertia) / (2 * math.pi) for k in (8000.0 / (1.0 + 8000.0 * soft), 8000.0)]
+    assert (band.low, band.value) == pytest.approx(ends, rel=5e-4)
+
+
+def test_over_a_motion_the_least_frequency_lies_between_poses():
+    """A lever that turns through the place where its weight steadies a soft drive least: K = k + m g c cos(...)."""
+    tables = {
+        "pose": {"coordinate": "lever", "angle": "0 deg"},
+        "drive": {"link": "lever", "joint": "O", "stiffness": "5000 N*mm/rad"},
+        "motion": {"range": ["0 deg", "190 deg"], "speed": "60 rpm"},
+        "carried": [{"link": "lever", "at": "P", "mass": "100 g"}],
+        "load_cases": {"up": {"own_weight": True, "gravity": "150 m/s^2"}},
+    }
+    case = case_of(LEVER, **tables)
+    history = case_frequencies(case, poses=5).histories["up"]
+    mass = laden_masses(case, part_masses(case))["lever"]
+    arm = mass.centroid[0]
+    inertia, pull = mass.inertia + mass.mass * arm**2, mass.mass * 150e3 * arm
+    expected = [math.sqrt((5000.0 - pull * math.sin(at)) / inertia) / (2 * math.pi) for at in history.at]
+    own = np.array(
+        [min(row, key=lambda f, e=e: abs(f - e)) for row, e in zip(history.frequencies, expected, strict=True)]
+    )
+    assert own == pytest.approx(np.array(expected), rel=1e-4)
+    assert history.driving == pytest.approx(1.0)
+    assert history.lowest.pose.angles["lever"] == pytest.approx(math.pi / 2.0, abs=math.radians(190.0 / 4.0 / FINE))
+
+
+def test_a_stop_that_bears_holds_rigidly():
+    """The lever lies on a stop: it rings as one whose drive does not give, and not as one that nothing holds."""
+    found = []
+    for tables in (
+        {"stops": {"rest": {"joint": "O", "at_least": "0 deg"}}, "pose": {"equilibrium": True}},
+        {"drive": {"link": "lever", "joint": "O"}},
+    ):
+        pose = {"coordinate": "lever", "angle": "0 deg"} | tables.get("pose", {})
+        case = case_of(LEVER, **{**tables, "pose": pose}, load_cases={"lie": {"own_weight": True}})
+        found.append(case_frequencies(case).histories["lie"].frequencies)
+    assert found[0] == pytest.approx(found[1], rel=1e-6)
+
+
+@pytest.mark.parametrize("stated", ["20 N/mm", "0 N*m/rad", "5 N"])
+def test_the_stiffness_of_a_drive_is_that_of_its_joint(stated):
+    tables = {
+        "pose": {"coordinate": "lever", "angle": "0 deg"},
+        "drive": {"link": "lever", "joint": "O", "stiffness": stated},
+        "load_cases": {"own": {"title": "nothing"}},
+    }
+    with pytest.raises(CaseError, match=r"drive\.stiffness"):
+        case_of(LEVER, **tables)
