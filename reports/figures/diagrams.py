@@ -15,9 +15,10 @@ _BESIDE = 0.03
 """Room beside the link, as a share of its length."""
 _NIL = 1e-9
 """Share of the largest value below which a quantity is drawn as zero."""
-_LEFT, _RIGHT, _LABEL = 64.0, 517.0, 22.0
-_PITCH, _PANEL, _BELOW = 90.0, 74.0, 18.0
-"""Sides of the panels, middle of their labels, their distance and height, and the room below them [points]."""
+_LEFT, _RIGHT, _LABEL = 80.0, 517.0, 20.0
+_PITCH, _MANY, _BETWEEN, _BELOW = 90.0, 66.0, 16.0, 18.0
+"""Sides of the panels, middle of their labels, their distance where they are up to three and where they are more, and
+the room between and below them [points]. The lower panels let a printed sheet hold the rows of two links."""
 _COLOURS = {"N": "#7a4fa3", "V": "#00795a", "M": "#c8460b", "T": "#0067a8", "σ": "#8a1538"}
 
 
@@ -48,9 +49,9 @@ def _sheet(beam: BeamCheck, points: dict[str, float]) -> Canvas:
     moment = max(float(np.abs(v).max()) for v in (beam.t, beam.m_y, beam.m_z))
     scale = max(force, moment / length)
     for kind, label, values, size in (
-        ("V", "V out of\nplane [N]", beam.v_z, scale),
-        ("M", "M out of\nplane [N·mm]", beam.m_y, scale * length),
-        ("T", "torque [N·mm]", beam.t, scale * length),
+        ("V", "V out\nof plane\n[N]", beam.v_z, scale),
+        ("M", "M out\nof plane\n[N·mm]", beam.m_y, scale * length),
+        ("T", "torque\n[N·mm]", beam.t, scale * length),
     ):
         if np.abs(values).max() > _NIL * size:
             rows.append((kind, label, values))
@@ -60,11 +61,12 @@ def _sheet(beam: BeamCheck, points: dict[str, float]) -> Canvas:
     along = (low - _BESIDE * length, low + (1.0 + _BESIDE) * length)
     names = stacked(points, [wide * (x - along[0]) / (along[1] - along[0]) for x in points.values()])
     top = 9.0 + heights(names)
-    sheet = Canvas(72.0 * WIDTH, top + _PITCH * len(rows) + _BELOW)
+    pitch = _PITCH if len(rows) <= 3 else _MANY
+    sheet = Canvas(72.0 * WIDTH, top + pitch * len(rows) + _BELOW)
     for k, (kind, label, values) in enumerate(rows):
         size = float(values.max()) if kind == "σ" else scale if kind in "NV" else scale * length
         values = np.where(np.abs(values) > _NIL * size, values, 0.0)
-        box = (_LEFT, top + _PITCH * k, _RIGHT, top + _PITCH * k + _PANEL)
+        box = (_LEFT, top + pitch * k, _RIGHT, top + pitch * (k + 1) - _BETWEEN)
         axes = Axes(box=box, x=along, y=_room(values))
         for x in points.values():
             place = float(axes.at([x, 0.0])[0])

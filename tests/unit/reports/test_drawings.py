@@ -210,7 +210,15 @@ def test_forces_out_of_the_plane_get_panels_of_their_own(result):
         )
     )
     sheet = diagrams._sheet(check_beam(loads, section, 40.0), {"A": 0.0})
-    assert written(sheet) >= {"V out of\nplane [N]", "M out of\nplane [N·mm]", "torque [N·mm]"}
+    assert written(sheet) >= {"V out\nof plane\n[N]", "M out\nof plane\n[N·mm]", "torque\n[N·mm]"}
+    assert_legible(sheet)
+
+
+def test_six_rows_with_powers_of_ten_at_their_axes_are_legible(result):
+    wrenches = np.array([[1.0, 2.0, -3.0, -40.0, 50.0, 60.0], [-1.0, -2.0, 3.0, 40.0, -20.0, -40.0]])  # in balance
+    ends = tuple(PointLoad(point=np.array([x, 0.0]), wrench=1e-5 * w) for x, w in zip((0, 10.0), wrenches, strict=True))
+    sheet = diagrams._sheet(check_beam(BeamLoads(points=ends), result.case.parts["tube"].section, 40.0), {"A": 0.0})
+    assert sum("10⁻" in text.text for text in sheet.texts) >= 5
     assert_legible(sheet)
 
 
