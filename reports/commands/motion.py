@@ -22,14 +22,13 @@ def write_motion(result: CaseMotion, folder: Path, name: str) -> None:
         Of the case, as the command was given it.
     """
     from reports.figures.motion_animation import draw_animation
-    from reports.figures.motion_figures import draw_figures
-    from reports.motion.rate_figures import rate_figures
+    from reports.motion.figures import draw_figures
     from reports.outlines.contact import contact_drawing
     from reports.page.motion_pages import MOTION, motion_page
 
     (folder / "result.json").write_text(jsonlib.dumps(record(result, name), indent=2) + "\n", encoding="utf-8")
     write_tables(result, folder)
-    drawn = draw_figures(result, folder, rate_figures(result))
+    drawn = draw_figures(result, folder)
     apart = clearance(result.case)
     if apart is not None and apart.shown is not None:
         drawn.append(folder / "clearance.png")

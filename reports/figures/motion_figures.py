@@ -1,11 +1,9 @@
 """Figures of a motion, drawn without a display: link directions, joint paths, drive torque, joint forces."""
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
-from pathlib import Path as Folder
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -40,39 +38,6 @@ def quiet_glyphs() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         yield
-
-
-def draw_figures(result: CaseMotion, folder: Folder, more: Mapping[str, Figure] = MappingProxyType({})) -> list[Folder]:
-    """Draw all figures of a motion as PNG files.
-
-    Parameters
-    ----------
-    result : CaseMotion
-    folder : Path
-        Folder to write into.
-    more : mapping of str to Figure, optional
-        Name of the file, without its ending -> further figures.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
-    figures = {
-        "link-angles": angles_figure(result),
-        "paths": paths_figure(result.motion, loose_motion(result)),
-        "torque": torque_figure(result),
-    }
-    for i, load_case in enumerate(result.forces):
-        name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
-        figures[name] = forces_figure(result, load_case)
-    figures |= more
-    paths = []
-    with quiet_glyphs():
-        for name, figure in figures.items():
-            paths.append(folder / f"{name}.png")
-            figure.savefig(paths[-1], dpi=DPI)
-    return paths
 
 
 def angles_figure(result: CaseMotion) -> Figure:

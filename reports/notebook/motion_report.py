@@ -162,7 +162,7 @@ class MotionReport:
         CaseError
             For a load case that does not exist or has no speed.
         """
-        from reports.motion.rate_figures import energy_figure
+        from reports.motion.figures import energy_figure
 
         moving = {name: found for name in self.result.torque if (found := series(self.result, name)) is not None}
         return _picture(energy_figure(self.result, load_case, pick(moving, load_case, "load case with a speed")))

@@ -1,18 +1,62 @@
-"""Figures of speeds, accelerations, energy and shaking over a motion."""
+"""All figures of a motion as files; those of speeds, accelerations, energy and shaking are drawn here."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from loads.states.case_motion import CaseMotion
-from reports.figures.motion_figures import COLOURS, DASHES, legend, over_angle
+from loads.states.loose_motion import loose_motion
+from reports.figures.motion_figures import (
+    COLOURS,
+    DASHES,
+    DPI,
+    angles_figure,
+    forces_figure,
+    legend,
+    over_angle,
+    paths_figure,
+    quiet_glyphs,
+    torque_figure,
+)  # fmt: skip
 from reports.motion.rate_rows import told_speed
 from reports.motion.rates import QUANTITIES, Series, Values, series
 
 _SIZE = (8.0, 5.4)
 _NEAR = 1e-9
+
+
+def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
+    """Draw all figures of a motion as PNG files.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    folder : Path
+        Folder to write into.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
+    figures = {
+        "link-angles": angles_figure(result),
+        "paths": paths_figure(result.motion, loose_motion(result)),
+        "torque": torque_figure(result),
+    }
+    for i, load_case in enumerate(result.forces):
+        name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
+        figures[name] = forces_figure(result, load_case)
+    figures |= rate_figures(result)
+    paths = []
+    with quiet_glyphs():
+        for name, figure in figures.items():
+            paths.append(folder / f"{name}.png")
+            figure.savefig(paths[-1], dpi=DPI)
+    return paths
 
 
 def rate_figures(result: CaseMotion) -> dict[str, Figure]:
