@@ -323,8 +323,13 @@ class FrameModel:
         float
             Length [mm].
         """
-        start, end = self.ends(i)
-        return float(np.linalg.norm(end - start))
+        return self._lengths[i]
+
+    @cached_property
+    def _lengths(self) -> list[float]:
+        """Of all elements."""
+        ends = (self.ends(i) for i in range(len(self.elements)))
+        return [float(np.linalg.norm(end - start)) for start, end in ends]
 
     def axes(self, i: int) -> Floats:
         """Return the local axes of an element.

@@ -120,8 +120,8 @@ def _within(model: FrameModel, i: int, centre: Floats, radius: float) -> Floats:
     turning = R.T @ np.diag([section.i_y + section.i_z, section.i_y, section.i_z]) @ R
     found = np.zeros((6, 6))
     for s, weight in zip(low + _XI * (high - low), _WEIGHTS * (high - low), strict=True):
-        arm = start + s * along - centre
-        move = np.hstack([np.eye(3), np.cross(np.eye(3), arm).T])
+        x, y, z = start + s * along - centre
+        move = np.array([[1.0, 0.0, 0.0, 0.0, z, -y], [0.0, 1.0, 0.0, -z, 0.0, x], [0.0, 0.0, 1.0, y, -x, 0.0]])
         found += weight * section.area * move.T @ move
         found[3:, 3:] += weight * turning
     return found

@@ -145,8 +145,12 @@ def frame_modes(path: EquilibriumPath, tangent: Floats, mass: MassMatrix, count:
     NaturalModes
         With vectors (k + g, c) in the unknowns of the path.
     """
+    M, unit = mass.bordered(path), path.unit
+    if not path.model.guides:
+        found = lowest(tangent * np.outer(unit, unit), M * np.outer(unit, unit), count)
+        return replace(found, vectors=unit[:, None] * found.vectors)
     Z = path.allowed(tangent)
-    found = lowest(Z.T @ tangent @ Z, Z.T @ mass.bordered(path) @ Z, count)
+    found = lowest(Z.T @ tangent @ Z, Z.T @ M @ Z, count)
     return replace(found, vectors=Z @ found.vectors)
 
 
