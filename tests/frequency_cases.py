@@ -67,5 +67,5 @@ def cantilever(width: float, *, tip: float, length: float = 100.0, height: float
     def rest(b: float) -> float:
         return 1.0 + math.cos(b) * math.cosh(b) + a * b * (math.cos(b) * math.sinh(b) - math.sin(b) * math.cosh(b))
 
-    b = brentq(rest, 0.1, 1.9)
+    b = brentq(rest, 0.1, 2.5)
     return (b / length) ** 2 * math.sqrt(young * width * height**3 / 12.0 / line) / (2.0 * math.pi)

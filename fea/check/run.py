@@ -259,7 +259,7 @@ def check_case(
     statics = solve_case_statics(case, name)
     case = statics.case
     clock("pose and statics")
-    whole = whole_numbers(case, statics.pose, solid=fidelity == "solid", threads=threads)
+    whole = whole_numbers(case, statics.pose, solids=fidelity not in BY_HAND, threads=threads)
     clock("the linkage as a whole")
     moved = frames or {
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from fea.common.band import Band
-from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
 from fea.vibration.harmonics import HIGHEST, Meeting, in_words, meetings
+from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes
 from fea.vibration.modes import Mode
 from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies
@@ -21,15 +22,16 @@ _ROUNDING = 1e-9
 _ENDINGS = {1: "st", 2: "nd", 3: "rd"}
 
 
-def asked_frequencies(case: Case, *, solid: bool = False, threads: int = 2) -> CaseFrequencies | None:
+def asked_frequencies(case: Case, *, solids: bool = False, threads: int = 2) -> CaseFrequencies | None:
     """Return the natural frequencies under the load cases with a speed, where a check asks for them.
 
     Parameters
     ----------
     case : Case
-    solid : bool, optional
-        True for links by themselves as solids.
+    solids : bool, optional
+        True where solids may decide on links by themselves that their beams leave open.
     threads : int, optional
+        Of each library.
 
     Returns
     -------
@@ -38,8 +40,13 @@ def asked_frequencies(case: Case, *, solid: bool = False, threads: int = 2) -> C
     if not any(isinstance(check, FrequencyCheck) for check in case.checks.values()):
         return None
     driven = {name: load_case for name, load_case in case.load_cases.items() if load_case.speed != 0.0}
-    driven_case = case.model_copy(update={"load_cases": driven})
-    return case_frequencies(driven_case, poses=POSES, solid=solid, threads=threads)
+    found = case_frequencies(case.model_copy(update={"load_cases": driven}), poses=POSES, threads=threads)
+    if not solids:
+        return found
+    outcomes = [one for one in frequency_outcomes(found) if one.verdict is Verdict.UNDECIDED]
+    left = dict.fromkeys(one.subject.name for one in outcomes if one.subject.kind == "link")
+    closer = {link: link_modes(found.case, link, solid=True, threads=threads) for link in left}
+    return replace(found, links={**found.links, **closer})
 
 
 def frequency_outcomes(found: CaseFrequencies | None) -> Iterator[CheckOutcome]:
@@ -53,19 +60,19 @@ def frequency_outcomes(found: CaseFrequencies | None) -> Iterator[CheckOutcome]:
     Yields
     ------
     CheckOutcome
-        The linkage under every load case; links by themselves under the fastest, which decides on them.
+        The linkage under every load case; links by themselves under the fastest, with and without what they carry.
     """
     if found is None:
         return
     case = found.case
-    fastest = max(found.histories, key=lambda name: found.histories[name].driving)
     for name, check in case.checks.items():
         if not isinstance(check, FrequencyCheck):
             continue
         for load_case, history in found.histories.items():
             yield _linkage(case, name, check, load_case, history)
         for link in check.links or case.checked_links:
-            yield _link(found, name, check, fastest, link)
+            for load_case, modes in _by_itself(found, link):
+                yield _link(name, check, load_case, modes, found.histories[load_case].driving)
 
 
 def deciding_load_case(found: CaseFrequencies) -> str:
@@ -123,9 +130,20 @@ def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, histo
     return CheckOutcome.of(name, LINKAGE, load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
 
 
-def _link(found: CaseFrequencies, name: str, check: FrequencyCheck, load_case: str, link: str) -> CheckOutcome:
-    own, driving = found.links[link], found.histories[load_case].driving
-    mode = own.modes[0]
+def _by_itself(found: CaseFrequencies, link: str) -> Iterator[tuple[str, LinkModes]]:
+    """Yield the load cases that decide on a link, the fastest with what it carries and without, and its modes then."""
+    case, own = found.case, found.links[link]
+    bears = any(one.link == link for one in case.carried)
+    for carried in (True, False) if bears else (None,):
+        names = [name for name in found.histories if carried in (None, case.load_cases[name].carried)]
+        if names:
+            fastest = max(names, key=lambda name: found.histories[name].driving)
+            bare = carried is False
+            yield fastest, link_modes(case, link, count=1, solid=own.model == "solid", carried=False) if bare else own
+
+
+def _link(name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
+    link, mode = own.link, own.modes[0]
     reason = (
         f"by itself, {own.held}, {link} vibrates at {_hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
         f"the drive turns at {_plain(driving)} Hz"

@@ -42,7 +42,7 @@ class WholeNumbers:
     frequencies: CaseFrequencies | None
 
 
-def whole_numbers(case: Case, pose: Pose | None = None, *, solid: bool = False, threads: int = 2) -> WholeNumbers:
+def whole_numbers(case: Case, pose: Pose | None = None, *, solids: bool = False, threads: int = 2) -> WholeNumbers:
     """Return gaps, mass, size and frequencies of a linkage, as far as a check asks for them or they come at no cost.
 
     Parameters
@@ -50,8 +50,8 @@ def whole_numbers(case: Case, pose: Pose | None = None, *, solid: bool = False, 
     case : Case
     pose : Pose, optional
         The stated one, or where the linkage balances if it is let go; assembled anew when left out.
-    solid : bool, optional
-        True for natural frequencies of links by themselves as solids.
+    solids : bool, optional
+        True where solids may decide on the frequencies of links that their beams leave open.
     threads : int, optional
         Of each library.
 
@@ -73,7 +73,7 @@ def whole_numbers(case: Case, pose: Pose | None = None, *, solid: bool = False, 
         clearance=apart,
         mass=weighed(case, pose) if weighs or _asks(case, MassCheck) else None,
         size=extent(case, pose, apart.motion if apart is not None else None) if measures else None,
-        frequencies=asked_frequencies(case, solid=solid, threads=threads),
+        frequencies=asked_frequencies(case, solids=solids, threads=threads),
     )
 
 

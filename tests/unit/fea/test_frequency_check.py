@@ -12,6 +12,7 @@ from frequency_cases import LEVER, cantilever, lever
 from slotted_cases import piston_entries
 
 from fea.check.run import check_case
+from fea.common.band import Band
 from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.sizing.changes import _change
 from fea.vibration.frequency_outcomes import (
@@ -179,3 +180,35 @@ def test_the_least_thickness_that_passes_is_found(tmp_path):
     assert "natural over driving frequency of" in done.stdout  # the linkage is that lever
     known = [cantilever(8.0, tip=4e-6, height=h) / 10.0 for h in (2.0, 4.0)]
     assert known[0] < 11.0 < known[1]
+
+
+def test_a_link_is_checked_by_itself_with_and_without_what_it_carries():
+    """Under the fastest load case of either: the bare lever at 1200 rpm, and with its tip mass at 600 rpm."""
+    more = {"bare": {"speed": "1200 rpm", "carried": False}, "slow": {"speed": "60 rpm"}}
+    data = tomllib.loads(LEVER)
+    case = validate(data | {"load_cases": data["load_cases"] | more})
+    own = {o.load_case: o for o in frequency_outcomes(asked_frequencies(case)) if o.subject.kind == "link"}
+    for load_case, tip, driving in (("turning", 4e-6, 10.0), ("bare", 0.0, 20.0)):
+        assert own[load_case].value.value == pytest.approx(cantilever(8.0, tip=tip) / driving, rel=0.03)
+    assert set(own) == {"turning", "bare"}
+
+
+def test_a_solid_decides_on_a_link_that_its_beams_leave_open(monkeypatch):
+    """Its band by beams is 10.8 to 14.1: against 13.5 it is open, against 4 it is not, and no solid is solved."""
+    closed, solved = cantilever(8.0, tip=4e-6), []
+
+    def by_solid(case, link, **options):
+        solved.append((link, options["solid"]))
+        own = known.links[link]
+        modes = (replace(own.modes[0], frequency=Band(value=closed, low=0.99 * closed, high=1.01 * closed)),)
+        return replace(own, model="solid", modes=modes)
+
+    known, room = found(), "fea.vibration.frequency_outcomes"
+    monkeypatch.setattr(f"{room}.link_modes", by_solid)
+    monkeypatch.setattr(f"{room}.case_frequencies", lambda case, **options: replace(known, case=case))
+    assert asked_frequencies(lever(), solids=True) is not None
+    assert asked_frequencies(lever(minimum=13.5)) is not None
+    assert solved == []
+    again = asked_frequencies(lever(minimum=13.5), solids=True)
+    [one] = [o for o in frequency_outcomes(again) if o.subject.kind == "link"]
+    assert (solved, again.links["lever"].model, one.verdict) == ([("lever", True)], "solid", Verdict.FAIL)
