@@ -112,6 +112,11 @@ class ToleranceNumber:
         return np.percentile(known, shares) if known.size else np.full(len(shares), np.nan)
 
     @property
+    def title(self) -> str:
+        """What it is, for people: ``safety factor of crank``, ``drive torque``."""
+        return self.quantity if self.subject == "the drive" else f"{self.quantity} of {self.subject}"
+
+    @property
     def closeness(self) -> float:
         """How near the nominal band comes to the limit, above 1 where it misses it; NaN where that is not known."""
         ends = (self.limit, self.nominal[1]) if self.at_least else (self.nominal[2], self.limit)

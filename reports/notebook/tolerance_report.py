@@ -27,10 +27,7 @@ class ToleranceReport:
     @property
     def numbers(self) -> Mapping[str, ToleranceNumber]:
         """Every number that was sampled, by quantity, subject and load case."""
-        return {
-            f"{one.quantity} of {one.subject}" + (f", {one.load_case}" if one.load_case else ""): one
-            for one in self.result.numbers
-        }
+        return {one.title + (f", {one.load_case}" if one.load_case else ""): one for one in self.result.numbers}
 
     def table(self) -> Table:
         """Return one row a number: nominal value, 1 %, median and 99 % of the samples, limit, probability to pass."""

@@ -34,7 +34,7 @@ def tolerance_pictures(result: ToleranceResult) -> dict[str, bytes]:
         name = _file_name(one)
         found[f"spread-{name}.png"] = spread_picture(one)
         if np.isfinite(one.total).any() and len(result.tolerances) > 1:
-            label = f"Sobol' index of the {one.quantity} of {one.subject}"
+            label = f"Sobol' index of the {one.title}"
             texts = "by itself", "in all"
             found[f"causes-{name}.png"] = png(
                 tornado(
@@ -74,7 +74,7 @@ def _outcomes(one: ToleranceNumber) -> "np.ndarray[tuple[int], np.dtype[np.str_]
 
 def _title(one: ToleranceNumber) -> str:
     unit = "" if one.unit in ("", "1") else f" [{one.unit}]"
-    return f"{one.quantity} of {one.subject}" + (f", {one.load_case}" if one.load_case else "") + unit
+    return one.title + (f", {one.load_case}" if one.load_case else "") + unit
 
 
 def _file_name(one: ToleranceNumber) -> str:

@@ -132,10 +132,6 @@ def _interval(found: Probability) -> str:
     return f"{_percent(found.value)} (95 % confidence: {_percent(found.low)} to {_percent(found.high)})"
 
 
-def _what(one: ToleranceNumber) -> str:
-    return f"the {one.quantity}" if one.subject == "the drive" else f"the {one.quantity} of {one.subject}"
-
-
 def _closest(result: ToleranceResult) -> ToleranceNumber | None:
     return None if result.corner is None else result.numbers[result.corner.number]
 
@@ -146,7 +142,7 @@ def _say_what_matters(result: ToleranceResult, console: "Console") -> None:
     shown = [one for one in result.numbers if one is closest or one.certain is None]
     for one in (one for one in shown if np.isfinite(one.total).any()):
         order = [i for i in np.argsort(-one.total).tolist() if one.total[i] >= 0.005][:MOST]
-        title = f"What matters for {_what(one)} (Sobol' indices, shares of its variance)"
+        title = f"What matters for the {one.title} (Sobol' indices, shares of its variance)"
         rows = [(result.tolerances[i], f"{max(one.first[i], 0.0):.2f}", f"{one.total[i]:.2f}") for i in order]
         say_table(console, (("tolerance", False), ("by itself", True), ("in all", True)), rows, title=title)
 
@@ -155,7 +151,7 @@ def _say_corner(result: ToleranceResult, console: "Console") -> None:
     corner, closest = result.corner, _closest(result)
     if corner is None or closest is None:
         return
-    what = _what(closest)
+    what = f"the {closest.title}"
     if math.isnan(corner.value):
         say(console, f"Worst corner for {what}: the linkage has no equilibrium there.")
     else:

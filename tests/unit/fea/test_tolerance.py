@@ -173,7 +173,7 @@ def test_a_normal_load_gives_its_torque_a_known_mean_and_standard_deviation():
     """T = F l at 90 deg; ±30 % is three standard deviations."""
     result = sampled("load_cases.pull.forces.0", "30 %", "normal")
     torque = result.numbers[-1]
-    assert (torque.subject, torque.quantity) == ("the drive", "drive torque")
+    assert (torque.subject, torque.quantity, torque.title) == ("the drive", "drive torque", "drive torque")
     assert torque.values.mean() == pytest.approx(600.0, rel=4.0 * 0.1 / math.sqrt(20_000))
     assert torque.values.std() == pytest.approx(60.0, rel=4.0 / math.sqrt(2 * 20_000))
     assert torque.first == pytest.approx([1.0])
