@@ -27,59 +27,28 @@ factor may stand for it (section 5.2.2); below 3, where small faults of shape gr
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.column_factor import AxialForce, Stretch, column_factors
-from fea.beam.cut_beam import cells
-from fea.beam.flanks import flanks_of
+from fea.beam.column_factor import AxialForce, column_factors
 from fea.beam.theory import BeamCheck
+from fea.buckling.holding import Plane, columns, holding, of_cuts
 from fea.common.band import Band
 from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind
 from fea.common.ties import first_largest
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
-from geometry.bodies.body import Body, hand_section
-from geometry.bodies.cut_section import CutSection
 from loads.case.case import Case
 
 Real = NDArray[np.float64]
-Plane = tuple[float, Sequence[Stretch]]
 
 NAME = "buckling"
 NO_COMPRESSION = 1e-9
 """Share of the largest force in the link below which compression is rounding."""
-ON_AXIS = 1e-9
-"""Share of a link's length below which a pin stands on its axis."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Holding:
-    """Where joints hold a link as a column; x along its axis [mm].
-
-    Attributes
-    ----------
-    outermost : tuple of float
-        First and last pin on it, or the one that there is; of the ground the point where it is held.
-    in_plane : tuple of float or None
-        Where pins hold it in the linkage's plane, free to turn, at the most; None where that is not known.
-    kept : tuple of float
-        Where they keep its angle in that plane as well, at the most.
-    across : tuple of float or None
-        Where they hold it and keep its angle out of the plane, at the most; None where that is not known.
-    alone : tuple of float
-        Where it may be built in and free elsewhere, each by itself; empty where its joints stay in place.
-    """
-
-    outermost: tuple[float, ...]
-    in_plane: tuple[float, ...] | None
-    kept: tuple[float, ...]
-    across: tuple[float, ...] | None
-    alone: tuple[float, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -224,7 +193,7 @@ def link_factors(case: Case, link: str, force: AxialForce) -> ColumnFactors:
     def softer(held: Sequence[float] = (), built_in: Sequence[float] = ()) -> Real:
         planes = (in_plane, across) if in_plane[1] else (min(in_plane, across, key=lambda plane: plane[0]),)
         if body.cuts:
-            planes = (_of_cuts(body, lambda cut: cut.principal[0]),)
+            planes = (of_cuts(body, lambda cut: cut.principal[0]),)
         return np.asarray(np.min([factors(plane, held, built_in) for plane in planes], axis=0))
 
     value = softer(held=where.outermost) if len(where.outermost) > 1 else softer(built_in=where.outermost)
@@ -237,86 +206,6 @@ def link_factors(case: Case, link: str, force: AxialForce) -> ColumnFactors:
     if where.across is not None:
         most = np.minimum(most, factors(across, built_in=where.across))
     return ColumnFactors(value=value, least=least, most=np.maximum(most, value))
-
-
-def columns(body: Body, *, free: bool = False) -> tuple[Plane, Plane]:
-    """Return how a link resists bending as a column.
-
-    Parameters
-    ----------
-    body : Body
-        The link's; beside its slots two flanks take the section's place.
-    free : bool, optional
-        Whether a section without symmetry may bend across the plane as well, which makes it softer. Where it may not,
-        no way of holding it makes it stiffer.
-
-    Returns
-    -------
-    tuple of two (float, sequence of Stretch)
-        In the plane, and out of it: second moment [mm⁴], and stretches of another one.
-    """
-    if body.cuts and free:
-        return _of_cuts(body, lambda cut: cut.free[1]), _of_cuts(body, lambda cut: cut.free[0])
-    if body.cuts:
-        return _of_cuts(body, lambda cut: cut.i_z), _of_cuts(body, lambda cut: cut.i_y)
-    section, slots = hand_section(body), flanks_of(body)
-    in_plane = [
-        Stretch(
-            first=slot.first,
-            last=slot.last,
-            bending=slot.together.i_z / section.i_z,
-            pair=slot.pair / section.i_z,
-        )
-        for slot in slots
-    ]
-    across = [Stretch(first=slot.first, last=slot.last, bending=slot.together.i_y / section.i_y) for slot in slots]
-    return (section.i_z, in_plane), (section.i_y, across)
-
-
-def _of_cuts(body: Body, second: Callable[[CutSection], float]) -> Plane:
-    """Return the column of sections that were cut; what lies beyond the outermost pins is as the mean of all."""
-    cuts = body.cuts
-    mean = sum(map(second, cuts)) / len(cuts)
-    return mean, [Stretch(first=a, last=b, bending=second(cut) / mean) for a, b, cut in cells(cuts)]
-
-
-def holding(case: Case, link: str) -> Holding:
-    """Return where joints hold a link as a column.
-
-    Parameters
-    ----------
-    case : Case
-    link : str
-
-    Returns
-    -------
-    Holding
-    """
-    linkage = case.linkage
-    pins = {pin.name: pin for pin in case.body(link).pins}
-    joints = {name: linkage.point_of(name, link) for name in linkage.joints_of(link)}
-    carried = {n for n in joints if linkage.joints[n].type != "revolute" and linkage.joints[n].links[0] == link}
-    places, feet = case.links[link].points, {point: pin.foot[0] for point, pin in pins.items() if pin.foot is not None}
-    foot = {name: feet.get(point, places[point][0]) for name, point in joints.items()}
-    on_arms = {name for name, point in joints.items() if point in feet}
-    slack = ON_AXIS * linkage.longest
-    held_at = case.links[link].held_at
-    support = set() if held_at is None else {places[held_at][0]}
-    off = on_arms | {name for name, point in joints.items() if abs(places[point][1]) > slack}
-    plain = [foot[name] for name in joints if name not in carried | on_arms] or list(foot.values())
-    first, last = min(plain), max(plain)
-    drive = {case.drive.joint} if case.drive is not None and case.drive.link == link else set()
-    # A pin that holds the link off its axis may keep its angle, held by other pins as well.
-    fixed = {name for name in joints if linkage.joints[name].bonded}
-    slides = {name for name in carried if linkage.joints[name].type == "slider"}
-    alone = {foot[name] for name in (fixed | drive) & set(joints)}
-    return Holding(
-        outermost=tuple(support) or ((first, last) if last - first > slack else (first,)),
-        in_plane=None if carried else tuple(sorted({*foot.values(), *support})),
-        kept=tuple(sorted({foot[name] for name in (fixed | drive | off) & set(joints)} | support)),
-        across=None if slides else tuple(sorted({foot[name] for name in set(joints) - carried} | support)) or None,
-        alone=() if support else tuple(sorted(alone)),
-    )
 
 
 def buckling_outcomes(

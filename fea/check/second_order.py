@@ -24,7 +24,7 @@ from fea.beam.cut_beam import curving_forces
 from fea.beam.cut_free import beam_loads
 from fea.beam.piecewise import Piecewise, Side
 from fea.beam.theory import internal_forces
-from fea.buckling.buckling import columns, holding
+from fea.buckling.holding import columns, holding
 from fea.common.link_loads import LinkLoads
 from geometry.bodies.body import no_beam
 from loads.case.case import Case

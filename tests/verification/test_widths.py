@@ -14,7 +14,7 @@ from fea.beam.column_factor import AxialForce, column_factors
 from fea.beam.deflection import deflection
 from fea.beam.loads import BeamLoads, PointLoad
 from fea.beam.theory import check_beam
-from fea.buckling.buckling import columns
+from fea.buckling.holding import columns
 from fea.frame.build import build_frame
 from fea.frame.linear import solve_frame
 from geometry.base.errors import CaseError

@@ -11,7 +11,7 @@ from fea.beam.cut_beam import beam_sections, curving_forces, cut_flexibility, cu
 from fea.beam.deflection import deflection
 from fea.beam.loads import BeamLoads, PointLoad
 from fea.beam.theory import check_beam
-from fea.buckling.buckling import columns
+from fea.buckling.holding import columns
 from geometry.bodies.cut_section import CutSection, joined
 from geometry.bodies.section import rectangle
 
