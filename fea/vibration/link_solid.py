@@ -52,6 +52,10 @@ RIGID = 1e-5
 """Share of the first elastic ω² below which an ω² is that of a rigid motion: rounding leaves some 1e-9."""
 
 
+ABOVE = 0.1
+"""Share of what a frequency may miss by which it may also be too low: round walls of a mesh are parabolas, not arcs."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LinkSolid:
     """A link that is to vibrate as a solid.
@@ -127,8 +131,8 @@ class RefinedModes:
 def refined_modes(solid: LinkSolid, start: MeshSettings, count: int, threads: int | None = None) -> RefinedModes:
     """Return the lowest modes of a link on two meshes.
 
-    Frequencies of a mesh are too high, so that the finer one's is the band's upper end, and what it fell by since the
-    coarser one tells how far the lower end lies below. The mesh of a part's file has no finer one: there the recovered
+    Frequencies of a mesh are too high, so that the finer one's is about the band's upper end, and what it fell by since
+    the coarser one tells how far the lower end lies below. The mesh of a part's file has no finer one: the recovered
     stress of each mode tells (``fea.refine.error_estimate``), taken fourfold.
 
     Parameters
@@ -170,7 +174,7 @@ def refined_modes(solid: LinkSolid, start: MeshSettings, count: int, threads: in
     chord = 0.5 * CHORD * abs(float(meshes[-1].volume) / volume - 1.0)
     frequencies = []
     for value, less in zip(values[-1], missed, strict=True):
-        low, high = max(value - less, 0.0) * (1.0 - chord), value * (1.0 + chord)
+        low, high = max(value - less, 0.0) * (1.0 - chord), (value + ABOVE * less) * (1.0 + chord)
         width = float(high / low) if low > 0.0 else np.inf
         source = Source(kind=SourceKind.DISCRETISATION, detail=detail, width=width)
         frequencies.append(Band(value=float(value), low=float(low), high=float(high), sources=(source,)))

@@ -148,12 +148,16 @@ def test_the_mass_of_a_mesh_is_that_of_the_part_and_its_inertia():
     assert weighed[3:, 3:] == pytest.approx(known.inertia * density, rel=2e-3, abs=1e-3 * density * known.inertia[2, 2])
 
 
-def test_frequencies_on_two_meshes_hold_those_of_a_finer_one():
+def test_frequencies_on_two_meshes_or_one_hold_those_of_a_finer_one(monkeypatch):
+    """One alone, as of a part that is a mesh from a file, has the estimate by its recovered stress."""
     solid = rocker()
-    refined = refined_modes(solid, COARSE.scaled(2.4), 2, 1)
-    finer = modes_on(solid, displacement_space(mesh_body(solid.body, COARSE.scaled(0.9))), 2, 1)
-    for band, value in zip(refined.frequencies, hertz(finer.squares), strict=True):
-        assert band.low <= value <= band.high < 1.05 * band.low
+    bands = [refined_modes(solid, COARSE.scaled(3.0), 2, 1).frequencies]
+    monkeypatch.setattr(type(solid.body.part), "is_fixed", True)
+    bands.append(refined_modes(solid, COARSE.scaled(3.0), 2, 1).frequencies)
+    finer = modes_on(solid, displacement_space(mesh_body(solid.body, COARSE.scaled(1.2))), 2, 1)
+    for found in bands:
+        for band, value in zip(found, hertz(finer.squares), strict=True):
+            assert band.low <= value <= band.high < 1.05 * band.low
 
 
 HELD = {
