@@ -36,8 +36,9 @@ VOLATILE = ("schema_version", "timings", "timings_s", "seconds", "version", "nex
 """Entries that differ from run to run or from machine to machine."""
 DERIVED = ("margin", "changes")
 """Entries that follow from kept ones, by rules that have tests of their own (``tests/unit/fea/test_changes.py``)."""
-WHOLE = ("mass", "size")
-"""Entries of a whole result that closed forms are compared with (``tests/unit/fea/test_mass_and_size.py``)."""
+WHOLE = ("mass", "size", "frequencies")
+"""Entries of a whole result that closed forms are compared with (``tests/unit/fea/test_mass_and_size.py`` and
+``test_frequency_check.py``)."""
 FRAMED = "linkage"
 """Entry whose numbers come from the frame; they are kept with hand calculations and motions alone."""
 
