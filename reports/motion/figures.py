@@ -21,6 +21,7 @@ from reports.figures.motion_figures import (
     quiet_glyphs,
     torque_figure,
 )  # fmt: skip
+from reports.motion.air_figures import air_figures
 from reports.motion.rate_rows import told_speed
 from reports.motion.rates import QUANTITIES, Series, Values, series
 
@@ -50,7 +51,7 @@ def draw_figures(result: CaseMotion, folder: Path) -> list[Path]:
     for i, load_case in enumerate(result.forces):
         name = "joint-forces" if len(result.forces) == 1 else f"joint-forces-{i + 1}"
         figures[name] = forces_figure(result, load_case)
-    figures |= rate_figures(result)
+    figures |= air_figures(result) | rate_figures(result)
     paths = []
     with quiet_glyphs():
         for name, figure in figures.items():

@@ -11,6 +11,7 @@ from reports.motion.rate_rows import link_columns, point_columns, told_speed, wh
 from reports.tables.clearance import clearance_line
 from reports.tables.frames import motion_linkage_line
 from reports.tables.friction import motion_friction_lines
+from reports.tables.loads import air_lines
 from reports.tables.mechanism import design_lines
 from reports.tables.springs import motion_springs
 
@@ -100,6 +101,7 @@ def _load_case(
     if "drive_power" in row:
         power = _ends(row["drive_power"], "W", over)
         yield f"  drive power at {at}: {power}; energy imbalance {row['energy_imbalance']:.1g} of the largest power"
+    yield from (f"  {line}" for line in air_lines(row.get("flapping")))
     if row["joints"] is None:
         yield "  the linkage is statically indeterminate, so equilibrium alone does not give the joint forces"
     for joint, extremes in (row["joints"] or {}).items():

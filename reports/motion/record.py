@@ -18,6 +18,7 @@ from reports.tables.clearance import clearance_record
 from reports.tables.data import finite
 from reports.tables.frames import motion_linkage_record
 from reports.tables.friction import motion_friction_record
+from reports.tables.loads import motion_air_record
 from reports.tables.mechanism import design_record
 
 Real = NDArray[np.float64]
@@ -126,6 +127,8 @@ def _case_record(result: CaseMotion, load_case: str) -> dict[str, Any]:
         scale = max(float(np.nanmax(np.abs(drive), initial=0.0)), math.ulp(0.0))
         data["drive_power"] = over(drive / 1000.0)
         data["energy_imbalance"] = float(np.nanmax(np.abs(imbalance), initial=0.0)) / scale
+    if (air := motion_air_record(result, load_case)) is not None:
+        data["flapping"] = air
     return data | {"rates": rates_record(result, load_case)}
 
 

@@ -10,7 +10,7 @@ from fea.outcomes.result import CheckResult, SolidResult
 from loads.case.case import Case
 from reports.page.claims_page import CLAIMS, write_claims
 from reports.page.output import MARK, write_folder
-from reports.page.pictures import ASSEMBLY, CONTACT, diagram_name, layers_name, linkage_name, stress_name
+from reports.page.pictures import ASSEMBLY, CONTACT, diagram_name, flapping_name, layers_name, linkage_name, stress_name
 from reports.tables.record import as_json, worst_load_case
 from reports.vibration.pictures import campbell_name, shapes_name
 
@@ -32,7 +32,8 @@ def report_names(case: Case) -> set[str]:
     set[str]
     """
     links, pictures = case.checked_links, {*map(linkage_name, case.load_cases), ASSEMBLY, CONTACT}
-    pictures |= {name(load_case) for load_case in case.load_cases for name in (shapes_name, campbell_name)}
+    of_load_case = shapes_name, campbell_name, flapping_name
+    pictures |= {name(load_case) for load_case in case.load_cases for name in of_load_case}
     pictures |= {name(link) for link in links for name in (diagram_name, layers_name, stress_name)}
     return {
         REPORT,

@@ -17,6 +17,7 @@ from reports.page.pictures import (
     BOX,
     CONTACT,
     diagram_name,
+    flapping_name,
     governing_load_cases,
     layers_name,
     linkage_name,
@@ -28,7 +29,7 @@ from reports.tables.data import change_records
 from reports.tables.frames import AXES, linkage_line, play_line, shown_components, thrust_line, tips
 from reports.tables.friction import friction_sentence
 from reports.tables.layers import BuildDirections, build_directions_of
-from reports.tables.loads import air_record, anchor_record, weight_sentence
+from reports.tables.loads import air_lines, air_record, anchor_record, case_air_record, weight_sentence
 from reports.tables.mechanism import design_of
 from reports.tables.meshes import solver_sentence
 from reports.tables.record import worst_load_case
@@ -113,6 +114,10 @@ def render(
         near_dead_point=NEAR_DEAD_POINT,
         anchors={name: anchor_record(case) for name, case in result.load_cases.items()},
         air={name: found for name in result.load_cases if (found := air_record(result, name))},
+        flapping={
+            name: {**found, "picture": figures.get(flapping_name(name)), "lines": air_lines(found)}
+            for name, found in case_air_record(result.case).items()
+        },
         turning=turning,
         axes=AXES,
         tips=tips(result.case),

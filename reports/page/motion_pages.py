@@ -20,6 +20,7 @@ TITLES = {
     "link-angles": "Directions of the links",
     "paths": "Paths of the joints",
     "torque": "Drive",
+    "air": "Drive with and without air on wings",
     "clearance": "Gap between links",
     "joint-forces": "Joint forces",
     "link-speeds": "Angular speeds and accelerations of the links",

@@ -24,6 +24,21 @@ def linkage_name(load_case: str) -> str:
     return f"linkage-{load_case}"
 
 
+def flapping_name(load_case: str) -> str:
+    """Return the name of the figure of the drive with and without air on wings.
+
+    Parameters
+    ----------
+    load_case : str
+        Name of the load case.
+
+    Returns
+    -------
+    str
+    """
+    return f"air-{load_case}"
+
+
 ASSEMBLY, CONTACT, BOX = "assembly", "clearance", "box"
 """Names of the drawings of links in layers, of two outlines where they touch or come nearest, and of all in a box."""
 
@@ -113,6 +128,7 @@ def draw_pictures(
     from reports.figures.diagrams import internal_force_diagram
     from reports.figures.drawings import linkage_drawing
     from reports.figures.figures import stress_plots
+    from reports.motion.air_figures import case_air_pictures
     from reports.outlines.assembly import assembly_drawing
     from reports.outlines.box import box_drawing
     from reports.outlines.contact import contact_drawing
@@ -132,6 +148,7 @@ def draw_pictures(
         pictures |= frequency_pictures(result.frequencies)
         if result.size is not None and (limits := size_limits(result.case)):
             pictures[BOX] = box_drawing(result.size, limits)
+        pictures |= {flapping_name(name): figure for name, figure in case_air_pictures(result.case).items()}
         pictures |= {
             diagram_name(link): internal_force_diagram(found.beam, stations[link])
             for link, found in worst.items()

@@ -1,4 +1,4 @@
-"""Air forces and loads on the ground, as data for ``result.json`` and for the page."""
+"""Air forces, air on wings that flap, and loads on the ground: as data for ``result.json`` and for the page."""
 
 import math
 from typing import Any
@@ -7,13 +7,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.check.anchor import anchor_loads
+from fea.common.air_range import air_range
 from fea.outcomes.result import CheckResult, LoadCaseResult
+from fea.whole.motor import demand
+from geometry.base.units import as_text
+from geometry.linkage.placement import Placement
 from loads.case.case import Case
 from loads.case.layers import pin_masses
 from loads.records.aero import shares
+from loads.records.applied import LineLoad
 from loads.records.carried import CarriedSpread
+from loads.records.load_case import LoadCase
+from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.flapping import flapping_loads, wing_reynolds, wing_span
 from reports.tables.data import entries
-from reports.words.wording import joined, plain
+from reports.words.wording import joined, number, plain
+
+Real = NDArray[np.float64]
+_AT = ("without", "least", "stated", "largest")
+"""Air of a drive: none, and the least, the stated and the largest C_N."""
 
 
 def weight_sentence(case: Case, name: str) -> str:
@@ -117,3 +129,146 @@ def air_record(result: CheckResult, name: str) -> list[dict[str, Any]]:
             }
         )
     return found
+
+
+def motion_air_record(result: CaseMotion, load_case: str) -> dict[str, Any] | None:
+    """Return what the air does to the wings of a load case over a motion, and to its drive.
+
+    Parameters
+    ----------
+    result : CaseMotion
+    load_case : str
+        Its name.
+
+    Returns
+    -------
+    dict or None
+        ``docs/result.md`` describes it; None without air.
+    """
+    case, stated, moved = result.case, result.case.load_cases[load_case], result.moved[load_case]
+    air, airs = stated.flapping, air_range(result)
+    if air is None or airs is None or not np.any(moved.speed):
+        return None
+    wings = []
+    for i, wing in enumerate(case.wings):
+        force = wing_force(case, stated, moved.placement, i)
+        first, last, chord = wing_span(wing, case)
+        largest = int(np.argmax(np.abs(force)))
+        wings.append(
+            {
+                "link": wing.link,
+                "span": [first, last],
+                "chord": list(chord),
+                "largest_force": float(np.abs(force[largest])),
+                "largest_at": float(moved.told(moved.angles[largest])),
+                "reynolds": wing_reynolds(case, air, wing, moved.placement),
+            }
+        )
+    every = dict(zip(_AT, (airs.without, airs.least, result, airs.largest), strict=True))
+    return {
+        "density": as_text(air.density, "density"),
+        "normal_coefficient": air.normal_coefficient,
+        "normal_coefficient_range": list(air.ends),
+        "added_mass": air.added_mass,
+        "wings": wings,
+        "drive": {name: _asked(one, load_case) for name, one in every.items()},
+    }
+
+
+def wing_force(case: Case, load_case: LoadCase, place: Placement, i: int) -> Real:
+    """Return the force of the air on a wing, along its link's y axis.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : LoadCase
+    place : Placement
+        With rates.
+    i : int
+        Number of the wing.
+
+    Returns
+    -------
+    array (...)
+        [N]
+    """
+    alone = case.model_copy(update={"wings": (case.wings[i],)})
+    parts = [
+        load.force if isinstance(load, LineLoad) else load.wrench for load in flapping_loads(alone, load_case, place)
+    ]
+    return np.asarray(sum(part[..., 1] for part in parts))
+
+
+def _asked(moved: CaseMotion, load_case: str) -> dict[str, float]:
+    times = moved.moved[load_case].times
+    assert times is not None
+    balanced = np.isfinite(moved.torque[load_case])
+    power, effort = (values[balanced] for values in (moved.drive_power(load_case), moved.torque[load_case]))
+    found = demand(power, effort, times[balanced])
+    return {"peak_power": found.peak_power, "mean_power": found.mean_power, "peak_effort": found.peak_torque}
+
+
+def case_air_record(case: Case) -> dict[str, dict[str, Any]]:
+    """Return what the air does over the motion of a case, for every load case that has air.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    dict of str to dict
+        Load case -> its record; empty without air, and without a motion.
+    """
+    moved = motion_in_air(case)
+    found = {} if moved is None else {name: motion_air_record(moved, name) for name in moved.torque}
+    return {name: record for name, record in found.items() if record is not None}
+
+
+def motion_in_air(case: Case) -> CaseMotion | None:
+    """Return the motion of the load cases with air.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    CaseMotion or None
+        None without any, and without a motion or a drive.
+    """
+    flapping = {name: one for name, one in case.load_cases.items() if one.flapping is not None}
+    if not flapping or case.motion is None or case.drive is None:
+        return None
+    return solve_case_motion(case.model_copy(update={"load_cases": flapping}))
+
+
+def air_lines(record: dict[str, Any] | None) -> list[str]:
+    """Return what the air does over a motion, in sentences.
+
+    Parameters
+    ----------
+    record : dict or None
+        From ``motion_air_record``.
+
+    Returns
+    -------
+    list of str
+    """
+    if record is None:
+        return []
+    low, high = record["normal_coefficient_range"]
+    without, least, stated, largest = (record["drive"][name] for name in _AT)
+    force = max(wing["largest_force"] for wing in record["wings"])
+    reynolds = max(wing["reynolds"] for wing in record["wings"])
+
+    def told(key: str) -> str:
+        spread = f" ({number(least[key], 3)} to {number(largest[key], 3)})" if low != high else ""
+        return f"{number(without[key], 3)} W without air, {number(stated[key], 3)} W{spread} with it"
+
+    ends = f" ({low:g} to {high:g})" if low != high else ""
+    return [
+        f"air on wings: C_N {record['normal_coefficient']:g}{ends}, at most {number(force, 3)} N on a wing, Reynolds "
+        f"number up to {number(reynolds, 2)}",
+        f"drive power in air: on average {told('mean_power')}; at most {told('peak_power')}",
+    ]

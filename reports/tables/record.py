@@ -19,7 +19,7 @@ from reports.tables.frames import frame_record, reaction_records
 from reports.tables.frequencies import frequencies_record
 from reports.tables.friction import friction_record
 from reports.tables.layers import layer_record
-from reports.tables.loads import air_record, anchor_record
+from reports.tables.loads import air_record, anchor_record, case_air_record
 from reports.tables.mechanism import design_record
 from reports.tables.meshes import discretisation_record, solver_record
 from reports.tables.second_opinion import opinion_records
@@ -66,6 +66,7 @@ def result_record(result: CheckResult) -> dict[str, Any]:
         "changes": change_records(result),
         "hand_calculations": [*_cantilevers(result), *_comparisons(result.load_cases.values())],
         "clearance": clearance_record(result.clearance),
+        "flapping": case_air_record(result.case) or None,
         "mass": mass_record(result.mass),
         "size": size_record(result.size),
         "frequencies": frequencies_record(result.frequencies),

@@ -70,6 +70,10 @@ def test_a_case_of_0_1_means_what_it_meant(name):
         tables["parts"]["bar"]["eye_diameter"] = "12 mm"  # 1.6 times the width since then
         tables["title"] = FORMAT_1["cases"][name]["title"]
         del tables["motion"]  # which it had not then
+    tables.pop("wings", None)  # in whose load cases air acts
+    tables["load_cases"] = {key: one for key, one in tables["load_cases"].items() if "flapping" not in one}
+    known = FORMAT_1["cases"][name].get("checks", {})
+    tables["checks"] = {key: one for key, one in tables.get("checks", {}).items() if key in known}
     today = validate(tables)
     later = {"description": True, "source": True, "assumptions": True, "checks": {"motor": {"no_load_speed"}}}
     later |= {"layer_spacing": True, "washer": True, "links": {"__all__": {"layer", "thickness"}}}

@@ -282,4 +282,4 @@ def test_a_case_in_another_air():
     case = fan(normal_coefficient_range=[1.0, 3.0])
     torque = {share: solve_case_motion(in_air(case, share)).torque["air"][0] for share in (0.0, 0.5, 1.0)}
     assert torque[0.0] * 3.0 == pytest.approx(torque[1.0]) == pytest.approx(1.5 * torque[0.5])
-    assert in_air(read_case("flapping-wing-chosen"), None).load_cases == {}
+    assert in_air(read_case("owl-wing-static"), None).load_cases == {}
