@@ -344,6 +344,8 @@ def _hertz(frequency: Band) -> str:
 
 def _text(value: Band) -> str:
     """Return ``43.2 (38.0 to 47.0)``."""
+    if math.isinf(value.high):
+        return f"{_three(value.value)} (with no band)" if math.isfinite(value.value) else "unknown"
     shown, low, high = (_three(end) for end in (value.value, value.low, value.high))
     return shown if low == high else f"{shown} ({low} to {high})"
 

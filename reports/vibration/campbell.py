@@ -4,6 +4,7 @@ W. Campbell, The Protection of Steam-Turbine Disk Wheels from Axial Vibration, T
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,8 @@ _SHORT = 3.0
 """Length of a mark at least [points]."""
 _FASTER = 1.5
 """Times the stated speed up to which speeds are drawn."""
+_OPEN = 1.3
+"""Times the highest natural frequency at which a band without an end is drawn to end."""
 _FAR = 4.0
 """Natural frequencies that begin above so many times the least one and the driving frequency are not drawn."""
 
@@ -61,6 +64,7 @@ def campbell_sheet(history: FrequencyHistory, *, coordinate: str, unit: str, loa
     -------
     Canvas
     """
+    history = _bounded(history)
     shown = _shown(history)
     top = 1.08 * max(float(history.high[:, shown - 1].max()), 1.2 * history.driving)
     left = 40.0 + widest(ticks(0.0, top, most=8))
@@ -82,6 +86,13 @@ def campbell_sheet(history: FrequencyHistory, *, coordinate: str, unit: str, loa
         _over_speed(sheet, axes, history, shown)
     _legend(sheet, history, shown, load_case)
     return sheet
+
+
+def _bounded(history: FrequencyHistory) -> FrequencyHistory:
+    """Return a history without the frequencies that not every pose has, and whose bands end on the sheet."""
+    there = np.isfinite(history.frequencies).all(axis=0)
+    low, value, high = (c[:, there] for c in (history.low, history.frequencies, history.high))
+    return replace(history, low=low, frequencies=value, high=np.minimum(high, _OPEN * float(value.max())))
 
 
 def _box(left: float, wide: float) -> tuple[float, float, float, float]:

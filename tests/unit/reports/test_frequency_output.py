@@ -120,6 +120,23 @@ def test_campbells_diagram_has_units_harmonics_and_marks_where_they_meet():
     assert len(quiet) == 1  # of the legend
 
 
+def test_a_band_without_end_ends_on_the_sheet():
+    """Of parts from files no beam gives a band: it goes from nothing to infinity."""
+    own = history()
+    missing = np.where(np.arange(3) < 2, own.frequencies, np.inf)
+    sheet = campbell_sheet(
+        replace(own, frequencies=missing, low=0.0 * own.low, high=np.full_like(own.high, np.inf)),
+        coordinate="crank",
+        unit="deg",
+        load_case="flapping",
+    )
+    assert_legible(sheet)
+    for mark in sheet.marks:
+        assert np.isfinite(mark.points).all()
+        assert (mark.points >= 0.0).all()
+        assert (mark.points <= [sheet.width, sheet.height]).all()
+
+
 @pytest.mark.parametrize("change", [{"driving": 0.0}, {"poses": 1}])
 def test_without_a_speed_or_a_motion_one_panel_is_left(change):
     own = history(poses=change.get("poses", 25))
@@ -166,7 +183,8 @@ def test_a_notebook_has_table_and_pictures():
     report = alula.frequencies(lever(), poses=3)
     band = report.lowest["turning"]
     first = report.table()[0]
-    assert (first["frequency [Hz]"], first["low"], first["high"]) == (band.value, band.low, band.high)
+    told = (first["frequency [Hz]"], first["low"], first["high"])
+    assert told == pytest.approx((band.value, band.low, band.high), rel=1e-9)
     assert "driving frequency of 10 Hz" in str(report)
     assert report.plot_campbell("turning").png == report.plot_campbell().png
     assert report.plot_shapes().png.startswith(b"\x89PNG")
