@@ -38,8 +38,8 @@ print(f"largest torque: {np.abs(slow).max():.3f} N·mm at 150 rpm, {np.abs(fast)
 moved.plot_drive()
 
 # %%
-# Over a turn the drive does no work, since no load takes any: what it gives in one half of a stroke comes back in the
-# other.
-for values in moved.drive_efforts.values():
+# Over a turn the drive does no work without air, since no load takes any: what it gives in one half of a stroke comes
+# back in the other. Air on the wings takes what it is given.
+for name, values in moved.drive_efforts.items():
     halves = np.sum(0.5 * (values[1:] + values[:-1]) * np.diff(turn))
-    assert abs(halves) < 1e-3 * np.abs(values).max()
+    assert halves > 0.1 if name.endswith("-air") else abs(halves) < 1e-3 * np.abs(values).max()
