@@ -30,6 +30,7 @@ from fea.common.source import Source, SourceKind
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
+from fea.frame.system import to_ends
 from geometry.bodies.body import Body, hand_section
 from geometry.bodies.features import Pin
 from geometry.bodies.section import Section
@@ -176,6 +177,7 @@ def bounds(
     bores: Sequence[tuple[int, Real]],
     *,
     without: Container[int] = (),
+    pins: Container[int] = (),
 ) -> Band:
     """Return the displacement along a unit load between its bounds.
 
@@ -191,6 +193,8 @@ def bounds(
         Node and give (6,) of every pin in a bore, for what acts on the node's link there.
     without : container of int, optional
         Elements that are left out of the sum.
+    pins : container of int, optional
+        Elements that are pins between layers, built into the link at their first node.
 
     Returns
     -------
@@ -202,7 +206,7 @@ def bounds(
         if i not in without:
             terms = np.array(_terms(loaded, unit, i, beams.get(i)))
             ends += [terms[0].sum(), terms.min(axis=0).sum(), terms.max(axis=0).sum()]
-    acting = [_on_nodes(solution) for solution in (loaded, unit)]
+    acting = [_on_links(solution, pins) for solution in (loaded, unit)]
     for node, give in bores:
         sunk = give * acting[0][node] * acting[1][node]
         ends[1:] += np.minimum(sunk, 0.0).sum(), np.maximum(sunk, 0.0).sum()
@@ -255,7 +259,8 @@ def point_bounds(
     for axis in range(2 if planar else 3):
         load = NodeLoad(node=node, wrench=np.eye(6)[axis])
         unit = solve_frame(replace(frame.model, elements=bare, loads=(load,)))
-        shares = [bounds(solution, unit, beams, bores, without=without), *(bands[axis] for bands in solids.values())]
+        plain = bounds(solution, unit, beams, bores, without=without, pins=frame.pin_beams.values())
+        shares = [plain, *(bands[axis] for bands in solids.values())]
         taken = sum(works[axis] for works in carried.values())
         low, high = sum(share.low for share in shares) - taken, sum(share.high for share in shares) - taken
         moved[axis] = sum(share.value for share in shares) - taken
@@ -278,7 +283,7 @@ def compliance_range(case: Case, frame: LinkageFrame, solution: FrameSolution) -
     Scatter
         Least and largest ratio of the work of all loads; 1 where they do none.
     """
-    band = bounds(solution, solution, *_links(case, frame, ()))
+    band = bounds(solution, solution, *_links(case, frame, ()), pins=frame.pin_beams.values())
     if band.value <= 0.0:
         return Scatter()
     low, high = max(band.low / band.value, STIFFEST), band.high / band.value
@@ -333,7 +338,7 @@ def _works(case: Case, frame: LinkageFrame, solution: FrameSolution) -> Iterator
         others = {i for i in range(len(frame.model.elements)) if i not in frame.beams or frame.beams[i].link != link}
         nodes = {node for (name, _), node in frame.points.items() if name == link}
         own = [(node, give) for node, give in bores if node in nodes]
-        band = bounds(solution, solution, beams, own, without=others)
+        band = bounds(solution, solution, beams, own, without=others, pins=frame.pin_beams.values())
         if band.value > 0.0:
             yield link, band
 
@@ -402,11 +407,14 @@ def _terms(loaded: FrameSolution, unit: FrameSolution, i: int, zones: Sequence[Z
     return nominal, least, most
 
 
-def _on_nodes(solution: FrameSolution) -> Real:
-    """What acts on each node's link there (n, 6), global axes: joints and loads."""
-    found = solution.joint_wrenches.copy()
-    for load in solution.model.loads:
-        found[load.node] += load.wrench
+def _on_links(solution: FrameSolution, pins: Container[int]) -> Real:
+    """What acts on the link at each node (n, 6), global axes: joints, loads and the pins that are built into it."""
+    model, found = solution.model, np.zeros((len(solution.model.nodes), 6))
+    for i, element in enumerate(model.elements):
+        if i not in pins:
+            wrenches = (to_ends(model, i).T @ solution.end_forces[i].ravel()).reshape(2, 6)
+            for node, wrench in zip(element.nodes, wrenches, strict=True):
+                found[node] += wrench
     return found
 
 

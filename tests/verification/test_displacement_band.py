@@ -5,13 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from edited_cases import edited
 from slotted_lever import slotted_lever
 
 from benchmarks.displacement_band import FORCE, Link
 from fea.check.run import check_case
 from fea.common.source import Source, SourceKind
 from fea.frame.build import build_frame
-from fea.frame.displacement_band import Zone, bounds, point_bounds, zones
+from fea.frame.displacement_band import Zone, bounds, flexibility_ranges, point_bounds, zones
 from fea.frame.linear import solve_frame
 from fea.frame.model import NodeLoad
 from geometry.parts.part import Bar, Body, HoleRow, Pin, Tube
@@ -131,3 +132,34 @@ def test_without_a_drive_a_link_with_torques_on_its_deformed_shape_has_a_solid()
     assert result.large_displacement.state == "deformed"
     assert {variant.transfer for variant in result.links["lever"].variants} == {"eye-faces", "bore-shear"}
     assert math.isfinite(result.links["lever"].displacement_max.value)
+
+
+@pytest.mark.parametrize("first", ["crank", "rod"])
+def test_the_bore_into_which_a_pin_between_layers_is_built_gives_as_any_other(first: str) -> None:
+    """Which link of a joint is named first says into which the pin is built, and changes nothing of what bores give."""
+    second = {"crank": "rod", "rod": "crank"}[first]
+    smooth = [f"joints.{name}.friction=0.0" for name in ("O2", "A", "B", "guide")]
+    case = edited("slider-crank", [f'joints.A.links=["{first}","{second}"]', *smooth])
+    [name] = case.load_cases
+    pose = case.solve_pose()
+    frame = build_frame(
+        case, pose, acting_loads(case, case.load_cases[name], pose.placement, {}), held=case.pinned_drive
+    )
+    built_in, _ = frame.pins["A"]
+    assert frame.pin_beams["A"] in [i for i, e in enumerate(frame.model.elements) if built_in in e.nodes]
+    ranges = flexibility_ranges(case, frame, solve_frame(frame.model))
+    # The rod is a strut: N L/(E A) less eyes, and F/(E t) in two bores, by the formulas of the module's text.
+    body, force = case.body("rod"), 1.0
+    young = case.material_of("rod").youngs_modulus
+    sinks = []
+    for pin in body.pins:
+        outer, inner = body.ring(pin).diameter / 2.0, pin.diameter / 2.0
+        mean = (outer + inner) / 2.0
+        sinks.append((1.3 + 1.55 * (mean / (outer - inner)) ** 3) * force / (young * body.ring(pin).thickness))
+    plain = 140.0 * force / (young * body.part.section.area)
+    soft = (
+        sum((zone.end - zone.start) * float(zone.most[0]) for zone in zones(body, 0.0, 140.0))
+        * force
+        / (young * body.part.section.area)
+    )
+    assert ranges["rod"][1] == pytest.approx((soft + sum(sinks)) / plain, rel=0.03)
