@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.deflection import flexibility
+from fea.frame.build import ALONG_X
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import FrameElement, FrameModel
 from fea.frame.system import to_ends
@@ -191,7 +192,7 @@ def _cross(arm: Floats) -> Floats:
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
-def body_mass(mass: float, arm: Floats, inertia: float = 0.0) -> Floats:
+def body_mass(mass: float, arm: Floats, inertia: float = 0.0, along: Floats = ALONG_X) -> Floats:
     """Return the mass matrix of a rigid body at a node.
 
     Parameters
@@ -201,8 +202,9 @@ def body_mass(mass: float, arm: Floats, inertia: float = 0.0) -> Floats:
     arm : ndarray, shape (3,)
         From the node to its centroid, global axes [mm].
     inertia : float, optional
-        About its centroid and z [tonne·mm²]; it lies in the plane, as a thin plate or rod does, and about x and y has
-        what its arm gives alone.
+        About its centroid and z [tonne·mm²].
+    along : ndarray, shape (3,), optional
+        Unit vector in the plane. The body is a thin rod along it, with as much inertia about what is normal to both.
 
     Returns
     -------
@@ -210,7 +212,7 @@ def body_mass(mass: float, arm: Floats, inertia: float = 0.0) -> Floats:
     """
     move = np.hstack([np.eye(3), -_cross(arm)])
     found = mass * move.T @ move
-    found[5, 5] += inertia
+    found[3:, 3:] += inertia * (np.eye(3) - np.outer(along, along))
     return np.asarray(found)
 
 
@@ -337,9 +339,9 @@ class _Mass:
         at = one.start if isinstance(one, CarriedSpread) else one.at
         if (link, at) not in self.frame.points:
             at = next(point for name, point in self.frame.points if name == link)
-        arm = place.rotation(link) @ (known.centroid - np.array(points[at]))
-        node = self.frame.points[link, at]
-        self.bodies.append((node, body_mass(known.mass, np.array([*arm, 0.0]), known.inertia)))
+        turn = place.rotation(link)
+        arm, along = (np.array([*(turn @ v), 0.0]) for v in (known.centroid - np.array(points[at]), ALONG_X[:2]))
+        self.bodies.append((self.frame.points[link, at], body_mass(known.mass, arm, known.inertia, along)))
 
     def _spread(self, one: CarriedSpread, points: Mapping[str, tuple[float, float]]) -> Iterator[tuple[int, Floats]]:
         """Yield the elements along the axis of a link between two places, with the density on each."""

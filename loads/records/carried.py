@@ -36,7 +36,8 @@ class CarriedBody(CaseModel):
     centroid: tuple[Length, Length] | None = None
     """In the link's frame; at the point itself when left out."""
     radius_of_gyration: Annotated[Length, NOT_NEGATIVE] = 0.0
-    """About the centroid; a thin rod's is its length over the root of 12."""
+    """About the centroid; a thin rod's is its length over the root of 12. Natural frequencies take the body for a rod
+    along the link's axis."""
 
 
 def _kind(stated: Any) -> str:
