@@ -159,7 +159,7 @@ def bore_gives(body: Body, young: float, poisson: float) -> dict[str, Real]:
     found = {}
     for pin in body.pins:
         ring, inner = body.ring(pin), pin.diameter / 2.0
-        thick, outer = ring.thickness, (ring.diameter or body.part.section.width) / 2.0
+        thick, outer = ring.thickness, body.part.wall(body, pin)
         mean = (outer + inner) / 2.0
         slender = (mean / (outer - inner)) ** 3
         sink = (SINK[0] + SINK[1] * slender) / (young * thick)

@@ -308,6 +308,23 @@ class PartKind(Printable):
         half = self.eye_thickness / 2.0
         return Ring(diameter=self.eye_diameter, low=-half, high=half)
 
+    def wall(self, body: "Body", pin: Pin) -> float:
+        """Return the radius out to which a hole has material all about it.
+
+        Parameters
+        ----------
+        body : Body
+            The part with its holes.
+        pin : Pin
+            A pin of the body.
+
+        Returns
+        -------
+        float
+            Of the hole's ring, or half the width of the part where it has none [mm].
+        """
+        return (body.ring(pin).diameter or self.section.width) / 2.0
+
     def scaled(self, s: Callable[[float], float]) -> Self:
         """Return the part with its lengths in another unit.
 

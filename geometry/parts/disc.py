@@ -12,6 +12,7 @@ from geometry.base.model import Name
 from geometry.base.units import POSITIVE, Length
 from geometry.bodies.body import Body, Feature, PartKind, apart, extent
 from geometry.bodies.eyes import check_flat_eyes
+from geometry.bodies.features import Pin
 from geometry.bodies.footprint import Footprint
 from geometry.bodies.kernel import Entity, Kernel
 from geometry.bodies.section import Section, rectangle
@@ -78,6 +79,11 @@ class Disc(PartKind):
 
         first, last = extent(body)
         return rectangle(min(net(first + (last - first) * i / _CHORDS) for i in range(_CHORDS + 1)), self.thickness)
+
+    def wall(self, body: Body, pin: Pin) -> float:
+        """As ``PartKind.wall``: to the rim or to the nearest other hole; rings are faces of the disc."""
+        others = [apart(pin, other) - other.diameter / 2.0 for other in body.pins if other.name != pin.name]
+        return min(self.diameter / 2.0 - math.hypot(pin.x, pin.y), *others)
 
     def check(self, body: Body) -> None:
         """As ``PartKind.check``: the rings about the holes fit."""

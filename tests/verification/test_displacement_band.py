@@ -134,6 +134,17 @@ def test_without_a_drive_a_link_with_torques_on_its_deformed_shape_has_a_solid()
     assert math.isfinite(result.links["lever"].displacement_max.value)
 
 
+def test_a_disc_gives_within_its_band() -> None:
+    """The ornithopter's crank, clamped at its shaft and pushed at its pin: solids, whichever way the pin presses."""
+    case = read_case("ornithopter")
+    body, material = case.body("crank"), case.material_of("crank")
+    assert [body.part.wall(body, pin) for pin in body.pins] == pytest.approx([3.0 - 1.0, 4.5 - 3.0])
+    disc = Link(body=body, young=material.youngs_modulus, poisson=material.poissons_ratio)
+    for direction, found in disc.solids((0, 1, 2), 2.0).items():
+        _, low, high = disc.band(direction)
+        assert low < min(found) <= max(found) < high
+
+
 @pytest.mark.parametrize("first", ["crank", "rod"])
 def test_the_bore_into_which_a_pin_between_layers_is_built_gives_as_any_other(first: str) -> None:
     """Which link of a joint is named first says into which the pin is built, and changes nothing of what bores give."""
