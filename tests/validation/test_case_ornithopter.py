@@ -101,8 +101,10 @@ def test_the_three_variants_run_at_both_speeds(name: str) -> None:
         np.testing.assert_allclose(-slots[0].centre[:, 0], closed.slot_position, atol=1e-9)
         slow, fast = (np.abs(slot.wrench[:, 1]).max() for slot in slots)
         assert fast > 20.0 * slow
-    result = check_case(variant, fidelity="beam")
-    for load_case in ("slow", "fast"):
+    asked = {name: variant.load_cases[name] for name in ("slow", "fast")}
+    strength = {"strength": variant.checks["strength"]}
+    result = check_case(variant.model_copy(update={"load_cases": asked, "checks": strength}), fidelity="beam")
+    for load_case in asked:
         assert all(link.safety_factor.low > 6.0 for link in result.load_cases[load_case].links.values())
         said = " ".join(result.load_cases[load_case].links["lever-right"].notes)
         assert "by hand the slot at slot bears" in said
