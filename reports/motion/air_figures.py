@@ -81,9 +81,9 @@ def air_figure(result: CaseMotion, load_case: str) -> Figure:
 
     for axes, of in zip(panels, (effort, power), strict=True):
         axes.plot(at, of(airs.without), color="0.35", linestyle=(0, (5, 1.5)), linewidth=1.4, label="without air")
-        axes.plot(at, of(result), color="#0072b2", linewidth=1.6, label=f"$C_N$ {air.normal_coefficient:g}")
+        axes.plot(at, of(result), color="#0072b2", linewidth=1.6, label=f"C_N {air.normal_coefficient:g}")
         if low < high:
-            ends, label = (of(airs.least), of(airs.largest)), f"$C_N$ {low:g} to {high:g}"
+            ends, label = (of(airs.least), of(airs.largest)), f"C_N {low:g} to {high:g}"
             axes.fill_between(at, *ends, color="#0072b2", alpha=0.25, linewidth=0.0, label=label, zorder=1.5)
         axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     legend(panels[0], "air on wings")
