@@ -18,6 +18,8 @@ from loads.records.flapping import Wing
 from loads.states.case_motion import solve_case_motion
 from loads.states.flapping import PIECES, flapping_loads, in_air
 from loads.states.kinetostatics import work
+from reports.motion.air_figures import air_figures
+from reports.tables.loads import air_lines, motion_air_record
 
 RHO, C_N, L, C = 1.2e-12, 2.0, 300.0, 80.0  # tonne/mm^3, -, mm, mm
 AIR = {"density": "1.2 kg/m^3", "normal_coefficient": C_N, "added_mass": False}
@@ -283,3 +285,25 @@ def test_a_case_in_another_air():
     torque = {share: solve_case_motion(in_air(case, share)).torque["air"][0] for share in (0.0, 0.5, 1.0)}
     assert torque[0.0] * 3.0 == pytest.approx(torque[1.0]) == pytest.approx(1.5 * torque[0.5])
     assert in_air(read_case("owl-wing-static"), None).load_cases == {}
+
+
+def test_figure_record_and_sentences_tell_the_torque_of_a_fan():
+    """A fan at constant speed: T goes with C_N, and nothing is needed without air."""
+    omega, low, high = 3.0 * math.pi, 1.2, 5.0
+    torque = 0.5 * RHO * omega**2 * C * L**4 / 4.0  # over C_N
+    moved = solve_case_motion(fan(normal_coefficient_range=[low, high]))
+    record = motion_air_record(moved, "air")
+    assert record is not None
+    for name, coefficient in {"without": 0.0, "least": low, "stated": C_N, "largest": high}.items():
+        asked = record["drive"][name]
+        assert asked["peak_effort"] == pytest.approx(coefficient * torque, rel=1e-9)
+        assert asked["mean_power"] == pytest.approx(coefficient * torque * omega / 1e3, rel=1e-9)
+    assert record["wings"][0]["largest_force"] == pytest.approx(C_N * torque * 4.0 / (3.0 * L), rel=1e-9)
+    watts = [f"{coefficient * torque * omega / 1e3:.3g}" for coefficient in (C_N, low, high)]
+    assert "0 W without air, {} W ({} to {}) with it".format(*watts) in air_lines(record)[1]
+    figure = air_figures(moved)["air"]
+    drawn = figure.axes[0]
+    np.testing.assert_allclose(drawn.lines[0].get_ydata(), 0.0, atol=1e-12)
+    np.testing.assert_allclose(drawn.lines[1].get_ydata(), C_N * torque, rtol=1e-9)
+    legends = [text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
+    assert legends == ["without air", "C_N 2", "C_N 1.2 to 5"]
