@@ -37,7 +37,8 @@ def change_title(change: VerdictChange, *, several: bool) -> str:
     -------
     str
     """
-    return named(change.check) + (f", load case {change.check.load_case}" if several else "")
+    own = several and not change.check.shared
+    return named(change.check) + (f", load case {change.check.load_case}" if own else "")
 
 
 def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:

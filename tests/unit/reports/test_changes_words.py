@@ -15,7 +15,7 @@ from reports.page.html import render
 from reports.tables import data
 from reports.tables.console import print_result
 from reports.tables.record import result_record
-from reports.words.changes import change_sentences, size_command
+from reports.words.changes import change_sentences, change_title, size_command
 
 STRONGER = MaterialChange(what="yield strength", material="pvc-paredes-2018", stated=41.4, needed=45.2001)
 
@@ -86,6 +86,8 @@ def test_the_command_names_case_entry_range_and_what_was_set(result, check):
 def test_a_check_that_no_load_changes_says_so(result, check):
     gap = replace(check, subject=LINKAGE, quantity=Quantity.CLEARANCE)
     assert told(result, VerdictChange(check=gap)) == "It does not depend on the loads."
+    assert "load case" not in change_title(VerdictChange(check=gap), several=True)
+    assert change_title(VerdictChange(check=check), several=True).endswith(f", load case {check.load_case}")
     opened = replace(check, verdict=Verdict.UNDECIDED, reason="no model may decide it")
     assert told(result, VerdictChange(check=opened)) == "No model may decide it."
 
