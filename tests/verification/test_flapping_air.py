@@ -272,6 +272,11 @@ def test_what_is_no_wing_or_no_air_is_refused(sentence):
     assert "\n" not in str(refused.value)
 
 
+def test_a_wing_has_a_span():
+    with pytest.raises(CaseError, match=r"wings\.0: its span begins and ends at the same station"):
+        edited("ornithopter", ['wings.0.span=["6 mm","6 mm"]'])
+
+
 def test_air_needs_wings_that_move():
     air = 'load_cases.weight.flapping={ density = "1.2 kg/m^3", normal_coefficient = 2.0 }'
     with pytest.raises(CaseError, match="the case states no wings for the air to act on"):

@@ -111,9 +111,14 @@ def test_the_link_that_moves_most_is_found_between_its_points_too():
     assert most_moved(modes, replace(modes.modes[0], shape=shape)) == "lever"
 
 
+BARE = tomllib.loads(LEVER)["links"]
+BARE["lever"].pop("part")
+
+
 @pytest.mark.parametrize(
     ("entries", "told"),
     [
+        ({"links": BARE, "parts": {}}, "no moving link has a part, so nothing vibrates"),
         ({"load_cases": {"still": {}}}, "no load case states the speed of the drive"),
         ({"checks": {"r": {"type": "frequency", "minimum": 4, "links": ["base"]}}}, "is no link with a part"),
         ({"checks": {"r": {"type": "frequency", "minimum": 0}}}, "checks.r.minimum"),
