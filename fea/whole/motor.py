@@ -9,7 +9,7 @@ the peak a convex function.
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -218,8 +218,7 @@ def _effective(torque: Real, times: Real) -> tuple[float, float, float]:
 
 def _times(moved: CaseMotion, title: str) -> Real:
     """Times [s] of a load case at its own speed."""
-    solved = moved.forces[title]
-    times = replace(moved.motion, speed=solved.motion.speed, acceleration=solved.motion.acceleration).times
+    times = moved.moved[title].times
     assert times is not None
     return times
 

@@ -13,6 +13,7 @@ from fea.whole.size import size_outcomes
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.check_spec import MassCheck, MotorCheck, SizeCheck
+from loads.states.actions import needs_masses
 from loads.states.clearance import Clearance, clearance
 from loads.states.extent import Extent, extent
 from loads.states.weighed import Weighed, weighed
@@ -66,12 +67,11 @@ def whole_numbers(case: Case, pose: Pose | None = None, *, solids: bool = False,
     """
     pose = pose or case.solve_pose()
     apart = clearance(case, pose)
-    weighs = any(load_case.own_weight or load_case.speed for load_case in case.load_cases.values())
     measures = apart is not None or _asks(case, SizeCheck)
     return WholeNumbers(
         case=case,
         clearance=apart,
-        mass=weighed(case, pose) if weighs or _asks(case, MassCheck) else None,
+        mass=weighed(case, pose) if needs_masses(case) or _asks(case, MassCheck) else None,
         size=extent(case, pose, apart.motion if apart is not None else None) if measures else None,
         frequencies=asked_frequencies(case, solids=solids, threads=threads),
     )

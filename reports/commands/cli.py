@@ -1,6 +1,5 @@
 """The command ``alula``. Heavy libraries are imported by the command that needs them."""
 
-import sys
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from reports.commands.ending import end_if_stopped, run
+from reports.commands.ending import progress, run
 from reports.commands.frequencies import app as frequencies
 from reports.commands.materials import app as materials
 from reports.commands.size import app as size
@@ -115,19 +114,19 @@ def check(
         parsed = read_case(case, overrides or ())
         refuse_unusable(output, "check", report_names(parsed))
         effort = effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit)
-        tell = _progress if output is None or threads == 1 else _solving
+        tell = progress if output is None or threads == 1 else _solving
         result = check_case(parsed, name=case, fidelity=fidelity, threads=threads, effort=effort, progress=tell)
         decks = None
         if second_opinion:
             from reports.tables.second_opinion import with_second_opinions
 
             decks = Path(scratch.enter_context(TemporaryDirectory(prefix="alula-")))
-            result = with_second_opinions(result, decks, threads=threads, progress=_progress)
+            result = with_second_opinions(result, decks, threads=threads, progress=progress)
         _show(result, as_json if json else None, print_result)
         if output is not None:
             from reports.page.folder import write_report
 
-            write_report(result, output, decks=decks, progress=_progress)
+            write_report(result, output, decks=decks, progress=progress)
             _tell(f"Report: {output / 'report.html'}", json)
     raise SystemExit(result.verdict.exit_status)
 
@@ -173,11 +172,11 @@ def motion(
         result = solve_case_motion(parsed)
         print_motion(result, case, json=json)
         if output is not None:
-            _progress("Drawing figures and the animation ...")
+            progress("Drawing figures and the animation ...")
             write_folder(output, "motion", lambda folder: write_motion(result, folder, case))
             _tell(f"\nTables and figures: {output / 'motion'}", json)
     for sentence in result.locks:
-        _progress(f"Warning: {sentence}.")
+        progress(f"Warning: {sentence}.")
     if result.locks:
         raise SystemExit(Verdict.UNDECIDED.exit_status)
 
@@ -229,11 +228,11 @@ def envelope(
             repetitions=repetitions,
             growth=growth,
             effort=effort_of(parsed, accuracy, max_unknowns=max_unknowns, time_limit=time_limit),
-            progress=_progress,
+            progress=progress,
         )
         _show(result, as_json if json else None, print_envelope)
         if output is not None:
-            write_envelope(result, output, progress=_progress)
+            write_envelope(result, output, progress=progress)
             _tell(f"Curves, pictures and fields: {output / 'envelope'}", json)
     raise SystemExit(result.verdict.exit_status)
 
@@ -351,8 +350,8 @@ def inspect(
     found = inspect_file(file, material, unit)
     _show(found, as_json if json else None, print_inspection)
     if output is not None:
-        _progress("Drawing the part ...")
-        write_folder(output, "inspect", lambda folder: write_inspection(found, folder, _progress))
+        progress("Drawing the part ...")
+        write_folder(output, "inspect", lambda folder: write_inspection(found, folder, progress))
         _tell(f"\nEntries, record and picture: {output / 'inspect'}", json)
 
 
@@ -399,10 +398,5 @@ def _solving(message: str) -> None:
     """Tell of a solid that is being solved, and start what will draw its stress."""
     from reports.figures.figures import start_renderer
 
-    _progress(message)
+    progress(message)
     start_renderer()
-
-
-def _progress(message: str) -> None:
-    end_if_stopped()
-    print(message, file=sys.stderr, flush=True)

@@ -127,6 +127,17 @@ def end_cleanly_on_signals() -> None:
         signal.signal(number, end)
 
 
+def progress(message: str) -> None:
+    """Tell what is begun on standard error, and end the program first if it was told to stop.
+
+    Parameters
+    ----------
+    message : str
+    """
+    end_if_stopped()
+    print(message, file=sys.stderr, flush=True)
+
+
 def end_if_stopped() -> None:
     """End where a signal was to end the process but a library swallowed it."""
     from geometry.base.child import stopped

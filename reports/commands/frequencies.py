@@ -2,11 +2,12 @@
 
 import csv
 import json as jsonlib
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from reports.commands.ending import progress
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -52,7 +53,7 @@ def frequencies(
 
         print_frequencies(found, Console())
     if output is not None:
-        _progress("Drawing shapes and diagrams ...")
+        progress("Drawing shapes and diagrams ...")
         write_folder(output, "frequencies", lambda folder: write_frequencies(found, folder, case))
         if not json:
             print(f"\nPage, tables and pictures: {output / 'frequencies'}")
@@ -164,10 +165,3 @@ def _write_table(found: "CaseFrequencies", path: Path) -> None:
                 triples = zip(history.frequencies[i], history.low[i], history.high[i], strict=True)
                 cells = [f"{number:.12g}" for triple in triples for number in triple]
                 writer.writerow([name, f"{told(case, float(value)):.12g}", *cells])
-
-
-def _progress(message: str) -> None:
-    from reports.commands.ending import end_if_stopped
-
-    end_if_stopped()
-    print(message, file=sys.stderr, flush=True)

@@ -1,12 +1,12 @@
 """The command ``alula tolerance``: samples of a case's tolerances, with their probabilities."""
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from reports.commands.ending import progress
 from reports.commands.study import stated
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def tolerance(
         refuse_unusable(output, "tolerance")
         effort = effort_of(parsed, accuracy)
         result = tolerance_case(
-            parsed, name=case, samples=samples, seed=seed, threads=threads, effort=effort, progress=_progress
+            parsed, name=case, samples=samples, seed=seed, threads=threads, effort=effort, progress=progress
         )
         if json:
             print(as_json(result), flush=True)
@@ -119,10 +119,3 @@ def write_tolerance(result: "ToleranceResult", target: Path) -> None:
             (folder / name).write_bytes(picture)
 
     write_folder(target, "tolerance", fill)
-
-
-def _progress(message: str) -> None:
-    from reports.commands.ending import end_if_stopped
-
-    end_if_stopped()
-    print(message, file=sys.stderr, flush=True)
