@@ -53,6 +53,7 @@ thickness = "6 mm"
 fillet_radius = "0 mm"
 eye_diameter = "{width} mm"
 [load_cases.lift]
+own_weight = false
 [[load_cases.lift.forces]]
 link = "rocker"
 at = "C"

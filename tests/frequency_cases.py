@@ -41,6 +41,7 @@ link = "lever"
 at = "T"
 mass = "4 g"
 [load_cases.turning]
+own_weight = false
 speed = "600 rpm"
 [checks.resonance]
 type = "frequency"

@@ -179,7 +179,7 @@ def piston_entries() -> dict[str, Any]:
             "near": {"crank": "60 deg", "rod": "-25 deg", "piston": "0 deg"},
         },
         "drive": {"link": "piston", "joint": "S"},
-        "motion": {"travel": ["90 mm", "150 mm"], "travel_speed": "400 mm/s", "poses": 13},
+        "motion": {"travel": ["90 mm", "150 mm"], "travel_speed": "400 mm/s", "poses": 13, "inertia": False},
         "parts": {"bar": bar},
         "load_cases": {
             "brake": {"moments": [{"link": "crank", "at": "M", "moment": "-300 N*mm"}]},

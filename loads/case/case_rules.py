@@ -232,7 +232,7 @@ def _check_check(case: CoreCase, name: str, check: Check) -> None:
     elif isinstance(check, DisplacementCheck) and (check.at, check.link) != (None, None):
         _check_displaced(case, name, check)
     elif isinstance(check, ClearanceCheck):
-        if not case.layered:
+        if not case.stacked:
             raise CaseError(
                 f"checks.{name}: a check of clearance needs to know which links lie at one height, but all lie in one "
                 'plane; give every link a layer or z, such as links.A.layer = 1 with layer_spacing = "7 mm"'

@@ -106,6 +106,42 @@ class CoreCase(Revisable):
     every place of a pin in every link. A size of a part is one draw for all its links. For alula tolerance alone; no
     check counts them."""
 
+    def model_post_init(self, context: object) -> None:
+        """Let load cases that say nothing of it move at the speed of the motion, and what links carry weigh.
+
+        Parameters
+        ----------
+        context : object
+            Of pydantic; not used.
+        """
+        super().model_post_init(context)
+        self.__dict__["load_cases"] = {name: self._filled(one) for name, one in self.load_cases.items()}
+
+    def _filled(self, load_case: LoadCase) -> LoadCase:
+        """Return a load case with what it leaves to the motion and to the masses that links carry."""
+        stated, found = load_case.model_fields_set, dict[str, object]()
+        if "speed" not in stated and self.motion is not None and self.inert and self.turns_steadily:
+            found["speed"] = self.motion.speed
+        if "own_weight" not in stated and "gravity_direction" in stated and self.carried and load_case.carried:
+            found["own_weight"] = True
+        return load_case.model_copy(update=found) if found else load_case
+
+    @property
+    def inert(self) -> bool:
+        """True where the speed of the motion means inertia, in load cases that state none: unless the case says no."""
+        motion, masses = self.motion, bool(self.checked_links or self.carried)
+        if motion is None or motion.rate == (0.0, 0.0) or self.pose.equilibrium:
+            return False
+        return masses if motion.inertia is None else motion.inertia
+
+    @property
+    def turns_steadily(self) -> bool:
+        """True where the motion is at a constant speed of the angle that fixes the pose, so that a pose moves at it."""
+        motion, pose = self.motion, self.pose
+        if motion is None or self.drive is None or motion.rate[1] != 0.0 or motion.travel is not None:
+            return False
+        return pose.travel is None and pose.coordinate is not None and motion.coordinate in (None, pose.coordinate)
+
     @cached_property
     def linkage(self) -> Linkage:
         """The links and joints as one linkage; with joint_model = bonded, every revolute joint is."""
@@ -130,6 +166,12 @@ class CoreCase(Revisable):
     def layered(self) -> bool:
         """True where links lie at several heights."""
         return len(set(self.heights.values())) > 1
+
+    @property
+    def stacked(self) -> bool:
+        """True where links state how they lie along the pins, in one layer too; a layer_spacing of 0 takes it back."""
+        stated = any(link.layer is not None or link.z is not None for link in self.links.values())
+        return self.layered or (stated and self.layer_spacing != 0.0)
 
     @cached_property
     def pinned_drive(self) -> Drive | None:
@@ -195,7 +237,7 @@ class CoreCase(Revisable):
         checks = dict(self.checks) or {"safety factor": SafetyFactorCheck(type="safety-factor")}
         if self.conditions.duration is not None and not any(isinstance(c, SustainedCheck) for c in checks.values()):
             checks["sustained load"] = SustainedCheck(type="sustained")
-        if self.layered and self.checked_links and not any(isinstance(c, ClearanceCheck) for c in checks.values()):
+        if self.stacked and self.checked_links and not any(isinstance(c, ClearanceCheck) for c in checks.values()):
             checks["clearance"] = ClearanceCheck(type="clearance")
         return checks
 

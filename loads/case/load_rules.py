@@ -68,7 +68,7 @@ def _check_flapping(case: CoreCase, where: str, load_case: LoadCase) -> None:
             f"{where}.flapping: the case states no wings for the air to act on; add [[wings]] with link, chord, "
             "start and end"
         )
-    moves = case.motion is not None and case.motion.inertia
+    moves = case.inert
     if load_case.speed == 0.0 and not moves:
         raise CaseError(
             f"{where}.flapping: the linkage stands still in this load case, so its wings do not flap; state "
@@ -203,16 +203,23 @@ def check_masses(case: CoreCase) -> None:
         if link in case.checked_links or link in carrying:
             what = "has a part" if link in case.checked_links else "carries a mass"
             raise CaseError(f"massless: link '{link}' {what}, so it weighs something; remove one of the two statements")
-    asking = [
+    for name, load_case in case.load_cases.items():
+        if case.carried and load_case.carried and "own_weight" not in load_case.model_fields_set:
+            raise CaseError(
+                f"load_cases.{name}.own_weight: link '{case.carried[0].link}' carries a mass, but the case does not say "
+                "where down is; state own_weight = true, with gravity_direction (-90 deg where left out), or "
+                "own_weight = false"
+            )
+    asking = ["motion.speed"] if case.inert else []
+    asking += [
         f"load_cases.{name}.{'own_weight' if load_case.own_weight else 'speed'}"
         for name, load_case in case.load_cases.items()
         if load_case.own_weight or load_case.speed != 0.0
     ]
-    if case.motion is not None and case.motion.inertia:
-        asking.append("motion.inertia")
     unknown = [link for link in case.linkage.moving if link not in {*case.checked_links, *carrying, *case.massless}]
+    off = ", or motion.inertia = false" if case.inert and case.motion and case.motion.inertia is None else ""
     if asking and unknown:
         raise CaseError(
             f"{asking[0]}: link '{unknown[0]}' has neither a part nor a mass, so its weight is unknown; give it a "
-            f'part, a mass under [[carried]], or state massless = ["{unknown[0]}"]'
+            f'part, a mass under [[carried]], or state massless = ["{unknown[0]}"]{off}'
         )

@@ -98,14 +98,16 @@ class LoadCase(CaseModel):
     """What the load case is, for the report."""
     own_weight: bool = False
     """True: every link weighs what its part's volume and density say and what it carries. False: links are
-    massless, and a stated total weight stands among the forces."""
+    massless, and a stated total weight stands among the forces. Where links carry masses it is to be stated, or
+    gravity_direction, which makes it true."""
     gravity: Annotated[Acceleration, NOT_NEGATIVE] = 9810.0
     """Acceleration of gravity, for own weight and carried masses."""
     gravity_direction: Angle = -math.pi / 2
     """Direction of the weight, from the global x axis."""
     speed: AngularSpeed = 0.0
-    """Constant angular speed of the pose's coordinate, counter-clockwise positive; where stated, the
-    inertia of the parts and of what they carry acts as well."""
+    """Constant angular speed of the pose's coordinate, counter-clockwise positive; that of the motion where left out,
+    unless motion.inertia is false. The inertia of the parts and of what they carry acts at it; at 0 rpm the linkage
+    stands still."""
     direction: Literal["both", "forward", "backward"] = "both"
     """Direction of the motion that friction at the joints opposes: forward where the coordinate of the pose (or of the
     motion) grows, backward where it falls. With both, each is a load case of its own. A speed gives it as well."""

@@ -31,8 +31,9 @@ class MotionSpec(CaseModel):
     """Speed of the slider or slot at the first pose, in place of the angular speed."""
     travel_acceleration: Acceleration = 0.0
     """Constant acceleration of the slider or slot, in place of the angular one."""
-    inertia: bool = False
-    """True: the inertia of the links' parts and of what they carry loads the joints."""
+    inertia: bool | None = None
+    """Whether the inertia of the links' parts and of what they carry loads the joints: where a speed or an acceleration
+    is stated, unless this is false."""
 
     @property
     def ends(self) -> tuple[float, float] | None:
@@ -70,7 +71,7 @@ class MotionSpec(CaseModel):
                 self.ends is not None and speed < 0.0
             ),
             'inertia = true needs a speed; state one, for example speed = "150 rpm"': (
-                self.inertia and speed == 0.0 and acceleration == 0.0
+                self.inertia is True and speed == 0.0 and acceleration == 0.0
             ),
             "without a speed the acceleration must be positive; state a speed, or change the sign": (
                 speed == 0.0 and acceleration < 0.0

@@ -232,7 +232,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
 
 def _weighed(case: Case) -> bool:
     """Return True where the parts of a motion are weighed: where weight or inertia acts."""
-    return needs_masses(case) or (case.motion is not None and case.motion.inertia)
+    return needs_masses(case) or case.inert
 
 
 def drive_effort(solved: Kinetostatics) -> Real:
@@ -276,8 +276,8 @@ def with_inertia(case: Case, load_case: str) -> bool:
     -------
     bool
     """
-    asked = case.motion is not None and case.motion.inertia
-    return asked or case.load_cases[load_case].speed != 0.0
+    stated = case.load_cases[load_case]
+    return stated.speed != 0.0 if "speed" in stated.model_fields_set else case.inert
 
 
 def _at_speed_of(motion: Motion, load_case: LoadCase) -> Motion:

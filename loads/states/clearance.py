@@ -269,7 +269,7 @@ def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
     CaseError
         Where two links, or a link and a pin, lie in each other in the stated pose; where the motion does not exist.
     """
-    if not case.layered:
+    if not case.stacked:
         return None
     found, pose = assembly(case), pose or case.solve_pose()
     at_rest = _single(pose)

@@ -65,7 +65,7 @@ def record(result: CaseMotion, name: str) -> dict[str, Any]:
             "duration": None if motion.times is None else float(motion.times[-1]),
             "closure_residual": motion.residual,
             "returns_to_start": motion.returns,
-            "inertia": bool(result.case.motion and result.case.motion.inertia),
+            "inertia": result.case.inert,
             "links": {
                 link: {
                     "first": _degrees(motion.angle(link)[0]),

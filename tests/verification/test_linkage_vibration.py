@@ -106,7 +106,7 @@ joints.B = { links = ["lower", "ram"], pin_diameter = "5 mm" }
 joints.guide = { type = "slider", links = ["base", "ram"], points = ["G", "B"] }
 pose = { coordinate = "guide", travel = "120 mm", near = { upper = "30 deg", lower = "-35 deg", ram = "0 deg" } }
 drive = { link = "ram", joint = "guide", stiffness = "300 N/mm" }
-load_cases.heavy = { forces = [{ link = "upper", at = "A", force = ["0 N", "-200 N"] }] }
+load_cases.heavy = { own_weight = false, forces = [{ link = "upper", at = "A", force = ["0 N", "-200 N"] }] }
 carried = [{ link = "ram", at = "T", mass = "50 g" }]
 """
 
@@ -302,7 +302,7 @@ def springless(**tables):
         del found[entry]
     found["materials"]["stiff"] |= {"youngs_modulus": "3 GPa", "youngs_modulus_range": ["2 GPa", "4.5 GPa"]}
     found["drive"] = {"link": "crank", "joint": "A"}
-    return validate({**found, "load_cases": {"own": {"title": "nothing"}}, **tables})
+    return validate({**found, "load_cases": {"own": {"title": "nothing", "own_weight": False}}, **tables})
 
 
 def test_frequencies_go_with_the_root_of_the_modulus():
@@ -338,7 +338,7 @@ def test_a_bore_gives_in_series_with_the_drive(monkeypatch):
     monkeypatch.setattr(flexibility_doubt, "give_of_links", give_of_links)
     drive = {"link": "lever", "joint": "O", "stiffness": "8000 N*mm/rad"}
     tables = {"pose": {"coordinate": "lever", "angle": "0 deg"}, "drive": drive}
-    case = case_of(LEVER, **tables, load_cases={"own": {"title": "nothing"}})
+    case = case_of(LEVER, **tables, load_cases={"own": {"title": "nothing", "own_weight": False}})
     mass = laden_masses(case, part_masses(case))["lever"]
     inertia = mass.inertia + mass.mass * float(mass.centroid @ mass.centroid)
     band = first(case).frequency
@@ -353,7 +353,7 @@ def test_over_a_motion_the_least_frequency_lies_between_poses():
         "drive": {"link": "lever", "joint": "O", "stiffness": "5000 N*mm/rad"},
         "motion": {"range": ["0 deg", "190 deg"], "speed": "60 rpm"},
         "carried": [{"link": "lever", "at": "P", "mass": "100 g"}],
-        "load_cases": {"up": {"own_weight": True, "gravity": "150 m/s^2"}},
+        "load_cases": {"up": {"own_weight": True, "gravity": "150 m/s^2", "speed": "0 rpm"}},
     }
     case = case_of(LEVER, **tables)
     history = case_frequencies(case, poses=5).histories["up"]
@@ -391,7 +391,7 @@ def test_the_stiffness_of_a_drive_is_that_of_its_joint(stated):
     tables = {
         "pose": {"coordinate": "lever", "angle": "0 deg"},
         "drive": {"link": "lever", "joint": "O", "stiffness": stated},
-        "load_cases": {"own": {"title": "nothing"}},
+        "load_cases": {"own": {"title": "nothing", "own_weight": False}},
     }
     with pytest.raises(CaseError, match=r"drive\.stiffness"):
         case_of(LEVER, **tables)

@@ -98,6 +98,7 @@ mass = "2 g"
 own_weight = true
 speed = "1500 rpm"
 [load_cases.push]
+speed = "0 rpm"
 carried = false
 [[load_cases.push.forces]]
 link = "rocker"
@@ -411,7 +412,11 @@ def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
 
 def test_what_cannot_be_enveloped_is_refused(path, tmp_path):
     bare = tmp_path / "bare.toml"
-    kept = TOML.replace('part = "bar"', "").replace("own_weight = true", "").replace('end_patch = "4 mm"', "")
+    kept = (
+        TOML.replace('part = "bar"', "")
+        .replace("own_weight = true", "own_weight = false")
+        .replace('end_patch = "4 mm"', "")
+    )
     bare.write_text(kept, encoding="utf-8")
     with pytest.raises(CaseError, match="no moving link has a part"):
         envelope_case(read_case(str(bare)))

@@ -56,8 +56,10 @@ link = "block"
 at = "B"
 mass = "50 g"
 [load_cases.push]
+own_weight = false
 forces = [{ link = "block", at = "P", force = ["-5 N", "0 N"] }]
 [load_cases.idle]
+own_weight = false
 """
 
 

@@ -68,10 +68,13 @@ forces = [{ link = "block", at = "P", force = ["-5 N", "0 N"] }]
 speed = "60 rpm"
 carried = false
 [load_cases.again]
+own_weight = false
 speed = "60 rpm"
 [load_cases.fast]
+own_weight = false
 speed = "600 rpm"
 [load_cases.still]
+own_weight = false
 direction = "forward"
 """
 GRAMS, MASS = 50.0, 5e-5
@@ -134,11 +137,14 @@ def test_without_speed_or_mass_nothing_is_told(told):
     assert told["empty"]["rates"]["whole"]["kinetic_energy"]["largest"] == 0.0
     assert told["empty"]["rates"]["links"]["block"]["mass"] is None
     unweighed = (
-        CASE.replace("own_weight = true\n", "").replace('speed = "60 rpm"\n', "").replace('"600 rpm"', '"0 rpm"')
+        CASE.replace("own_weight = true", "own_weight = false")
+        .replace('speed = "60 rpm"\n', "")
+        .replace('"600 rpm"', '"0 rpm"')
     )
     still = record(solve_case_motion(validate(tomllib.loads(unweighed))), "")
     assert still["motion"]["points"]["B"]["speed"] is still["motion"]["links"]["rod"]["angular_speed"] is None
-    moving = solve_case_motion(validate(tomllib.loads(unweighed.replace("poses = 73", 'poses = 73\nspeed = "60 rpm"'))))
+    fast = 'poses = 73\nspeed = "60 rpm"\ninertia = false'
+    moving = solve_case_motion(validate(tomllib.loads(unweighed.replace("poses = 73", fast))))
     found = record(moving, "")
     [rates] = {row["rates"]["whole"]["momentum"] for row in found["load_cases"].values()}
     assert rates is None
