@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Text, refusal
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Density, Length, Stress, Temperature
-from geometry.materials.laminate import ANISOTROPIC, is_laminate
+from geometry.materials.directional import directional
 
 Status = Literal["measured", "datasheet", "handbook", "assumed"]
 TOLD = (
@@ -25,6 +25,8 @@ TOLD = (
     "shear_strength_between_layers",
 )
 """Entries whose source and status every card states, where it states the entry."""
+_ROOM = 23.0
+"""Temperature at which strengths are stated [°C] (ISO 291)."""
 
 
 def _ordered(value: tuple[float, float]) -> tuple[float, float]:
@@ -139,8 +141,8 @@ class Material(CaseModel):
                 "no_strength_to_scale",
                 "ultimate_strength_by_diameter needs ultimate_strength, that of one diameter; state it too",
             )
-        if is_laminate(self.title):
-            raise refusal(f"'{self.title}' {ANISOTROPIC}")
+        if why := directional(self.title):
+            raise refusal(f"'{self.title}' {why}")
         layers = "strength_across_layers", "shear_strength_between_layers"
         upon = (layers[1], layers[0]), ("fatigue_across_layers", layers[0])
         for entry, needed in (*upon, *((f"{entry}_range", entry) for entry in layers)):
@@ -164,6 +166,38 @@ class Material(CaseModel):
                             "example": '"data sheet of the maker"' if where == "sources" else '"datasheet"',
                         },
                     )
+        return self
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Material":
+        """Refuse values of which one contradicts another."""
+        own = "yield_strength" if self.strength == "yield" else "ultimate_strength"
+        between = {
+            "youngs_modulus_range": "youngs_modulus",
+            "strength_range": own,
+            "strength_across_layers_range": "strength_across_layers",
+            "shear_strength_between_layers_range": "shear_strength_between_layers",
+        }
+        for entry, of in between.items():
+            scatter, value = getattr(self, entry), getattr(self, of)
+            if scatter is not None and value is not None and not scatter[0] <= value <= scatter[1]:
+                raise refusal(
+                    f"{entry} is from {scatter[0]:g} to {scatter[1]:g} MPa, which leaves out {of}, {value:g} MPa; "
+                    "correct one of them"
+                )
+        for entry, of in (("sustained_stress", own), ("sustained_modulus", "youngs_modulus")):
+            lasting, brief = getattr(self, entry), getattr(self, of)
+            if lasting is not None and brief is not None and lasting > brief:
+                raise refusal(
+                    f"{entry} is {lasting:g} MPa, above {of}, {brief:g} MPa, though under a load that stays a material "
+                    "bears less and gives more; correct one of them"
+                )
+        for (cooler, more), (warmer, less) in itertools.pairwise(((_ROOM, 1.0), *self.temperature_factors)):
+            if warmer >= _ROOM and less > more:
+                raise refusal(
+                    f"temperature_factors grow from {more:g} at {cooler:g} degC to {less:g} at {warmer:g} degC, though "
+                    "a strength falls as it gets warmer; they are shares of the strength at room temperature, at most 1"
+                )
         return self
 
     def drawn(self, entry: str, diameter: float) -> "Material":

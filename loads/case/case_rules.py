@@ -5,7 +5,7 @@ import math
 from geometry.base.errors import CaseError
 from geometry.base.model import check_file_names
 from geometry.bodies.body_rules import check_body, check_length
-from geometry.materials.laminate import ANISOTROPIC, is_laminate
+from geometry.materials.directional import directional
 from geometry.materials.material import Material
 from geometry.parts.part import Body, FilePart
 from loads.case.core import CoreCase
@@ -154,8 +154,8 @@ def _check_transfer(case: CoreCase) -> None:
 
 def _check_material(case: CoreCase, entry: str, name: str) -> None:
     known = case.all_materials.get(name)
-    if is_laminate(f"{name} {known.title if known else ''}"):
-        raise CaseError(f"{entry}: '{name}' {ANISOTROPIC}")
+    if why := directional(f"{name} {known.title if known else ''}"):
+        raise CaseError(f"{entry}: '{name}' {why}")
     require(entry, name, case.all_materials, "is unknown", "or add a card under [materials]")
 
 

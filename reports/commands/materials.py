@@ -45,13 +45,13 @@ def materials(
 ) -> None:
     """List the material library: values, sources, what is assumed and what is missing."""
     from geometry.base.errors import CaseError
-    from geometry.materials.laminate import ANISOTROPIC, is_laminate
+    from geometry.materials.directional import directional
     from geometry.materials.material import library
     from loads.text.explain import require
 
     if name is not None:
-        if is_laminate(name):
-            raise CaseError(f"materials: '{name}' {ANISOTROPIC}")
+        if why := directional(name):
+            raise CaseError(f"materials: '{name}' {why}")
         require("materials", name, library(), "is not in the library")
     if card:
         if name is None:

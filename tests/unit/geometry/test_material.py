@@ -57,6 +57,14 @@ def test_a_brittle_card_uses_the_ultimate_strength() -> None:
         ({"temperature_factors": [["30 degC", 0.9], ["23 degC", 1.0]]}, "rise in temperature; sort"),
         ({"temperature_factors": [["30 degC", 0.9], ["30 degC", 1.0]]}, "rise in temperature"),
         ({"temperature_factors": [["30 degC", 0.0]]}, "greater than 0"),
+        # values of which one contradicts another
+        ({"temperature_factors": [["23 degC", 1.0], ["500 degC", 3.0]]}, "grow from 1 at 23 degC to 3 at 500 degC"),
+        ({"temperature_factors": [["40 degC", 0.7], ["60 degC", 0.8]]}, "grow from 0.7 at 40 degC to 0.8 at 60 degC"),
+        ({"sustained_stress": "60 MPa"}, "sustained_stress is 60 MPa, above yield_strength, 41.4 MPa"),
+        ({"sustained_modulus": "2.5 GPa"}, "sustained_modulus is 2500 MPa, above youngs_modulus, 2400 MPa"),
+        ({"youngs_modulus_range": ["2.5 GPa", "3 GPa"]}, "leaves out youngs_modulus, 2400 MPa; correct one"),
+        ({"strength_range": ["30 MPa", "41 MPa"]}, "leaves out yield_strength, 41.4 MPa"),
+        ({"strength": "ultimate", "strength_range": ["30 MPa", "50 MPa"]}, "leaves out ultimate_strength, 52 MPa"),
         ({"sources": {"densty": "a book"}}, "'densty'.*no such entry; correct"),
         ({"status": {"densty": "handbook"}}, "'densty'.*no such entry"),
         ({"status": {"density": "guessed"}}, "'measured', 'datasheet', 'handbook' or 'assumed'"),
@@ -131,9 +139,21 @@ def test_a_laminate_is_refused(title: str) -> None:
         Material.model_validate(CARD | {"title": title})
 
 
+@pytest.mark.parametrize("title", ["Spruce", "Birch plywood, 4 mm", "balsa-wood", "Wooden rod"])
+def test_wood_is_refused(title: str) -> None:
+    with pytest.raises(ValidationError, match=r"is wood: its stiffness and strength depend on the direction"):
+        Material.model_validate(CARD | {"title": title})
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.3])
+def test_in_the_cold_a_strength_may_be_larger(factor: float) -> None:
+    factors = [["-40 degC", factor], ["23 degC", 1.0], ["40 degC", 0.7]]
+    assert Material.model_validate(CARD | {"temperature_factors": factors}).temperature_factors[0] == (-40.0, factor)
+
+
 @pytest.mark.parametrize(
     "title",
-    ["Carbon steel plate", "steel, 0.4 % carbon, tube", "high-carbon strip", "Polycarbonate sheet",
+    ["PLA, wood-filled", "Carbon steel plate", "steel, 0.4 % carbon, tube", "high-carbon strip", "Polycarbonate sheet",
      "Nylon with 15 % carbon fibre", "PLA, carbon-fibre filled", "ABS, carbon black", "Nylon 66 with 30 % glass",
      "Graphite, carbon, isotropic plate"],
 )  # fmt: skip
