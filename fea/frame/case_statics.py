@@ -7,12 +7,14 @@ from fea.frame.joint_forces import JointForces, joint_forces
 from fea.frame.rubbing import with_friction
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
+from geometry.linkage.slot_ends import refuse_slot_ends
 from loads.case.case import Case
 from loads.case.case_file import read_companion
 from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import Load, PartMass
 from loads.sources.published_statics import StaticsAudit, audit
 from loads.states.actions import acting_loads, needs_masses, placed
+from loads.states.case_motion import drive_angles
 from loads.states.drive_work import DriveWork, pose_work
 from loads.states.masses import part_masses
 from loads.states.play import play_of
@@ -78,6 +80,14 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
         For a pose that cannot be assembled or has no single equilibrium.
     """
     case = each_direction(case)
+    if case.motion is not None:
+        stated = case.solve_pose()
+        refuse_slot_ends(
+            stated,
+            drive_angles(case, stated),
+            coordinate=case.motion_coordinate,
+            slides=case.motion.travel is not None,
+        )
     masses = part_masses(case) if needs_masses(case) else {}
     standing = {load_case: stand(case, load_case, masses) for load_case in case.load_cases}
     pose = next(iter(standing.values())).pose  # one that balances by itself has one load case

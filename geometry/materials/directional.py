@@ -18,8 +18,8 @@ _NO_LAMINATE = frozenset(
 )  # fmt: skip
 """Words of steels, and of plastics with short fibres."""
 _WOODS = frozenset(
-    ("wood", "wooden", "timber", "plywood", "spruce", "pine", "fir", "larch", "balsa", "birch", "beech", "oak", "poplar",
-     "bamboo", "veneer", "basswood", "lvl", "clt")
+    ("wood", "wooden", "timber", "plywood", "spruce", "pine", "fir", "larch", "balsa", "birch", "beech", "oak",
+     "poplar", "bamboo", "veneer", "basswood", "lvl", "clt")
 )  # fmt: skip
 
 

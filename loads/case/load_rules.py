@@ -206,8 +206,8 @@ def check_masses(case: CoreCase) -> None:
     for name, load_case in case.load_cases.items():
         if case.carried and load_case.carried and "own_weight" not in load_case.model_fields_set:
             raise CaseError(
-                f"load_cases.{name}.own_weight: link '{case.carried[0].link}' carries a mass, but the case does not say "
-                "where down is; state own_weight = true, with gravity_direction (-90 deg where left out), or "
+                f"load_cases.{name}.own_weight: link '{case.carried[0].link}' carries a mass, and where down is the "
+                "case does not say; write own_weight = true, with gravity_direction (-90 deg where left out), or "
                 "own_weight = false"
             )
     asking = ["motion.speed"] if case.inert else []

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from geometry.base.errors import CaseError
 from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.pose import Pose
+from geometry.linkage.slot_ends import refuse_slot_ends
 from loads.case.case import Case
 from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import Load, PartMass
@@ -187,6 +188,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
     angles = drive_angles(case, pose)
     speed, acceleration = drive_speeds(case, angles)
     slides = spec.travel is not None
+    refuse_slot_ends(pose, angles, coordinate=coordinate, slides=slides)
     motion = solve_motion(pose, angles, speed=speed, acceleration=acceleration, coordinate=coordinate, slides=slides)
     refuse_turning_bonds(motion.virtual)
     refuse_stops(case, motion)

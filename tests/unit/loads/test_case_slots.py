@@ -5,9 +5,11 @@ import pytest
 from edited_cases import edited
 
 from fea.beam.cut_free import link_loads
+from fea.frame.case_statics import solve_case_statics
 from geometry.base.errors import CaseError
 from geometry.parts.part import Pin
 from loads.records.applied import PointLoad
+from loads.states.case_motion import solve_case_motion
 from loads.statics.statics import solve_statics
 
 
@@ -100,3 +102,17 @@ def test_a_pin_that_leaves_its_slot_is_named() -> None:
 
 def push_down() -> list[PointLoad]:
     return [PointLoad(link="lever-right", point="W", wrench=np.array([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]))]
+
+
+@pytest.mark.parametrize("solve", [solve_case_statics, solve_case_motion])
+@pytest.mark.parametrize(("poses", "side"), [(3, "first"), (37, "last")])
+def test_a_motion_that_takes_a_pin_out_of_its_slot_is_refused(solve, poses: int, side: str) -> None:
+    """The pin goes from 7.07 to 7.68 mm from the pivot, at poses between those that are asked for too."""
+    ends = {"first": ("-7.6 mm", "-6.86 mm"), "last": ("-7.88 mm", "-7.15 mm")}[side]
+    long, short = (f'{{ first = "{a}", last = "{b}" }}' for a, b in (("-7.88 mm", "-6.86 mm"), ends))
+    settings = [f"motion.poses={poses}"]
+    solve(ornithopter(*settings, f"links.lever-left.slots.slot={long}"))
+    with pytest.raises(
+        CaseError, match=r"^links\.lever-left\.slots\.slot: .* from x = -7\.6779\d* to -7\.067\d* mm, but"
+    ):
+        solve(ornithopter(*settings, f"links.lever-left.slots.slot={short}"))
