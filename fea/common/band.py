@@ -29,13 +29,19 @@ class Band:
 
     def __post_init__(self) -> None:
         """Refuse a band that does not hold its value."""
-        if not (self.low <= self.value <= self.high or self.unknowable):
+        endless = bool(self.without) and math.isnan(self.low) and math.isnan(self.high)
+        if not (self.low <= self.value <= self.high or self.unknowable or endless):
             raise ValueError(f"the band {self.low:g} to {self.high:g} does not hold its value {self.value:g}")
 
     @property
     def unknowable(self) -> bool:
         """True where no number stands for the quantity, such as a peak that grows without limit."""
         return math.isnan(self.value) and math.isnan(self.low) and math.isnan(self.high)
+
+    @property
+    def told(self) -> "Band":
+        """The band as others read it: without ends (NaN) where it covers no error of the model."""
+        return replace(self, low=math.nan, high=math.nan) if self.without else self
 
     @classmethod
     def unknown(cls, without: str = "") -> "Band":

@@ -51,19 +51,19 @@ class CheckReport:
     @property
     def safety_factors(self) -> Mapping[str, Band]:
         """Least safety factor of every link over the load cases [1], with its band: ``value``, ``low``, ``high``."""
-        return {link: worst_load_case(self.result, link).links[link].safety_factor for link in self._links}
+        return {link: worst_load_case(self.result, link).links[link].safety_factor.told for link in self._links}
 
     @property
     def stresses(self) -> Mapping[str, Band]:
         """Stress that decides the safety factor of every link [MPa]: von Mises, or largest principal if brittle."""
-        return {link: worst_load_case(self.result, link).links[link].decisive for link in self._links}
+        return {link: worst_load_case(self.result, link).links[link].decisive.told for link in self._links}
 
     @property
     def displacements(self) -> Mapping[str, Band]:
         """Largest displacement of every link from its own pins over the load cases [mm]."""
         cases = self.result.load_cases.values()
         return {
-            link: max((case.links[link].displacement_max for case in cases), key=lambda band: band.high)
+            link: max((case.links[link].displacement_max for case in cases), key=lambda band: band.high).told
             for link in self._links
         }
 
@@ -324,8 +324,8 @@ class CheckReport:
                 "stress": link.measure,
                 "stress [MPa]": link.decisive.value,
                 "safety factor": link.safety_factor.value,
-                "low": link.safety_factor.low,
-                "high": link.safety_factor.high,
+                "low": link.safety_factor.told.low,
+                "high": link.safety_factor.told.high,
                 "displacement [mm]": link.displacement_max.value,
                 "worst at x [mm]": float(link.location[0]),
             }
@@ -367,8 +367,8 @@ def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:
             "load case": check.load_case,
             "quantity": check.quantity,
             "value": check.value.value,
-            "low": check.value.low,
-            "high": check.value.high,
+            "low": check.value.told.low,
+            "high": check.value.told.high,
             "unit": check.unit,
             "sense": check.quantity.sense.value,
             "limit": check.limit,

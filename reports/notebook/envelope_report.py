@@ -49,7 +49,7 @@ class EnvelopeReport:
     @property
     def safety_factors(self) -> Mapping[str, Band]:
         """Least safety factor of every loaded link over motion and load cases [1], with its band."""
-        return {name: link.worst.safety_factor for name, link in self.result.links.items()}
+        return {name: link.worst.safety_factor.told for name, link in self.result.links.items()}
 
     def stress(self, link: str, load_case: str) -> Real:
         """Return the stress (n,) that decides on a link at every pose [MPa]; NaN where the pose was left out.
@@ -152,8 +152,8 @@ class EnvelopeReport:
                 "link": name,
                 "load case": load_case,
                 "safety factor": found.safety_factor.value,
-                "low": found.safety_factor.low,
-                "high": found.safety_factor.high,
+                "low": found.safety_factor.told.low,
+                "high": found.safety_factor.told.high,
                 "stress": link.measure,
                 "stress [MPa]": found.stress.value,
                 f"at {self.result.drive.link} [deg]": drive_angle(self.result, found.pose),

@@ -29,7 +29,7 @@ def data(value: Any) -> Any:
     """
     if isinstance(value, Band):
         kinds = [source.kind.name.lower() for source in value.sources]
-        return entries(value, "value low high") | {"holds": list(value.texts), "kinds": kinds}
+        return entries(value.told, "value low high") | {"holds": list(value.texts), "kinds": kinds}
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, Mapping):

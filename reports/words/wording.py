@@ -78,7 +78,7 @@ def plain(value: float) -> str:
 
 
 def band(value: Band, digits: int = 3) -> str:
-    """Return ``3.21 (2.44 to 3.21)``, or the value alone where the band has no visible width.
+    """Return ``3.21 (2.44 to 3.21)``, the value alone where the band has no visible width, or ``3.21 (no band)``.
 
     Parameters
     ----------
@@ -91,6 +91,8 @@ def band(value: Band, digits: int = 3) -> str:
     str
     """
     shown = number(value.value, digits)
+    if value.without and not value.unknowable:
+        return f"{shown} (no band)"
     low, high = number(value.low, digits), number(value.high, digits)
     return shown if low == high else f"{shown} ({low} to {high})"
 

@@ -1,8 +1,11 @@
+import math
+
 import pytest
 
 from fea.common.band import Band
 from fea.common.source import PIN_PRESSURE, Source, SourceKind
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Sense, Subject, Verdict, overall
+from reports.tables.data import data
 
 
 def band(low: float, value: float, high: float) -> Band:
@@ -40,6 +43,16 @@ def test_a_band_must_hold_its_value() -> None:
         band(2.0, 1.0, 3.0)
     with pytest.raises(ValueError, match="does not hold its value"):
         band(1.0, float("nan"), 3.0)
+
+
+def test_a_number_without_a_band_is_read_without_ends() -> None:
+    """Its ends were those of the value, as if it were exact: solids lay below such a low end by up to 8 times."""
+    bare, known = Band(value=2.0, low=1.5, high=2.5, without="no beam stands for it"), band(1.5, 2.0, 2.5)
+    assert (bare.told.value, known.told) == (2.0, known)
+    assert math.isnan(bare.told.low)
+    assert math.isnan(bare.told.high)
+    assert (data(bare)["value"], data(known)["low"], data(Band.exact(3.0))["low"]) == (2.0, 1.5, 3.0)
+    assert math.isnan(data(bare)["low"])
 
 
 def test_strength_over_a_stress_band_turns_it_round() -> None:

@@ -49,7 +49,8 @@ def test_numbers_are_those_of_result_json(report):
     assert report.verdict == record["verdict"]
     for link, found in record["links"].items():
         assert report.safety_factors[link].value == found["safety_factor"]["value"]
-        assert report.displacements[link].high == found["displacement_max"]["high"]
+        high = report.displacements[link].high
+        assert (None if math.isnan(high) else high) == found["displacement_max"]["high"]
         assert report.stresses[link].value == found["von_mises_max"]["value"]
     assert report.drive_torques == {name: case["drive_torque"] for name, case in record["load_cases"].items()}
 
