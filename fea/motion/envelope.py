@@ -162,10 +162,13 @@ class _Envelope:
             returns=self.moved.motion.returns,
         )
 
-    def outcomes(self, links: Mapping[str, LinkEnvelope]) -> list[CheckOutcome]:
+    def outcomes(self, links: Mapping[str, LinkEnvelope], *, lasting: bool) -> list[CheckOutcome]:
         """Return the outcome of every check; undecided under load cases that load no link."""
         moved, evaluated = self.moved, self.evaluated
-        checks = [*envelope_outcomes(moved, links, evaluated), *column_outcomes(moved, self.loaded, evaluated)]
+        checks = [
+            *envelope_outcomes(moved, links, evaluated, lasting=lasting),
+            *column_outcomes(moved, self.loaded, evaluated),
+        ]
         checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
         for load_case in self.idle:
             joints = moved.forces[load_case].forces
@@ -233,7 +236,7 @@ def envelope_case(
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
     links = over.solved(start, effort or effort_of(case), repetitions)
     clock("solids")
-    checks = over.outcomes(links)
+    checks = over.outcomes(links, lasting=repetitions is not None)
     linkage = over_motion(moved, evaluated)
     checks += [*limit_load_outcomes(moved, linkage), *unloaded_outcomes(whole)]
     clock("frames")

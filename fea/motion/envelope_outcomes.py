@@ -52,7 +52,7 @@ FOLLOWED = (
 
 
 def envelope_outcomes(
-    moved: CaseMotion, links: Mapping[str, LinkEnvelope], evaluated: NDArray[np.bool_]
+    moved: CaseMotion, links: Mapping[str, LinkEnvelope], evaluated: NDArray[np.bool_], *, lasting: bool = False
 ) -> list[CheckOutcome]:
     """Return the outcomes of links, pins, bearing and fatigue; no link or joint passes where poses were left out.
 
@@ -62,6 +62,8 @@ def envelope_outcomes(
     links : mapping of str to LinkEnvelope
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
+    lasting : bool, optional
+        Whether repetitions of the motion are asked for, so that fatigue that is not known leaves a link undecided.
 
     Returns
     -------
@@ -87,6 +89,11 @@ def envelope_outcomes(
         for load_case, over in envelope.load_cases.items():
             if over.fatigue is not None:
                 found += fatigue_outcomes(case.material_of(link).fatigue, link, load_case, over.fatigue)
+            elif lasting:
+                why = envelope.no_fatigue or "its peak is not known"
+                subject, unknown = Subject.link(link), Band.unknown(why)
+                quantity = Quantity.FATIGUE_STRESS
+                found.append(CheckOutcome.of("fatigue", subject, load_case, quantity, unknown, STRESS_FACTOR, why))
         for load_case, layers in envelope.layers.items():
             found += layer_fatigue_outcomes(case.material_of(link), link, load_case, layers)
     return found

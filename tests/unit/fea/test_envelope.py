@@ -25,7 +25,7 @@ from fea.frame.case_statics import solve_case_statics
 from fea.motion import envelope
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
-from fea.motion.fatigue import closed_history, signed_stress
+from fea.motion.fatigue import closed_history, missing_data, signed_stress
 from fea.motion.link_envelope import link_motion
 from fea.motion.link_history import link_histories
 from fea.outcomes.bearing import bearing_outcome
@@ -289,6 +289,19 @@ def test_every_load_case_is_checked_for_strength_and_fatigue(result):
         if check.quantity == Quantity.FATIGUE_STRESS:
             assert check.limit == 2.0
             assert check.value.value == pytest.approx(10.9 / fatigue.life.stress)
+
+
+@pytest.mark.parametrize("lasting", [True, False])
+def test_repetitions_that_a_card_knows_nothing_of_leave_the_link_undecided(moved, result, lasting):
+    """They passed: a hundred million of a material without fatigue data."""
+    bare = result.case.material_of("rocker").model_copy(update={"fatigue": None})
+    rocker, why = result.links["rocker"], missing_data(bare)
+    unknown = {name: replace(over, fatigue=None) for name, over in rocker.load_cases.items()}
+    links = {"rocker": replace(rocker, load_cases=unknown, no_fatigue=why)}
+    found = envelope_outcomes(moved, links, np.ones(25, dtype=bool), lasting=lasting)
+    known = {c.load_case: (c.verdict, c.reason) for c in found if c.quantity is Quantity.FATIGUE_STRESS}
+    assert known == (dict.fromkeys(("spin", "push"), (Verdict.UNDECIDED, why)) if lasting else {})
+    assert "add [materials.<name>.fatigue]" in why
 
 
 def test_buckling_is_that_of_the_pose_with_the_least_factor(path, moved, result):
