@@ -113,7 +113,7 @@ with guard.watched():
 
 
 def test_an_unknown_entry_is_told_without_a_look_into_the_sources() -> None:
-    """The schema behind the message parsed the program's own source, which a wheel of compiled modules does not have."""
+    """The schema behind the message parsed the program's own source, which compiled modules do not have."""
     done = child(UNKNOWN)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("ornithopter.gera: "), done.stdout
