@@ -39,9 +39,9 @@ from fea.buckling.holding import Plane, columns, holding, of_cuts
 from fea.common.band import Band
 from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind
-from fea.common.ties import first_largest
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
+from geometry.base.ties import first_largest
 from loads.case.case import Case
 
 Real = NDArray[np.float64]

@@ -12,9 +12,9 @@ from fea.check.load_growth import Growths
 from fea.check.solid_result import solid_result
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
-from fea.common.ties import first_largest
 from fea.outcomes.result import HandResult, LinkResult, SolidResult
 from fea.outcomes.solid_buckling import solid_buckling, solid_growth
+from geometry.base.ties import first_largest
 from geometry.materials.material import Material
 from loads.case.case import Case
 from loads.case.forks import of_pair

@@ -13,12 +13,12 @@ from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes
 from fea.vibration.modes import Mode
 from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies
+from geometry.base.ties import first_least
 from loads.case.case import Case
 from loads.records.check_spec import FrequencyCheck
 
 POSES = 13
 """Over the motion, of which the least frequency is sought in between: every 30 degrees of a turn."""
-_ROUNDING = 1e-9
 _ENDINGS = {1: "st", 2: "nd", 3: "rd"}
 
 
@@ -89,7 +89,8 @@ def deciding_load_case(found: CaseFrequencies) -> str:
     cases, every = found.case.load_cases, found.histories
     turning = {name: one for name, one in every.items() if cases[name].speed != 0.0}
     driven = turning or {name: one for name, one in every.items() if one.driving > 0.0} or every
-    return min(driven, key=lambda name: least_frequency(driven[name]).low / (driven[name].driving or 1.0))
+    names = list(driven)
+    return names[first_least([least_frequency(driven[name]).low / (driven[name].driving or 1.0) for name in names])]
 
 
 def least_frequency(history: FrequencyHistory) -> Band:
@@ -120,8 +121,7 @@ def least_at(history: FrequencyHistory) -> float:
     float
         Value of the coordinate [rad, mm].
     """
-    low = history.low[:, 0]
-    return float(history.at[int(np.argmax(low <= (1.0 + _ROUNDING) * low.min()))])
+    return float(history.at[first_least(history.low[:, 0])])
 
 
 def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, history: FrequencyHistory) -> CheckOutcome:
@@ -235,8 +235,8 @@ def harmonic_sentence(case: Case, history: FrequencyHistory) -> str:
     if float(low.min()) > HIGHEST * driving:
         return f"all harmonics up to the {ordinal(HIGHEST)}, {_plain(HIGHEST * driving)} Hz, stay below it"
     apart = {n: np.maximum(low / (n * driving), n * driving / np.maximum(high, 1e-12)) for n in range(1, HIGHEST + 1)}
-    nearest = min(apart, key=lambda n: float(apart[n].min()))
-    i, k = np.unravel_index(int(np.argmin(apart[nearest])), low.shape)
+    nearest = first_least([float(ratio.min()) for ratio in apart.values()]) + 1
+    i, k = np.unravel_index(first_least(np.ravel(apart[nearest])), low.shape)
     return (
         f"no harmonic up to the {ordinal(HIGHEST)} meets a natural frequency; the {ordinal(nearest)}, "
         f"{_plain(nearest * driving)} Hz, comes nearest to the {ordinal(int(k) + 1)} one"

@@ -17,6 +17,7 @@ from fea.frame.build import build_frame
 from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes, linkage_modes
 from geometry.base.errors import CannotRunError, CaseError
+from geometry.base.ties import first_least
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.joint_rules import rubbing_joints
@@ -168,7 +169,7 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
 
     size = len(motion.angles)
     coarse = range(0, size, FINE)
-    best = min(coarse, key=least)
+    best = coarse[first_least([least(i) for i in coarse])]
     if modes(best) is None:
         raise CannotRunError(f"load case {name}: no pose of the motion has an equilibrium that a frame can hold")
     _least_between(least, max(best - FINE, 0), min(best + FINE, size - 1))
@@ -187,7 +188,7 @@ def _least_between(function: Callable[[int], float], low: int, high: int) -> Non
         first, second = low + step, high - step
         if first >= second:
             first, second = low + 1, high - 1
-        low, high = (low, second) if function(first) < function(second) else (first, high)
+        low, high = (low, second) if first_least([function(second), function(first)]) else (first, high)
     for i in range(low, high + 1):
         function(i)
 
@@ -208,7 +209,9 @@ def _history(
         values = [[float(getattr(band, end)) for band in row] for row in bands]
         return np.array([row + [math.inf] * (count - len(row)) for row in values])
 
-    lowest = min(found.values(), key=lambda modes: (modes.modes[0].frequency.low, modes.modes[0].frequency.value))
+    first = [modes.modes[0].frequency for modes in found.values()]
+    ends = [band.low for band in first]
+    lowest = list(found.values())[first_least(ends if min(ends) > 0.0 else [band.value for band in first])]
     if left_out:
         told = f"{len(left_out)} poses were left out, in which there is no equilibrium"
         lowest = replace(lowest, notes=(*lowest.notes, told))

@@ -10,7 +10,9 @@ from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 from fea.common.verdict import Verdict
 from fea.whole.clearance import clearance_outcomes
 from geometry.base.errors import CaseError
+from geometry.clearance import least
 from geometry.clearance.shape import gaps
+from loads.case.case_file import read_case
 from loads.states.clearance import along, clearance
 
 
@@ -47,6 +49,23 @@ def test_the_least_gap_of_two_bars_that_do_not_touch():
         assert least.high - least.low < 0.1
         [outcome] = clearance_outcomes(case, found)
         assert (outcome.name, outcome.verdict.value) == ("apart", verdict)
+
+
+def test_rounding_chooses_neither_pose_nor_place_nor_order_of_the_least_gaps(monkeypatch):
+    """The six-bar's halves mirror each other, and pins pass some of its links at one distance over a stretch."""
+    case, found = read_case("six-bar"), []
+    for seed in (0, 1):
+        noise = np.random.default_rng(seed)
+        monkeypatch.setattr(
+            least, "gaps", lambda *of, noise=noise: gaps(*of) + noise.uniform(-1e-12, 1e-12, len(of[1]))
+        )
+        told = clearance(case)
+        assert told is not None
+        found.append([(gap.names, gap.at, *gap.place) for gap in told.gaps])
+    assert len(found[0]) > 2
+    for one, other in zip(*found, strict=True):
+        assert one[0] == other[0]
+        assert one[1:] == pytest.approx(other[1:], rel=1e-9)
 
 
 def test_a_link_touches_a_pin_that_passes_its_layer():
