@@ -16,6 +16,7 @@ from fea.beam.cut_free import link_loads
 from fea.check.force_doubt import force_doubt
 from fea.common.scatter import Scatter
 from fea.frame.joint_forces import JointForces, joint_forces, solved_frame
+from geometry.base.ties import first_largest
 from loads.records.applied import Load, chosen
 from loads.states.case_motion import CaseMotion
 from loads.states.dead_point_reach import pose_at
@@ -111,5 +112,5 @@ def _worst_poses(
     for link in case.checked_links:
         loads = link_loads(load_case, link, case.body(link), forces, moved.loads[load_case])
         size = np.where(evaluated, loads.size(case.linkage.longest), -np.inf)
-        found[link] = int(np.argmax(size))
+        found[link] = first_largest(size)
     return found

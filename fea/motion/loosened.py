@@ -24,6 +24,7 @@ from fea.motion.buckling_history import factors_over_motion
 from fea.motion.layered import forces_at
 from fea.motion.link_history import link_histories
 from geometry.base.errors import CaseError
+from geometry.base.ties import first_largest
 from loads.records.applied import chosen
 from loads.states.case_motion import CaseMotion
 from loads.states.loose_motion import LooseMotion, loose_motion
@@ -89,7 +90,7 @@ def in_other_air(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[tuple[
     found = {}
     for load_case, airs in _airs(moved).items():
         for link in moved.case.checked_links:
-            poses = {int(np.argmax(np.where(evaluated, _size(one, load_case, link), -np.inf))) for _, one in airs}
+            poses = {first_largest(np.where(evaluated, _size(one, load_case, link), -np.inf)) for _, one in airs}
             numbers = [(c, stress(one, load_case, link, poses)) for c, one in airs]
             found[load_case, link] = _spread(numbers)
     return found
@@ -186,7 +187,7 @@ def _link(loose: LooseMotion, load_case: str, link: str, evaluated: NDArray[np.b
     pins = case.linkage.joints_of(link)
     size = _size(moved, load_case, link)
     reach = size + sum(loose.slack(load_case, f"force {joint}") for joint in pins)
-    first, second = (int(np.argmax(np.where(evaluated, of, -np.inf))) for of in (size, reach))
+    first, second = (first_largest(np.where(evaluated, of, -np.inf)) for of in (size, reach))
     found = {pose: _at(loose, load_case, link, pose) for pose in (first, second)}
     (plain, own), (other, far) = found[first], found[second]
     if not plain > 0.0:

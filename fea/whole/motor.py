@@ -19,6 +19,7 @@ from fea.common.band import Band
 from fea.common.convex import least_of_convex
 from fea.common.source import Source, SourceKind, air_source, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from geometry.base.ties import TIE
 from loads.case.case import Case
 from loads.records.check_spec import MotorCheck
 from loads.records.flapping import Flapping
@@ -63,11 +64,9 @@ def demand(power: Real, torque: Real, times: Real) -> MotorDemand:
     -------
     MotorDemand
     """
-    mean = _mean(power, times)
-    rounding = 1e-9 * float(np.abs(power).max())
     return MotorDemand(
         peak_power=max(float(power.max()), 0.0) / 1000.0,
-        mean_power=mean / 1000.0 if mean > rounding else 0.0,
+        mean_power=_asked(power, times) / 1000.0,
         peak_torque=float(np.abs(torque).max()),
     )
 
@@ -97,9 +96,15 @@ def line_share(torque: Real, speed: Real, times: Real, stall: float, free: float
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(torque == 0.0, 0.0, np.where(given > 0.0, np.abs(torque) / given, math.inf))
     able = _mean(np.maximum(stall * (1.0 - np.abs(speed) / free), 0.0) * np.abs(speed), times)
-    asked = max(_mean(torque * speed, times), 0.0)
+    asked = _asked(torque * speed, times)
     mean = asked / able if able > 0.0 else (math.inf if asked > 0.0 else 0.0)
     return min(mean, float(shares.max())), float(shares.max())
+
+
+def _asked(power: Real, times: Real) -> float:
+    """Return the mean power; 0 where more flows back, or where it is rounding beside the greatest."""
+    mean = _mean(power, times)
+    return mean if mean > TIE * float(np.abs(power).max()) else 0.0
 
 
 def _mean(values: Real, times: Real) -> float:

@@ -53,6 +53,9 @@ def test_shares_of_a_straight_torque_speed_line() -> None:
     assert mean == pytest.approx((3.0 + (12.0 - 3.0) / 4.0) / 15.0)
     assert line_share(-pulling, speed, times, 20.0, 100.0) == (0.0, pytest.approx(12.0 / 25.0))
     assert line_share(pulling, 5.0 * speed, times, 20.0, 100.0) == (math.inf, math.inf)
+    for phase in (0.4, 1.2, 2.0, 3.0):  # what is lent and given back over a turn is zero, and its sum is rounding
+        turning = np.cos(2.0 * np.pi * np.linspace(0.0, 1.0, 73) + phase)
+        assert line_share(turning, np.full(73, 50.0), np.linspace(0.0, 2.0, 73), 20.0, 100.0)[0] == 0.0
 
 
 MOTOR = ['checks.motor.no_load_speed="3500 rpm"']
