@@ -66,7 +66,7 @@ def demand(power: Real, torque: Real, times: Real) -> MotorDemand:
     """
     return MotorDemand(
         peak_power=max(float(power.max()), 0.0) / 1000.0,
-        mean_power=_asked(power, times) / 1000.0,
+        mean_power=max(_mean(power, times), 0.0) / 1000.0,
         peak_torque=float(np.abs(torque).max()),
     )
 
@@ -96,19 +96,15 @@ def line_share(torque: Real, speed: Real, times: Real, stall: float, free: float
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(torque == 0.0, 0.0, np.where(given > 0.0, np.abs(torque) / given, math.inf))
     able = _mean(np.maximum(stall * (1.0 - np.abs(speed) / free), 0.0) * np.abs(speed), times)
-    asked = _asked(torque * speed, times)
+    asked = max(_mean(torque * speed, times), 0.0)
     mean = asked / able if able > 0.0 else (math.inf if asked > 0.0 else 0.0)
     return min(mean, float(shares.max())), float(shares.max())
 
 
-def _asked(power: Real, times: Real) -> float:
-    """Return the mean power; 0 where more flows back, or where it is rounding beside the greatest."""
-    mean = _mean(power, times)
-    return mean if mean > TIE * float(np.abs(power).max()) else 0.0
-
-
 def _mean(values: Real, times: Real) -> float:
-    return float(np.trapezoid(values, times)) / float(times[-1] - times[0])
+    """Return the mean over time; 0 where it is rounding beside the greatest value."""
+    mean = float(np.trapezoid(values, times)) / float(times[-1] - times[0])
+    return 0.0 if abs(mean) <= TIE * float(np.abs(values).max()) < math.inf else mean
 
 
 def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[CheckOutcome, ...]]:

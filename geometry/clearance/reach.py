@@ -140,7 +140,7 @@ def _told(outlines: Sequence[Standing], found: Real, s: Real | None, most: Real)
     for k in range(4):
         own = found[1, :, k]
         i, pose = np.unravel_index(first_largest(np.ravel(own)), own.shape)
-        value, least = float(own[i, pose]), float(found[0, :, k].max())
+        value, least = float(own.max()), float(found[0, :, k].max())
         name, at = outlines[int(i)][0].name, None if s is None else float(s[pose])
         coordinate = value if k % 2 else -value
         sides.append(Outermost(value=coordinate, less=value - least, more=float(most[k]) - value, name=name, at=at))

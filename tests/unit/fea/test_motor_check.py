@@ -55,6 +55,7 @@ def test_shares_of_a_straight_torque_speed_line() -> None:
     assert line_share(pulling, 5.0 * speed, times, 20.0, 100.0) == (math.inf, math.inf)
     for phase in (0.4, 1.2, 2.0, 3.0):  # what is lent and given back over a turn is zero, and its sum is rounding
         turning = np.cos(2.0 * np.pi * np.linspace(0.0, 1.0, 73) + phase)
+        assert demand(turning, turning, np.linspace(0.0, 2.0, 73)).mean_power == 0.0
         assert line_share(turning, np.full(73, 50.0), np.linspace(0.0, 2.0, 73), 20.0, 100.0)[0] == 0.0
 
 
