@@ -9,7 +9,7 @@ from geometry.base.errors import CaseError
 from geometry.imported.facts import Bore
 from geometry.parts.step import StepPart
 from geometry.placement.fit import Wanted
-from geometry.placement.match import place, points_of_part
+from geometry.placement.match import place, points_of_part, with_loaded_bores
 
 POINTS = {"A": (0.0, 0.0), "B": (60.0, 0.0), "C": (22.0, 34.0)}
 DIAMETERS = {"A": 5.0, "B": 4.0, "C": 6.0}
@@ -75,6 +75,24 @@ def test_the_plane_of_forces_is_the_mean_of_the_middles_or_as_stated():
     assert [found.middle(name)[2] for name in points] == pytest.approx([-3.0, 3.0])
     found = place(part(plane="2 mm"), bores, wanted(points))
     assert [found.middle(name)[2] for name in points] == pytest.approx([-2.0, 4.0])
+
+
+def test_a_bore_without_a_joint_leaves_the_plane_of_forces_where_it_is():
+    """Middles at 1 and 7.5 mm hold joints: 4.25 mm, where the mean of all three would be 3.67 mm."""
+    heights = {"A": 1.0, "P": 2.5, "B": 7.5}
+    bores = [
+        bore(f"bore {n}", (*at, z), 5.0 + n)
+        for n, (at, z) in enumerate(zip(POINTS.values(), (1.0, 7.5, 2.5), strict=True))
+    ]
+    points = {"A": POINTS["A"], "B": POINTS["B"]}
+    sizes = {"A": 5.0, "B": 6.0}
+    found = with_loaded_bores(part(), place(part(), bores, wanted(points, sizes)), bores, {"P": POINTS["C"]})
+    assert found.bores["P"].name == "bore 2"
+    assert {name: found.middle(name)[2] + 4.25 for name in heights} == pytest.approx(heights)
+    found = with_loaded_bores(
+        part(plane="2 mm"), place(part(plane="2 mm"), bores, wanted(points, sizes)), bores, {"P": POINTS["C"]}
+    )
+    assert {name: found.middle(name)[2] + 3.0 for name in heights} == pytest.approx(heights)
 
 
 @pytest.mark.parametrize(
