@@ -80,19 +80,13 @@ def test_the_plane_of_forces_is_the_mean_of_the_middles_or_as_stated():
 def test_a_bore_without_a_joint_leaves_the_plane_of_forces_where_it_is():
     """Middles at 1 and 7.5 mm hold joints: 4.25 mm, where the mean of all three would be 3.67 mm."""
     heights = {"A": 1.0, "P": 2.5, "B": 7.5}
-    bores = [
-        bore(f"bore {n}", (*at, z), 5.0 + n)
-        for n, (at, z) in enumerate(zip(POINTS.values(), (1.0, 7.5, 2.5), strict=True))
-    ]
-    points = {"A": POINTS["A"], "B": POINTS["B"]}
-    sizes = {"A": 5.0, "B": 6.0}
-    found = with_loaded_bores(part(), place(part(), bores, wanted(points, sizes)), bores, {"P": POINTS["C"]})
-    assert found.bores["P"].name == "bore 2"
-    assert {name: found.middle(name)[2] + 4.25 for name in heights} == pytest.approx(heights)
-    found = with_loaded_bores(
-        part(plane="2 mm"), place(part(plane="2 mm"), bores, wanted(points, sizes)), bores, {"P": POINTS["C"]}
-    )
-    assert {name: found.middle(name)[2] + 3.0 for name in heights} == pytest.approx(heights)
+    places = {"A": (0.0, 0.0), "P": (22.0, 34.0), "B": (60.0, 0.0)}
+    bores = [bore(f"bore {name}", (*at, heights[name]), DIAMETERS.get(name, 8.0)) for name, at in places.items()]
+    loaded = {"P": places.pop("P")}
+    for own, plane in ((part(), 4.25), (part(plane="2 mm"), 3.0)):
+        found = with_loaded_bores(own, place(own, bores, wanted(places)), bores, loaded)
+        assert found.bores["P"].name == "bore P"
+        assert {name: found.middle(name)[2] + plane for name in heights} == pytest.approx(heights)
 
 
 @pytest.mark.parametrize(
