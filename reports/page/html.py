@@ -99,6 +99,7 @@ def render(
         meaning=MEANING[result.verdict],
         checks=checks,
         most_checks=MOST_CHECKS,
+        applicable=[check for check in checks if check.applies],
         bands=_bands(checks_of(result)),
         reasons=_reasons(checks),
         drawings=_drawings(result, checks, figures),

@@ -185,7 +185,8 @@ def test_a_point_without_equilibrium_or_beyond_linear_theory_is_left_open():
     _, found = tip(1000.0)
     assert found.verdict is Verdict.UNDECIDED
     assert found.value.unknowable
-    assert "gives way at 20.3 % of it" in found.reason
+    assert not found.applies
+    assert found.reason.startswith("the linkage gives way")
     _, found = tip(1000.0, 'large_displacement="off"')
     assert found.verdict is Verdict.UNDECIDED
     assert "may give way at 0.807 times the load or less, below 5.2" in found.reason
