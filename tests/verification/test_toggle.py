@@ -16,7 +16,11 @@ from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
+from fea.frame.build import build_frame
+from fea.frame.case_statics import solve_case_statics
 from fea.motion.linkage_history import linkage_outcomes, over_motion
+from fea.nonlinear.equilibrium_path import NoEquilibriumError
+from fea.nonlinear.softened import followed
 from fea.nonlinear.stability import SNAP, growth
 from fea.study.numbers import of_motion
 from loads.case.case import Case
@@ -149,6 +153,31 @@ def test_a_toggle_fails_beyond_its_limit_load_and_passes_below(rise: float, bars
         assert moved.dead_point == pytest.approx(SNAP / share, rel=0.1)
     # Near it stands what is not known of the lever's eyes.
     assert [one.verdict for one in found.values()] == ["pass", "undecided", "undecided", "fail"]
+
+
+@pytest.mark.parametrize(("rise", "bars"), [(1.5, "bar"), (10.0, "slender")])
+@pytest.mark.parametrize("times", [1e-3, 0.3, 80.0, 1e3, 1e4])
+def test_no_load_is_so_large_that_its_path_steps_over_the_limit_load(rise: float, bars: str, times: float) -> None:
+    """Loads of 80 times the limit once landed beyond the snap-through, where the toggle hangs and holds all of them."""
+    limit = limit_load(toggle(-1.0, rise, bars=bars), rise, bars)
+    case = toggle(-times * limit, rise, bars=bars)
+    statics = solve_case_statics(case)
+    frame = build_frame(case, statics.pose, statics.loads["push"], held=case.pinned_drive)
+    if times < 1.0:
+        assert followed(frame, 1.0).stable
+    with pytest.raises(NoEquilibriumError) as ended:
+        followed(frame, max(1.0, 3.0 / times))
+    shares = (ended.value.reached * max(times, 3.0), ended.value.failed * max(times, 3.0))
+    assert shares[0] < 1.005
+    assert shares[0] == pytest.approx(1.0, abs=0.02)
+    assert shares[1] == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("times", [80.0, 1e3])
+def test_a_toggle_under_many_times_its_limit_load_fails(times: float) -> None:
+    _, moved, (found,) = linkage(toggle(-times * limit_load(toggle(-1.0, 1.5), 1.5), 1.5))
+    assert (moved.state, found.verdict) == ("no equilibrium", Verdict.FAIL)
+    assert moved.limit_load.low < 1.0 / times < moved.limit_load.high < 2.0 / times
 
 
 def test_the_toggle_at_three_newtons_gives_way() -> None:
