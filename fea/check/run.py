@@ -29,7 +29,7 @@ from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, Verdict, overall
 from fea.frame.case_statics import CaseStatics, solve_case_statics
 from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
-from fea.nonlinear.large_displacement import LargeDisplacement, examine
+from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
 from fea.outcomes.pins import PinStress, shared_stress
@@ -116,6 +116,7 @@ class _LoadCase:
     def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement, air: AirDoubt) -> "_LoadCase":
         case, loads = statics.standing[load_case].case, statics.loads[load_case]
         reactions = statics.reactions[load_case]
+        moved = with_growth(case, load_case, moved, loads)
         plates = {
             link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
             for link in case.checked_links

@@ -34,7 +34,7 @@ _RESOLUTION = 1.0 / 64.0
 _BEND = 1.0 / 3.0
 """Share by which the rate of no unknown may change in a step.
 
-A shallow toggle then starts with three quarters of its limit load, and any path goes nine tenths of the way that is left
+A shallow toggle then starts with three quarters of its limit load, and a path goes nine tenths of the way that is left
 to a limit point at a time.
 """
 _SLOW = 0.3
