@@ -198,7 +198,7 @@ class EquilibriumPath:
         left, tangent = self.balance(state, factor)
         rate = -self._solve(tangent, self.balance(state, factor + 1.0)[0] - left)
         largest = float(np.abs(rate[: len(unit)] / unit).max(initial=0.0))
-        if largest == 0.0:
+        if largest < _TOLERANCE:  # as of a force straight into the ground
             return 1.0
         t = _DIFFERENCE / largest
         ahead, behind = (self.balance(self._moved(state, d * rate), factor + d)[0] for d in (t, -t))
@@ -216,7 +216,8 @@ class EquilibriumPath:
                     tangents = (tangents + self._solve(tangent, self.balance(state, self.reached)[0])) / 2.0
                     moved = state.displacements - self.state.displacements
                     missed = float(np.linalg.norm(moved - self._displacements(tangents)))
-                    return (state, iteration) if missed <= _ROUGH * float(np.linalg.norm(moved)) else None
+                    most = max(_ROUGH * float(np.linalg.norm(moved)), _TOLERANCE * self.model.size)
+                    return (state, iteration) if missed <= most else None
                 change = -self._solve(tangent, residual)
             except CannotRunError:
                 return None
