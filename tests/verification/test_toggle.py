@@ -7,6 +7,7 @@ keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³),
 import math
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -24,11 +25,13 @@ from fea.nonlinear.equilibrium_path import NoEquilibriumError
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.nonlinear.softened import followed
 from fea.nonlinear.stability import SNAP, growth
+from fea.sizing.changes import _change, changes, rounded
 from fea.study.numbers import of_motion
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck
 from loads.states.case_motion import solve_case_motion
+from reports.words.changes import change_sentences
 
 HALF, LEVER = 50.0, 100.0
 TOGGLE = """
@@ -358,3 +361,68 @@ def test_over_a_motion_the_least_factor_is_that_of_its_worst_pose():
     asked, plain = (n for n in numbers if n.quantity == "limit-load factor")
     assert (asked.check, plain.check, asked.value) == ("holds", "", plain.value) == ("holds", "", over.limit_load.value)
     assert verdict is asked.verdict
+
+
+def changed(case: Case, modulus: float = 1.0, strength: float = 1.0) -> Case:
+    """The case with a card of its own, as many times as stiff and as strong."""
+    card = case.material_of("left")
+    update = {"youngs_modulus": modulus * card.youngs_modulus, "yield_strength": strength * card.yield_strength}
+    return case.model_copy(update={"materials": {"pvc-paredes-2018": card.model_copy(update=update)}})
+
+
+@pytest.mark.parametrize("times", [3.0, 80.0])
+def test_what_is_told_to_save_a_toggle_that_gives_way_does(times: float) -> None:
+    """Moduli 64 times as large were once told where 84 are needed, and were never tried."""
+    force = times * limit_load(toggle(-1.0, 1.5), 1.5)
+    told = changes(check_case(toggle(-force, 1.5), fidelity="beam"))[0]
+    assert (told.check.quantity, told.refuted, told.material.material) == (Quantity.LOAD_SHARE, False, "")
+    modulus, load = rounded(told.material.needed, up=True), rounded(told.load, up=False)
+    assert modulus > times
+    for case, kept in (
+        (changed(toggle(-force, 1.5), modulus), True),
+        (changed(toggle(-force, 1.5), modulus / 1.04), False),
+        (toggle(-force * load, 1.5), True),
+        (toggle(-force * load * 1.04, 1.5), False),
+    ):
+        _, moved, (found,) = linkage(case)
+        assert (found.verdict is Verdict.PASS) is kept
+        assert (moved.held_share.low >= 1.0) is kept
+
+
+def test_a_change_that_fails_when_it_is_tried_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Proposals of which each is too little: another one is found that holds, or none is told."""
+    force = 3.0 * limit_load(toggle(-1.0, 5.0), 5.0)
+    plain = _change
+    monkeypatch.setattr(
+        "fea.sizing.changes._change",
+        lambda result, check: replace(
+            (found := plain(result, check)),
+            load=1.3 * found.load,
+            material=replace(found.material, needed=found.material.needed / 1.3),
+        ),
+    )
+    result = check_case(toggle(-force, 5.0), fidelity="beam")
+    again = changes(result)[0]
+    assert again.load * again.material.needed == pytest.approx(1.0, rel=0.03)
+    for case in (toggle(-force * again.load, 5.0), changed(toggle(-force, 5.0), again.material.needed)):
+        assert linkage(case)[2][0].verdict is Verdict.PASS
+    monkeypatch.setattr("fea.sizing.changes.TRIES", 1)
+    none = changes(replace(result))[0]
+    assert (none.load, none.material, none.refuted) == (None, None, True)
+    assert "none within reach does" in " ".join(change_sentences(none, result))
+
+
+def test_no_strength_is_told_for_a_link_of_a_linkage_that_gives_way() -> None:
+    """At twice the limit load stronger links hold no more; below the limit load they do."""
+    limit = limit_load(toggle(-1.0), 10.0)
+    told = {}
+    for times in (0.4, 2.0):
+        found = changes(check_case(changed(toggle(-times * limit), strength=0.01), fidelity="beam"))
+        told[times] = [one for one in found if one.check.subject.kind == "link"]
+        assert told[times]
+    assert all(one.material is None and one.refuted for one in told[2.0])
+    for one in told[0.4]:
+        stronger = rounded(one.material.needed, up=True) / one.material.stated
+        again = check_case(changed(toggle(-0.4 * limit), strength=0.01 * stronger), fidelity="beam")
+        (same,) = [c for c in again.load_cases["push"].checks if (c.name, c.link) == (one.check.name, one.check.link)]
+        assert same.margin >= 1.0
