@@ -262,14 +262,16 @@ def air_scatter(stated: tuple[float, float], others: Mapping[float, float], ends
     return Scatter(low=min(low, 1.0), high=max(high, 1.0), sources=(air_source(*ends),))
 
 
-def widened(outcome: CheckOutcome, spread: Scatter) -> CheckOutcome:
-    """Return the outcome of a buckling factor with what the range of C_N makes of the compression in its band.
+def widened(outcome: CheckOutcome, spread: Scatter, cause: str = "C_N") -> CheckOutcome:
+    """Return the outcome of a buckling factor with what something makes of the compression in its band.
 
     Parameters
     ----------
     outcome : CheckOutcome
     spread : Scatter
         Of the inverse of the factor.
+    cause : str, optional
+        What that is, for people; the range of C_N unless given.
 
     Returns
     -------
@@ -281,7 +283,7 @@ def widened(outcome: CheckOutcome, spread: Scatter) -> CheckOutcome:
     found = CheckOutcome.of(
         outcome.name, outcome.subject, outcome.load_case, outcome.quantity, band, outcome.limit, reason
     )
-    return found if found.verdict is outcome.verdict else found.because(f"{reason}; C_N may change this")
+    return found if found.verdict is outcome.verdict else found.because(f"{reason}; {cause} may change this")
 
 
 def _shape(statics: CaseStatics, other: CaseStatics, load_case: str, moved: LargeDisplacement) -> LargeDisplacement:

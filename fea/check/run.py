@@ -11,25 +11,26 @@ from pydantic_core import PydanticCustomError
 from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
-from fea.check.air_doubt import AirDoubt, air_warnings
+from fea.check.air_doubt import AirDoubt, air_warnings, widened
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from fea.check.link_result import link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
-from fea.check.load_growth import Growths, growths
+from fea.check.load_growth import SOURCES, Growths, growths
 from fea.check.play_doubt import play_doubt, play_warnings, shaken
 from fea.check.point_solids import decide_point
 from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
+from fea.common.scatter import Scatter
 from fea.common.source import COUPLES
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, Verdict, overall
 from fea.frame.case_statics import CaseStatics, solve_case_statics
 from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
-from fea.nonlinear.large_displacement import LargeDisplacement, examine
+from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
 from fea.outcomes.pins import PinStress, shared_stress
@@ -108,6 +109,7 @@ class _LoadCase:
     load_case: str
     moved: LargeDisplacement
     plates: Mapping[str, Sequence[tuple[LinkLoads, LinkByHand]]]
+    grown: Growths
     uneven: Growths
     size: float
     air: AirDoubt
@@ -116,20 +118,22 @@ class _LoadCase:
     def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement, air: AirDoubt) -> "_LoadCase":
         case, loads = statics.standing[load_case].case, statics.loads[load_case]
         reactions = statics.reactions[load_case]
+        moved = with_growth(case, load_case, moved, loads)
         plates = {
             link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
             for link in case.checked_links
         }
         hands = {link: found[0][1] for link, found in plates.items()}
-        grown = moved.state in ("off", "unknown")  # where ``cut_link`` adds it
+        grown = growths(case, load_case, statics.pose, loads, moved, reactions, hands)
+        added = moved.state in ("off", "unknown")  # where ``cut_link`` adds it
         return cls(
             case=case,
             statics=statics,
             load_case=load_case,
             moved=moved,
             plates=plates,
-            uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands)
-            .times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=grown))
+            grown=grown,
+            uneven=grown.times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=added))
             .times(play_doubt(case, load_case, statics.forces[load_case], loads))
             .times(air.growths),
             size=load_size(loads, case.linkage.longest),
@@ -170,6 +174,14 @@ class _LoadCase:
             )
         return found
 
+    def _grown(self, outcome: CheckOutcome) -> CheckOutcome:
+        """Return the buckling factor of a link with what the joint forces grow by in its band."""
+        joints = self.case.linkage.joints_of(outcome.subject.name)
+        found = [self.grown.joints[name] for name in joints if name in self.grown.joints]
+        low, high = min((1.0, *(one.low for one in found))), max((1.0, *(one.high for one in found)))
+        spread = Scatter(low=low, high=high, sources=SOURCES if found else ())
+        return widened(outcome, spread, "growth of the joint forces")
+
     def judged(self, decided: Mapping[str, DecidedLink], whole: Sequence[CheckOutcome]) -> LoadCaseResult:
         """Return the result, with the outcomes of the linkage as a whole after those of links and joints."""
         case, load_case, moved = self.case, self.load_case, self.moved
@@ -185,7 +197,7 @@ class _LoadCase:
         every = (
             *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
             *_bearing(case, load_case, reactions, self.forces, self.uneven),
-            *buckling,
+            *(self._grown(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
             *whole,
         )

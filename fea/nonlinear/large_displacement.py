@@ -116,6 +116,8 @@ class LargeDisplacement:
         The range of C_N of wings that flap, where one is stated.
     airs : tuple of tuple of (float, LargeDisplacement)
         C_N -> what becomes of it: first at the stated one, then at others of the range.
+    grown : LargeDisplacement or None
+        Of a small one what holds on the deformed shape, where that was asked for and found.
     """
 
     state: State
@@ -140,6 +142,7 @@ class LargeDisplacement:
     passes: bool = False
     air: Source | None = None
     airs: tuple[tuple[float, "LargeDisplacement"], ...] = ()
+    grown: "LargeDisplacement | None" = None
 
     @property
     def share(self) -> float:
@@ -332,6 +335,32 @@ def examine(
     if scatter.high * linear <= LARGE * size and min(factor, near) >= told:
         return small
     return _deformed(case, title, frame, small, loads)
+
+
+def with_growth(case: Case, title: str, moved: LargeDisplacement, loads: Sequence[Load]) -> LargeDisplacement:
+    """Return what became of a load case, with what a small one becomes on its deformed shape.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        Of the load case.
+    moved : LargeDisplacement
+    loads : sequence of Load
+        That act on the links, global axes.
+
+    Returns
+    -------
+    LargeDisplacement
+        The same unless small; the answer on the deformed shape itself where that does not hold the load.
+    """
+    if moved.state != "small" or moved.frame is None:
+        return moved
+    try:
+        grown = _deformed(case, title, moved.frame, moved, loads)
+    except (CaseError, CannotRunError):
+        return moved
+    return grown if grown.gives_way else replace(moved, grown=grown)
 
 
 def stated_scatter(case: Case, load_case: str) -> Scatter:

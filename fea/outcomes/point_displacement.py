@@ -199,12 +199,15 @@ class PointDisplacement:
         near_by = 0.0
         if moved.factor is not None:
             near_by = (framed.high / linear if linear > 0.0 else 1.0) * slack[1] / moved.factor
-        grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
+        grown, least = growth(1.0 / near_by) if near_by > 0.0 else 1.0, 1.0
+        if moved.grown is not None and linear > 0.0:  # as it is on the deformed shape
+            after = float(np.linalg.norm(moved.grown.points[link, point])) / linear
+            grown, least = max(grown, after), min(after, 1.0)
         value = found.value if solids or shares.framed is not None else float(np.linalg.norm(moved.points[link, point]))
         grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
         return Band(
             value=value,
-            low=min(found.low * slack[0], value),
+            low=min(found.low * slack[0] * least, value),
             high=max(found.high * slack[1] * grown, value),
             sources=(*sources, grows),
         )

@@ -1,12 +1,11 @@
 """What would change a verdict, in sentences."""
 
-import math
 import shlex
 
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
 from fea.outcomes.result import CheckResult
-from fea.sizing.changes import MaterialChange, VerdictChange
+from fea.sizing.changes import MaterialChange, VerdictChange, rounded
 from reports.words.wording import joined, named, number, plain, sentence
 
 _NARROWED: dict[SourceKind, str] = {
@@ -55,7 +54,9 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     """
     check = change.check
     told = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
-    if check.verdict is Verdict.UNDECIDED and not told:
+    if change.refuted and not told:
+        told.append("Other loads and materials were tried, and none within reach does.")
+    elif check.verdict is Verdict.UNDECIDED and not told:
         told.append(sentence(check.reason))
     if change.widest:
         told.append(_of_sources(change.widest))
@@ -144,9 +145,5 @@ def _of_sources(sources: tuple[Source, ...]) -> str:
 
 
 def _rounded(value: float, *, up: bool, digits: int = 3) -> str:
-    """Return a number to some digits, upwards or downwards, so that it still does what it should."""
-    if value <= 0.0 or not math.isfinite(value):
-        return number(value)
-    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
-    steps = math.ceil(value / step - 1e-9) if up else math.floor(value / step + 1e-9)
-    return number(steps * step, digits)
+    """Return a number as it was tried."""
+    return number(rounded(value, up=up, digits=digits), digits)

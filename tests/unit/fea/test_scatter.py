@@ -90,11 +90,12 @@ def test_scatter_does_not_hide_that_a_band_covers_no_error_of_the_model():
 
 def test_strength_and_modulus_ranges_widen_factor_and_displacement(path):
     plain, ranged = (checked(path, *asked, *STIFF).links["rocker"] for asked in (FIXED, ()))
-    assert ranged.safety_factor.low == pytest.approx(plain.safety_factor.low * 23 / 33)
-    assert ranged.safety_factor.high == pytest.approx(plain.safety_factor.high * 65 / 33)
+    # What the softest modulus makes of the growth of bending is less than a thousandth here.
+    assert ranged.safety_factor.low == pytest.approx(plain.safety_factor.low * 23 / 33, rel=1e-3)
+    assert ranged.safety_factor.high == pytest.approx(plain.safety_factor.high * 65 / 33, rel=1e-3)
     ours = ranged.displacement_max
     assert ours.high / ours.value == pytest.approx(
-        plain.displacement_max.high / plain.displacement_max.value * PLA.youngs_modulus / 2000
+        plain.displacement_max.high / plain.displacement_max.value * PLA.youngs_modulus / 2000, rel=1e-3
     )
     assert Source(kind=SourceKind.STRENGTH, detail="23 to 65 MPa") in ranged.safety_factor.sources
     assert any(source.kind is SourceKind.MODULUS for source in ours.sources)
