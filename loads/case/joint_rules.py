@@ -39,6 +39,12 @@ def check_friction(case: CoreCase) -> None:
     rubbing = rubbing_joints(case)
     for name in rubbing:
         entry, joint = f"joints.{name}.friction: it is {case.joints[name].friction:g}", case.joints[name]
+        low, high = joint.friction_ends
+        if not low <= joint.friction <= high:
+            raise CaseError(
+                f"joints.{name}.friction_range: it goes from {low:g} to {high:g}, but friction is {joint.friction:g}; "
+                "state the least and the largest coefficient about it"
+            )
         if joint.type == "revolute" and joint.pin_diameter is None:
             raise CaseError(
                 f"{entry}, but the torque of friction needs the radius of the pin; add joints.{name}.pin_diameter"
