@@ -91,7 +91,7 @@ class Joint(CaseModel):
     """Coefficient of friction of the pin in its bore, of a pin in its slot or of a slider on its guide, from 0 to 2. It
     opposes the motion, so every load case is solved for both directions of it, or for the one that it states."""
     friction_range: tuple[Coefficient, Coefficient] | None = None
-    """Least and largest coefficient of friction that may be; the bands of all that friction enters hold it. Left out, 30 %
+    """Least and largest coefficient of friction that may be; bands of all that friction enters hold it. Left out, 30 %
     less and 30 % more."""
     guide_length: Annotated[Length, POSITIVE] | None = None
     """Length over which the guide holds a slider, half of it on either side of the second link's point. With it a

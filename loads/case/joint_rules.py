@@ -21,6 +21,20 @@ def rubbing_joints(case: CoreCase) -> tuple[str, ...]:
     return tuple(name for name, joint in case.joints.items() if joint.friction > 0.0)
 
 
+def friction_ranges(case: CoreCase) -> dict[str, tuple[float, float]]:
+    """Return the least and the largest coefficient of every joint with friction.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    dict of str to tuple of float
+    """
+    return {name: case.joints[name].friction_ends for name in rubbing_joints(case)}
+
+
 def check_friction(case: CoreCase) -> None:
     """Check that friction has what it follows from: a pin's diameter, a joint that moves, a direction.
 

@@ -120,7 +120,9 @@ def pose_friction(
     """
     place = at_one_pose(pose).virtual
     way = case.load_cases[load_case].direction
-    found = solve_friction(place, case.pinned_drive, [at_poses(load, (1,)) for load in loads], WAYS[way], presses=presses)
+    found = solve_friction(
+        place, case.pinned_drive, [at_poses(load, (1,)) for load in loads], WAYS[way], presses=presses
+    )
     if found.locked[0]:
         raise CaseError(
             f"load_cases.{load_case}: with friction the linkage locks itself in this pose, driven "

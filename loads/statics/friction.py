@@ -263,6 +263,7 @@ def _contacts(place: Placement, system: System, sense: float, presses: Presses) 
     for name, joint in linkage.joints.items():
         if joint.friction == 0.0:
             continue
+        coefficient = joint.friction * presses.get(name, 1.0)
         turn = place.spin(joint.links[1]) - place.spin(joint.links[0])
         radius = (joint.pin_diameter or 0.0) / 2.0
         along = along_joint(place, name)
@@ -274,7 +275,7 @@ def _contacts(place: Placement, system: System, sense: float, presses: Presses) 
             speed: Real,
             *,
             of: str = name,
-            by: float | Real = joint.friction * presses.get(name, 1.0),
+            by: float | Real = coefficient,
         ) -> _Contact:
             way = np.where(np.abs(speed) > least, np.sign(speed), 0.0)
             return _Contact(

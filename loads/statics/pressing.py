@@ -3,8 +3,8 @@
 The pressure's resultant per length varies linearly along the hole, q(z) = F/L + D (z - m)/I, with the length L of the
 walls, their middle m and their second moment I. F is the force, and D its first moment about m, which is M x e for a
 couple M about axes in the plane and the direction e of the pin. Friction about the pin is mu r times the integral of
-\\|q\\|. That is \\|F\\| where the couple is small and presses both rims on the same side, and more beyond: of a single wall
-with F along D, from \\|D\\| = \\|F\\| L/6 on, \\|F\\| (a/4 + 1/a) with a = 12 \\|D\\|/(\\|F\\| L).
+|q|. That is |F| where the couple is small and presses both rims on the same side, and more beyond: of a single wall
+with F along D, from |D| = |F| L/6 on, |F| (a/4 + 1/a) with a = 12 |D|/(|F| L).
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ def pressing(force: Complex, moment: Complex, ring: Ring) -> Real:
     Returns
     -------
     array (...)
-        Integral of the size of the pressure's resultant per length [N], at least \\|force\\|.
+        Integral of the size of the pressure's resultant per length [N], at least |force|.
     """
     first = -1j * moment - ring.middle * force
     slope, total = first / ring.second, np.zeros(np.shape(first))
@@ -46,9 +46,9 @@ def pressing(force: Complex, moment: Complex, ring: Ring) -> Real:
 
 
 def _size_along(middle: Complex, slope: Complex, half: float) -> Real:
-    """Return the integral of \\|middle + slope s\\| for s from -half to half.
+    """Return the integral of |middle + slope s| for s from -half to half.
 
-    The size is \\|slope\\| sqrt(u^2 + h^2), with u = s - s0 from where it is least and h its least over \\|slope\\|. Where s0
+    The size is |slope| sqrt(u^2 + h^2), with u = s - s0 from where it is least and h its least over |slope|. Where s0
     is far off, small differences of large numbers would be left, and Gauss's rule is exact.
     """
     steep = np.abs(slope)

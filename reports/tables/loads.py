@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.check.anchor import anchor_loads
-from fea.common.air_range import air_range
 from fea.outcomes.result import CheckResult, LoadCaseResult
+from fea.whole.air_range import air_range
 from fea.whole.motor import demand
 from geometry.base.units import as_text
 from geometry.linkage.placement import Placement
