@@ -40,7 +40,7 @@ def friction_record(work: DriveWork, loads: Sequence[Load]) -> dict[str, Any]:
         "direction": work.way,
         "drive_without": float(work.without[0]),
         "drive": float(work.effort[0]),
-        "drive_band": None if work.ends is None else [_finite(end) for end in work.ends[:, 0]],
+        "drive_band": None if work.ends is None else [_finite(end) for end in _ends(work)],
         "efficiency": _finite(work.efficiency[0]),
         "holds_itself": bool(work.holds_itself[0]),
         "joints": {
@@ -96,7 +96,7 @@ def motion_friction_record(moved: CaseMotion, load_case: str) -> dict[str, Any]:
     shares = work.efficiency[np.isfinite(work.efficiency)]
     return {
         "direction": rubbing.way,
-        "drive_band": None if work.ends is None else [_finite(work.ends[0].min()), _finite(work.ends[1].max())],
+        "drive_band": [_finite(end) for end in _ends(work)],
         "work": _finite(work.total),
         "work_without": _finite(work.total_without),
         "efficiency_of_motion": _finite(work.of_cycle),
@@ -126,10 +126,9 @@ def motion_friction_lines(moved: CaseMotion, load_case: str) -> list[str]:
     without = moved.frictionless[load_case]
     way = told_direction(data["direction"], motion.coordinate, motion.slides)
     what, unit, torque = *moved.effort, moved.torque[load_case]
-    ends = _range(np.array([math.nan if end is None else end for end in data["drive_band"]]))
     found = [
-        f"friction, driven {way}: drive {what} {_range(torque)} {unit} ({ends} with all friction that may be), "
-        f"without friction {_range(without)} {unit}"
+        f"friction, driven {way}: drive {what} {_range(torque)} {unit}, without friction {_range(without)} {unit}",
+        f"with all friction that may be: drive {what} {_told(work_between(moved, load_case))} {unit}",
     ]
     if data["efficiency_smallest"] is not None:
         text = f"efficiency {_percent(data['efficiency_smallest'])} to {_percent(data['efficiency_largest'])} by pose"
@@ -156,10 +155,21 @@ def _range(values: Real) -> str:
 
 def _between(work: DriveWork, size: float) -> str:
     """Return the ends of the effort at one pose, for people."""
-    if work.ends is None:
-        return ""
-    low, high = (number(float(end), beside=size) if np.isfinite(end) else "∞" for end in work.ends[:, 0])
-    return f" ({low} to {high})"
+    return "" if work.ends is None else f" ({_told(work, size)})"
+
+
+def _ends(work: DriveWork) -> tuple[float, float]:
+    """Return the least and the largest effort of all poses at which it is known as stated."""
+    assert work.ends is not None
+    known = work.ends[:, np.isfinite(work.effort)]
+    return (float(known[0].min()), float(known[1].max())) if known.size else (math.nan, math.nan)
+
+
+def _told(work: DriveWork, size: float | None = None) -> str:
+    ends = _ends(work)
+    size = max((abs(end) for end in ends if math.isfinite(end)), default=1.0) if size is None else size
+    low, high = (number(end, beside=size) if math.isfinite(end) else "−∞" if end < 0.0 else "∞" for end in ends)
+    return f"{low} to {high}"
 
 
 def _spans(spans: list[list[float]], unit: str) -> str:
