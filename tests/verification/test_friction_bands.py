@@ -56,7 +56,7 @@ def stated():
 
 
 def test_bands_hold_the_forces_near_a_locked_pose() -> None:
-    """From 0.20 to 0.25 the rod's force grows by four fifths; a slope at 0.20 would say three fifths."""
+    """From 0.20 to 0.25 the rod's force grows by four fifths; by the slope at 0.20 it is less than half."""
     result, found = stated()
     forces, slope = {}, 0.0
     for mu in (0.15, 0.2, 0.201, 0.23, 0.25):
