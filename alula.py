@@ -202,11 +202,11 @@ def motion(case: "Case | str | PathLike[str]", *, threads: int = 2) -> "MotionRe
         For a case without motion or drive, and where the motion meets a dead point.
     """
     from fea.common.threads import bounded
-    from loads.states.case_motion import solve_case_motion
+    from fea.whole.rubbed_motion import rubbed_motion
     from reports.notebook.motion_report import MotionReport
 
     with bounded(threads):
-        return MotionReport(solve_case_motion(_case(case)))
+        return MotionReport(rubbed_motion(_case(case)))
 
 
 def frequencies(

@@ -4,22 +4,23 @@ import math
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
 
 from pydantic_core import PydanticCustomError
 
 from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
-from fea.check.air_doubt import AirDoubt, air_warnings, widened
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
 from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from fea.check.link_result import link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from fea.check.load_growth import SOURCES, Growths, growths
+from fea.check.other_case import Doubt, Plates, widened
 from fea.check.play_doubt import play_doubt, play_warnings, shaken
 from fea.check.point_solids import decide_point
+from fea.check.range_doubt import AirDoubt, FrictionDoubt, air_warnings, friction_warnings
 from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
 from fea.common.clock import Clock
@@ -28,7 +29,7 @@ from fea.common.scatter import Scatter
 from fea.common.source import COUPLES
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, Verdict, overall
-from fea.frame.case_statics import CaseStatics, solve_case_statics
+from fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
 from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from fea.outcomes.bearing import bearing_outcome
@@ -112,10 +113,10 @@ class _LoadCase:
     grown: Growths
     uneven: Growths
     size: float
-    air: AirDoubt
+    doubts: Sequence[Doubt]
 
     @classmethod
-    def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement, air: AirDoubt) -> "_LoadCase":
+    def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement, doubts: Sequence[Doubt]) -> "_LoadCase":
         case, loads = statics.standing[load_case].case, statics.loads[load_case]
         reactions = statics.reactions[load_case]
         moved = with_growth(case, load_case, moved, loads)
@@ -126,6 +127,10 @@ class _LoadCase:
         hands = {link: found[0][1] for link, found in plates.items()}
         grown = growths(case, load_case, statics.pose, loads, moved, reactions, hands)
         added = moved.state in ("off", "unknown")  # where ``cut_link`` adds it
+        uneven = grown.times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=added))
+        uneven = uneven.times(play_doubt(case, load_case, statics.forces[load_case], loads))
+        for doubt in doubts:
+            uneven = uneven.times(doubt.growths)
         return cls(
             case=case,
             statics=statics,
@@ -133,11 +138,9 @@ class _LoadCase:
             moved=moved,
             plates=plates,
             grown=grown,
-            uneven=grown.times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=added))
-            .times(play_doubt(case, load_case, statics.forces[load_case], loads))
-            .times(air.growths),
+            uneven=uneven,
             size=load_size(loads, case.linkage.longest),
-            air=air,
+            doubts=doubts,
         )
 
     def acts_on(self, link: str) -> bool:
@@ -158,6 +161,13 @@ class _LoadCase:
     def free(self) -> Mapping[str, LinkLoads]:
         """Loads of every link cut free; empty where equilibrium alone does not give the joint forces."""
         return self.cut if self.forces.by_equilibrium else {}
+
+    def _columns(self, link: str) -> Plates:
+        """Return the plates of a link of which the slenderest is judged as a column."""
+        found: Plates = self.plates[link]
+        for doubt in self.doubts:
+            found = doubt.slenderest(self.case, link, found)
+        return found
 
     @property
     def forces(self) -> JointForces:
@@ -180,7 +190,7 @@ class _LoadCase:
         found = [self.grown.joints[name] for name in joints if name in self.grown.joints]
         low, high = min((1.0, *(one.low for one in found))), max((1.0, *(one.high for one in found)))
         spread = Scatter(low=low, high=high, sources=SOURCES if found else ())
-        return widened(outcome, spread, "growth of the joint forces")
+        return widened(outcome, spread)
 
     def judged(self, decided: Mapping[str, DecidedLink], whole: Sequence[CheckOutcome]) -> LoadCaseResult:
         """Return the result, with the outcomes of the linkage as a whole after those of links and joints."""
@@ -188,7 +198,7 @@ class _LoadCase:
         reactions = moved.reactions or self.statics.reactions[load_case]
         links, pins = self.links(decided), _pins(case, reactions, self.forces)
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
-        columns = {x: slenderest(case, x, self.air.slenderest(case, x, found)) for x, found in self.plates.items()}
+        columns = {x: slenderest(case, x, self._columns(x)) for x in self.plates}
         solids = {x: found for x, found in links.items() if self.acts_on(x)}
         buckling = (
             *buckling_outcomes(case, load_case, columns, moved),
@@ -201,7 +211,7 @@ class _LoadCase:
             *limit_load_outcomes(case, load_case, linkage),
             *whole,
         )
-        found = [self.air.on_buckling(one) for one in every]
+        found = [reduce(lambda one, doubt: doubt.on_buckling(one), self.doubts, outcome) for outcome in every]
         checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())
         if self.idle:
             joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
@@ -216,7 +226,7 @@ class _LoadCase:
             linkage=linkage,
             standing=self.statics.standing[load_case],
             checks=tuple(checks),
-            work=self.statics.work.get(load_case),
+            work=with_ends(self.statics, load_case),
             loads=tuple(self.statics.loads[load_case]),
         )
 
@@ -278,8 +288,10 @@ def check_case(
         for load_case, forces in statics.forces.items()
     }
     airs = {x: AirDoubt.of(statics, x, one) for x, one in moved.items()}
+    rubs = {x: FrictionDoubt.of(statics, x, one) for x, one in moved.items()}
     moved = {
-        x: airs[x].on_shape(shaken(statics.standing[x].case, x, statics.forces[x], one)) for x, one in moved.items()
+        x: rubs[x].on_shape(airs[x].on_shape(shaken(statics.standing[x].case, x, statics.forces[x], one)))
+        for x, one in moved.items()
     }
     clock("frames")
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
@@ -287,7 +299,7 @@ def check_case(
     if fidelity not in BY_HAND:
         statics, first = with_solids(statics, moved, start, always=fidelity == "solid", threads=threads)
         clock("frames of solids")
-    by_load_case = {x: _LoadCase.of(statics, x, what, airs[x]) for x, what in moved.items()}
+    by_load_case = {x: _LoadCase.of(statics, x, what, (airs[x], rubs[x])) for x, what in moved.items()}
     clock("hand calculations")
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:
@@ -314,6 +326,7 @@ def check_case(
             *_warnings(case, statics, moved),
             *play_warnings(moved, statics.forces),
             *air_warnings(moved),
+            *friction_warnings(moved),
         ),
     )
 

@@ -29,18 +29,19 @@ from fea.motion.layered import with_couples
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
-from fea.motion.loosened import in_other_air, loosened
+from fea.motion.loosened import loosened, otherwise
 from fea.outcomes.limits import layers_of
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
 from fea.refine.refinement import START, Effort, refine_links
 from fea.solid.solution import require_compressible
 from fea.whole.outcomes import unloaded_outcomes, whole_numbers
+from fea.whole.rubbed_motion import rubbed_motion
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case
 from loads.case.forks import of_pair
-from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.case_motion import CaseMotion
 
 Real = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -66,7 +67,7 @@ class _Envelope:
     def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
         layered = with_couples(moved, evaluated)
         shares = dict(layered.shares)
-        for doubt in (loosened(layered.moved, evaluated), in_other_air(layered.moved, evaluated)):
+        for doubt in (loosened(layered.moved, evaluated), otherwise(layered.moved, evaluated)):
             for key, scatter in doubt.items():
                 shares[key] = shares.get(key, Scatter()).times(scatter)
         moved, case, loaded = layered.moved, moved.case, {}
@@ -221,7 +222,7 @@ def envelope_case(
     """
     clock = Clock()
     _require(case, repetitions)
-    moved = solve_case_motion(case)
+    moved = rubbed_motion(case)
     case = moved.case
     if moved.locks:
         raise CaseError(f"{moved.locks[0]}; shorten the motion, state less friction, or another direction or drive")

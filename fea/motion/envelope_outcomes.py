@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.buckling.buckling import column_outcome, worst_column
-from fea.check.air_doubt import widened
+from fea.check.other_case import widened
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict

@@ -118,6 +118,12 @@ class LargeDisplacement:
         C_N -> what becomes of it: first at the stated one, then at others of the range.
     grown : LargeDisplacement or None
         Of a small one what holds on the deformed shape, where that was asked for and found.
+    friction : Source or None
+        What friction may be, where joints rub.
+    rubbed : tuple of LargeDisplacement
+        What becomes of it with the least and with the largest friction, but for those with which it locks itself.
+    locks : bool
+        True where it locks itself with some of that friction, so that no load is sure to be held.
     """
 
     state: State
@@ -143,6 +149,9 @@ class LargeDisplacement:
     air: Source | None = None
     airs: tuple[tuple[float, "LargeDisplacement"], ...] = ()
     grown: "LargeDisplacement | None" = None
+    friction: Source | None = None
+    rubbed: tuple["LargeDisplacement", ...] = ()
+    locks: bool = False
 
     @property
     def share(self) -> float:
@@ -171,15 +180,16 @@ class LargeDisplacement:
 
     @property
     def limit_load(self) -> Band:
-        """Factor on all loads at which the linkage gives way, wherever its pins stand in their play, in any air."""
-        found, doubts = self._limit_load, tuple(source for source in (self.play, self.air) if source is not None)
+        """Factor on all loads at which the linkage gives way, with all that play, air and friction may make of it."""
+        causes = self.play, self.air, self.friction
+        found, doubts = self._limit_load, tuple(source for source in causes if source is not None)
         if not doubts or found.unknowable:
             return found
-        others = [one.limit_load for one in (*self.shaken, *(other for _, other in self.airs[1:]))]
+        others = [one.limit_load for one in (*self.shaken, *(other for _, other in self.airs[1:]), *self.rubbed)]
         every = [found, *(one for one in others if not one.unknowable)]
         return replace(
             found,
-            low=0.0 if self.passes else min(one.low for one in every),
+            low=0.0 if self.passes or self.locks else min(one.low for one in every),
             high=max(one.high for one in every),
             sources=distinct(found.sources, doubts),
         )
@@ -206,6 +216,28 @@ class LargeDisplacement:
             return Scatter(high=math.inf, sources=(self.air,)) if max(found, key=lambda one: one[1])[1] else Scatter()
         least, most = max(least_of_convex(found), 0.0), max(size for _, size in found)
         return Scatter(low=least / value, high=most / value, sources=(self.air,))
+
+    def with_any_friction(self, link: str, point: str) -> Scatter:
+        """Return what the friction that may be makes of the displacement of a point.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        Scatter
+        """
+        if self.friction is None:
+            return Scatter()
+        known = all((link, point) in one.points for one in (self, *self.rubbed))
+        sizes = [float(np.linalg.norm(one.points[link, point])) for one in (self, *self.rubbed)] if known else []
+        if not sizes or (not sizes[0] > 0.0 and max(sizes) > 0.0):
+            return Scatter(low=0.0, high=math.inf, sources=(self.friction,))
+        least, most = (end / (sizes[0] or 1.0) for end in (min(sizes), max(sizes)))
+        known_end = Scatter(low=least, high=most, sources=(self.friction,)) if most > 0.0 else Scatter()
+        return replace(known_end, high=math.inf, sources=(self.friction,)) if self.locks else known_end
 
     @cached_property
     def _limit_load(self) -> Band:

@@ -182,6 +182,7 @@ class PointDisplacement:
         assert moved.solution is not None
         solids = shares.bands(meshes=meshes, sunk=sunk)
         load, frame = load_scatter(case, self.load_case).times(moved.in_any_air(link, point)), moved.frame
+        load = load.times(moved.with_any_friction(link, point))
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
         if shares.framed is None:

@@ -62,6 +62,11 @@ class Link(CaseModel):
         return (*itertools.pairwise(chain), *((foot, point) for point, foot in self.arms.items()))
 
 
+Coefficient = Annotated[float, Field(ge=0.0, le=2.0)]
+UNSTATED = 0.3
+"""Share by which a coefficient of friction without a stated range may be off to either side."""
+
+
 class Joint(CaseModel):
     """A joint between two links."""
 
@@ -82,9 +87,12 @@ class Joint(CaseModel):
     tight_in: Name | None = None
     """The one of the two links in which the pin is tight, where links lie in layers; in the other it may tilt. Left
     out, it may be tight in either, and the band holds both."""
-    friction: Annotated[float, Field(ge=0.0, le=2.0)] = 0.0
+    friction: Coefficient = 0.0
     """Coefficient of friction of the pin in its bore, of a pin in its slot or of a slider on its guide, from 0 to 2. It
     opposes the motion, so every load case is solved for both directions of it, or for the one that it states."""
+    friction_range: tuple[Coefficient, Coefficient] | None = None
+    """Least and largest coefficient of friction that may be; bands of all that friction enters hold it. Left out, 30 %
+    less and 30 % more."""
     guide_length: Annotated[Length, POSITIVE] | None = None
     """Length over which the guide holds a slider, half of it on either side of the second link's point. With it a
     moment on the slider presses its ends on the guide, and these rub; without it the normal force alone does."""
@@ -99,6 +107,11 @@ class Joint(CaseModel):
     bonded: bool = False
     """Of a revolute joint: true where its two links do not turn against each other, such as glued, pressed or screwed
     ones. It then bears a moment about its pin."""
+
+    @property
+    def friction_ends(self) -> tuple[float, float]:
+        """Least and largest coefficient of friction."""
+        return self.friction_range or ((1.0 - UNSTATED) * self.friction, (1.0 + UNSTATED) * self.friction)
 
     @property
     def fixes_angle(self) -> bool:

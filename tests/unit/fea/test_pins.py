@@ -10,11 +10,12 @@ from materials import SOURCED
 
 from fea.check.run import check_case
 from fea.common.verdict import Verdict
-from fea.outcomes.pins import eyes, pin_stress, stress_at
+from fea.outcomes.pins import pin_stress, stress_at
 from geometry.base.errors import CaseError
 from geometry.bodies.features import Ring
 from geometry.materials.material import library
 from loads.case.case_file import read_case
+from loads.case.forks import eyes
 from loads.statics.joint_reaction import JointReaction
 
 WING = "owl-wing-static"
