@@ -21,7 +21,7 @@ from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LARGE, LargeDisplacement
 from fea.nonlinear.softened import displaced
 from fea.nonlinear.stability import SNAP, growth
-from fea.outcomes.point_shares import Shares, has_centre_line, shares_of
+from fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
 from fea.outcomes.result import LinkResult, SolidResult
 from loads.case.case import Case
 from loads.records.check_spec import DisplacementCheck
@@ -113,6 +113,13 @@ class PointDisplacement:
         """What the play of pins does; None where no joint has play."""
         return None if self.forces is None else self.forces.play
 
+    @property
+    def by_centre_lines(self) -> bool:
+        """True where a frame of centre lines tells it that could have links' solids in their place."""
+        forces = self.forces
+        known = forces is None or forces.by_equilibrium or self.shares.framed is not None or self.moved.followed
+        return not known and any(condensable(self.case, link) for link in self.case.bending_links)
+
     @cached_property
     def value(self) -> Band:
         """The displacement [mm]."""
@@ -187,7 +194,7 @@ class PointDisplacement:
         if shares.framed is None:
             found = self._shared(point_bounds(case, frame, moved.solution, link, point, solids, shares.carried))
         else:
-            found = shares.framed.displaced(link, point, sunk=sunk)
+            found = shares.framed.displaced(link, point, meshes=meshes, sunk=sunk)
         slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
         moduli = (compliance_scatter(material).sources for material in materials)
         sources = distinct(shares.sources, *moduli, load.sources)
@@ -377,8 +384,11 @@ def meshes_to_refine(
 
 def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[str]:
     """Say what would decide, where something would."""
-    if told.shares.unsolved:
+    if told.shares.unsolved or told.by_centre_lines:
         return ["solid models of all links, --fidelity solid, have a narrower band"]
+    if told.shares.framed is not None:
+        exact = Quantity.DISPLACEMENT.sense.verdict(told.band(meshes=0.0), limit)
+        return [f"{'no finer mesh' if exact is Verdict.UNDECIDED else 'a smaller solid.mesh_size'} decides"]
     wanted = told.meshes_to_refine(limit, links)
     if not told.shares.beams and not wanted:
         return ["no finer mesh decides"]

@@ -14,6 +14,7 @@ from fea.common.source import CONTACT, Source, SourceKind, pin_sources
 from fea.frame.joint_forces import JointForces, joint_forces
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.result import LinkResult, SolidResult
+from fea.solid.solution import LARGEST_POISSON_RATIO
 from fea.solid.virtual_work import Work, virtual_work
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
@@ -184,6 +185,24 @@ def has_centre_line(case: Case, link: str) -> bool:
     bool
     """
     return link != case.linkage.ground and case.part_of(link).has_centre_line(case.body(link))
+
+
+def condensable(case: Case, link: str) -> bool:
+    """Return whether a link can be an element of a frame as its solid, condensed to bores and patches.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    bool
+        It carries no slot, and has two or more points.
+    """
+    carries = any(joint.type != "revolute" and joint.links[0] == link for joint in case.joints.values())
+    meshable = case.material_of(link).poissons_ratio <= LARGEST_POISSON_RATIO
+    return not carries and meshable and len(case.links[link].points) > 1
 
 
 def _beam_work(case: Case, link: str, real: LinkLoads, virtual: LinkLoads) -> float:
