@@ -122,7 +122,8 @@ class JointForces:
         size = float(np.linalg.norm(moved))
         along = moved / (size or 1.0)
         every = self.deviations if sunk else self.open_by
-        shares = [meshes if one.source is not None and one.source.kind is SourceKind.DISCRETISATION else 1.0 for one in every]
+        kinds = [one.source and one.source.kind for one in every]
+        shares = [meshes if kind is SourceKind.DISCRETISATION else 1.0 for kind in kinds]
         steps = np.array(shares) * [float(along @ one.points[link, point]) - size for one in every]
         low, high = np.minimum(steps, 0.0).sum(), np.maximum(steps, 0.0).sum()
         return Band(value=size, low=max(size + float(low), 0.0), high=size + float(high))
