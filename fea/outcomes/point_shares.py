@@ -158,7 +158,7 @@ def shares_of(
                 unsolved.append(name)
             continue
         if moved.state != "small":
-            carried[name] = tuple(_beam_work(case, name, real, loads) for loads in virtual)
+            carried[name] = tuple(beam_work(case, name, real, loads) for loads in virtual)
         error = result.discretisation.displacement.index
         solids[name] = virtual_work(result.solution, real, virtual, transfer=case.torque_transfer, error=error)
         driven = driven or any(loads.couples for loads in (real, *virtual))
@@ -205,9 +205,22 @@ def condensable(case: Case, link: str) -> bool:
     return not carries and meshable and len(case.links[link].points) > 1
 
 
-def _beam_work(case: Case, link: str, real: LinkLoads, virtual: LinkLoads) -> float:
-    """Work of virtual loads on a link's plain beam [N mm]."""
+def beam_work(case: Case, link: str, real: LinkLoads, virtual: LinkLoads) -> float:
+    """Return the work of virtual loads on the plain beam that a link is in a frame.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    real, virtual : LinkLoads
+        Each a set that balances.
+
+    Returns
+    -------
+    float
+        [N mm]
+    """
     body, material = case.body(link), case.material_of(link)
     first, second = (internal_forces(beam_loads(loads, body, material.density)) for loads in (real, virtual))
-    section, young, poisson = case.part_of(link).section, material.youngs_modulus, material.poissons_ratio
+    section, young, poisson = body.part.frame_section(body), material.youngs_modulus, material.poissons_ratio
     return plain_work(first, second, section, young=young, poisson=poisson)
