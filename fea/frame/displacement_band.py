@@ -239,8 +239,8 @@ def point_bounds(
     point : str
         Its name.
     solids : dict of str to sequence of Band, optional
-        Link whose solid tells what it adds, and its share of the displacement along x and y [mm], which takes the
-        place of its beams and bores.
+        Link whose solid tells what it adds, and its share of the displacement along x, y and, where anything moves out
+        of the plane, z [mm], which takes the place of its beams and bores.
     carried : dict of str to sequence of float, optional
         Of links whose solids bear other loads than the frame has: what plain beams would add under these [mm]. Of such
         a solid what it adds beyond its beam counts, beside the frame's plain beam.
@@ -255,7 +255,7 @@ def point_bounds(
     beams, bores = _links(case, frame, solids)
     without = {i for i, beam in frame.beams.items() if beam.link in solids and beam.link not in carried}
     moved, least, largest = np.zeros(3), np.zeros(3), np.zeros(3)
-    planar = bool(solids) or not np.any(solution.displacements[:, 2:5])
+    planar = not np.any(solution.displacements[:, 2:5])
     for axis in range(2 if planar else 3):
         load = NodeLoad(node=node, wrench=np.eye(6)[axis])
         unit = solve_frame(replace(frame.model, elements=bare, loads=(load,)))

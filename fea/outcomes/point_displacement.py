@@ -6,15 +6,15 @@ the outcome states it.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
-from fea.common.scatter import compliance_scatter, load_scatter
-from fea.common.source import Source, SourceKind, distinct, play_source
+from fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.joint_forces import JointForces
@@ -109,6 +109,11 @@ class PointDisplacement:
         )
 
     @property
+    def in_any_air(self) -> Scatter:
+        """What the range of C_N makes of it."""
+        return self.moved.in_any_air(self.link, self.point)
+
+    @property
     def play(self) -> Play | None:
         """What the play of pins does; None where no joint has play."""
         return None if self.forces is None else self.forces.play
@@ -124,6 +129,31 @@ class PointDisplacement:
     def value(self) -> Band:
         """The displacement [mm]."""
         return Band.unknown() if self.why else self.band()
+
+    @cached_property
+    def no_end(self) -> str:
+        """Why the band has no upper end; "" where it has one."""
+        if self.why or math.isfinite(self.value.high):
+            return ""
+        on_tight_pins = replace(self, forces=None)
+        if math.isfinite(self.elastic().high):
+            why = "play of pins may take the linkage through a dead point"
+        elif self.in_any_air.high == math.inf:
+            why = "the linkage gives way within the stated range of C_N"
+        elif math.isfinite(on_tight_pins.elastic().high):
+            plain, _, most = self._tilted
+            every = self.case.linkage.joints.items()
+            turning = [name for name, joint in every if joint.type == "revolute" and not joint.bonded]
+            loose = [x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in]
+            why = (
+                f"pins that tilt in their holes let the frame move it by {most:.3g} mm in place of {plain:.3g} mm, so "
+                f"softly held that nothing bounds how this grows; tight_in of joints {', '.join(loose)} narrows it"
+            )
+        elif self.moved.followed:
+            why = "the linkage gives way with links as soft, or a load as large, as they may be"
+        else:
+            why = f"by linear theory a factor of {SNAP:.2g} or less on the load may make it give way"
+        return f"the band has no upper end, since {why}"
 
     @cached_property
     def sinking(self) -> float:
@@ -188,7 +218,7 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         solids = shares.bands(meshes=meshes, sunk=sunk)
-        load, frame = load_scatter(case, self.load_case).times(moved.in_any_air(link, point)), moved.frame
+        load, frame = load_scatter(case, self.load_case).times(self.in_any_air), moved.frame
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
         if shares.framed is None:
@@ -197,15 +227,11 @@ class PointDisplacement:
             found = shares.framed.displaced(link, point, meshes=meshes, sunk=sunk)
         slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
         moduli = (compliance_scatter(material).sources for material in materials)
-        sources = distinct(shares.sources, *moduli, load.sources)
+        sources = distinct(shares.sources, found.sources, *moduli, load.sources)
         if moved.followed:
             return self._followed(found, solids, slack, sources)
-        linear = float(np.linalg.norm(moved.solution.displacements[frame.points[link, point], :3]))
         # The ground's part is in no frame: it adds to the displacement, but does not make the frame softer.
-        framed = self._framed(found, solids)
-        near_by = 0.0
-        if moved.factor is not None:
-            near_by = (framed.high / linear if linear > 0.0 else 1.0) * slack[1] / moved.factor
+        near_by = self._near_by(self._framed(found, solids), slack[1])
         grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
         value = found.value if solids or shares.framed is not None else float(np.linalg.norm(moved.points[link, point]))
         grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
@@ -216,17 +242,42 @@ class PointDisplacement:
             sources=(*sources, grows),
         )
 
-    def _shared(self, found: Band) -> Band:
-        """Band with all ways in which pins may share couples between layers."""
+    def _near_by(self, framed: Band, slack: float) -> float:
+        """Return one over the factor on its loads at which the linkage may give way, with links as soft as may be."""
+        moved = self.moved
+        assert moved.frame is not None
+        assert moved.solution is not None
+        if moved.factor is None:
+            return 0.0
+        node = moved.frame.points[self.link, self.point]
+        linear = float(np.linalg.norm(moved.solution.displacements[node, :3]))
+        return (framed.high / linear if linear > 0.0 else 1.0) * slack / moved.factor
+
+    @cached_property
+    def _tilted(self) -> tuple[float, float, float]:
+        """Displacement by plain beams with pins tight in both links, and the least and largest as pins tilt in them."""
         moved, at = self.moved, (self.link, self.point)
         assert moved.frame is not None
         assert moved.solution is not None
-        if self.forces is None or not self.forces.sharings:
-            return found
         plain = float(np.linalg.norm(moved.frame.at_points(moved.solution.displacements)[at]))
-        sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in self.forces.sharings)]
-        least, most = (end / plain if plain > 0.0 else 1.0 for end in (min(sizes), max(sizes)))
-        return Band(value=found.value, low=least * found.low, high=most * found.high, sources=found.sources)
+        sharings = () if self.forces is None or self.shares.framed is not None else self.forces.sharings
+        sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in sharings)]
+        return plain, min(sizes), max(sizes)
+
+    def _shared(self, found: Band) -> Band:
+        """Band with all ways in which pins may share couples between layers.
+
+        What tilting adds goes with the softness of the links, or is that of plain beams beside it if that is more.
+        """
+        plain, least, most = self._tilted
+        less, more = (end / plain if plain > 0.0 else 1.0 for end in (least, most))
+        sources = COUPLES if most - least > WORTH_TELLING * plain else ()
+        return replace(
+            found,
+            low=less * found.low,
+            high=max(more * found.high, found.high + most - plain),
+            sources=(*found.sources, *sources),
+        )
 
     def _framed(self, found: Band, solids: Mapping[str, tuple[Band, ...]]) -> Band:
         """Band of the displacement without what the ground's part adds."""
@@ -236,7 +287,8 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         bending = {other: bands for other, bands in solids.items() if other != ground}
-        return point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
+        framed = point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
+        return self._shared(framed)
 
     def _followed(
         self,
@@ -336,7 +388,8 @@ def point_outcome(
     if told.why:
         return found
     shape = "on its deformed shape" if moved.followed else "by linear theory"
-    notes = list(() if moved.frame is None else moved.frame.notes)
+    notes = [told.no_end] if told.no_end else []
+    notes += () if moved.frame is None else moved.frame.notes
     if told.sinking > WORTH_TELLING * told.value.value:
         beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
         notes.append(

@@ -11,7 +11,7 @@ from fea.beam.theory import internal_forces
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, Source, SourceKind, pin_sources
-from fea.frame.joint_forces import JointForces, joint_forces
+from fea.frame.joint_forces import JointForces, solved_frame
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.result import LinkResult, SolidResult
 from fea.solid.solution import LARGEST_POISSON_RATIO
@@ -33,7 +33,7 @@ class Shares:
     Attributes
     ----------
     solids : dict of str to tuple of Work
-        Link, and what its solid adds along x and y [mm].
+        Link, and what its solid adds along x and y, and between layers along z [mm].
     carried : dict of str to tuple of float
         The same of its plain beam, where the solid bears the loads of the deformed shape [mm].
     beams : tuple of str
@@ -80,7 +80,7 @@ class Shares:
         return {link: max(work.missing for work in works) for link, works in self.solids.items()}
 
     def bands(self, *, meshes: float = 1.0, sunk: bool = False) -> dict[str, tuple[Band, ...]]:
-        """Return what every solid adds along x and y.
+        """Return what every solid adds along each axis.
 
         Parameters
         ----------
@@ -133,7 +133,8 @@ def shares_of(
         return Shares(beams=case.checked_links)
     pose, held = moved.frame.pose, moved.frame.held
     longest = pose.linkage.longest
-    units = [PointLoad(link=link, point=point, wrench=unit) for unit in np.eye(6)[:2]]
+    axes = 3 if forces is not None and forces.frame is not None else 2  # links in layers move out of the plane as well
+    units = [PointLoad(link=link, point=point, wrench=unit) for unit in np.eye(6)[:axes]]
     reactions = [_virtual(case, pose, held, unit, forces) for unit in units]
     solids: dict[str, tuple[Work, ...]] = {}
     carried: dict[str, tuple[float, ...]] = {}
@@ -167,8 +168,9 @@ def shares_of(
 
 def _virtual(case: Case, pose: Pose, held: Drive | None, unit: PointLoad, forces: JointForces | None) -> Reactions:
     """Joint forces under a unit load: by equilibrium, which between layers is that of a frame."""
-    if forces is not None and forces.sharings:
-        return joint_forces(case, pose, (unit,)).reactions
+    if forces is not None and forces.frame is not None:
+        frame, solution = solved_frame(case, pose, (unit,), held)
+        return frame.reactions(solution.joint_wrenches, solution.residual)
     return solve_statics(pose, held, (unit,))
 
 

@@ -15,6 +15,7 @@ from fea.study.numbers import of_check, of_motion
 from geometry.materials.material import library
 from geometry.meshing.mesh import MeshSettings, mesh_bodies
 from loads.case.case_file import validate
+from loads.records.check_spec import DisplacementCheck
 from loads.states.case_motion import solve_case_motion
 
 BAR = {
@@ -166,6 +167,23 @@ def test_what_solids_of_links_give_takes_the_place_of_the_doubt_about_their_eyes
 def linear(share):
     """The truss by linear theory alone."""
     return truss(share).model_copy(update={"large_displacement": "off"})
+
+
+@pytest.mark.parametrize(
+    ("case", "why"),
+    [
+        (partial(truss, 0.9), "the linkage gives way with links as soft, or a load as large, as they may be"),
+        (partial(linear, 0.44), "by linear theory a factor of 5.2 or less on the load may make it give way"),
+    ],
+)
+def test_a_displacement_whose_band_has_no_end_says_why(case, why):
+    """Plain beams would hold the load; links that are softer by their eyes may not, or not by enough."""
+    check = DisplacementCheck(type="displacement", link="left", at="B", maximum="9 mm")
+    found = case().model_copy(update={"checks": {"far": check}})
+    [one] = [c for c in check_case(found, fidelity="beam").load_cases["push"].checks if c.name == "far"]
+    assert one.value.high == math.inf
+    assert one.value.value < one.limit
+    assert f"the band has no upper end, since {why}" in one.reason
 
 
 @pytest.mark.parametrize(
