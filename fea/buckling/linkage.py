@@ -152,5 +152,8 @@ def _followed(load_case: str, moved: LargeDisplacement, beyond: str) -> CheckOut
     found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, share, 1.0, share.without)
     open_end = f"; {found.reason}" if found.verdict is Verdict.UNDECIDED else ""
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
+    if moved.softness is not None:
+        soft = moved.softness.value
+        open_end += f"; by their solids the links are {soft:.3g} times as soft as the plain beams of that shape"
     informs = f"; the buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
     return found.because(moved.sentence + open_end + informs + beyond)

@@ -13,6 +13,7 @@ from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.fidelity import DecidedLink, by_hand, decide
 from fea.check.force_doubt import force_doubt
+from fea.check.known_stiffness import with_known_stiffness
 from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from fea.check.link_result import link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
@@ -194,9 +195,10 @@ class _LoadCase:
 
     def judged(self, decided: Mapping[str, DecidedLink], whole: Sequence[CheckOutcome]) -> LoadCaseResult:
         """Return the result, with the outcomes of the linkage as a whole after those of links and joints."""
-        case, load_case, moved = self.case, self.load_case, self.moved
+        case, load_case, links = self.case, self.load_case, self.links(decided)
+        moved = with_known_stiffness(case, self.moved, self.forces, links, self.cut)
         reactions = moved.reactions or self.statics.reactions[load_case]
-        links, pins = self.links(decided), _pins(case, reactions, self.forces)
+        pins = _pins(case, reactions, self.forces)
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
         columns = {x: slenderest(case, x, self._columns(x)) for x in self.plates}
         solids = {x: found for x, found in links.items() if self.acts_on(x)}

@@ -14,8 +14,9 @@ that even a shallow toggle would hold ``MOST`` times the load, nothing is follow
 breaks is no part of the factor. Its band covers the steps of the path; stated scatter of load and modulus; what plain
 beams do not know of eyes, bores and holes (all links are then softer by what these add to the work of the loads: for
 the owl wing with springs of its own beside every pin this meets the limit load within 4 %); and faults of shape, by a
-third of the linear buckling factor: a frame without them stands straight up to its buckling load. The share of the
-load that is held is the same number, up to 1.
+third of the linear buckling factor: a frame without them stands straight up to its buckling load. Solids of links that
+are known take the place of what plain beams do not know (``fea.check.known_stiffness``). The share of the load that is
+held is the same number, up to 1.
 """
 
 import math
@@ -86,6 +87,10 @@ class LargeDisplacement:
         Of load over modulus, as stated.
     eyes : Scatter
         Of how soft the links are under the loads, beside the frame's plain beams.
+    softness : Band or None
+        The same of the links under the loads with what solids of them are known; None where none is.
+    alone : float
+        Least factor at which a link that is no beam buckles by itself as a solid; infinite where none is known.
     blind : str
         A link for which the frame's beam does not tell how far it gives; "" where there is none.
     buckling : float or None
@@ -134,6 +139,8 @@ class LargeDisplacement:
     lost: float = math.inf
     scatter: Scatter = field(default_factory=Scatter)
     eyes: Scatter = field(default_factory=Scatter)
+    softness: Band | None = None
+    alone: float = math.inf
     blind: str = ""
     buckling: float | None = None
     dead_point: float = math.inf
@@ -249,18 +256,25 @@ class LargeDisplacement:
             return Band.unknown(self.sentence)
         if self.blind:
             return Band.unknown(f"the frame takes link {self.blind} for a beam along its axis, which does not tell")
-        slack = self.slack
+        known, soft = self.softness, 1.0 if self.softness is None else self.softness.value
+        eyes = self.eyes if known is None else Scatter(low=known.low, high=known.high, sources=known.sources)
+        slack = self.scatter.times(eyes)
         sources, faults = slack.sources, self.buckling / LEAST_LINEAR / slack.high
         if self.state == "off" or self.factor / SNAP / slack.high >= MOST:
-            value, low, high = self.factor, self.factor / SNAP / slack.high, self.buckling / slack.low
+            value, low, high = self.factor / soft, self.factor / SNAP / slack.high, self.buckling / slack.low
             sources = (*sources, Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high"))
         else:
             value, lost = (self.held, self.lost) if self.gives_way else _end(self.frame, self.held)
             low, high = value / slack.high, lost / slack.low
+            value = value / soft if math.isfinite(lost) else MOST
             sources = (Source(kind=SourceKind.PATH, detail="steps of the load"), *sources)
             if faults < low:
                 detail = f"buckling at less than {LEAST_LINEAR:g} times the load"
                 low, sources = faults, (*sources, Source(kind=SourceKind.IMPERFECTION, detail=detail))
+        by_itself = self.alone / LEAST_LINEAR / self.scatter.high
+        if self.alone < value or by_itself < low:
+            value, low = min(value, self.alone), min(low, by_itself)
+            sources = (*sources, Source(kind=SourceKind.IMPERFECTION, detail="buckling of a link by itself"))
         if value >= MOST:
             return Band(value=MOST, low=min(low, MOST), high=math.inf, sources=distinct(sources))
         return Band(value=value, low=min(low, value), high=max(high, value), sources=distinct(sources))

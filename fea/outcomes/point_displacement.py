@@ -6,22 +6,22 @@ the outcome states it.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
-from fea.common.scatter import compliance_scatter, load_scatter
-from fea.common.source import Source, SourceKind, distinct, play_source
+from fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LARGE, LargeDisplacement
 from fea.nonlinear.softened import displaced
 from fea.nonlinear.stability import SNAP, growth
-from fea.outcomes.point_shares import Shares, has_centre_line, shares_of
+from fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
 from fea.outcomes.result import LinkResult, SolidResult
 from loads.case.case import Case
 from loads.records.check_spec import DisplacementCheck
@@ -109,14 +109,53 @@ class PointDisplacement:
         )
 
     @property
+    def in_any_air(self) -> Scatter:
+        """What the range of C_N makes of it."""
+        return self.moved.in_any_air(self.link, self.point)
+
+    @property
     def play(self) -> Play | None:
         """What the play of pins does; None where no joint has play."""
         return None if self.forces is None else self.forces.play
+
+    @property
+    def by_centre_lines(self) -> bool:
+        """True where a frame of centre lines tells it that could have links' solids in their place."""
+        forces = self.forces
+        known = forces is None or forces.by_equilibrium or self.shares.framed is not None or self.moved.followed
+        return not known and any(condensable(self.case, link) for link in self.case.bending_links)
 
     @cached_property
     def value(self) -> Band:
         """The displacement [mm]."""
         return Band.unknown() if self.why else self.band()
+
+    @cached_property
+    def no_end(self) -> str:
+        """Why the band has no upper end; "" where it has one."""
+        if self.why or math.isfinite(self.value.high):
+            return ""
+        on_tight_pins = replace(self, forces=None)
+        if math.isfinite(self.elastic().high):
+            why = "play of pins may take the linkage through a dead point"
+        elif self.in_any_air.high == math.inf:
+            why = "the linkage gives way within the stated range of C_N"
+        elif self.moved.with_any_friction(self.link, self.point).high == math.inf:
+            why = "the linkage locks itself or gives way with friction as large as it may be"
+        elif math.isfinite(on_tight_pins.elastic().high):
+            plain, _, most = self._tilted
+            every = self.case.linkage.joints.items()
+            turning = [name for name, joint in every if joint.type == "revolute" and not joint.bonded]
+            loose = [x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in]
+            why = (
+                f"pins that tilt in their holes let the frame move it by {most:.3g} mm in place of {plain:.3g} mm, so "
+                f"softly held that nothing bounds how this grows; tight_in of joints {', '.join(loose)} narrows it"
+            )
+        elif self.moved.followed:
+            why = "the linkage gives way with links as soft, or a load as large, as they may be"
+        else:
+            why = f"by linear theory a factor of {SNAP:.2g} or less on the load may make it give way"
+        return f"the band has no upper end, since {why}"
 
     @cached_property
     def sinking(self) -> float:
@@ -181,28 +220,23 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         solids = shares.bands(meshes=meshes, sunk=sunk)
-        load, frame = load_scatter(case, self.load_case).times(moved.in_any_air(link, point)), moved.frame
-        load = load.times(moved.with_any_friction(link, point))
+        load = load_scatter(case, self.load_case).times(self.in_any_air).times(moved.with_any_friction(link, point))
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
         if shares.framed is None:
-            found = self._shared(point_bounds(case, frame, moved.solution, link, point, solids, shares.carried))
+            found = self._shared(point_bounds(case, moved.frame, moved.solution, link, point, solids, shares.carried))
         else:
-            found = shares.framed.displaced(link, point, sunk=sunk)
+            found = shares.framed.displaced(link, point, meshes=meshes, sunk=sunk)
         slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
         moduli = (compliance_scatter(material).sources for material in materials)
-        sources = distinct(shares.sources, *moduli, load.sources)
+        sources = distinct(shares.sources, found.sources, *moduli, load.sources)
         if moved.followed:
             return self._followed(found, solids, slack, sources)
-        linear = float(np.linalg.norm(moved.solution.displacements[frame.points[link, point], :3]))
         # The ground's part is in no frame: it adds to the displacement, but does not make the frame softer.
-        framed = self._framed(found, solids)
-        near_by = 0.0
-        if moved.factor is not None:
-            near_by = (framed.high / linear if linear > 0.0 else 1.0) * slack[1] / moved.factor
+        near_by = self._near_by(self._framed(found, solids), slack[1])
         grown, least = growth(1.0 / near_by) if near_by > 0.0 else 1.0, 1.0
-        if moved.grown is not None and linear > 0.0:  # as it is on the deformed shape
-            after = float(np.linalg.norm(moved.grown.points[link, point])) / linear
+        if moved.grown is not None and self._linear > 0.0:  # as it is on the deformed shape
+            after = float(np.linalg.norm(moved.grown.points[link, point])) / self._linear
             grown, least = max(grown, after), min(after, 1.0)
         value = found.value if solids or shares.framed is not None else float(np.linalg.norm(moved.points[link, point]))
         grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
@@ -213,17 +247,46 @@ class PointDisplacement:
             sources=(*sources, grows),
         )
 
-    def _shared(self, found: Band) -> Band:
-        """Band with all ways in which pins may share couples between layers."""
+    def _near_by(self, framed: Band, slack: float) -> float:
+        """Return one over the factor on its loads at which the linkage may give way, with links as soft as may be."""
+        if self.moved.factor is None:
+            return 0.0
+        return (framed.high / self._linear if self._linear > 0.0 else 1.0) * slack / self.moved.factor
+
+    @cached_property
+    def _linear(self) -> float:
+        """Displacement of the node by the linear frame [mm]."""
+        moved = self.moved
+        assert moved.frame is not None
+        assert moved.solution is not None
+        node = moved.frame.points[self.link, self.point]
+        return float(np.linalg.norm(moved.solution.displacements[node, :3]))
+
+    @cached_property
+    def _tilted(self) -> tuple[float, float, float]:
+        """Displacement by plain beams with pins tight in both links, and the least and largest as pins tilt in them."""
         moved, at = self.moved, (self.link, self.point)
         assert moved.frame is not None
         assert moved.solution is not None
-        if self.forces is None or not self.forces.sharings:
-            return found
         plain = float(np.linalg.norm(moved.frame.at_points(moved.solution.displacements)[at]))
-        sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in self.forces.sharings)]
-        least, most = (end / plain if plain > 0.0 else 1.0 for end in (min(sizes), max(sizes)))
-        return Band(value=found.value, low=least * found.low, high=most * found.high, sources=found.sources)
+        sharings = () if self.forces is None or self.shares.framed is not None else self.forces.sharings
+        sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in sharings)]
+        return plain, min(sizes), max(sizes)
+
+    def _shared(self, found: Band) -> Band:
+        """Band with all ways in which pins may share couples between layers.
+
+        What tilting adds goes with the softness of the links, or is that of plain beams beside it if that is more.
+        """
+        plain, least, most = self._tilted
+        less, more = (end / plain if plain > 0.0 else 1.0 for end in (least, most))
+        sources = COUPLES if most - least > WORTH_TELLING * plain else ()
+        return replace(
+            found,
+            low=less * found.low,
+            high=max(more * found.high, found.high + most - plain),
+            sources=(*found.sources, *sources),
+        )
 
     def _framed(self, found: Band, solids: Mapping[str, tuple[Band, ...]]) -> Band:
         """Band of the displacement without what the ground's part adds."""
@@ -233,7 +296,8 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         bending = {other: bands for other, bands in solids.items() if other != ground}
-        return point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
+        framed = point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
+        return self._shared(framed)
 
     def _followed(
         self,
@@ -245,9 +309,11 @@ class PointDisplacement:
         """Band on the deformed shape."""
         moved, link, point = self.moved, self.link, self.point
         assert moved.frame is not None
-        assert moved.solution is not None
-        framed, size = self._framed(found, solids), float(np.linalg.norm(moved.points[link, point]))
-        linear = float(np.linalg.norm(moved.solution.displacements[moved.frame.points[link, point], :3]))
+        framed, size, linear = (
+            self._framed(found, solids),
+            float(np.linalg.norm(moved.points[link, point])),
+            self._linear,
+        )
         low, high = (framed.low / linear, framed.high / linear) if linear > 0.0 else (1.0, 1.0)
         low, high = low * slack[0], high * slack[1]
         if solids and linear > 0.0:
@@ -333,7 +399,8 @@ def point_outcome(
     if told.why:
         return found
     shape = "on its deformed shape" if moved.followed else "by linear theory"
-    notes = list(() if moved.frame is None else moved.frame.notes)
+    notes = [told.no_end] if told.no_end else []
+    notes += () if moved.frame is None else moved.frame.notes
     if told.sinking > WORTH_TELLING * told.value.value:
         beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
         notes.append(
@@ -381,8 +448,11 @@ def meshes_to_refine(
 
 def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[str]:
     """Say what would decide, where something would."""
-    if told.shares.unsolved:
+    if told.shares.unsolved or told.by_centre_lines:
         return ["solid models of all links, --fidelity solid, have a narrower band"]
+    if told.shares.framed is not None:
+        exact = Quantity.DISPLACEMENT.sense.verdict(told.band(meshes=0.0), limit)
+        return [f"{'no finer mesh' if exact is Verdict.UNDECIDED else 'a smaller solid.mesh_size'} decides"]
     wanted = told.meshes_to_refine(limit, links)
     if not told.shares.beams and not wanted:
         return ["no finer mesh decides"]
