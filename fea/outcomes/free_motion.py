@@ -115,7 +115,7 @@ def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], 
     -------
     tuple of tuple of (str, float)
         Links with the play in their hole [mm]. Of those in one tuple any may have all of it, where nothing states in
-        which link the pin is tight; those of different tuples have theirs beside one another, as slot and hole.
+        which link the pin is tight; slot and hole, in different ones, have theirs beside each other.
     """
     record = case.joints[joint]
     loose = tuple(link for link in record.links if not record.is_tight_in(link))
