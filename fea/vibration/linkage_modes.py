@@ -13,6 +13,7 @@ itself nothing holds but springs and weights.
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,6 +30,7 @@ from fea.vibration.flexibility_doubt import flexibility_doubt
 from fea.vibration.mass_matrix import MassMatrix, mass_matrix
 from fea.vibration.modes import Mode, NaturalModes, lowest
 from fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
+from geometry.base.errors import CannotRunError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import PartMass
@@ -132,7 +134,10 @@ def linkage_modes(
 
     (modes, rate), holes = solved(model), running_holes(case)
     if holes:
-        modes = with_low_ends(modes, solved(with_hinges(frame, model, parents, holes))[0])
+        hinged: tuple[Mode, ...] = ()
+        with suppress(CannotRunError):  # a pin alone may move freely, as between a hinge and a slot
+            hinged, _ = solved(with_hinges(frame, model, parents, holes))
+        modes = with_low_ends(modes, hinged)
     notes = _notes(frame, rate)
     return LinkageModes(pose=frame.pose, load_case=load_case, frame=frame, model=model, modes=modes, notes=notes)
 

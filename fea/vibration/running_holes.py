@@ -85,16 +85,18 @@ def with_low_ends(modes: Sequence[Mode], hinged: Sequence[Mode]) -> tuple[Mode, 
 
     Parameters
     ----------
-    modes, hinged : sequence of Mode
-        With tight pins and with hinges, the lowest frequency first.
+    modes : sequence of Mode
+        With tight pins, the lowest frequency first.
+    hinged : sequence of Mode
+        The same with hinges; a mode that is missing there begins at 0.
 
     Returns
     -------
     tuple of Mode
     """
     found = []
-    for mode, other in zip(modes, hinged, strict=False):
-        band, low = mode.frequency, other.frequency.low
+    for k, mode in enumerate(modes):
+        band, low = mode.frequency, hinged[k].frequency.low if k < len(hinged) else 0.0
         if low < band.low:
             band = replace(band, low=low, sources=distinct(band.sources, (RUNNING,)))
         found.append(replace(mode, frequency=band))
