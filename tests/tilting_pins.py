@@ -58,20 +58,30 @@ def four_bar(*, tight: Mapping[str, str] = TIGHT, play: str | None = None, **fur
     return {**data, **further}
 
 
+def place_of(case: Case, link: str, point: str) -> NDArray[np.float64]:
+    """Return where a point of a link stands (3,) [mm]."""
+    return np.array([*case.solve_pose().position(link, point), case.linkage.heights[link]])
+
+
 def rigid_motion(
-    case: Case, at: tuple[str, str], along: NDArray[np.float64], *, holes: Mapping[str, str], play: float, length: float
+    case: Case,
+    link: str,
+    where: NDArray[np.float64],
+    along: NDArray[np.float64],
+    *,
+    holes: Mapping[str, str],
+    play: float,
+    length: float,
+    against: str = "",
 ) -> float:
-    """Return how far a point of rigid links goes along a direction, to first order.
+    """Return how far a place of rigid links goes along a direction, or against another link, to first order.
 
     Six unknowns of every moving link; at both rims of every hole the axis of the other link's pin stays in a polygon
     about a circle of half the play, links do not shift along the pins, and the drive holds its link.
     """
     from scipy.optimize import linprog
 
-    pose, moving = case.solve_pose(), case.linkage.moving
-
-    def place(link: str, point: str) -> NDArray[np.float64]:
-        return np.array([*pose.position(link, point), case.linkage.heights[link]])
+    moving = case.linkage.moving
 
     def moved(link: str, where: NDArray[np.float64]) -> NDArray[np.float64]:
         found = np.zeros((3, 6 * len(moving)))
@@ -86,7 +96,7 @@ def rigid_motion(
     within, held = [], []
     for name, hole in holes.items():
         [other] = [link for link in case.joints[name].links if link != hole]
-        middle = place(hole, case.linkage.point_of(name, hole))
+        middle = place_of(case, hole, case.linkage.point_of(name, hole))
         for rim in (-length / 2.0, length / 2.0):
             edge = middle + np.array([0.0, 0.0, rim])
             apart = moved(other, edge) - moved(hole, edge)
@@ -96,7 +106,7 @@ def rigid_motion(
     turn = np.zeros(6 * len(moving))
     turn[6 * moving.index(case.drive.link) + 5] = 1.0
     found = linprog(
-        -along @ moved(at[0], place(*at)),
+        -along @ (moved(link, where) - moved(against, where)),
         A_ub=np.vstack(within),
         b_ub=np.full(_CORNERS * len(within), play / 2.0),
         A_eq=np.vstack([*held, turn]),

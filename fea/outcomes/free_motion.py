@@ -90,7 +90,8 @@ def free_motion(case: Case, frame: LinkageFrame, link: str, point: str) -> FreeM
     -------
     FreeMotion
     """
-    at_rims = [_rim_forces(case, frame, along, frame.points[link, point]) for along in range(3)]
+    node = frame.points[link, point]
+    at_rims = [rim_forces(case, frame, (NodeLoad(node=node, wrench=unit),)) for unit in np.eye(6)[:3]]
     groups = [(name, group) for name in case.joints for group in loose_holes(case, name)]
     shape = (len(groups), max((len(group) for _, group in groups), default=0), 2)
     axes, across = np.zeros((*shape, 2), dtype=complex), np.zeros(shape)
@@ -187,11 +188,24 @@ def unknown_lengths(case: Case) -> tuple[str, ...]:
     )
 
 
-def _rim_forces(case: Case, frame: LinkageFrame, along: int, node: int) -> Mapping[tuple[str, str], Real]:
-    """Forces (rims, x and y) on the rims of every hole with play as a unit force acts at a node: (joint, link)."""
+def rim_forces(case: Case, frame: LinkageFrame, loads: tuple[NodeLoad, ...]) -> Mapping[tuple[str, str], Real]:
+    """Return the forces on the rims of every hole with play, under loads and nothing else.
+
+    Parameters
+    ----------
+    case : Case
+        With play.
+    frame : LinkageFrame
+        Of the linkage, held by its drive.
+    loads : tuple of NodeLoad
+
+    Returns
+    -------
+    mapping of (str, str) to ndarray
+        (joint, link) -> (rims, 2) along x and y [N].
+    """
     bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)
-    unit = NodeLoad(node=node, wrench=np.eye(6)[along])
-    solved = solve_frame(replace(frame.model, elements=bare, loads=(unit,)))
+    solved = solve_frame(replace(frame.model, elements=bare, loads=loads))
     joints = frame.reactions(solved.joint_wrenches, solved.residual).joints
     found = {}
     for name in case.joints:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tilting_pins import LOOSE, TIGHT, checked, four_bar, rigid_motion
+from tilting_pins import LOOSE, TIGHT, checked, four_bar, place_of, rigid_motion
 
 from fea.check.run import check_case
 from fea.common.verdict import CheckOutcome, Verdict
@@ -66,9 +66,9 @@ def test_rigid_links_stay_within_the_free_motion_and_fill_most_of_it(loose):
     tight = {name: next(iter(both[name] - {link})) for name, link in loose.items()}
     case = checked(four_bar(tight=tight, play="0.1 mm"))
     for point in ("P", "B"):
-        found = free(case, "rocker", point)
+        found, where = free(case, "rocker", point), place_of(case, "rocker", point)
         rigid = [
-            rigid_motion(case, ("rocker", point), np.array(along), holes=loose, play=0.1, length=4.0)
+            rigid_motion(case, "rocker", where, np.array(along), holes=loose, play=0.1, length=4.0)
             for along in ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.6, -0.8, 0.0], [0.0, 0.0, 1.0])
         ]
         bound = [*found.plane.support(np.array([1.0, 1j, 0.6 - 0.8j])), found.across]
