@@ -43,6 +43,7 @@ from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
+from fea.whole.layer_gaps import layer_gap_outcomes
 from fea.whole.outcomes import whole_numbers, whole_outcomes
 from geometry.base.errors import CaseError
 from geometry.bodies.body import PartKind
@@ -306,7 +307,11 @@ def check_case(
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:
         clock("solid models")
-    judged = whole_outcomes(whole)
+    outlines = None if whole.clearance is None else whole.clearance.assembly
+    judged = {
+        x: (*own, *layer_gap_outcomes(by_load_case[x].case, x, moved[x], outlines))
+        for x, own in whole_outcomes(whole).items()
+    }
     load_cases = {load_case: one.judged(decided, judged[load_case]) for load_case, one in by_load_case.items()}
     clock("stress")
     return CheckResult(

@@ -83,6 +83,8 @@ class Quantity(StrEnum):
     """Life over the repetitions that are wanted."""
     CLEARANCE = "clearance", "mm", Sense.AT_LEAST
     """Least gap between outlines that lie at one height; negative where they lie in each other."""
+    LAYER_GAP = "gap between layers", "mm", Sense.AT_LEAST
+    """Least gap along the pins that deflection and tilting pins leave between links that pass over each other."""
     FREQUENCY_RATIO = "natural over driving frequency", "", Sense.AT_LEAST
     """The lowest natural frequency over the motion, over that of the drive."""
     DRIVE_POWER = "drive power", "W", Sense.AT_MOST

@@ -21,6 +21,7 @@ from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LARGE, LargeDisplacement
 from fea.nonlinear.softened import displaced
 from fea.nonlinear.stability import SNAP, growth
+from fea.outcomes.free_motion import FreeMotion, free_motion, unknown_lengths
 from fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
 from fea.outcomes.result import LinkResult, SolidResult
 from loads.case.case import Case
@@ -183,19 +184,39 @@ class PointDisplacement:
         size = float(np.linalg.norm(moved))
         plane, across = complex(*moved[:2]) / (size or 1.0), float(moved[2]) / (size or 1.0)
 
-        def told(elastic: float, in_plane: float) -> float:
-            return math.hypot(in_plane, elastic * across)
-
-        at_rest = abs(found.value * plane + complex(play.shift(self.link, self.point)))
-        least = play.loose.spread(self.link, self.point, found.low * plane)[0]
-        most = play.loose.spread(self.link, self.point, found.high * plane)[1] if found.high < math.inf else math.inf
-        value = told(found.value, at_rest)
+        value = math.hypot(abs(found.value * plane + complex(play.shift(self.link, self.point))), found.value * across)
+        least, most = (self._loose(play, end * plane, abs(end * across)) for end in (found.low, found.high))
         return Band(
             value=value,
-            low=min(told(found.low, least), value),
-            high=max(told(found.high, most), value),
+            low=min(math.hypot(*least[0]), value),
+            high=max(math.hypot(*most[1]), value),
             sources=distinct(found.sources, (play_source(play.clearances),)),
         )
+
+    def _loose(self, play: Play, plane: complex, across: float) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Least and largest displacement in the plane and across it, where pins take up their play beside one."""
+        if not math.isfinite(abs(plane)):
+            return (0.0, 0.0), (math.inf, math.inf)
+        least, most = play.loose.spread(self.link, self.point, plane)
+        tilting = self.tilting
+        if tilting is None:
+            return (least, across), (most, across)
+        least, most = min(least, tilting.plane.least(plane)), max(most, tilting.plane.largest(plane))
+        return (least, max(across - tilting.across, 0.0)), (most, across + tilting.across)
+
+    @cached_property
+    def free_motion(self) -> float:
+        """How far the play of pins lets the point go by itself [mm]."""
+        return 0.0 if self.play is None else math.hypot(*self._loose(self.play, 0j, 0.0)[1])
+
+    @cached_property
+    def tilting(self) -> FreeMotion | None:
+        """How far play lets the point go as pins tilt in their holes; None without play, or where all is in a plane."""
+        moved = self.moved
+        if self.play is None or moved.frame is None or moved.solution is None:
+            return None
+        spatial = self.case.layered or np.any(moved.solution.displacements[:, 2:5])
+        return free_motion(self.case, moved.frame, self.link, self.point) if spatial else None
 
     def elastic(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
         """Return the band without play: what solids or beams leave open, the moduli, and the load.
@@ -341,7 +362,7 @@ class PointDisplacement:
         dict of str to float
             Link -> relative error; infinite for a link that is to be solved as a solid in the first place.
         """
-        if self.why or not self.value.low <= limit < self.value.high:
+        if self.why or not self.value.low <= limit < self.value.high or self.free_motion > limit:
             return {}
         if self.shares.unsolved:
             return dict.fromkeys(self.shares.unsolved, math.inf)
@@ -410,8 +431,13 @@ def point_outcome(
     if told.play is not None:
         alone = Quantity.DISPLACEMENT.sense.verdict(told.elastic(), check.maximum)
         decides = f"; without play the verdict would be {alone.value}" if alone is not found.verdict else ""
-        loose = told.play.free_motion(told.link, told.point)
-        notes.append(f"play of pins lets it move by up to {loose:.3g} mm to either side{decides}")
+        loose, tilting = told.play.free_motion(told.link, told.point), told.tilting
+        tilted = ""
+        if tilting is not None:
+            loose = max(loose, tilting.plane.largest())
+            tilted = f" in the plane and, as they tilt in their holes, by up to {tilting.across:.3g} mm across it"
+        notes.append(f"play of pins lets it move by up to {loose:.3g} mm to either side{tilted}{decides}")
+        notes += unknown_lengths(case) if tilting is not None else ()
     if found.verdict is Verdict.UNDECIDED:
         notes += _remedies(told, check.maximum, links)
     return found.because("; ".join([f"by {told.shares.model}, {shape}: {found.reason}", *notes]))
@@ -448,6 +474,8 @@ def meshes_to_refine(
 
 def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[str]:
     """Say what would decide, where something would."""
+    if told.free_motion > limit:
+        return ["only less play decides: a smaller clearance, or longer holes"]
     if told.shares.unsolved or told.by_centre_lines:
         return ["solid models of all links, --fidelity solid, have a narrower band"]
     if told.shares.framed is not None:

@@ -345,7 +345,7 @@ def _needed(what: Property, material: str, stated: float, margin: float) -> Mate
 def _size(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> SizeRange | None:
     """Return the size that bears on a check, with a range from what it is upwards, or downwards of a pass."""
     subject = check.subject
-    if check.quantity in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES):
+    if check.quantity in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES, Quantity.LAYER_GAP):
         return None
     if subject.kind == "pin":
         path, size = f"joints.{subject.name}.pin_diameter", case.joints[subject.name].pin_diameter

@@ -13,6 +13,7 @@ from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes
 from fea.vibration.modes import Mode
 from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies
+from fea.vibration.running_holes import running_holes
 from geometry.base.ties import first_least
 from loads.case.case import Case
 from loads.records.check_spec import FrequencyCheck
@@ -72,7 +73,7 @@ def frequency_outcomes(found: CaseFrequencies | None) -> Iterator[CheckOutcome]:
             yield _linkage(case, name, check, load_case, history)
         for link in check.links or case.checked_links:
             for load_case, modes in _by_itself(found, link):
-                yield _link(name, check, load_case, modes, found.histories[load_case].driving)
+                yield _link(case, name, check, load_case, modes, found.histories[load_case].driving)
 
 
 def deciding_load_case(found: CaseFrequencies) -> str:
@@ -126,7 +127,7 @@ def least_at(history: FrequencyHistory) -> float:
 
 def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, history: FrequencyHistory) -> CheckOutcome:
     ratio = least_frequency(history).times(1.0 / history.driving)
-    reason = f"{lowest_sentence(case, history)}; {harmonic_sentence(case, history)}"
+    reason = f"{lowest_sentence(case, history)}; {harmonic_sentence(case, history)}{running_clause(case, None)}"
     return CheckOutcome.of(name, LINKAGE, load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
 
 
@@ -142,11 +143,34 @@ def _by_itself(found: CaseFrequencies, link: str) -> Iterator[tuple[str, LinkMod
             yield fastest, link_modes(case, link, count=1, solid=own.model == "solid", carried=False) if bare else own
 
 
-def _link(name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
+def running_clause(case: Case, link: str | None) -> str:
+    """Say in which joints the low end of a frequency has hinges, since nothing states that their pins are tight.
+
+    Parameters
+    ----------
+    case : Case
+    link : str or None
+        By itself; None for the linkage.
+
+    Returns
+    -------
+    str
+        After a semicolon; "" where all pins between layers are stated to be tight.
+    """
+    joints = dict.fromkeys(name for name, _ in running_holes(case) if link in (None, *case.joints[name].links))
+    if not joints:
+        return ""
+    return (
+        f"; the low end has hinges in holes at {', '.join(joints)}, where pins may run: nothing states that they are "
+        "tight in both links (tight_in, or bonded)"
+    )
+
+
+def _link(case: Case, name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
     link, mode = own.link, own.modes[0]
     reason = (
         f"by itself, {own.held}, {link} vibrates at {_hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
-        f"the drive turns at {_plain(driving)} Hz"
+        f"the drive turns at {_plain(driving)} Hz{running_clause(case, link)}"
     )
     ratio = mode.frequency.times(1.0 / driving)
     return CheckOutcome.of(name, Subject.link(link), load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)

@@ -118,6 +118,21 @@ class Joint(CaseModel):
         """Whether the case states the angle between its links, which takes part in closing the loops."""
         return self.type == "slider" or (self.bonded and "angle" in self.model_fields_set)
 
+    def is_tight_in(self, link: str) -> bool:
+        """Return True if the pin is stated to be tight in one of the joint's links.
+
+        Parameters
+        ----------
+        link : str
+            One of ``links``.
+
+        Returns
+        -------
+        bool
+            False where nothing states it: the pin may run there. A bonded joint is tight in both links.
+        """
+        return self.bonded or link == self.tight_in
+
     @property
     def bears_moment(self) -> bool:
         """Whether it bears a moment about z."""
