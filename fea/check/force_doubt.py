@@ -81,7 +81,7 @@ def _doubt(
     for link in case.checked_links if links is None else links:
         body = case.body(link)
         cases = [(forces.reactions, grown)]
-        cases += [(one.reactions, isinstance(one, Sharing)) for one in changes if _concerns(one, case, link)]
+        cases += [(one.reactions, isinstance(one, Sharing)) for one in changes]
         plain, *others = (
             measures(case, link, link_loads(load_case, link, body, reactions, loads), tilts=tilts)
             for reactions, tilts in cases
@@ -93,11 +93,6 @@ def _doubt(
         along = joint.force / (joint.magnitude or 1.0)
         joints[name] = around(joint.magnitude, [float(along @ one.reactions.joints[name].force) for one in changes])
     return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
-
-
-def _concerns(change: Deviation, case: Case, link: str) -> bool:
-    """Return whether a cause counts for a link: of pins that tilt, its own."""
-    return not isinstance(change, Sharing) or change.joints <= set(case.linkage.joints_of(link))
 
 
 def measures(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> tuple[float, float]:

@@ -390,7 +390,7 @@ def _shared_couples(load_cases: Sequence[_LoadCase], results: Mapping[str, LoadC
         open_links = {c.subject.name for c in results[one.load_case].checks if c.verdict is Verdict.UNDECIDED}
         for link, growth in one.uneven.stress.items():
             joints = [name for name in one.case.linkage.joints_of(link) if one.case.linkage.rise(name) != 0.0]
-            unknown = [name for name in joints if one.case.joints[name].tight_in is None]
+            unknown = [name for name in joints if not one.case.joints[name].tight_in]
             if link in open_links and unknown and set(COUPLES) <= set(growth.sources) and growth.high > TELLING:
                 found.setdefault(link, {})[one.load_case] = growth.high
                 joints_of[link] = unknown

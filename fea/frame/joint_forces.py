@@ -75,12 +75,11 @@ class JointForces:
     def sharings(self) -> tuple[Sharing, ...]:
         """The answers with pins that tilt in one of their links, so that the other bears the whole couple between them.
 
-        Empty without layers, and where links are condensed solids. Solved where they are asked for, since they are
-        dozens.
+        Empty without layers. Solved where they are asked for, since they are dozens.
         """
         from fea.frame.sharing import sharings
 
-        return () if self.frame is None or self.solids else sharings(self.frame)
+        return () if self.frame is None else sharings(self.frame)
 
     @property
     def by_equilibrium(self) -> bool:
