@@ -13,18 +13,19 @@ from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.air_doubt import AirDoubt, air_warnings
 from fea.check.fidelity import DecidedLink, by_hand, decide
-from fea.check.force_doubt import force_doubt
+from fea.check.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
 from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
-from fea.check.link_result import link_result, worse_plate
+from fea.check.link_result import by_hand_shares, link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
 from fea.check.load_growth import Growths, growths
 from fea.check.play_doubt import play_doubt, play_warnings, shaken
 from fea.check.point_solids import decide_point
 from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
+from fea.check.solid_shares import Shares, solid_shares
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
-from fea.common.source import COUPLES
+from fea.common.scatter import Scatter
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, Verdict, overall
 from fea.frame.case_statics import CaseStatics, solve_case_statics
@@ -101,6 +102,7 @@ class _LoadCase:
     """One load case by hand: what acts on every link cut free, its hand calculation, and what is out of proportion.
 
     ``plates`` has one of every link; of a pair whose plates bear differently both, first the worse one by hand.
+    ``shared`` is what the ways of sharing couples between layers make by hand, and ``uneven`` all else.
     """
 
     case: Case
@@ -109,6 +111,7 @@ class _LoadCase:
     moved: LargeDisplacement
     plates: Mapping[str, Sequence[tuple[LinkLoads, LinkByHand]]]
     uneven: Growths
+    shared: Growths
     size: float
     air: AirDoubt
 
@@ -121,7 +124,7 @@ class _LoadCase:
             for link in case.checked_links
         }
         hands = {link: found[0][1] for link, found in plates.items()}
-        grown = moved.state in ("off", "unknown")  # where ``cut_link`` adds it
+        forces = statics.forces[load_case]
         return cls(
             case=case,
             statics=statics,
@@ -129,9 +132,10 @@ class _LoadCase:
             moved=moved,
             plates=plates,
             uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands)
-            .times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=grown))
-            .times(play_doubt(case, load_case, statics.forces[load_case], loads))
+            .times(stiffness_doubt(case, load_case, forces, loads))
+            .times(play_doubt(case, load_case, forces, loads))
             .times(air.growths),
+            shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved)),
             size=load_size(loads, case.linkage.longest),
             air=air,
         )
@@ -160,21 +164,44 @@ class _LoadCase:
         """Joint forces."""
         return self.statics.forces[self.load_case]
 
-    def links(self, decided: Mapping[str, DecidedLink]) -> dict[str, LinkResult]:
-        """Return the results of links; of a pair, that of its worse plate."""
+    def links(
+        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, Shares] | None = None
+    ) -> dict[str, LinkResult]:
+        """Return the results of links; of a pair, that of its worse plate.
+
+        ``solved`` is what the ways of sharing couples make of links that are solids; of any other the shares by hand
+        stand.
+        """
         found = {}
         for link, plates in self.plates.items():
             own = self.case, link, self.load_case
+            shares = (solved or {}).get(link) or by_hand_shares(self.shared, link)
             found[link] = worse_plate(
-                [link_result(*own, hand, decided.get(link), self.uneven, name=loads.name) for loads, hand in plates]
+                [
+                    link_result(*own, hand, decided.get(link), self.uneven, shares, name=loads.name)
+                    for loads, hand in plates
+                ]
             )
         return found
 
-    def judged(self, decided: Mapping[str, DecidedLink], whole: Sequence[CheckOutcome]) -> LoadCaseResult:
+    def solid_shares(self, decided: Mapping[str, DecidedLink], threads: int) -> dict[str, Shares]:
+        """Return what the ways of sharing couples make of the links that are solved as solids."""
+        found: dict[str, Shares] = {}
+        for link, one in decided.items() if self.forces.sharings else ():
+            if one.solid is not None and self.acts_on(link):
+                loads, grown = self.statics.loads[self.load_case], _grown(self.moved)
+                ways = ways_borne(self.case, self.load_case, link, self.forces, loads, grown=grown)
+                found[link] = solid_shares(link_task(self.case, link, ways[0]), one.solid, ways, threads=threads)
+        return found
+
+    def judged(
+        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, Shares], whole: Sequence[CheckOutcome]
+    ) -> LoadCaseResult:
         """Return the result, with the outcomes of the linkage as a whole after those of links and joints."""
         case, load_case, moved = self.case, self.load_case, self.moved
         reactions = moved.reactions or self.statics.reactions[load_case]
-        links, pins = self.links(decided), _pins(case, reactions, self.forces)
+        joints = self.uneven.times(self.shared).joints
+        links, pins = self.links(decided, solved), _pins(case, reactions, self.forces)
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
         columns = {x: slenderest(case, x, self.air.slenderest(case, x, found)) for x, found in self.plates.items()}
         solids = {x: found for x, found in links.items() if self.acts_on(x)}
@@ -183,8 +210,8 @@ class _LoadCase:
             *solid_buckling_outcomes(case, load_case, solids),
         )
         every = (
-            *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
-            *_bearing(case, load_case, reactions, self.forces, self.uneven),
+            *outcomes(case, load_case, links, pins, moved, self.free, joints, self.forces),
+            *_bearing(case, load_case, reactions, self.forces, joints),
             *buckling,
             *limit_load_outcomes(case, load_case, linkage),
             *whole,
@@ -192,8 +219,8 @@ class _LoadCase:
         found = [self.air.on_buckling(one) for one in every]
         checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())
         if self.idle:
-            joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
-            checks = undecided(checks, load_case, self.size, joints)
+            borne = {name: joint.magnitude for name, joint in reactions.joints.items()}
+            checks = undecided(checks, load_case, self.size, borne)
         return LoadCaseResult(
             name=load_case,
             forces=self.forces,
@@ -281,7 +308,10 @@ def check_case(
     if fidelity not in BY_HAND:
         clock("solid models")
     judged = whole_outcomes(whole)
-    load_cases = {load_case: one.judged(decided, judged[load_case]) for load_case, one in by_load_case.items()}
+    load_cases = {
+        load_case: one.judged(decided, one.solid_shares(decided, threads), judged[load_case])
+        for load_case, one in by_load_case.items()
+    }
     clock("stress")
     return CheckResult(
         name=name,
@@ -352,6 +382,11 @@ def _wanted(load_cases: Sequence[_LoadCase], decided: Mapping[str, DecidedLink])
     return found
 
 
+def _grown(moved: LargeDisplacement) -> bool:
+    """Return whether what acts on links holds their bending on free pins already, which ``cut_link`` adds."""
+    return moved.state in ("off", "unknown")
+
+
 def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, PinStress]:
     """Stresses of the pins that a check asks for."""
     checks = [check for check in case.all_checks.values() if isinstance(check, PinCheck)]
@@ -360,14 +395,14 @@ def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, Pi
 
 
 def _bearing(
-    case: Case, load_case: str, reactions: Reactions, forces: JointForces, uneven: Growths
+    case: Case, load_case: str, reactions: Reactions, forces: JointForces, growth: Mapping[str, Scatter]
 ) -> Iterator[CheckOutcome]:
     """Outcomes of the checks that ask for bearing."""
     for name, check in case.checks.items():
         if isinstance(check, BearingCheck):
             for joint in check.joints or case.bearing_joints:
                 every = [one.joints[joint].wrench for one in (reactions, *(way.reactions for way in forces.sharings))]
-                yield bearing_outcome(case, load_case, name, check, joint, every, uneven.joints.get(joint))
+                yield bearing_outcome(case, load_case, name, check, joint, every, growth.get(joint))
 
 
 def _cantilever(case: Case, calculation: str) -> CantileverCheck:
@@ -388,10 +423,10 @@ def _shared_couples(load_cases: Sequence[_LoadCase], results: Mapping[str, LoadC
     joints_of: dict[str, list[str]] = {}
     for one in load_cases:
         open_links = {c.subject.name for c in results[one.load_case].checks if c.verdict is Verdict.UNDECIDED}
-        for link, growth in one.uneven.stress.items():
+        for link, growth in one.shared.stress.items():
             joints = [name for name in one.case.linkage.joints_of(link) if one.case.linkage.rise(name) != 0.0]
             unknown = [name for name in joints if not one.case.joints[name].tight_in]
-            if link in open_links and unknown and set(COUPLES) <= set(growth.sources) and growth.high > TELLING:
+            if link in open_links and unknown and growth.high > TELLING:
                 found.setdefault(link, {})[one.load_case] = growth.high
                 joints_of[link] = unknown
     return [

@@ -97,7 +97,7 @@ class JointForces:
         return distinct(tuple(one.source for one in self.deviations if one.source is not None))
 
     def displaced(self, link: str, point: str, *, sunk: bool = False) -> Band:
-        """Return how far a point moves by a frame of solids, with all that their stiffness leaves open at its worst.
+        """Return how far a point moves by a frame of solids, with all that stiffness and pins leave open at its worst.
 
         Parameters
         ----------
@@ -120,8 +120,10 @@ class JointForces:
         along = moved / (size or 1.0)
         every = self.deviations if sunk else self.open_by
         steps = np.array([float(along @ one.points[link, point]) - size for one in every])
-        low, high = np.minimum(steps, 0.0).sum(), np.maximum(steps, 0.0).sum()
-        return Band(value=size, low=max(size + float(low), 0.0), high=size + float(high))
+        shared = [0.0, *(float(np.linalg.norm(one.points[link, point])) - size for one in self.sharings)]
+        low = float(np.minimum(steps, 0.0).sum()) + min(shared)
+        high = float(np.maximum(steps, 0.0).sum()) + max(shared)
+        return Band(value=size, low=max(size + low, 0.0), high=size + high)
 
     @property
     def condition(self) -> float:
