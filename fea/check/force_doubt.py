@@ -15,6 +15,7 @@ from fea.beam.cut_free import link_loads
 from fea.check.link_by_hand import link_by_hand
 from fea.check.load_growth import LEAST, Growths
 from fea.check.second_order import on_tilting_pins
+from fea.common.convex import outermost
 from fea.common.link_loads import LinkLoads
 from fea.common.plates import plates
 from fea.common.scatter import Scatter
@@ -101,7 +102,10 @@ def sharing_doubt(
 def ways_borne(
     case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load], *, grown: bool = False
 ) -> tuple[tuple[LinkLoads, ...], ...]:
-    """Return what acts on a link, or on each plate of a pair, with tight pins and then in every way of sharing.
+    """Return what acts on a link, or on each plate of a pair, with tight pins and in the ways of sharing that count.
+
+    In the plane all ways have the same forces, and stress is a convex function of what acts across it: it is largest at
+    a corner of the hull of all ways. These count, and the one with the least couples.
 
     Parameters
     ----------
@@ -115,11 +119,16 @@ def ways_borne(
     tuple of tuple of LinkLoads
     """
     body = case.body(link)
-    cases = [(forces.reactions, grown), *((one.reactions, True) for one in forces.sharings)]
-    return tuple(
-        _borne(case, link, link_loads(load_case, link, body, reactions, loads), tilts=tilts)
-        for reactions, tilts in cases
+    tight, *others = (
+        link_loads(load_case, link, body, reactions, loads)
+        for reactions in (forces.reactions, *(one.reactions for one in forces.sharings))
     )
+    longest = case.linkage.longest
+    across = np.array([[pin.wrench[2:5] / (1.0, longest, longest) for pin in way.pins] for way in others])
+    across = across.reshape(len(others), -1)
+    chosen = {*outermost(across).tolist(), int(np.argmin(np.linalg.norm(across, axis=1)))}
+    borne = [_borne(case, link, others[i], tilts=True) for i in sorted(chosen)]
+    return (_borne(case, link, tight, tilts=grown), *borne)
 
 
 def _joints(forces: JointForces, changes: Sequence[Deviation], around: _Around) -> dict[str, Scatter]:

@@ -2,8 +2,8 @@
 
 Every way has wrenches of its own on the link, under which the peak may lie elsewhere and pins press otherwise. So no
 peak is scaled by the stress of beams: the loads of all ways, under all pressures of pins and transfers of torque, are
-solved on the link's finest mesh. The problem is linear and most of these loads are sums of a few, which are found by
-the modified Gram-Schmidt process; one factorisation serves them. What comes out are factors on the band that the link
+solved on the link's finest mesh. The problem is linear and most of these loads are sums of a few, which their
+Gram matrix tells; one factorisation serves them. What comes out are factors on the band that the link
 has with tight pins, for each number that is judged. Where the peak of a way lies at a place that no mesh was refined
 for, the fourfold estimate there counts beside the factor.
 """
@@ -38,8 +38,8 @@ Shares = Mapping[PeakQuantity, Scatter]
 Plates = tuple[LinkLoads, ...]
 """What acts on a link, or on each plate of a pair, in one way of sharing."""
 
-LEFT_OUT = 1e-4
-"""Part of a load that its sum of modes may leave out, by the norm of nodal forces."""
+LEFT_OUT = 1e-5
+"""Norm of the nodal forces that a mode left out may have in loads, over that of the largest mode."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -114,34 +114,24 @@ def solid_shares(
 
 def _solved(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates], threads: int | None) -> _Modes:
     space = refined.solution.space
-    numbers: list[int] = []
-    spans: list[Span] = []
-    basis: list[Real] = []
-    rows: list[Real] = []
-    for number, span, load in _loads(task, refined, ways):
-        left, size, shares = load.copy(), float(np.linalg.norm(load)), np.zeros(len(basis))
-        for _ in range(2):  # twice is enough
-            for i, mode in enumerate(basis):
-                share = float(mode @ left)
-                left -= share * mode
-                shares[i] += share
-        rest = float(np.linalg.norm(left))
-        if rest > LEFT_OUT * size:
-            memory.require(
-                8.0 * (len(basis) + 1) * (3.0 * space.unknowns + 12.0 * len(space.nodes)),
-                f"the stress of {len(basis) + 1} ways of sharing couples at {len(space.nodes):,} nodes",
-                None,
-            )
-            basis.append(left / rest)
-            shares = np.append(shares, rest)
-        numbers.append(number)
-        spans.append(span)
-        rows.append(shares)
-    combination = np.zeros((len(basis), len(rows)))
-    for k, row in enumerate(rows):
-        combination[: len(row), k] = row
-    free = solve_free(space, np.array(basis).T, E=task.E, nu=task.nu, threads=threads)
-    return _Modes(ways=np.array(numbers), spans=spans, displacement=free.displacement, combination=combination)
+    numbers, spans, columns = zip(*_loads(task, refined, ways), strict=True)
+    memory.require(
+        8.0 * len(columns) * (4.0 * space.unknowns + 6.0 * len(space.nodes)),
+        f"the stress of {len(ways)} ways of sharing couples at {len(space.nodes):,} nodes",
+        None,
+    )
+    loads = np.array(columns)
+    size = np.linalg.norm(loads, axis=1)
+    loads /= size[:, None]
+    values, vectors = np.linalg.eigh(loads @ loads.T)  # the loads are sums of the eigenvectors' sums of loads
+    kept = values > LEFT_OUT**2 * values[-1]
+    free = solve_free(space, (vectors[:, kept].T @ loads).T, E=task.E, nu=task.nu, threads=threads)
+    return _Modes(
+        ways=np.array(numbers),
+        spans=spans,
+        displacement=free.displacement,
+        combination=(size[:, None] * vectors[:, kept]).T,
+    )
 
 
 def _loads(task: LinkTask, refined: RefinedSolid, ways: Sequence[Plates]) -> Iterator[tuple[int, Span, Real]]:
@@ -157,8 +147,8 @@ def _displacements(task: LinkTask, refined: RefinedSolid, modes: _Modes) -> Real
     """Largest displacements (N,) relative to the line through the link's first and last pin [mm]."""
     reference = LineReference(refined.solution.space, task.line)
     fields = np.array([reference.relative(mode.reshape(-1, 3)).ravel() for mode in modes.displacement.T])
-    every = (np.linalg.norm((column @ fields).reshape(-1, 3), axis=1).max() for column in modes.combination.T)
-    return np.array([*every])
+    moved = [modes.combination.T @ fields[:, axis::3] for axis in range(3)]
+    return np.asarray(np.sqrt(sum(part**2 for part in moved)).max(axis=1))
 
 
 def _factors(values: Real, ways: NDArray[np.int64]) -> Scatter:
