@@ -23,11 +23,12 @@ from fea.check.point_solids import decide_point
 from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
 from fea.check.solid_shares import Shares, solid_shares
+from fea.check.tight_pins import SharedCouples, tight_pin_warnings
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
 from fea.common.threads import bounded_run
-from fea.common.verdict import CheckOutcome, Verdict, overall
+from fea.common.verdict import CheckOutcome, overall
 from fea.frame.case_statics import CaseStatics, solve_case_statics
 from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
@@ -39,6 +40,7 @@ from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.solid_buckling import solid_buckling_outcomes
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
+from fea.refine.link_series import STRESS
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
 from fea.whole.outcomes import whole_numbers, whole_outcomes
@@ -55,8 +57,6 @@ from loads.text.shares import parse_accuracy
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
 BY_HAND = ("beam", "frame")
-TELLING = 1.05
-"""Growth of a link's stress by the sharing of couples above which it is told of, where a check is open."""
 POINT_ROUNDS = 4
 """At most, in which links are solved or refined for the displacement of a point."""
 
@@ -194,6 +194,20 @@ class _LoadCase:
                 found[link] = solid_shares(link_task(self.case, link, ways[0]), one.solid, ways, threads=threads)
         return found
 
+    def couples(self, solved: Mapping[str, Shares], checks: Sequence[CheckOutcome]) -> SharedCouples:
+        """Return what the sharing of couples leaves open of links' strength."""
+        decisive = {link: STRESS[self.case.material_of(link).brittle] for link in solved}
+        return SharedCouples(
+            case=self.case,
+            load_case=self.load_case,
+            forces=self.forces,
+            loads=self.statics.loads[self.load_case],
+            grown=_grown(self.moved),
+            by_hand=self.shared.stress,
+            told={**self.shared.stress, **{link: shares[decisive[link]] for link, shares in solved.items()}},
+            checks=checks,
+        )
+
     def judged(
         self, decided: Mapping[str, DecidedLink], solved: Mapping[str, Shares], whole: Sequence[CheckOutcome]
     ) -> LoadCaseResult:
@@ -308,10 +322,8 @@ def check_case(
     if fidelity not in BY_HAND:
         clock("solid models")
     judged = whole_outcomes(whole)
-    load_cases = {
-        load_case: one.judged(decided, one.solid_shares(decided, threads), judged[load_case])
-        for load_case, one in by_load_case.items()
-    }
+    solved = {load_case: one.solid_shares(decided, threads) for load_case, one in by_load_case.items()}
+    load_cases = {x: one.judged(decided, solved[x], judged[x]) for x, one in by_load_case.items()}
     clock("stress")
     return CheckResult(
         name=name,
@@ -328,7 +340,7 @@ def check_case(
         timings=clock.stages,
         warnings=(
             *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),
-            *_shared_couples(list(by_load_case.values()), load_cases),
+            *tight_pin_warnings([one.couples(solved[x], load_cases[x].checks) for x, one in by_load_case.items()]),
             *_warnings(case, statics, moved),
             *play_warnings(moved, statics.forces),
             *air_warnings(moved),
@@ -415,26 +427,6 @@ def _cantilever(case: Case, calculation: str) -> CantileverCheck:
 
 def _of(names: Sequence[str]) -> str:
     return f"load case{'s' if len(names) > 1 else ''} {', '.join(names)}"
-
-
-def _shared_couples(load_cases: Sequence[_LoadCase], results: Mapping[str, LoadCaseResult]) -> list[str]:
-    """Say once of each link whose strength the sharing of couples between layers leaves open what would tell."""
-    found: dict[str, dict[str, float]] = {}
-    joints_of: dict[str, list[str]] = {}
-    for one in load_cases:
-        open_links = {c.subject.name for c in results[one.load_case].checks if c.verdict is Verdict.UNDECIDED}
-        for link, growth in one.shared.stress.items():
-            joints = [name for name in one.case.linkage.joints_of(link) if one.case.linkage.rise(name) != 0.0]
-            unknown = [name for name in joints if not one.case.joints[name].tight_in]
-            if link in open_links and unknown and growth.high > TELLING:
-                found.setdefault(link, {})[one.load_case] = growth.high
-                joints_of[link] = unknown
-    return [
-        f"{_of(list(times))}: how pins share the couples between layers may make the stress of {link} "
-        f"{'up to ' if len(times) > 1 else ''}{max(times.values()):.3g} times as large; tight_in of joints "
-        f"{', '.join(joints_of[link])} would narrow its band"
-        for link, times in found.items()
-    ]
 
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:
