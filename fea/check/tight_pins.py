@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 from fea.check.force_doubt import sharing_doubt
+from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.verdict import CheckOutcome, Quantity, Verdict
 from fea.frame.joint_forces import JointForces
@@ -51,7 +52,7 @@ class SharedCouples:
     checks: Sequence[CheckOutcome]
 
     def open_checks(self, link: str) -> list[CheckOutcome]:
-        """Return the checks of a link's strength that are undecided.
+        """Return the checks of a link's strength that are undecided since their band holds the limit.
 
         Parameters
         ----------
@@ -63,7 +64,7 @@ class SharedCouples:
         """
         strength = (Quantity.SAFETY_FACTOR, Quantity.LAYERS)
         own = (one for one in self.checks if one.link == link and one.quantity in strength)
-        return [one for one in own if one.verdict is Verdict.UNDECIDED]
+        return [one for one in own if one.verdict is Verdict.UNDECIDED and _open(one, one.value)]
 
     def decided_by(self, link: str, tight: Mapping[str, tuple[str, ...]] | None) -> bool:
         """Return whether all of a link's checks would be decided with pins stated tight.
@@ -113,13 +114,17 @@ def _part(left: float, every: float) -> float:
     return min(left / every, 1.0) if every > 0.0 else 1.0
 
 
+def _open(check: CheckOutcome, value: Band) -> bool:
+    return check.quantity.sense.verdict(value, check.limit) is Verdict.UNDECIDED
+
+
 def _decided(check: CheckOutcome, low: float, high: float) -> bool:
     """Whether a check is decided with the ends of its stress times these factors; factors go with one over it."""
     if check.value.unknowable:
         return False
     value = check.value.value
     band = replace(check.value, low=min(check.value.low / high, value), high=max(check.value.high / low, value))
-    return check.quantity.sense.verdict(band, check.limit) is not Verdict.UNDECIDED
+    return not _open(check, band)
 
 
 def tight_pin_warnings(load_cases: Sequence[SharedCouples]) -> list[str]:
