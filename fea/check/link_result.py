@@ -10,13 +10,13 @@ from fea.check.fidelity import DecidedLink, Decision, HandBands
 from fea.check.link_by_hand import LinkByHand
 from fea.check.load_growth import Growths
 from fea.check.solid_result import solid_result
-from fea.check.solid_shares import Shares
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.common.ties import first_largest
 from fea.outcomes.result import HandResult, LinkResult, SolidResult
 from fea.outcomes.solid_buckling import solid_buckling, solid_growth
 from fea.refine.link_series import STRESS, PeakQuantity
+from fea.superposition.solid_shares import Shares
 from geometry.materials.material import Material
 from loads.case.case import Case
 from loads.case.forks import of_pair

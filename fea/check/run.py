@@ -22,7 +22,6 @@ from fea.check.play_doubt import play_doubt, play_warnings, shaken
 from fea.check.point_solids import decide_point
 from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
-from fea.check.solid_shares import Shares, solid_shares
 from fea.check.tight_pins import SharedCouples, tight_pin_warnings
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
@@ -43,6 +42,7 @@ from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
 from fea.refine.link_series import STRESS
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
+from fea.superposition.solid_shares import Shares, solid_shares
 from fea.whole.outcomes import whole_numbers, whole_outcomes
 from geometry.base.errors import CaseError
 from geometry.bodies.body import PartKind

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.run import effort_of
 from fea.check.solid_result import link_task
-from fea.check.solid_shares import solid_shares
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, load_scatter
@@ -37,6 +36,7 @@ from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, un
 from fea.refine.link_series import STRESS, Measure
 from fea.refine.refinement import START, Effort, refine_links
 from fea.solid.solution import require_compressible
+from fea.superposition.solid_shares import solid_shares
 from fea.whole.outcomes import unloaded_outcomes, whole_numbers
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body

@@ -15,7 +15,6 @@ from fea.beam.cut_free import link_loads
 from fea.check.force_doubt import sharing_doubt, ways_borne
 from fea.check.solid_frame import with_solids
 from fea.check.solid_result import link_task
-from fea.check.solid_shares import solid_shares
 from fea.common.convex import outermost
 from fea.frame.case_statics import CaseStatics, solve_case_statics
 from fea.frame.joint_forces import JointForces
@@ -23,6 +22,7 @@ from fea.frame.thrust import thrusts
 from fea.refine.refinement import START, Effort, RefinedSolid, refine_links
 from fea.solid.solution import SolidSolution, solve_solid
 from fea.solid.stress import stress_field
+from fea.superposition.solid_shares import solid_shares
 from geometry.meshing.mesh import mesh_body
 from loads.case.case import Case
 
