@@ -20,7 +20,7 @@ LAYERS = {
     "loads": ("text", "records", "statics", "sources", "case", "states", "plans", "exchange"),
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
-        *("refine", "vibration", "outcomes", "whole", "check", "superposition", "motion", "calculix", "claims"),
+        *("refine", "superposition", "vibration", "outcomes", "whole", "check", "motion", "calculix", "claims"),
         *("study", "sizing", "tolerance"),
     ),
     "reports": (

@@ -15,11 +15,12 @@ from fea.beam.cut_free import link_loads
 from fea.check.link_by_hand import link_by_hand
 from fea.check.load_growth import LEAST, Growths
 from fea.check.second_order import on_tilting_pins
+from fea.common.convex import outermost
 from fea.common.link_loads import LinkLoads
 from fea.common.plates import plates
 from fea.common.scatter import Scatter
 from fea.common.source import COUPLES, Source
-from fea.frame.deviation import Deviation, Sharing
+from fea.frame.deviation import Deviation
 from fea.frame.joint_forces import JointForces
 from loads.case.case import Case
 from loads.case.forks import apart
@@ -29,15 +30,7 @@ _Around = Callable[[float, Sequence[float]], Scatter]
 """From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""
 
 
-def force_doubt(
-    case: Case,
-    load_case: str,
-    forces: JointForces,
-    loads: Sequence[Load],
-    *,
-    grown: bool = False,
-    links: Sequence[str] | None = None,
-) -> Growths:
+def stiffness_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[Load]) -> Growths:
     """Return by how much stress, displacement and joint forces may differ since the links' stiffness is in doubt.
 
     Parameters
@@ -48,56 +41,102 @@ def force_doubt(
     forces : JointForces
     loads : sequence of Load
         That act on the links.
+
+    Returns
+    -------
+    Growths
+        Empty where no link's stiffness is in doubt since none is a solid.
+    """
+    if not forces.open_by:
+        return Growths()
+    around = _summed(forces.sources)
+    stress, displacement = {}, {}
+    for link in case.checked_links:
+        every = (forces.reactions, *(one.reactions for one in forces.open_by))
+        plain, *others = (
+            measures(case, link, link_loads(load_case, link, case.body(link), reactions, loads)) for reactions in every
+        )
+        stress[link], displacement[link] = (around(plain[i], [one[i] for one in others]) for i in (0, 1))
+    return Growths(
+        stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(forces, forces.open_by, around))
+    )
+
+
+def sharing_doubt(
+    case: Case,
+    load_case: str,
+    forces: JointForces,
+    loads: Sequence[Load],
+    *,
+    grown: bool = False,
+    links: Sequence[str] | None = None,
+) -> Growths:
+    """Return by how much stress, displacement and joint forces may differ since pins may tilt, by hand.
+
+    Parameters
+    ----------
+    case, load_case, forces, loads
+        As of ``stiffness_doubt``.
     grown : bool, optional
-        True where the numbers that these shares multiply hold the growth on free pins already.
+        As of ``ways_borne``.
     links : sequence of str or None, optional
         Links that are looked at; None for every one.
 
     Returns
     -------
     Growths
-        Empty where the forces depend on neither, or where no link's stiffness is in doubt since none is a solid.
+        Empty where nothing is shared.
     """
-    found = Growths()
-    if forces.open_by:
-        found = _doubt(case, load_case, forces, loads, forces.open_by, _summed(forces.sources), links)
-    if forces.sharings:
-        found = found.times(_doubt(case, load_case, forces, loads, forces.sharings, _widest, links, grown=grown))
-    return found
-
-
-def _doubt(
-    case: Case,
-    load_case: str,
-    forces: JointForces,
-    loads: Sequence[Load],
-    changes: Sequence[Deviation],
-    around: _Around,
-    links: Sequence[str] | None,
-    *,
-    grown: bool = False,
-) -> Growths:
+    if not forces.sharings:
+        return Growths()
     stress, displacement = {}, {}
     for link in case.checked_links if links is None else links:
-        body = case.body(link)
-        cases = [(forces.reactions, grown)]
-        cases += [(one.reactions, isinstance(one, Sharing)) for one in changes if _concerns(one, case, link)]
-        plain, *others = (
-            measures(case, link, link_loads(load_case, link, body, reactions, loads), tilts=tilts)
-            for reactions, tilts in cases
-        )
-        stress[link] = around(plain[0], [one[0] for one in others])
-        displacement[link] = around(plain[1], [one[1] for one in others])
+        ways = ways_borne(case, load_case, link, forces, loads, grown=grown)
+        plain, *others = (_by_hand(case, link, borne) for borne in ways)
+        stress[link], displacement[link] = (_widest(plain[i], [one[i] for one in others]) for i in (0, 1))
+    return Growths(
+        stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(forces, forces.sharings, _widest))
+    )
+
+
+def ways_borne(
+    case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load], *, grown: bool = False
+) -> tuple[tuple[LinkLoads, ...], ...]:
+    """Return what acts on a link, or on each plate of a pair, with tight pins and in the ways of sharing that count.
+
+    In the plane all ways have the same forces, and stress is a convex function of what acts across it: it is largest at
+    a corner of the hull of all ways. These count, and the one with the least couples.
+
+    Parameters
+    ----------
+    case, load_case, link, forces, loads
+        As of ``stiffness_doubt``; the link is one of the case's.
+    grown : bool, optional
+        True where what acts with tight pins holds the growth on free pins already.
+
+    Returns
+    -------
+    tuple of tuple of LinkLoads
+    """
+    body = case.body(link)
+    tight, *others = (
+        link_loads(load_case, link, body, reactions, loads)
+        for reactions in (forces.reactions, *(one.reactions for one in forces.sharings))
+    )
+    longest = case.linkage.longest
+    across = np.array([[pin.wrench[2:5] / (1.0, longest, longest) for pin in way.pins] for way in others])
+    across = across.reshape(len(others), -1)
+    chosen = {*outermost(across).tolist(), int(np.argmin(np.linalg.norm(across, axis=1)))}
+    borne = [_borne(case, link, others[i], tilts=True) for i in sorted(chosen)]
+    return (_borne(case, link, tight, tilts=grown), *borne)
+
+
+def _joints(forces: JointForces, changes: Sequence[Deviation], around: _Around) -> dict[str, Scatter]:
     joints = {}
     for name, joint in forces.reactions.joints.items():
         along = joint.force / (joint.magnitude or 1.0)
         joints[name] = around(joint.magnitude, [float(along @ one.reactions.joints[name].force) for one in changes])
-    return Growths(stress=_open(stress), displacement=_open(displacement), joints=_open(joints))
-
-
-def _concerns(change: Deviation, case: Case, link: str) -> bool:
-    """Return whether a cause counts for a link: of pins that tilt, its own."""
-    return not isinstance(change, Sharing) or change.joints <= set(case.linkage.joints_of(link))
+    return joints
 
 
 def measures(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> tuple[float, float]:
@@ -117,8 +156,15 @@ def measures(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) ->
     tuple of (float, float)
         [MPa], [mm]; twice [N] without beam.
     """
+    return _by_hand(case, link, _borne(case, link, loads, tilts=tilts))
+
+
+def _borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool) -> tuple[LinkLoads, ...]:
     borne = plates(loads, apart(case, link))
-    borne = tuple(on_tilting_pins(case, link, plate) for plate in borne) if tilts else borne
+    return tuple(on_tilting_pins(case, link, plate) for plate in borne) if tilts else borne
+
+
+def _by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[float, float]:
     hands = [link_by_hand(case, link, plate) for plate in borne]
     if hands[0].check.without:
         largest = max(float(np.linalg.norm(pin.wrench[:3])) for plate in borne for pin in plate.pins)

@@ -69,7 +69,7 @@ CONTACT = Source(
 )
 TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail="by eye-faces and by bore-shear")
 
-COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in the one link or in the other"),)
+COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in either link, or tilting in all holes"),)
 
 
 def air_source(least: float, largest: float) -> Source:

@@ -75,12 +75,11 @@ class JointForces:
     def sharings(self) -> tuple[Sharing, ...]:
         """The answers with pins that tilt in one of their links, so that the other bears the whole couple between them.
 
-        Empty without layers, and where links are condensed solids. Solved where they are asked for, since they are
-        dozens.
+        Empty without layers. Solved where they are asked for, since they are dozens.
         """
         from fea.frame.sharing import sharings
 
-        return () if self.frame is None or self.solids else sharings(self.frame)
+        return () if self.frame is None else sharings(self.frame)
 
     @property
     def by_equilibrium(self) -> bool:
@@ -98,7 +97,7 @@ class JointForces:
         return distinct(tuple(one.source for one in self.deviations if one.source is not None))
 
     def displaced(self, link: str, point: str, *, meshes: float = 1.0, sunk: bool = False) -> Band:
-        """Return how far a point moves by a frame of solids, with all that their stiffness leaves open at its worst.
+        """Return how far a point moves by a frame of solids, with all that stiffness and pins leave open at its worst.
 
         Parameters
         ----------
@@ -123,10 +122,12 @@ class JointForces:
         along = moved / (size or 1.0)
         every = self.deviations if sunk else self.open_by
         kinds = [one.source and one.source.kind for one in every]
-        shares = [meshes if kind is SourceKind.DISCRETISATION else 1.0 for kind in kinds]
-        steps = np.array(shares) * [float(along @ one.points[link, point]) - size for one in every]
-        low, high = np.minimum(steps, 0.0).sum(), np.maximum(steps, 0.0).sum()
-        return Band(value=size, low=max(size + float(low), 0.0), high=size + float(high))
+        parts = [meshes if kind is SourceKind.DISCRETISATION else 1.0 for kind in kinds]
+        steps = np.array(parts) * [float(along @ one.points[link, point]) - size for one in every]
+        shared = [0.0, *(float(np.linalg.norm(one.points[link, point])) - size for one in self.sharings)]
+        low = float(np.minimum(steps, 0.0).sum()) + min(shared)
+        high = float(np.maximum(steps, 0.0).sum()) + max(shared)
+        return Band(value=size, low=max(size + low, 0.0), high=size + high)
 
     @property
     def condition(self) -> float:

@@ -75,7 +75,7 @@ def bore_presses(case: Case, wrenches: Mapping[str, Real]) -> dict[str, Real]:
             pressing(wrench[:, 0] + 1j * wrench[:, 1], wrench[:, 3] + 1j * wrench[:, 4], ring)
             / np.where(size > least, size, np.inf)
             for link, ring, wrench in zip(joint.links, rings, (first, second), strict=True)
-            if link != joint.tight_in
+            if not joint.is_tight_in(link)
         ]
         ratio = np.where(size > least, np.max(ratios, axis=0), 1.0)
         if np.any(ratio > 1.0):

@@ -3,7 +3,7 @@
 import math
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import copy_context
@@ -33,8 +33,10 @@ from fea.motion.loosened import loosened, otherwise
 from fea.outcomes.limits import layers_of
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
+from fea.refine.link_series import STRESS, Measure
 from fea.refine.refinement import START, Effort, refine_links
 from fea.solid.solution import require_compressible
+from fea.superposition.solid_shares import solid_shares
 from fea.whole.outcomes import unloaded_outcomes, whole_numbers
 from fea.whole.rubbed_motion import rubbed_motion
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
@@ -61,12 +63,13 @@ class _Envelope:
     threads: int
     progress: Progress
     shares: Mapping[tuple[str, str], Scatter] = field(default_factory=dict)
+    ways: Mapping[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = field(default_factory=dict)
     ended: threading.Event = field(default_factory=threading.Event)
 
     @classmethod
     def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
         layered = with_couples(moved, evaluated)
-        shares = dict(layered.shares)
+        shares: dict[tuple[str, str], Scatter] = {}
         for doubt in (loosened(layered.moved, evaluated), otherwise(layered.moved, evaluated)):
             for key, scatter in doubt.items():
                 shares[key] = shares.get(key, Scatter()).times(scatter)
@@ -88,6 +91,7 @@ class _Envelope:
             threads=threads,
             progress=progress,
             shares=shares,
+            ways=layered.ways,
         )
 
     @property
@@ -132,16 +136,27 @@ class _Envelope:
                 space = refined.solution.space
                 self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
                 motion = self._motion(link, space)
-            scatter = {
-                load_case: load_scatter(case, load_case).times(self.shares.get((load_case, link), Scatter()))
-                for load_case in case.load_cases
-            }
-            found = motion.envelope(repetitions=repetitions, refined=refined, scatter=scatter)
-            found = replace(found, notes=(*of_pair(case, link), *found.notes))
             layers = layers_of(case, link)
+            shared = {
+                load_case: solid_shares(replace(task, layers=layers), refined, self.ways[load_case, link], threads=1)
+                for load_case in dict.fromkeys(history.name for history in self.loaded[link])
+                if (load_case, link) in self.ways
+            }
+
+            def scatter(quantity: Measure) -> dict[str, Scatter]:
+                return {
+                    load_case: load_scatter(case, load_case)
+                    .times(self.shares.get((load_case, link), Scatter()))
+                    .times(shared.get(load_case, {}).get(quantity, Scatter()))
+                    for load_case in case.load_cases
+                }
+
+            own = scatter(STRESS[task.brittle])
+            found = motion.envelope(repetitions=repetitions, refined=refined, scatter=own)
+            found = replace(found, notes=(*of_pair(case, link), *found.notes))
             if layers is None or not found.worst.known:
                 return found
-            return replace(found, layers=layer_envelopes(motion, layers, scatter, repetitions))
+            return replace(found, layers=layer_envelopes(motion, layers, scatter("layers"), repetitions))
 
     def _tell(self, message: str) -> None:
         """Report progress; ends the work on a link once another has failed or the run was interrupted."""

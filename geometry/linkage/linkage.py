@@ -7,12 +7,26 @@ from functools import cached_property
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
 from geometry.parts.part import EyeSizes, HoleRow, Slot
+
+
+def _as_list(stated: object) -> object:
+    return (stated,) if isinstance(stated, str) else stated
+
+
+_NAME = {"type": "string", "format": "name"}
+TightIn = Annotated[
+    tuple[Name, ...],
+    Field(min_length=1, max_length=2),
+    BeforeValidator(_as_list),
+    WithJsonSchema({"anyOf": [_NAME, {"type": "array", "items": _NAME, "minItems": 1, "maxItems": 2}]}),
+]
+"""One link, or both as a list."""
 
 
 class Link(CaseModel):
@@ -84,8 +98,8 @@ class Joint(CaseModel):
     """Material of the pin, for the check of pins."""
     pin_gap: Annotated[Length, NOT_NEGATIVE] = 0.0
     """Free length of the pin between the two eyes that it joins, for the check of pins; layers tell it as well."""
-    tight_in: Name | None = None
-    """The one of the two links in which the pin is tight, where links lie in layers; in the other it may tilt. Left
+    tight_in: TightIn = ()
+    """The link in which the pin is tight, where links lie in layers, or a list of both; in any other it may tilt. Left
     out, it may be tight in either, and the band holds both."""
     friction: Coefficient = 0.0
     """Coefficient of friction of the pin in its bore, of a pin in its slot or of a slider on its guide, from 0 to 2. It
@@ -131,7 +145,7 @@ class Joint(CaseModel):
         bool
             False where nothing states it: the pin may run there. A bonded joint is tight in both links.
         """
-        return self.bonded or link == self.tight_in
+        return self.bonded or link in self.tight_in
 
     @property
     def bears_moment(self) -> bool:

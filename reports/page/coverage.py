@@ -14,8 +14,9 @@ STACKING = (
     "offset causes additional bending and torsion."
 )
 LAYERS = (
-    "Pins between layers are beams from mid-plane to mid-plane; how they share couples is part of the bands. Washers, "
-    "heads and faces that touch take none of these."
+    "Pins between layers are beams from mid-plane to mid-plane. The bands hold how they share couples: with the pins "
+    "of any link tilting in it or in their other link, and with all holes open that are not tight_in. Washers, heads "
+    "and faces that touch take none of these."
 )
 TILT = (
     " How far pins without a stated clearance tilt in their holes is in no displacement, and not in the gaps between "
