@@ -70,6 +70,9 @@ def test_a_plate_that_turns_about_its_root(chord):
     case = fan(wing)
     np.testing.assert_allclose(solve_case_motion(case).torque["air"], expected, rtol=1e-12)
     assert solve_case_statics(case).reactions["air"].drive_torque == pytest.approx(expected, rel=1e-12)
+    # Stated from its tip to its root it is the same wing.
+    mirrored = fan({"chord": wing["chord"][::-1], "start": "E", "end": "O"})
+    np.testing.assert_allclose(solve_case_motion(mirrored).torque["air"], expected, rtol=1e-12)
     # The added mass of a plate that turns evenly about its root does nothing.
     even = solve_case_motion(fan(wing, added_mass=True)).torque["air"]
     np.testing.assert_allclose(even, expected, rtol=1e-12)

@@ -26,7 +26,7 @@ from fea.motion import envelope
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
 from fea.motion.fatigue import closed_history, signed_stress
-from fea.motion.link_envelope import link_motion
+from fea.motion.link_envelope import _balanced, link_motion
 from fea.motion.link_history import link_histories
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.pins import stress_at, stress_of
@@ -407,6 +407,17 @@ def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
             solve()
     else:
         assert solve().imbalance > 1e-5
+
+
+@pytest.mark.parametrize("worst", [0, 1, 2])
+@pytest.mark.parametrize(("entry", "said"), [("imbalance", "leave a resultant of 50"), ("reaction", "free body react of 50")])
+def test_one_pose_out_of_balance_is_enough(entry, said, worst):
+    """Whichever pose it is, and of loads and supports whichever it is."""
+    good = np.full(3, 1e-9)
+    bad = np.where(np.arange(3) == worst, 0.5, good)
+    _balanced(SimpleNamespace(imbalance=good, reaction=good))
+    with pytest.raises(CannotRunError, match=said):
+        _balanced(SimpleNamespace(**{"imbalance": good, "reaction": good, entry: bad}))
 
 
 def test_what_cannot_be_enveloped_is_refused(path, tmp_path):

@@ -2,16 +2,19 @@
 
 import math
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 
 from fea.common.verdict import Verdict
-from fea.whole.clearance import clearance_outcomes
+from fea.whole.clearance import clearance_band, clearance_outcomes
 from geometry.base.errors import CaseError
+from geometry.clearance.least import Gap, least_gap
 from geometry.clearance.shape import gaps
-from loads.states.clearance import along, clearance
+from geometry.linkage.motion import solve_motion
+from loads.states.clearance import along, assembly, clearance
 
 
 def test_two_parallel_bars_touch_where_their_distance_is_their_width():
@@ -47,6 +50,40 @@ def test_the_least_gap_of_two_bars_that_do_not_touch():
         assert least.high - least.low < 0.1
         [outcome] = clearance_outcomes(case, found)
         assert (outcome.name, outcome.verdict.value) == ("apart", verdict)
+
+
+@pytest.mark.parametrize("wide", [0, 1, 2])
+def test_the_band_of_the_least_gap_is_that_of_all_pairs(wide):
+    """Another pair than the one of the least value may come nearer, and no pair's upper end counts but the least."""
+    ends = [(2.0, 1.9, 2.1), (2.2, 2.05, 2.4), (2.5, 2.45, 2.6)]
+    value, _, high = ends[wide]
+    ends[wide] = value, 0.5, high
+    pairs = [
+        Gap(names=(f"link {i}", "pin A"), value=one, low=low, high=high, at=None, place=(0.0, 0.0))
+        for i, (one, low, high) in enumerate(ends)
+    ]
+    band = clearance_band(SimpleNamespace(gaps=tuple(pairs), least=pairs[0], motion=None))
+    assert (band.value, band.low, band.high) == (2.0, 0.5, 2.1)
+
+
+@pytest.mark.parametrize("poses", [2, 4, 400])
+def test_how_deep_two_outlines_lie_in_each_other_between_poses_is_in_the_band(poses):
+    """A bar of 16 mm swings over a pin of 8 mm: 1.55 mm deep at -6 and 6 degrees, and over all of the pin between them.
+
+    Of 400 poses, which all touch, not every one is asked how deep.
+    """
+    case = bar_on_a_pin()
+    [pair] = [pair for pair in assembly(case).pairs if set(pair.names) == {"link crank", "pin D"}]
+    motion = solve_motion(case.solve_pose(), np.radians([60.0, -6.0]))
+    found = least_gap(pair, along(motion), np.radians(np.linspace(6.0, -6.0, poses)), near=0.01, step=1e-4)
+    assert found is not None
+    assert found.at == pytest.approx(math.radians(6.0))
+    assert found.low <= -8.0
+    if poses == 2:
+        assert found.value == pytest.approx(100.0 * math.sin(math.radians(6.0)) - 12.0, abs=0.05)
+    else:
+        assert found.value == pytest.approx(-8.0, abs=0.05)
+    assert found.low >= -8.0 - 200.0 * math.radians(12.0) / (min(poses, 60) - 1)
 
 
 def test_a_link_touches_a_pin_that_passes_its_layer():
