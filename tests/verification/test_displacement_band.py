@@ -114,6 +114,27 @@ def test_terms_of_opposite_sign_are_each_taken_at_their_worst() -> None:
     assert (against.low, against.value, against.high) == pytest.approx((-2.0 * moved, -moved, -0.5 * moved), rel=1e-9)
 
 
+def test_what_pins_sink_by_is_taken_at_its_worst_though_it_cancels() -> None:
+    """The load lifts the tip as the pin sinks at it, and lowers it by what the pin turns at its clamped bore.
+
+    The unit load is a force and a couple, so that the moment at the clamped bore has the other sign: F L times -L.
+    """
+    whole, length = FLAT.frame(1, FORCE), FLAT.length
+    wrench = np.array([0.0, 1.0, 0.0, 0.0, 0.0, -2.0 * length])
+    unit = solve_frame(replace(whole.model, loads=(NodeLoad(node=1, wrench=wrench),)))
+    plain = bounds(whole, unit, {}, [])
+    sink, turn = 1e-5, 1e-5 / length**2
+    across, about = sink * np.eye(6)[1], turn * np.eye(6)[5]
+    for bores in ([(1, across), (0, about)], [(0, about), (1, across)]):
+        found = bounds(whole, unit, {}, bores)
+        assert found.value == plain.value
+        assert found.low - plain.value == pytest.approx(-FORCE * turn * length**2, rel=1e-9)
+        assert found.high - plain.value == pytest.approx(FORCE * sink, rel=1e-9)
+    both = bounds(whole, unit, {}, [(0, across + about)])  # one bore that sinks and turns
+    assert both.low - plain.value == pytest.approx(-FORCE * turn * length**2, rel=1e-9)
+    assert both.high - plain.value == pytest.approx(FORCE * sink, rel=1e-9)
+
+
 @pytest.mark.parametrize("force", [-1.0, -40.0])
 def test_the_check_of_a_point_has_that_band_by_linear_theory_and_on_the_deformed_shape(force: float) -> None:
     case = slotted_lever(force=force)

@@ -14,6 +14,7 @@ from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 from loads.states.case_motion import solve_case_motion
 from reports.motion.csv_tables import write_tables
+from reports.motion.figures import rate_figures
 from reports.motion.lines import motion_lines
 from reports.motion.rate_rows import ends
 from reports.motion.rates import series, vector_extremes
@@ -178,6 +179,31 @@ def test_lines_say_once_what_load_cases_share(moved):
     assert head.index("angular speed") + len("angular speed") == unit.index("[rad/s]") + len("[rad/s]")
     assert "linkage, shaking moment about O:" in slow
     assert max(map(len, slow.split("\n"))) < 160
+
+
+def test_figures_draw_what_tables_tell_in_the_units_of_their_axes(moved):
+    """Two load cases at two speeds: power by the torque of virtual work in W, energy in N mm, forces in N."""
+    figures = rate_figures(moved)
+    assert list(figures) == ["link-speeds", "point-speeds", "energy-1", "energy-2", "energy-3", "energy-4"]
+    for name, figure, omega in (("slow", "energy-1", 2.0 * math.pi), ("fast", "energy-4", 20.0 * math.pi)):
+        speed, rate = block(omega)
+        drawn = {axes.get_ylabel(): axes.lines for axes in figures[figure].axes}
+        assert list(drawn) == ["energy [N·mm]", "drive power [W]", "force on the ground [N]"]
+        kinetic, power, shaking = (lines[0] for lines in drawn.values())
+        np.testing.assert_allclose(kinetic.get_ydata(), 0.5 * MASS * speed**2, atol=1e-12)
+        np.testing.assert_allclose(power.get_ydata(), moved.torque[name] * omega / 1e3, rtol=1e-9)
+        np.testing.assert_allclose(shaking.get_ydata(), np.abs(MASS * rate), atol=1e-12)
+        np.testing.assert_allclose(power.get_xdata(), 30.0 + np.linspace(0.0, 360.0, 73))
+    above, ground = (figures["energy-1"].axes[i].lines[2] for i in (0, 2))
+    assert (above.get_label(), min(above.get_ydata())) == ("potential, above its least", 0.0)
+    np.testing.assert_allclose(ground.get_ydata(), np.hypot(5.0 + MASS * block(2.0 * math.pi)[1], MASS * 9810.0))
+    speed, rate = block(2.0 * math.pi)
+    for axes, expected, unit in zip(figures["point-speeds"].axes, (speed, rate), ("mm/s", "mm/s²"), strict=True):
+        assert axes.get_ylabel().endswith(f"[{unit}]")
+        [line] = [line for line in axes.lines if "B" in line.get_label().split(", ")]
+        np.testing.assert_allclose(line.get_ydata(), np.abs(expected), atol=1e-9)
+    [crank] = [line for line in figures["link-speeds"].axes[0].lines if line.get_label() == "crank"]
+    np.testing.assert_allclose(crank.get_ydata(), 2.0 * math.pi)
 
 
 def test_numbers_of_tables():
