@@ -6,6 +6,7 @@ A block of 50 g is all of its mass: at constant ω, x = r cos φ + √(l² - (r 
 import csv
 import math
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 from loads.states.case_motion import solve_case_motion
 from reports.motion.csv_tables import write_tables
-from reports.motion.figures import rate_figures
+from reports.motion.figures import energy_figure, rate_figures
 from reports.motion.lines import motion_lines
 from reports.motion.rate_rows import ends
 from reports.motion.rates import series, vector_extremes
@@ -194,8 +195,11 @@ def test_figures_draw_what_tables_tell_in_the_units_of_their_axes(moved):
         np.testing.assert_allclose(power.get_ydata(), moved.torque[name] * omega / 1e3, rtol=1e-9)
         np.testing.assert_allclose(shaking.get_ydata(), np.abs(MASS * rate), atol=1e-12)
         np.testing.assert_allclose(power.get_xdata(), 30.0 + np.linspace(0.0, 360.0, 73))
-    above, ground = (figures["energy-1"].axes[i].lines[2] for i in (0, 2))
-    assert (above.get_label(), min(above.get_ydata())) == ("potential, above its least", 0.0)
+    ground, rates = figures["energy-1"].axes[2].lines[2], series(moved, "slow")
+    falling = replace(rates, whole=rates.whole | {"potential_energy": np.linspace(7.0, -5.0, 73)})
+    above = energy_figure(moved, "slow", falling).axes[0].lines[2]
+    assert above.get_label() == "potential, above its least"
+    np.testing.assert_allclose(above.get_ydata(), np.linspace(12.0, 0.0, 73), atol=1e-12)
     np.testing.assert_allclose(ground.get_ydata(), np.hypot(5.0 + MASS * block(2.0 * math.pi)[1], MASS * 9810.0))
     speed, rate = block(2.0 * math.pi)
     for axes, expected, unit in zip(figures["point-speeds"].axes, (speed, rate), ("mm/s", "mm/s²"), strict=True):
