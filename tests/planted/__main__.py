@@ -1,8 +1,8 @@
 """Plant the kept mistakes one at a time and tell which tests notice: ``python -m planted [--all] [WORD ...]``.
 
 With words, only mistakes whose kind, file or sentence has one of them. Each is planted in a copy of the checkout in a
-temporary folder and taken out again. Exit status 1 if one goes unnoticed, or if a test that a table names does not notice
-it. With ``--all`` the whole suite runs instead of the named tests, which takes some ten minutes for each mistake.
+temporary folder and taken out again. Exit status 1 if one goes unnoticed, or if a test that a table names does not
+notice it. With ``--all`` the whole suite runs instead of the named tests: some ten minutes for each mistake.
 """
 
 import argparse
@@ -16,21 +16,23 @@ from pathlib import Path
 
 from planted.mistakes import ROOT, Mistake, kept
 
-LEFT_OUT = shutil.ignore_patterns(".git", ".venv*", "out", "build", "__pycache__", ".*_cache", ".hypothesis", "*.egg-info")
+LEFT_OUT = (".git", ".venv*", "out", "build", "__pycache__", ".*_cache", ".hypothesis", "*.egg-info")
 WHOLE = ("-m", "not converged", "--numprocesses", "auto", "--dist", "worksteal")
-FAILED, PASSED, SOME_FAILED = "FAILED ", 0, 1
+NOTICED = ("FAILED ", "ERROR ")
+"""What pytest says of a test, and of one whose fixture fails."""
+PASSED, SOME_FAILED = 0, 1
 
 
 def failing(copy: Path, tests: Sequence[str]) -> list[str]:
     """Run tests on a copy of the checkout, and return the names of those that fail."""
-    command = [sys.executable, "-m", "pytest", "--no-header", "--tb=no", "-rf", "-p", "no:cacheprovider", *tests]
+    command = [sys.executable, "-m", "pytest", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider", *tests]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(copy), str(copy / "tests")])}
     environment |= {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": ""}
     done = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
     if done.returncode not in (PASSED, SOME_FAILED):
         raise SystemExit(f"the tests did not run:\n{done.stdout}{done.stderr}")
-    lines = [line for line in done.stdout.splitlines() if line.startswith(FAILED)]
-    return [line.removeprefix(FAILED).split(" - ")[0] for line in lines]
+    lines = [line for line in done.stdout.splitlines() if line.startswith(NOTICED)]
+    return [line.partition(" ")[2].split(" - ")[0] for line in lines]
 
 
 def noticing(copy: Path, mistake: Mistake, tests: Sequence[str]) -> list[str]:
@@ -61,12 +63,13 @@ def main() -> int:
     missed = 0
     with tempfile.TemporaryDirectory(prefix="planted-") as folder:
         copy = Path(folder, "checkout")
-        shutil.copytree(ROOT, copy, ignore=LEFT_OUT)
+        shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*LEFT_OUT))
         broken = failing(copy, WHOLE if options.all else sorted({test for one in asked for test in one.tests}))
         for test in broken:
             print(f"fails without any mistake, so that it notices none: {test}")
         for mistake in asked:
-            found = [test for test in noticing(copy, mistake, WHOLE if options.all else mistake.tests) if test not in broken]
+            every = noticing(copy, mistake, WHOLE if options.all else mistake.tests)
+            found = [test for test in every if test not in broken]
             blind = [name for name in mistake.tests if not any(is_one_of(test, [name]) for test in found)]
             missed += bool(blind or not found)
             print(f"{'noticed' if found else 'UNNOTICED'}: {mistake}", flush=True)

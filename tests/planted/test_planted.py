@@ -13,7 +13,14 @@ KEPT = list(kept())
 
 
 def mistake(**changed: object) -> Mistake:
-    entries = {"kind": "k", "file": "sum.py", "before": "a + b", "after": "a - b", "wrong": "w", "tests": ("test_sum.py",)}
+    entries = {
+        "kind": "k",
+        "file": "sum.py",
+        "before": "a + b",
+        "after": "a - b",
+        "wrong": "w",
+        "tests": ("test_sum.py",),
+    }
     return Mistake(**{**entries, **changed})  # type: ignore[arg-type]
 
 

@@ -310,8 +310,14 @@ def test_figure_record_and_sentences_tell_the_torque_of_a_fan():
     watts = [f"{coefficient * torque * omega / 1e3:.3g}" for coefficient in (C_N, low, high)]
     assert "0 W without air, {} W ({} to {}) with it".format(*watts) in air_lines(record)[1]
     figure = air_figures(moved)["air"]
-    drawn = figure.axes[0]
-    np.testing.assert_allclose(drawn.lines[0].get_ydata(), 0.0, atol=1e-12)
-    np.testing.assert_allclose(drawn.lines[1].get_ydata(), C_N * torque, rtol=1e-9)
+    for drawn, label, share in zip(
+        figure.axes, ("drive torque [N·mm]", "drive power [W]"), (torque, torque * omega / 1e3), strict=True
+    ):
+        assert drawn.get_ylabel() == label
+        np.testing.assert_allclose(drawn.lines[0].get_ydata(), 0.0, atol=1e-12)
+        np.testing.assert_allclose(drawn.lines[1].get_ydata(), C_N * share, rtol=1e-9)
+        [band] = drawn.collections
+        edges = band.get_paths()[0].vertices[:, 1]
+        assert (edges.min(), edges.max()) == pytest.approx((low * share, high * share), rel=1e-9)
     legends = [text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
     assert legends == ["without air", "C_N 2", "C_N 1.2 to 5"]

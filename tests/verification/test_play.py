@@ -270,7 +270,10 @@ def test_bands_reach_as_far_as_gradients_do_and_as_far_as_solved_extremes(push: 
         assert here is not None
         return here
 
-    for span, number in ((found.effort, lambda one: float(one.effort)), (found.distance, lambda one: float(one.distance))):
+    for span, number in (
+        (found.effort, lambda one: float(one.effort)),
+        (found.distance, lambda one: float(one.distance)),
+    ):
         by = gradients(number)
         reach = sum(radius * float(np.linalg.norm(by[name])) for name, radius in found.loose.radii.items())
         worst = {name: complex(*(g / np.linalg.norm(g))) * found.loose.radii[name] for name, g in by.items()}
@@ -280,7 +283,8 @@ def test_bands_reach_as_far_as_gradients_do_and_as_far_as_solved_extremes(push: 
         assert abs(ends[1] - span.value - reach) > 1e-3 * reach  # the two ways differ
     for name, span in found.forces.items():
         nominal = solved({}).force(name)
-        along = gradients(lambda one, name=name, way=nominal / abs(nominal): (np.conj(way) * one.force(name)).real)
+        way = nominal / abs(nominal)
+        along = gradients(lambda one, name=name, way=way: (np.conj(way) * one.force(name)).real)
         reach = sum(radius * float(np.linalg.norm(along[at])) for at, radius in found.loose.radii.items())
         worst = {at: complex(*(g / np.linalg.norm(g))) * found.loose.radii[at] for at, g in along.items()}
         assert span.high >= max(span.value + reach, abs(solved(worst).force(name))) * (1.0 - 1e-6)

@@ -410,7 +410,9 @@ def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
 
 
 @pytest.mark.parametrize("worst", [0, 1, 2])
-@pytest.mark.parametrize(("entry", "said"), [("imbalance", "leave a resultant of 50"), ("reaction", "free body react of 50")])
+@pytest.mark.parametrize(
+    ("entry", "said"), [("imbalance", "leave a resultant of 50"), ("reaction", "free body react of 50")]
+)
 def test_one_pose_out_of_balance_is_enough(entry, said, worst):
     """Whichever pose it is, and of loads and supports whichever it is."""
     good = np.full(3, 1e-9)

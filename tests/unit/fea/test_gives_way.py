@@ -65,7 +65,13 @@ def test_under_a_load_case_that_is_lost_links_and_pins_are_left_open_and_under_a
 
 def linear(factor, **entries):
     """A linkage of which linear theory alone tells, whose limit load is factor/SNAP to factor."""
-    entries = {"dead_point": 2.0 * factor, "frame": SimpleNamespace(), "sentence": "", "points": {}, "links": {}} | entries
+    entries = {
+        "dead_point": 2.0 * factor,
+        "frame": SimpleNamespace(),
+        "sentence": "",
+        "points": {},
+        "links": {},
+    } | entries
     return LargeDisplacement(state="off", span=100.0, buckling=factor, **entries)
 
 

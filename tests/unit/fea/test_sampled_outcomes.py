@@ -51,7 +51,13 @@ def samples(rows):
     return Told(check=check, states=sampler.states(deviations), deviations=deviations)
 
 
-ROWS = [(0.0, 0.0, 0.0, 0.0), (0.25, 0.0, 0.0, 0.0), (0.0, 0.2, -0.3, 0.0), (0.25, -0.4, 0.1, 0.5), (0.0, 0.3, 0.2, 0.2)]
+ROWS = [
+    (0.0, 0.0, 0.0, 0.0),
+    (0.25, 0.0, 0.0, 0.0),
+    (0.0, 0.2, -0.3, 0.0),
+    (0.25, -0.4, 0.1, 0.5),
+    (0.0, 0.3, 0.2, 0.2),
+]
 
 
 def test_bearing_is_told_by_the_strength_of_the_worse_eye_of_each_sample():

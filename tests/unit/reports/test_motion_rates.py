@@ -14,6 +14,7 @@ import pytest
 from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 from loads.states.case_motion import solve_case_motion
+from reports.figures.motion_figures import angles_figure, forces_figure, torque_figure
 from reports.motion.csv_tables import write_tables
 from reports.motion.figures import energy_figure, rate_figures
 from reports.motion.lines import motion_lines
@@ -208,6 +209,30 @@ def test_figures_draw_what_tables_tell_in_the_units_of_their_axes(moved):
         np.testing.assert_allclose(line.get_ydata(), np.abs(expected), atol=1e-9)
     [crank] = [line for line in figures["link-speeds"].axes[0].lines if line.get_label() == "crank"]
     np.testing.assert_allclose(crank.get_ydata(), 2.0 * math.pi)
+
+
+def test_figures_of_a_motion_draw_directions_torques_and_sizes_of_forces(moved):
+    """Of a slider-crank with a rod at asin((e - r sin φ)/l), whose load case with friction is drawn without it, too."""
+    phi = 30.0 + np.linspace(0.0, 360.0, 73)
+    rod = np.degrees(np.arcsin((E - R * np.sin(np.radians(phi))) / L))
+    angles = {line.get_label(): line for line in angles_figure(moved).axes[0].lines}
+    assert list(angles) == ["crank", "rod", "block"]
+    for link, expected in (("crank", phi), ("rod", rod), ("block", 0.0 * phi)):
+        np.testing.assert_allclose(angles[link].get_ydata(), expected, atol=1e-9)
+    [axes] = torque_figure(moved).axes
+    assert axes.get_ylabel() == "drive torque on crank [N·mm]"
+    torques = {line.get_label(): line.get_ydata() for line in axes.lines}
+    for name, torque in moved.torque.items():
+        np.testing.assert_array_equal(torques[name], torque)
+    rubbing = {name: torques[f"{name} without friction"] for name in ("slow", "fast")}
+    for name, torque in rubbing.items():
+        np.testing.assert_array_equal(torque, moved.frictionless[name])
+        assert np.all((torques[name] - torque)[1:-1] >= -1e-9)  # turning forwards it drives against friction
+    assert np.ptp(torques["slow"] - rubbing["slow"]) > 1.0
+    [axes] = forces_figure(moved, "fast").axes
+    drawn = {joint: line.get_ydata() for line in axes.lines for joint in line.get_label().split(", ")}
+    for joint in "OABS":
+        np.testing.assert_allclose(drawn[joint], np.hypot(*moved.forces["fast"].forces[joint].T))
 
 
 def test_numbers_of_tables():
