@@ -1,22 +1,25 @@
 """Buckling factors of links over a motion, against the check of single poses."""
 
+import tomllib
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from edited_cases import PLANAR
+from rocker_case import TOML
 
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import BeamCheck, check_beam, internal_forces
 from fea.buckling.buckling import ColumnFactors, column, worst_column
-from fea.common.link_loads import LinkLoads
+from fea.common.link_loads import LinkLoads, PinLoad
 from fea.common.scatter import Scatter
 from fea.motion import envelope_outcomes
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.link_history import link_histories
 from geometry.bodies.body import hand_section
 from loads.case.case import Case
-from loads.case.case_file import read_case
+from loads.case.case_file import read_case, validate
+from loads.records.applied import LineLoad
 from loads.states.case_motion import solve_case_motion
 
 CASES = [
@@ -117,3 +120,20 @@ def test_of_both_plates_and_all_poses_the_least_factor_is_told_where_it_is(
         [found] = envelope_outcomes.column_outcomes(moved, {"AE": histories}, counted)
         assert (found.value.value, found.verdict.value) == (value, verdict)
         assert said in found.reason
+
+
+def test_compression_by_spread_loads_is_largest_between_stations() -> None:
+    """3 - 0.1 x N/mm along 40 mm add up to 45 N at 30 mm, and to 40 N at half of the way and at its end."""
+    case = validate(tomllib.loads(TOML))
+    ends, total = [(3.0, -1.0), (-1.0, 3.0), (1.0, 1.0)], np.array([40.0, 40.0, 40.0])
+    at = np.zeros((2, 3, 3))
+    at[:, :, 0] = np.transpose(ends)
+    wrenches = np.zeros((2, 3, 6))
+    wrenches[1, :, 0] = -total
+    pins = tuple(
+        PinLoad(name=name, centre=np.array([x, 0.0, 0.0]), diameter=3.0, wrench=wrench)
+        for name, x, wrench in zip(("O4", "B"), (0.0, 40.0), wrenches, strict=True)
+    )
+    line = LineLoad(link="rocker", start=0.0, end=40.0, at_start=at[0], at_end=at[1], axes="link")
+    largest, _ = axial_compression(case, "rocker", LinkLoads(name="turn", pins=pins, lines=(line,)))
+    assert largest == pytest.approx([45.0, 40.0, 40.0])
