@@ -66,13 +66,14 @@ def test_under_a_load_case_that_is_lost_links_and_pins_are_left_open_and_under_a
 def linear(factor, **entries):
     """A linkage of which linear theory alone tells, whose limit load is factor/SNAP to factor."""
     entries = {
+        "state": "off",
         "dead_point": 2.0 * factor,
         "frame": SimpleNamespace(),
         "sentence": "",
         "points": {},
         "links": {},
     } | entries
-    return LargeDisplacement(state="off", span=100.0, buckling=factor, **entries)
+    return LargeDisplacement(span=100.0, buckling=factor, **entries)
 
 
 PLAY, AIR = Source(kind=SourceKind.PLAY), Source(kind=SourceKind.AIR)
@@ -112,3 +113,15 @@ def test_the_linkage_holds_no_more_than_its_weakest_solid(order):
     [found] = linkage_outcomes("a", linear(20.0), {"thick": light}, {link: factors[link] for link in order})
     assert "link thin by itself buckles at 2 times its load" in found.reason
     assert (found.value.value, found.value.low, found.value.high) == pytest.approx((2.0, 2.0 / SNAP, 6.0))
+
+
+@pytest.mark.parametrize("order", [("thick", "thin"), ("thin", "thick")])
+@pytest.mark.parametrize(("least", "verdict"), [(2.9, Verdict.UNDECIDED), (3.1, Verdict.PASS)])
+def test_a_load_that_the_frame_holds_is_left_open_by_a_solid_that_small_faults_may_buckle(order, least, verdict):
+    """The frame was followed and holds ten times the load; of two solids the weaker one has less than three."""
+    light = SimpleNamespace(worst=SimpleNamespace(equivalent=1.0), strength=10.0)
+    factors = {"thick": (5.0, 6.0), "thin": (least, 9.0)}
+    held = linear(100.0, state="deformed")
+    [found] = linkage_outcomes("a", held, {"thin": light}, {link: factors[link] for link in order})
+    assert (found.quantity, found.verdict) == (Quantity.LOAD_SHARE, verdict)
+    assert ("link thin by itself buckles at 2.9 times its load" in found.reason) == (verdict is Verdict.UNDECIDED)
