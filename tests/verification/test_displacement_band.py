@@ -88,6 +88,23 @@ def test_virtual_work_of_plain_beams_is_the_frames_displacement(case: Case, link
     assert band.value == pytest.approx(float(np.linalg.norm(solution.displacements[node, :3])), rel=1e-7)
 
 
+@pytest.mark.parametrize(
+    ("case", "link", "point"), [(slotted_lever(), "lever", "H"), (read_case("owl-wing-static"), "CH", "H")]
+)
+def test_a_load_that_is_turned_round_moves_a_point_as_far_the_other_way(case: Case, link: str, point: str) -> None:
+    """Least and largest are distances: the end beyond zero of a point that moves down is no least of 0."""
+    pose, title = case.solve_pose(), next(iter(case.load_cases))
+    loads = acting_loads(case, case.load_cases[title], pose.placement, {})
+    turned = tuple(replace(load, wrench=-load.wrench) for load in loads)
+    bands = []
+    for acting in (loads, turned):
+        frame = build_frame(case, pose, acting, held=case.pinned_drive)
+        found = point_bounds(case, frame, solve_frame(frame.model), link, point)
+        bands.append((found.low, found.value, found.high))
+    assert bands[0] == pytest.approx(bands[1], rel=1e-9)
+    assert 0.0 < bands[0][0] < bands[0][1]
+
+
 def test_the_factors_at_a_cross_hole_are_those_of_its_net_section() -> None:
     """By counting what is left of a section of many small squares."""
     part = TUBE.body.part
