@@ -4,6 +4,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from edited_cases import PLANAR
 
 from fea.buckling.linkage import NO_EQUILIBRIUM, linkage_outcomes, unless_it_gives_way
 from fea.common.band import Band
@@ -12,8 +13,9 @@ from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.nonlinear.stability import SNAP
-from fea.outcomes.solid_buckling import solid_growth
+from fea.outcomes.solid_buckling import _outcome, solid_growth
 from fea.refine.link_buckling import SolidBuckling
+from loads.case.case_file import read_case
 
 AB = ("a", "b")
 
@@ -29,6 +31,17 @@ def test_bending_of_a_solid_grows_as_towards_the_least_factor_that_its_mesh_allo
     for least in (0.9, 1.1, 10.0):  # 1.1 may be 0.99
         assert solid_growth(buckling(30.0, least, 0.1 if least < 10.0 else 0.0)).high == 1.0
     assert solid_growth(None).sources == solid_growth(SolidBuckling.unknown("coarse")).sources == ()
+
+
+def test_the_band_of_a_solids_factor_has_its_own_least_and_most_with_the_error_of_its_mesh():
+    """Imperfections take a factor of three more, and the modulus of the card has a range."""
+    case = read_case("owl-wing-static", [PLANAR, 'parts.tube.material="pla-fdm-xy"'])
+    card = case.material_of("AE")
+    soft, stiff = (end / card.youngs_modulus for end in card.youngs_modulus_range)
+    assert soft < 1.0 < stiff
+    found = _outcome(case, "weight", "AE", buckling(8.0, 4.0, error=0.2)).value
+    assert (found.value, found.low, found.high) == pytest.approx((8.0, 3.2 / 3.0 * soft, 36.0 * stiff))
+    assert "at 4 times where its joints move with it" in _outcome(case, "weight", "AE", buckling(8.0, 4.0)).reason
 
 
 def passing(subject, quantity, load_case, value=5.0):
