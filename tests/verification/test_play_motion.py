@@ -97,6 +97,10 @@ def test_drive_torque_at_all_poses() -> None:
     solved = max(torque(angles[pose], 0.2 * np.exp(1j * way)) for way in np.linspace(0.0, 2.0 * math.pi, 721))
     assert value == pytest.approx(solved, rel=1e-5)
     assert value >= most.max()
+    value, pose = loose(of).extreme_effort("load", -1.0)
+    solved = min(torque(angles[pose], 0.2 * np.exp(1j * way)) for way in np.linspace(0.0, 2.0 * math.pi, 721))
+    assert value == pytest.approx(min(solved, least.min()), rel=1e-5)
+    assert pose == int(np.argmin(least))
 
 
 def test_free_motion_at_all_poses() -> None:

@@ -23,10 +23,11 @@ from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.elements.space import displacement_space
 from fea.frame.case_statics import solve_case_statics
 from fea.motion import envelope
+from fea.motion import envelope_outcomes as outcomes_over_motion
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
 from fea.motion.fatigue import closed_history, signed_stress
-from fea.motion.link_envelope import link_motion
+from fea.motion.link_envelope import _balanced, link_motion
 from fea.motion.link_history import link_histories
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.pins import stress_at, stress_of
@@ -37,6 +38,7 @@ from fea.superposition.unit_solutions import nodal_stress
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.meshing.mesh import mesh_body
 from loads.case.case_file import read_case
+from loads.records.check_spec import BearingCheck
 from loads.states.case_motion import solve_case_motion
 
 TOML = """
@@ -364,6 +366,28 @@ def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(
     assert found["eyes"].value.value == pytest.approx(eye)
 
 
+@pytest.mark.parametrize("second", [False, True])
+def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, second):
+    """Not where the joint force is largest, nor at a pose that was left out."""
+    told, wrenches = [], np.arange(4.0)[:, None] * np.ones(6)
+    eyes = [np.array([1.0, 5.0, 2.0, 30.0]), np.array([4.0, 3.0, 9.0, 20.0])]
+    monkeypatch.setattr(outcomes_over_motion, "pressing", lambda *_: dict(enumerate(eyes[:: -1 if second else 1])))
+    monkeypatch.setattr(outcomes_over_motion, "joint_growth", lambda *_: None)
+    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[5]))
+    monkeypatch.setattr(
+        outcomes_over_motion, "_complete", lambda *_: SimpleNamespace(reason="", because=lambda _: None)
+    )
+    forces = {"B": np.array([[9.0, 0.0], [8.0, 0.0], [7.0, 0.0], [6.0, 0.0]])}
+    solved = SimpleNamespace(joints={"B": SimpleNamespace(wrench=wrenches)}, forces=forces)
+    case = SimpleNamespace(bearing_joints=["B"], linkage=SimpleNamespace(rise=lambda joint: 0.0))
+    motion = SimpleNamespace(coordinate="crank", angles=np.zeros(4))
+    check = BearingCheck.model_validate({"type": "bearing"})
+    moved = SimpleNamespace(case=case, forces={"push": solved}, motion=motion)
+    list(outcomes_over_motion._joints(moved, "eyes", check, np.arange(4) < 3))
+    [[wrench]] = told
+    assert wrench[0] == 2.0
+
+
 def test_no_joint_passes_where_poses_were_left_out(path):
     moved = solve_case_motion(edited(path, ['checks.eyes={type="bearing", minimum=0.001}']))
     every = np.ones(25, dtype=bool)
@@ -407,6 +431,19 @@ def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
             solve()
     else:
         assert solve().imbalance > 1e-5
+
+
+@pytest.mark.parametrize("worst", [0, 1, 2])
+@pytest.mark.parametrize(
+    ("entry", "said"), [("imbalance", "leave a resultant of 50"), ("reaction", "free body react of 50")]
+)
+def test_one_pose_out_of_balance_is_enough(entry, said, worst):
+    """Whichever pose it is, and of loads and supports whichever it is."""
+    good = np.full(3, 1e-9)
+    bad = np.where(np.arange(3) == worst, 0.5, good)
+    _balanced(SimpleNamespace(imbalance=good, reaction=good))
+    with pytest.raises(CannotRunError, match=said):
+        _balanced(SimpleNamespace(**{"imbalance": good, "reaction": good, entry: bad}))
 
 
 def test_what_cannot_be_enveloped_is_refused(path, tmp_path):

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from importlib.resources import files
+from types import SimpleNamespace
 
 import eye_link
 import numpy as np
@@ -12,6 +13,7 @@ from materials import SOURCED_ENTRIES
 from pydantic_core import PydanticCustomError
 
 from fea.buckling.linkage import linkage_outcomes
+from fea.check import load_growth
 from fea.check.fidelity import decided_by_hand, hand_bands
 from fea.check.run import check_case
 from fea.common.band import Band
@@ -226,3 +228,17 @@ class _Idle:
 
     class worst:  # noqa: N801
         equivalent = 0.0
+
+
+@pytest.mark.parametrize("order", [("stiff", "soft", "plain"), ("soft", "plain", "stiff"), ("plain", "stiff", "soft")])
+def test_what_grows_is_asked_at_the_outer_ends_of_the_load_and_of_the_moduli_of_all_links(monkeypatch, order):
+    """The load is 0.9 to 1.2 times its own, one modulus down to half of its own, and another up to twice it."""
+    ranges = {"stiff": (1000.0, 2000.0), "soft": (500.0, 1000.0), "plain": None}
+    cards = {x: SimpleNamespace(youngs_modulus=1000.0, youngs_modulus_range=ends) for x, ends in ranges.items()}
+    case = SimpleNamespace(material_of=cards.get, load_cases={"push": SimpleNamespace(scatter=(0.9, 1.2))})
+    asked = []
+    monkeypatch.setattr(load_growth, "_numbers", lambda hands, reactions: ({}, {}, {}))
+    monkeypatch.setattr(load_growth, "_at", lambda *given: asked.append(given[-1]))
+    moved = SimpleNamespace(state="deformed", reactions=None)
+    load_growth.growths(case, "push", None, (), moved, None, dict.fromkeys(order))
+    assert asked == [pytest.approx(0.9 * 0.5), pytest.approx(1.2 * 2.0)]

@@ -102,6 +102,22 @@ def test_what_fits_no_bore_is_refused(change, said):
         place(part(), moved(np.eye(3), np.zeros(3)), wanted(points, DIAMETERS | change))
 
 
+@pytest.mark.parametrize("off", POINTS)
+def test_every_bore_has_to_lie_at_its_point(off):
+    """One of three off by twice place_tolerance: it is refused though the others are nearer than that."""
+    points = POINTS | {off: (POINTS[off][0], POINTS[off][1] + (0.2 if off == "C" else 0.35))}
+    with pytest.raises(CaseError, match="no parallel bores lie as the link's points do"):
+        place(part(), moved(np.eye(3), np.zeros(3)), wanted(points))
+
+
+def test_a_third_bore_that_is_not_parallel_fits_no_point():
+    """It has the diameter and the place of its point, and is the one that decides nothing about direction."""
+    bores = moved(np.eye(3), np.zeros(3))
+    tilted = [*bores[:2], bore("bore 3", bores[2].centre, 6.0, (0.0, 0.1, np.sqrt(0.99)))]
+    with pytest.raises(CaseError, match="no parallel bores lie as the link's points do"):
+        place(part(), tilted, wanted())
+
+
 def test_named_bores_that_are_not_parallel_are_refused_with_the_angle():
     bores = [bore("bore 1", (0, 0, 0), 5.0), bore("bore 2", (60.0, 0, 0), 4.0, (0.0, 0.6, 0.8))]
     with pytest.raises(CaseError, match=r"bores of A and B \(bore 1, bore 2\) stand at 36.9 degrees"):
