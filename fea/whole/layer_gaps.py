@@ -7,6 +7,7 @@ of its flexibility, of the load and of the moduli, and by the play at all rims a
 (``fea.outcomes.free_motion``), for links that do not bend by it.
 """
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,6 +25,7 @@ from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.free_motion import loose_holes, rim_forces
+from geometry.clearance.shape import TOUCHING
 from loads.case.case import Case
 from loads.case.joint_rules import clearances
 from loads.records.check_spec import ClearanceCheck
@@ -65,29 +67,26 @@ def overlaps(frame: LinkageFrame, assembly: Assembly) -> Iterator[Overlap]:
     Yields
     ------
     Overlap
-        For every two pieces of two links.
+        For every two pieces of two links, but for links on one slider, bonded ones, and faces that touch as they are.
     """
     import shapely
 
     pose = frame.pose
+    together = {frozenset(joint.links) for joint in pose.linkage.joints.values() if joint.bears_moment}
     placed = {
         link: [
-            (
-                core,
-                shapely.transform(core.polygon, lambda xy, link=link: xy @ pose.rotation(link).T + pose.origins[link]),
-            )
+            (core, shapely.transform(core.polygon, lambda xy, at=link: xy @ pose.rotation(at).T + pose.origins[at]))
             for core in shape.cores
         ]
         for link, shape in assembly.links.items()
     }
-    for one, cores in placed.items():
-        for other, above in placed.items():
-            for core, outline in cores if one != other else ():
-                for upper, over in above:
-                    gap = upper.low - core.high
-                    common = outline.intersection(over) if gap >= 0.0 else None
-                    if common is not None and common.area > 0.0:
-                        yield Overlap(lower=one, upper=other, gap=gap, places=shapely.get_coordinates(common))
+    for one, other in itertools.permutations(placed, 2):
+        for core, outline in placed[one] if frozenset((one, other)) not in together else ():
+            for upper, over in placed[other]:
+                gap = upper.low - core.high
+                common = outline.intersection(over) if gap > TOUCHING * (core.high - core.low) else None
+                if common is not None and common.area > 0.0:
+                    yield Overlap(lower=one, upper=other, gap=gap, places=shapely.get_coordinates(common))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
