@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.check.fidelity import DecidedLink, Decision, HandBands
-from fea.check.link_by_hand import LinkByHand
-from fea.check.load_growth import Growths
-from fea.check.solid_result import solid_result
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
+from fea.doubts.load_growth import Growths
+from fea.links.fidelity import DecidedLink, Decision, HandBands
+from fea.links.link_by_hand import LinkByHand
+from fea.links.solid_result import solid_result
 from fea.outcomes.result import HandResult, LinkResult, SolidResult
 from fea.outcomes.solid_buckling import solid_buckling, solid_growth
 from fea.refine.link_series import STRESS, PeakQuantity

@@ -11,27 +11,27 @@ from pydantic_core import PydanticCustomError
 from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
-from fea.check.fidelity import DecidedLink, by_hand, decide
-from fea.check.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
 from fea.check.known_stiffness import with_known_stiffness
-from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
 from fea.check.link_result import by_hand_shares, link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
-from fea.check.load_growth import SOURCES, Growths, growths
-from fea.check.other_case import Doubt, Plates, widened
-from fea.check.play_doubt import play_doubt, play_warnings, shaken
 from fea.check.point_solids import decide_point
-from fea.check.range_doubt import AirDoubt, FrictionDoubt, air_warnings, friction_warnings
 from fea.check.solid_frame import with_solids
-from fea.check.solid_result import link_task
-from fea.check.tight_pins import SharedCouples, tight_pin_warnings
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
+from fea.doubts.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
+from fea.doubts.load_growth import SOURCES, Growths, growths
+from fea.doubts.other_case import Doubt, Plates, widened
+from fea.doubts.play_doubt import play_doubt, play_warnings, shaken
+from fea.doubts.range_doubt import AirDoubt, FrictionDoubt, air_warnings, friction_warnings
+from fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
 from fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
 from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
+from fea.links.fidelity import DecidedLink, by_hand, decide
+from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
+from fea.links.solid_result import link_task
 from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
@@ -293,7 +293,7 @@ def check_case(
     name : str, optional
         Path or built-in name of the case, for companion files and the report.
     fidelity : {"auto", "beam", "frame", "solid"}
-        "auto" takes the cheapest model that decides each link (``fea.check.fidelity``). The others take one model for
+        "auto" takes the cheapest model that decides each link (``fea.links.fidelity``). The others take one model for
         all links. "beam" is hand calculation alone; a link without calibrated bands gets no verdict. "frame" means
         the same: a frame is solved wherever joint forces need one.
     threads : int, optional

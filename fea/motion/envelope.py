@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.run import effort_of
-from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, load_scatter
 from fea.common.threads import bounded, bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.elements.space import DisplacementSpace, displacement_space
+from fea.links.solid_result import link_task
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.buckling.buckling import column_outcome, worst_column
-from fea.check.other_case import widened
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from fea.doubts.other_case import widened
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import ways_borne
 from fea.common.link_loads import LinkLoads
+from fea.doubts.force_doubt import ways_borne
 from fea.frame.joint_forces import JointForces, joint_forces, solved_frame
 from geometry.base.ties import first_largest
 from loads.records.applied import Load, chosen

@@ -2,11 +2,11 @@
 
 With play each link is looked at in two poses: that in which most acts on it, and that in which most may act with play,
 by the first-order ends of its joint forces at all poses. There it is calculated by hand as a check of one pose does
-(``fea.check.play_doubt``), and the larger stress of both, over that without play, widens its bands.
+(``fea.doubts.play_doubt``), and the larger stress of both, over that without play, widens its bands.
 
 So does the range of C_N of wings that flap: a link is calculated by hand at its worst poses with the stated C_N and
-with either end of the range, and its largest stress of each is compared, as in a check (``fea.check.range_doubt``). And
-so does friction, at either end of what it may be.
+with either end of the range, and its largest stress of each is compared, as in a check
+(``fea.doubts.range_doubt``). And so does friction, at either end of what it may be.
 """
 
 from collections.abc import Callable
@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import measures
-from fea.check.play_doubt import play_doubt
-from fea.check.range_doubt import air_scatter, friction_scatter
 from fea.common.scatter import Scatter
 from fea.common.source import distinct, play_source
+from fea.doubts.force_doubt import measures
+from fea.doubts.play_doubt import play_doubt
+from fea.doubts.range_doubt import air_scatter, friction_scatter
 from fea.motion.buckling_history import factors_over_motion
 from fea.motion.layered import forces_at
 from fea.motion.link_history import link_histories

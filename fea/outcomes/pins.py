@@ -349,7 +349,7 @@ def pin_outcome(
     stress : PinStress
         Of its pin.
     growth : Scatter, optional
-        By which the joint's force grows beside scattered loads (``fea.check.load_growth``).
+        By which the joint's force grows beside scattered loads (``fea.doubts.load_growth``).
 
     Returns
     -------

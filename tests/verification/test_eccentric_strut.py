@@ -7,12 +7,12 @@ import pytest
 from bars_in_layers import parallel_bars
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import measures
-from fea.check.link_by_hand import link_by_hand
 from fea.check.run import check_case
-from fea.check.second_order import on_tilting_pins, second_order_loads
 from fea.common.link_loads import LinkLoads, PinLoad
+from fea.doubts.force_doubt import measures
 from fea.frame.case_statics import solve_case_statics
+from fea.links.link_by_hand import link_by_hand
+from fea.links.second_order import on_tilting_pins, second_order_loads
 from loads.case.case import Case
 
 WIDE, THICK, LONG, BESIDE = 16.0, 3.0, 100.0, 10.0

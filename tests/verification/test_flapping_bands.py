@@ -7,11 +7,11 @@ import pytest
 from edited_cases import edited
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import measures
 from fea.check.run import check_case
 from fea.common.convex import least_of_convex
 from fea.common.source import SourceKind
 from fea.common.verdict import Verdict
+from fea.doubts.force_doubt import measures
 from fea.motion.buckling_history import factors_over_motion
 from fea.motion.envelope import _Envelope
 from fea.motion.link_history import link_histories

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from rocker_case import TOML
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import measures
 from fea.common.source import SourceKind
+from fea.doubts.force_doubt import measures
 from fea.motion.envelope import envelope_case
 from fea.motion.loosened import joint_growth, loosened
 from fea.refine.refinement import Effort

@@ -12,13 +12,13 @@ import pytest
 from tilting_bars import PLA, four_bar
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import sharing_doubt, ways_borne
 from fea.check.solid_frame import with_solids
-from fea.check.solid_result import link_task
 from fea.common.convex import outermost
+from fea.doubts.force_doubt import sharing_doubt, ways_borne
 from fea.frame.case_statics import CaseStatics, solve_case_statics
 from fea.frame.joint_forces import JointForces
 from fea.frame.thrust import thrusts
+from fea.links.solid_result import link_task
 from fea.refine.refinement import START, Effort, RefinedSolid, refine_links
 from fea.solid.solution import SolidSolution, solve_solid
 from fea.solid.stress import stress_field
@@ -83,7 +83,7 @@ def test_the_corners_of_the_hull_bear_the_most():
     few = sharing_doubt(case, "l", forces, statics.loads["l"])
     assert len(ways_borne(case, "l", "rocker", forces, statics.loads["l"])) < len(forces.sharings)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("fea.check.force_doubt.outermost", lambda points: np.arange(len(points)))
+        patch.setattr("fea.doubts.force_doubt.outermost", lambda points: np.arange(len(points)))
         every = sharing_doubt(case, "l", forces, statics.loads["l"])
     assert few.stress.keys() == every.stress.keys() == set(case.checked_links)
     for link, share in every.stress.items():

@@ -13,13 +13,13 @@ from materials import SOURCED_ENTRIES
 from pydantic_core import PydanticCustomError
 
 from fea.buckling.linkage import linkage_outcomes
-from fea.check import load_growth
-from fea.check.fidelity import decided_by_hand, hand_bands
 from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, strength_scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import Verdict
+from fea.doubts import load_growth
+from fea.links.fidelity import decided_by_hand, hand_bands
 from fea.motion.envelope import envelope_case
 from fea.motion.envelope_outcomes import envelope_outcomes
 from fea.nonlinear import large_displacement

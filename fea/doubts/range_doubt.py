@@ -15,10 +15,10 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from fea.check.other_case import Doubt, OtherCase, shape_of
 from fea.common.convex import least_of_convex
 from fea.common.scatter import Scatter
 from fea.common.source import air_source, friction_source
+from fea.doubts.other_case import Doubt, OtherCase, shape_of
 from fea.frame.case_statics import CaseStatics, alone, at_friction_ends, solve_case_statics
 from fea.nonlinear.large_displacement import LargeDisplacement
 from loads.case.joint_rules import friction_ranges

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
-from fea.check.force_doubt import sharing_doubt
 from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.verdict import CheckOutcome, Quantity, Verdict
+from fea.doubts.force_doubt import sharing_doubt
 from fea.frame.joint_forces import JointForces
 from geometry.linkage.linkage import Linkage
 from loads.case.case import Case
@@ -34,7 +34,7 @@ class SharedCouples:
     loads : sequence of Load
         That act on the links.
     grown : bool
-        As of ``fea.check.force_doubt.sharing_doubt``.
+        As of ``fea.doubts.force_doubt.sharing_doubt``.
     by_hand : mapping of str to Scatter
         Link -> what the ways of sharing make of its stress by hand.
     told : mapping of str to Scatter

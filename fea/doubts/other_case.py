@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from fea.buckling.buckling import least_factor
-from fea.check.fidelity import hand_bands
-from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand
-from fea.check.load_growth import LEAST, Growths
-from fea.check.solid_result import link_task
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
 from fea.common.verdict import CheckOutcome, Quantity
+from fea.doubts.load_growth import LEAST, Growths
 from fea.frame.case_statics import CaseStatics
+from fea.links.fidelity import hand_bands
+from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
+from fea.links.solid_result import link_task
 from fea.nonlinear.large_displacement import LEAST_FACTOR, LargeDisplacement, examine
 from loads.case.case import Case
 from loads.statics.statics import Reactions
@@ -137,8 +137,6 @@ def widened(outcome: CheckOutcome, spread: Scatter) -> CheckOutcome:
     outcome : CheckOutcome
     spread : Scatter
         Of the inverse of the factor.
-    cause : str, optional
-        What that is, for people; the range of C_N unless given.
 
     Returns
     -------

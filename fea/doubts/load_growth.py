@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind
 from fea.frame.joint_forces import joint_forces
+from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from fea.nonlinear.stability import growth
 from geometry.base.errors import CannotRunError, CaseError

@@ -4,7 +4,7 @@ Each cause changes a joint force, and a link's stress by hand calculation, by so
 shares of stiffnesses add up, each upwards or downwards; all causes are taken at their worst together. How pins share
 the couples between layers is one cause, with several answers: the least and the greatest of them count. A link in
 compression on pins that tilt bends out of the plane from the first newton, by the couples of its layers, and more than
-in the frame, whose pins keep its angles: the answers of sharing hold that growth (``fea.check.second_order``).
+in the frame, whose pins keep its angles: the answers of sharing hold that growth (``fea.links.second_order``).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -12,16 +12,16 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from fea.beam.cut_free import link_loads
-from fea.check.link_by_hand import link_by_hand
-from fea.check.load_growth import LEAST, Growths
-from fea.check.second_order import on_tilting_pins
 from fea.common.convex import outermost
 from fea.common.link_loads import LinkLoads
 from fea.common.plates import plates
 from fea.common.scatter import Scatter
 from fea.common.source import COUPLES, Source
+from fea.doubts.load_growth import LEAST, Growths
 from fea.frame.deviation import Deviation
 from fea.frame.joint_forces import JointForces
+from fea.links.link_by_hand import link_by_hand
+from fea.links.second_order import on_tilting_pins
 from loads.case.case import Case
 from loads.case.forks import apart
 from loads.records.applied import Load
