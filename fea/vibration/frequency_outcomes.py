@@ -121,8 +121,9 @@ def least_at(history: FrequencyHistory) -> float:
     float
         Value of the coordinate [rad, mm].
     """
-    low = history.low[:, 0]
-    return float(history.at[int(np.argmax(low <= (1.0 + _ROUNDING) * low.min()))])
+    low, value = history.low[:, 0], history.frequencies[:, 0]
+    value = np.where(low <= (1.0 + _ROUNDING) * low.min(), value, np.inf)
+    return float(history.at[int(np.argmax(value <= (1.0 + _ROUNDING) * value.min()))])
 
 
 def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, history: FrequencyHistory) -> CheckOutcome:

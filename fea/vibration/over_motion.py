@@ -162,9 +162,9 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
                     known[i] = None
         return known[i]
 
-    def least(i: int) -> float:
+    def least(i: int) -> tuple[float, float]:
         found = modes(i)
-        return math.inf if found is None else found.modes[0].frequency.low
+        return (math.inf, math.inf) if found is None else _ends(found)
 
     size = len(motion.angles)
     coarse = range(0, size, FINE)
@@ -180,7 +180,12 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
     return _history(abs(speed) / (2.0 * math.pi), found, left_out, count)
 
 
-def _least_between(function: Callable[[int], float], low: int, high: int) -> None:
+def _ends(modes: LinkageModes) -> tuple[float, float]:
+    """Low end of the lowest frequency, and the frequency, which tells where pins that run leave all poses at 0."""
+    return modes.modes[0].frequency.low, modes.modes[0].frequency.value
+
+
+def _least_between(function: Callable[[int], tuple[float, float]], low: int, high: int) -> None:
     """Look for the least value of a function of whole numbers, which keeps what it found, by golden section."""
     while high - low > 2:
         step = max(round(_GOLDEN * (high - low)), 1)
@@ -208,7 +213,7 @@ def _history(
         values = [[float(getattr(band, end)) for band in row] for row in bands]
         return np.array([row + [math.inf] * (count - len(row)) for row in values])
 
-    lowest = min(found.values(), key=lambda modes: (modes.modes[0].frequency.low, modes.modes[0].frequency.value))
+    lowest = min(found.values(), key=_ends)
     if left_out:
         told = f"{len(left_out)} poses were left out, in which there is no equilibrium"
         lowest = replace(lowest, notes=(*lowest.notes, told))
