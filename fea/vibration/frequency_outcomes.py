@@ -12,7 +12,7 @@ from fea.vibration.harmonics import HIGHEST, Meeting, in_words, meetings
 from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes
 from fea.vibration.modes import Mode
-from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies
+from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies, lowest_pose
 from fea.vibration.running_holes import running_holes
 from geometry.base.ties import first_least
 from loads.case.case import Case
@@ -122,7 +122,7 @@ def least_at(history: FrequencyHistory) -> float:
     float
         Value of the coordinate [rad, mm].
     """
-    return float(history.at[first_least(history.low[:, 0])])
+    return float(history.at[lowest_pose(history.low[:, 0], history.frequencies[:, 0])])
 
 
 def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, history: FrequencyHistory) -> CheckOutcome:

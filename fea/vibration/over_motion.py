@@ -17,7 +17,7 @@ from fea.frame.build import build_frame
 from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes, linkage_modes
 from geometry.base.errors import CannotRunError, CaseError
-from geometry.base.ties import first_least
+from geometry.base.ties import TIE, first_least
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.joint_rules import rubbing_joints
@@ -163,9 +163,9 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
                     known[i] = None
         return known[i]
 
-    def least(i: int) -> float:
+    def least(i: int) -> tuple[float, float]:
         found = modes(i)
-        return math.inf if found is None else found.modes[0].frequency.low
+        return (math.inf, math.inf) if found is None else _ends(found)
 
     size = len(motion.angles)
     coarse = range(0, size, FINE)
@@ -181,7 +181,12 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
     return _history(abs(speed) / (2.0 * math.pi), found, left_out, count)
 
 
-def _least_between(function: Callable[[int], float], low: int, high: int) -> None:
+def _ends(modes: LinkageModes) -> tuple[float, float]:
+    """Low end of the lowest frequency, and the frequency, which tells where pins that run leave all poses at 0."""
+    return modes.modes[0].frequency.low, modes.modes[0].frequency.value
+
+
+def _least_between(function: Callable[[int], tuple[float, float]], low: int, high: int) -> None:
     """Look for the least value of a function of whole numbers, which keeps what it found, by golden section."""
     while high - low > 2:
         step = max(round(_GOLDEN * (high - low)), 1)
@@ -200,6 +205,22 @@ def _at(
     return linkage_modes(case, name, frame, masses, count=count)
 
 
+def lowest_pose(low: Floats, value: Floats) -> int:
+    """Return the number of the pose of the least low end; of several alike, such as 0, that of the least value.
+
+    Parameters
+    ----------
+    low, value : array (n,)
+        Lowest natural frequency of every pose, and the low end of its band [Hz].
+
+    Returns
+    -------
+    int
+    """
+    least = low[first_least(low)]
+    return first_least(np.where(low <= (1.0 + TIE) * least, value, math.inf))
+
+
 def _history(
     driving: float, found: Mapping[float, LinkageModes], left_out: tuple[float, ...], count: int
 ) -> FrequencyHistory:
@@ -210,8 +231,8 @@ def _history(
         return np.array([row + [math.inf] * (count - len(row)) for row in values])
 
     first = [modes.modes[0].frequency for modes in found.values()]
-    ends = [band.low for band in first]
-    lowest = list(found.values())[first_least(ends if min(ends) > 0.0 else [band.value for band in first])]
+    number = lowest_pose(np.array([band.low for band in first]), np.array([band.value for band in first]))
+    lowest = list(found.values())[number]
     if left_out:
         told = f"{len(left_out)} poses were left out, in which there is no equilibrium"
         lowest = replace(lowest, notes=(*lowest.notes, told))

@@ -19,6 +19,8 @@ from fea.vibration.modes import Mode
 from loads.case.case import Case
 
 ACROSS: tuple[Dof, Dof] = ("rx", "ry")
+_NOTHING = 1e-4
+"""Share of the frequency with tight pins below which that with hinges is rounding."""
 RUNNING = Source(kind=SourceKind.COUPLES, detail="pins tight in both links, or hinges in holes in which they may run")
 Hole = tuple[str, str]
 """Joint, and the one of its links in which the pin may run."""
@@ -97,6 +99,7 @@ def with_low_ends(modes: Sequence[Mode], hinged: Sequence[Mode]) -> tuple[Mode, 
     found = []
     for k, mode in enumerate(modes):
         band, low = mode.frequency, hinged[k].frequency.low if k < len(hinged) else 0.0
+        low = low if low > _NOTHING * band.value else 0.0
         if low < band.low:
             band = replace(band, low=low, sources=distinct(band.sources, (RUNNING,)))
         found.append(replace(mode, frequency=band))
