@@ -18,7 +18,8 @@ from fea.beam.cut_free import beam_loads, link_loads
 from fea.beam.theory import check_beam
 from fea.buckling.buckling import buckling_outcomes
 from fea.common.band import Band
-from fea.common.source import SourceKind
+from fea.common.scatter import Scatter
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.elements.space import displacement_space
 from fea.frame.case_statics import solve_case_statics
@@ -26,9 +27,11 @@ from fea.motion import envelope
 from fea.motion import envelope_outcomes as outcomes_over_motion
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
+from fea.motion.envelope_result import LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import closed_history, signed_stress
-from fea.motion.link_envelope import _balanced, link_motion
+from fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
 from fea.motion.link_history import link_histories
+from fea.motion.mesh_factors import MeshFactors
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.pins import stress_at, stress_of
 from fea.refine.refinement import START, Effort
@@ -444,6 +447,45 @@ def test_one_pose_out_of_balance_is_enough(entry, said, worst):
     _balanced(SimpleNamespace(imbalance=good, reaction=good))
     with pytest.raises(CannotRunError, match=said):
         _balanced(SimpleNamespace(**{"imbalance": good, "reaction": good, entry: bad}))
+
+
+def test_scatter_of_the_load_widens_tension_and_compression_to_both_sides():
+    """Stress between -4 and -2 MPa is between -8 and -1 MPa under half to twice the load, that of 3 to 6 1.5 to 12."""
+    own = LoadCaseEnvelope(
+        name="push", variants=(), governing=None, value=np.array([-3.0, 4.0]), low=np.array([-4.0, 3.0]),
+        high=np.array([-2.0, 6.0]), stress=Band(value=4.0, low=3.0, high=6.0), safety_factor=Band.exact(15.0),
+        pose=1, location=np.zeros(3), fatigue=None, discretisation=None,
+    )  # fmt: skip
+    load = Scatter(low=0.5, high=2.0, sources=(Source(kind=SourceKind.LOAD),))
+    found = _scattered(own, SimpleNamespace(allowable=60.0, strength_range=(48.0, 90.0)), load)
+    assert found.low == pytest.approx([-8.0, 1.5])
+    assert found.high == pytest.approx([-1.0, 12.0])
+    assert (found.stress.low, found.stress.high) == (1.5, 12.0)
+    factor = found.safety_factor
+    assert (factor.value, factor.low, factor.high) == pytest.approx((15.0, 48.0 / 12.0, 90.0 / 1.5))
+
+
+@pytest.mark.parametrize("order", [[0, 1, 2, 3], [1, 3, 2, 0], [2, 0, 3, 1]])
+def test_an_envelope_holds_every_way_in_which_pins_press_and_torque_enters(order):
+    """At each pose the least and the largest of four ways; the value is the largest of the two as stated."""
+    stresses = {(180.0, "eye-faces"): [5.0, -2.0, 9.0], (180.0, "bore-shear"): [3.0, -6.0, 11.0],
+                (100.0, "eye-faces"): [6.0, -1.0, 8.0], (100.0, "bore-shear"): [4.0, -3.0, 10.0]}  # fmt: skip
+    every = [
+        VariantCurve(span=span, transfer=transfer, stress=np.array(stress), node=np.arange(3), first=0)
+        for (span, transfer), stress in stresses.items()
+    ]
+    motion = SimpleNamespace(
+        stated="eye-faces",
+        material=SimpleNamespace(allowable=60.0),
+        solved=SimpleNamespace(space=SimpleNamespace(nodes=np.eye(3))),
+    )
+    motion._governing = lambda variants: LinkMotion._governing(motion, variants)
+    found = LinkMotion._by_meshes(motion, "push", [every[i] for i in order], MeshFactors())
+    assert found.value == pytest.approx([6.0, -1.0, 9.0])
+    assert found.low == pytest.approx([3.0, -6.0, 8.0])
+    assert found.high == pytest.approx([6.0, -1.0, 11.0])
+    assert (found.stress.value, found.stress.low, found.stress.high, found.pose) == (9.0, 8.0, 11.0, 2)
+    assert found.safety_factor.low == pytest.approx(60.0 / 11.0)
 
 
 def test_what_cannot_be_enveloped_is_refused(path, tmp_path):
