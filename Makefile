@@ -13,7 +13,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 MKL_NUM_THREADS=1
 PYTEST := $(ONE_THREAD) PYTHONDONTWRITEBYTECODE= $(BIN)/pytest --numprocesses auto --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help setup libraries demo docs test lint tests verify bench fuzz golden viewer clean distclean
+.PHONY: help setup libraries demo docs test lint tests verify bench fuzz golden planted texts viewer clean distclean
 
 help: ## show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -55,6 +55,13 @@ coverage: setup ## how many error bands of drawn links hold the truth, and how w
 
 golden: setup ## renew the golden results, after a change that is meant (GOLDEN="hand-*": only those)
 	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m golden $(GOLDEN)
+
+texts: setup ## renew geometry/base/entry_texts.toml, after a change of what stands below an entry of a record
+	PYTHONPATH=$(CURDIR):$(CURDIR)/tests $(BIN)/python -m entry_texts
+
+# In a copy of the checkout; some ten seconds for each mistake.
+planted: setup ## plant kept mistakes one at a time: which tests notice? (PLANTED="--all clearance": all tests, those)
+	PYTHONPATH=$(CURDIR)/tests $(ONE_THREAD) $(BIN)/python -m planted $(PLANTED)
 
 # The fuzzer has wheels for x86-64 Linux alone and is needed for nothing else, so set-up leaves it out.
 fuzz: setup ## a million hostile inputs for all that reads a case (FUZZ="--share 0.01": fewer)

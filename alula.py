@@ -14,11 +14,44 @@ Examples
 4 mm pass 8.7
 """
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
 from os import PathLike, fspath
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
 
-from geometry.base.version import alula_version
+
+class ShadowedError(ImportError):
+    """A file of the user's bears the name of one of alula's own packages, and Python finds it first."""
+
+
+def _in_the_way() -> str:
+    """Say which file is found in place of one of alula's packages, and what to do; an empty text where none is."""
+    for name in ("geometry", "loads", "fea", "reports"):
+        try:
+            spec = find_spec(name)
+        except ValueError:  # a module that was made by hand
+            spec = None
+        places = [] if spec is None else [spec.origin] if spec.has_location else spec.submodule_search_locations or []
+        found = next((Path(place) for place in places if place), None)
+        if found is not None and found.name == "__init__.py":
+            found = found.parent
+        if found is not None and found.resolve() != Path(__file__).resolve().parent / name:
+            return (
+                f"'{found}' is in the way of alula's own package '{name}'; rename it, or move it to a folder of which "
+                "Python does not import"
+            )
+    return ""
+
+
+if _sentence := _in_the_way():
+    if Path(sys.argv[0]).stem == "alula":  # the command, which tells mistakes without a traceback
+        print(f"alula: {_sentence}", file=sys.stderr)
+        sys.exit(2)
+    raise ShadowedError(_sentence)
+
+from geometry.base.version import alula_version  # noqa: E402  (what may be another's is asked first)
 
 if TYPE_CHECKING:
     from loads.case.case import Case
@@ -169,11 +202,11 @@ def motion(case: "Case | str | PathLike[str]", *, threads: int = 2) -> "MotionRe
         For a case without motion or drive, and where the motion meets a dead point.
     """
     from fea.common.threads import bounded
-    from loads.states.case_motion import solve_case_motion
+    from fea.whole.rubbed_motion import rubbed_motion
     from reports.notebook.motion_report import MotionReport
 
     with bounded(threads):
-        return MotionReport(solve_case_motion(_case(case)))
+        return MotionReport(rubbed_motion(_case(case)))
 
 
 def frequencies(
@@ -540,11 +573,16 @@ def _case(case: "Case | str | PathLike[str]") -> "Case":
     return read_case(case) if isinstance(case, str | PathLike) else case
 
 
+def _command() -> NoReturn:
+    """Run the command line."""
+    from reports.commands.cli import main
+
+    main()
+
+
 def _silent(message: str) -> None:
     """Say nothing of the progress."""
 
 
 if __name__ == "__main__":
-    from reports.commands.cli import main
-
-    main()
+    _command()

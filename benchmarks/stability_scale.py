@@ -8,8 +8,8 @@ import numpy as np
 from benchmarks.stability_report import Row, figure, table, timed
 from fea.beam.cut_free import link_loads
 from fea.check.run import check_case
-from fea.check.solid_result import link_task
 from fea.frame.case_statics import solve_case_statics
+from fea.links.solid_result import link_task
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field, von_mises
 from geometry.base.errors import AlulaError

@@ -28,9 +28,9 @@ from record import save  # noqa: E402
 
 from fea.calculix import program as calculix  # noqa: E402
 from fea.calculix.second_opinion import write_model  # noqa: E402
-from fea.check.link_by_hand import cut_link  # noqa: E402
-from fea.check.solid_result import link_task  # noqa: E402
 from fea.frame.case_statics import solve_case_statics  # noqa: E402
+from fea.links.link_by_hand import cut_link  # noqa: E402
+from fea.links.solid_result import link_task  # noqa: E402
 from fea.nonlinear.large_displacement import examine  # noqa: E402
 from fea.refine.discretisation import judged  # noqa: E402
 from fea.refine.link_series import STRESS  # noqa: E402

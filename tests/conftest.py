@@ -1,8 +1,11 @@
 """Settings that all tests share."""
 
+import errno
 import os
 import shutil
+import sys
 import tempfile
+from pathlib import Path
 
 import chromium
 from hypothesis import settings
@@ -13,8 +16,23 @@ settings.register_profile("unhurried", parent=settings(), deadline=None, max_exa
 settings.load_profile("unhurried")
 
 
+PROGRAMS = ("bash", "make", "mount", "umount", "localedef", "chromedriver", "ccx")
+"""What tests may start besides Python and what they wrote themselves: the shell and make, which set-up needs, and what
+they do without where it is missing."""
+
+
+def as_on_a_bare_machine(event, arguments):
+    """Let no test start a program that set-up does not install, as if it were missing: an audit hook."""
+    if event == "subprocess.Popen":
+        name = Path(os.fsdecode(arguments[0]))
+        own = name.is_absolute() and (name.is_relative_to(sys.prefix) or name.is_relative_to(tempfile.gettempdir()))
+        if not own and name.name not in PROGRAMS:
+            raise FileNotFoundError(errno.ENOENT, "a test may start no program that set-up does not install", str(name))
+
+
 def pytest_configure(config):
-    """Make the folder by which the processes of a run share what they solve (``solved``)."""
+    """Make the folder by which the processes of a run share what they solve (``solved``); watch what tests start."""
+    sys.addaudithook(as_on_a_bare_machine)
     if not hasattr(config, "workerinput"):
         os.environ["ALULA_TESTS_SHARE"] = tempfile.mkdtemp(prefix="alula-tests-")
 

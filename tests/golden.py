@@ -25,10 +25,12 @@ EXACT, ITERATED, MESHED = 1e-9, 1e-7, 1e-6
 """Relative tolerances: of what no iteration and no mesh has a part in; of hand calculation, whose frames have iterated
 eigenvalues that repeat to 1.4e-9 on a busy machine; and of what goes through a mesh."""
 FLOORS = {"residual": 1e-12, "imbalance": 1e-12, "moment": 1e-12, "solver_error": 1e-8, "support_reaction": 1e-8}
+FLOORS |= {f"displacement_max.{end}": 1e-12 for end in ("value", "low", "high")} | {"first": 1e-9, "smallest": 1e-9}
 """Differences that are allowed however small the number is, by the end of an entry's path. Residuals and imbalances,
 relative, and moments, in N mm, are rounding below 1e-12, and any order of sums may change them. The error of a solver,
 relative to the solution, and the reaction of supports, relative to the load, measure error themselves: they are below
-1e-9 in all kept results, and differences below 1e-8 have no meaning."""
+1e-9 in all kept results, and differences below 1e-8 have no meaning. Links that nothing bends deflect by rounding [mm],
+and a link that starts along x is turned by rounding [deg]."""
 STARTERS = ("finger", "four-bar", "knee", "six-bar", "slider-crank", "step")
 """Built-in cases of our own, to start from. Their joint forces and torques are compared with closed forms
 (``tests/verification/test_starters.py``), so that their hand calculation alone is kept here."""

@@ -86,6 +86,17 @@ def script(text: str, *arguments: str, **options: Any) -> subprocess.CompletedPr
     )
 
 
+def ended(pid: int) -> bool:
+    """Say whether a process has ended, also where nobody has asked for its status yet; by /proc where there is one."""
+    try:
+        os.kill(pid, 0)
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except FileNotFoundError:
+        return Path("/proc/self/stat").exists()  # it ended between the two questions
+    except ProcessLookupError:
+        return True
+
+
 def text_of(folder: Path) -> str:
     """Return the text in every file of a folder written by ``WRITING``; asserts that it is whole and of one run.
 

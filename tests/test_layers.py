@@ -20,8 +20,8 @@ LAYERS = {
     "loads": ("text", "records", "statics", "sources", "case", "states", "plans", "exchange"),
     "fea": (
         *("common", "elements", "tractions", "solvers", "solid", "beam", "frame", "nonlinear", "buckling"),
-        *("refine", "vibration", "outcomes", "whole", "check", "superposition", "motion", "calculix", "claims"),
-        *("study", "sizing", "tolerance"),
+        *("refine", "superposition", "vibration", "outcomes", "whole", "links", "doubts"),
+        *("check", "motion", "calculix", "claims", "study", "sizing", "tolerance"),
     ),
     "reports": (
         *("words", "tables", "sheet", "vibration", "figures", "outlines", "turnable"),

@@ -134,6 +134,18 @@ def test_the_command_runs_from_another_folder(installed, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_the_command_names_a_file_that_is_in_the_way(installed, tmp_path):
+    """The command itself finds its own packages first, unless PYTHONPATH says otherwise."""
+    (tmp_path / "reports.py").touch()
+    command = [str(installed / "bin" / "alula"), "cases"]
+    assert "owl-wing-static" in run(*command, cwd=tmp_path)
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"alula: '{tmp_path / 'reports.py'}' is in the way of alula's own package 'reports';")
+    assert done.stderr.count("\n") == 1
+
+
 def test_the_command_line_and_the_face_import_late(installed, tmp_path):
     slow = {"numpy", "scipy", "skfem", "gmsh", "pyvista", "matplotlib", "pint", "pydantic", "meshio"}
     script = f"import sys, alula, reports.commands.cli\nprint(*sorted({slow!r} & sys.modules.keys()))"

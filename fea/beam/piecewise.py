@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.ties import first_largest
 from geometry.base.errors import CannotRunError
+from geometry.base.ties import first_largest
 
 Floats = NDArray[np.float64]
 Side = Literal["before", "after"]

@@ -25,8 +25,8 @@ from fea.beam.cut_beam import about_centre, cut_stress, nearest
 from fea.beam.loads import BeamLoads
 from fea.beam.piecewise import Piecewise, Side, divided, integral, values
 from fea.beam.section_stress import SectionStress, bending_stress, equivalent_stress, section_stress
-from fea.common.ties import first_largest
 from geometry.base.errors import CannotRunError
+from geometry.base.ties import first_largest
 from geometry.bodies.cut_section import CutSection
 from geometry.parts.part import Section
 

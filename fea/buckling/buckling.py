@@ -21,7 +21,7 @@ That joints stay where they are is taken for granted: sway of the whole linkage 
 
 Bending that goes with the compression grows to 1/(1 - 1/n) of what linear theory gives, n the factor (Timoshenko &
 Gere, Theory of Elastic Stability, 2nd ed., section 1.11). EN 1993-1-1:2005 asks for n >= 10 where this is neglected
-(5.2.1(3)): below it stress and deflection are those of second-order theory (``fea.check.second_order``). For n >= 3 a
+(5.2.1(3)): below it stress and deflection are those of second-order theory (``fea.links.second_order``). For n >= 3 a
 factor may stand for it (section 5.2.2); below 3, where small faults of shape grow much, no link passes.
 """
 
@@ -39,9 +39,9 @@ from fea.buckling.holding import Plane, columns, holding, of_cuts
 from fea.common.band import Band
 from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind
-from fea.common.ties import first_largest
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDisplacement
+from geometry.base.ties import first_largest
 from loads.case.case import Case
 
 Real = NDArray[np.float64]

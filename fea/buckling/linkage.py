@@ -23,7 +23,7 @@ from fea.nonlinear.large_displacement import LEAST_FACTOR, LEAST_LINEAR, LargeDi
 from fea.nonlinear.stability import SNAP, growth
 
 NAME = "large displacement"
-NO_EQUILIBRIUM = "the linkage gives way, so the number is that of the undeformed pose, which is no equilibrium"
+NO_EQUILIBRIUM = "the linkage gives way, so there is no equilibrium to judge; numbers are those of the undeformed pose"
 
 
 def linkage_outcomes(
@@ -128,8 +128,8 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
     Returns
     -------
     list of CheckOutcome
-        Under these load cases links and pins that passed are undecided. What fails in the undeformed pose still
-        fails. Motors are judged on a rigid linkage and stay; a point without equilibrium has no value anyway.
+        Under these load cases links and pins that passed are not applicable, nor are points. What fails or is open in
+        the undeformed pose stays so. Motors are judged on a rigid linkage and stay.
     """
     failed = {one.load_case for one in outcomes if one.gives_way}
     failed |= set(lost)
@@ -137,12 +137,12 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
 
 
 def _rests_on_it(outcome: CheckOutcome) -> bool:
-    return outcome.subject.kind in ("link", "pin") and outcome.quantity not in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES)
+    return outcome.subject != LINKAGE and outcome.quantity not in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES)
 
 
 def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:
-    if outcome.verdict is Verdict.PASS:
-        return outcome.left_open(NO_EQUILIBRIUM)
+    if outcome.verdict is Verdict.PASS or (outcome.subject.kind == "point" and outcome.value.unknowable):
+        return outcome.not_applicable(NO_EQUILIBRIUM)
     return outcome.because(f"{outcome.reason}; {NO_EQUILIBRIUM}")
 
 
@@ -152,5 +152,8 @@ def _followed(load_case: str, moved: LargeDisplacement, beyond: str) -> CheckOut
     found = CheckOutcome.of(NAME, LINKAGE, load_case, Quantity.LOAD_SHARE, share, 1.0, share.without)
     open_end = f"; {found.reason}" if found.verdict is Verdict.UNDECIDED else ""
     linear = moved.buckling is not None and math.isfinite(moved.buckling)
+    if moved.softness is not None:
+        soft = moved.softness.value
+        open_end += f"; by their solids the links are {soft:.3g} times as soft as the plain beams of that shape"
     informs = f"; the buckling factor by linear theory is {moved.buckling:.3g}" if linear else ""
     return found.because(moved.sentence + open_end + informs + beyond)

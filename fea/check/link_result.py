@@ -6,15 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.check.fidelity import DecidedLink, Decision, HandBands
-from fea.check.link_by_hand import LinkByHand
-from fea.check.load_growth import Growths
-from fea.check.solid_result import solid_result
 from fea.common.band import Band
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
-from fea.common.ties import first_largest
+from fea.doubts.load_growth import Growths
+from fea.links.fidelity import DecidedLink, Decision, HandBands
+from fea.links.link_by_hand import LinkByHand
+from fea.links.solid_result import solid_result
 from fea.outcomes.result import HandResult, LinkResult, SolidResult
 from fea.outcomes.solid_buckling import solid_buckling, solid_growth
+from fea.refine.link_series import STRESS, PeakQuantity
+from fea.superposition.solid_shares import Shares
+from geometry.base.ties import first_largest
 from geometry.materials.material import Material
 from loads.case.case import Case
 from loads.case.forks import of_pair
@@ -31,6 +33,7 @@ def link_result(
     hand: LinkByHand,
     decided: DecidedLink | None,
     uneven: Growths,
+    shares: Shares,
     *,
     name: str,
 ) -> LinkResult:
@@ -47,6 +50,8 @@ def link_result(
         None where nothing acts on the link under any load case.
     uneven : Growths
         What grows out of proportion to the scattered load.
+    shares : mapping of PeakQuantity to Scatter
+        What the ways of sharing couples between layers make of every number; of what is left out nothing.
     name : str
         Of the loads on that plate; that of the load case, or one of their own.
 
@@ -63,21 +68,45 @@ def link_result(
         bands = None if decided.solid is not None else decided.hands.get(name)
         result = _hand_result(link, material, hand, bands, decided.decision)
     grown = solid_growth(solid_buckling(result))
-    load = load_scatter(case, load_case).times(uneven.stress.get(link, Scatter())).times(grown)
-    bent = load_scatter(case, load_case).times(uneven.displacement.get(link, Scatter())).times(grown)
+    stated = load_scatter(case, load_case).times(grown)
+
+    def widened(quantity: PeakQuantity) -> Scatter:
+        growth = uneven.displacement if quantity == "displacement" else uneven.stress
+        return stated.times(growth.get(link, Scatter())).times(shares.get(quantity, Scatter()))
+
     layers = result.layers
     if layers is not None:
-        factor = layer_scatter(material).times(load.inverse).on(layers.safety_factor)
+        factor = layer_scatter(material).times(widened("layers").inverse).on(layers.safety_factor)
         layers = replace(layers, safety_factor=factor)
     return replace(
         result,
         layers=layers,
         notes=(*of_pair(case, link), *result.notes),
-        von_mises_max=load.on(result.von_mises_max),
-        principal_max=load.on(result.principal_max),
-        safety_factor=strength_scatter(material).times(load.inverse).on(result.safety_factor),
-        displacement_max=compliance_scatter(material).times(bent).on(result.displacement_max),
+        von_mises_max=widened("von_mises").on(result.von_mises_max),
+        principal_max=widened("principal").on(result.principal_max),
+        safety_factor=strength_scatter(material)
+        .times(widened(STRESS[material.brittle]).inverse)
+        .on(result.safety_factor),
+        displacement_max=compliance_scatter(material).times(widened("displacement")).on(result.displacement_max),
     )
+
+
+def by_hand_shares(shared: Growths, link: str) -> Shares:
+    """Return what the ways of sharing couples make of a link by hand: of all its stresses the same.
+
+    Parameters
+    ----------
+    shared : Growths
+        Of all links.
+    link : str
+
+    Returns
+    -------
+    mapping of PeakQuantity to Scatter
+    """
+    stress = shared.stress.get(link, Scatter())
+    bent = shared.displacement.get(link, Scatter())
+    return {"von_mises": stress, "principal": stress, "layers": stress, "displacement": bent}
 
 
 def worse_plate(plates: Sequence[LinkResult]) -> LinkResult:

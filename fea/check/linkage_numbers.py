@@ -105,14 +105,12 @@ def _largest(
 ) -> tuple[Band, str]:
     """Largest displacement of any place [mm], and that place."""
     sizes = {key: float(np.linalg.norm(d)) for key, d in moved.points.items()}
-    if forces.play is not None:
-        sizes = {key: size + forces.play.free_motion(*key) for key, size in sizes.items()}
     if not sizes or moved.frame is None or moved.solution is None:
         return Band.unknown(moved.sentence), ""
     places = {tuple(np.round(moved.points[key], 9)): key for key in sizes}  # the two links at a pin move alike
     most, bands = max(sizes.values()), {}
     for link, point in places.values():
-        if sizes[link, point] >= NEARLY * most:
+        if forces.play is not None or sizes[link, point] >= NEARLY * most:
             told = PointDisplacement.of(case, (link, point), load_case, moved, links, free, forces)
             if told.why:
                 return Band.unknown(told.why), ""

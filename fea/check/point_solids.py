@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from fea.check.fidelity import DecidedLink, Decision
+from fea.links.fidelity import DecidedLink, Decision
 from fea.refine.link_task import LinkTask
 from fea.refine.refinement import Effort, Progress, refine_links
 from geometry.meshing.mesh import MeshSettings

@@ -4,32 +4,35 @@ import math
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
 
 from pydantic_core import PydanticCustomError
 
 from fea.beam.theory import CantileverCheck, uniform_cantilever
 from fea.buckling.buckling import buckling_outcomes
 from fea.buckling.linkage import unless_it_gives_way
-from fea.check.air_doubt import AirDoubt, air_warnings
-from fea.check.fidelity import DecidedLink, by_hand, decide
-from fea.check.force_doubt import force_doubt
-from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
-from fea.check.link_result import link_result, worse_plate
+from fea.check.known_stiffness import with_known_stiffness
+from fea.check.link_result import by_hand_shares, link_result, worse_plate
 from fea.check.linkage_numbers import left_stops, limit_load_outcomes, linkage_numbers
-from fea.check.load_growth import Growths, growths
-from fea.check.play_doubt import play_doubt, play_warnings, shaken
 from fea.check.point_solids import decide_point
 from fea.check.solid_frame import with_solids
-from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
-from fea.common.source import COUPLES
+from fea.common.scatter import Scatter
 from fea.common.threads import bounded_run
-from fea.common.verdict import CheckOutcome, Verdict, overall
-from fea.frame.case_statics import CaseStatics, solve_case_statics
+from fea.common.verdict import CheckOutcome, overall
+from fea.doubts.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
+from fea.doubts.load_growth import SOURCES, Growths, growths
+from fea.doubts.other_case import Doubt, Plates, widened
+from fea.doubts.play_doubt import play_doubt, play_warnings, shaken
+from fea.doubts.range_doubt import AirDoubt, FrictionDoubt, air_warnings, friction_warnings
+from fea.doubts.tight_pins import SharedCouples, tight_pin_warnings
+from fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
 from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
-from fea.nonlinear.large_displacement import LargeDisplacement, examine
+from fea.links.fidelity import DecidedLink, by_hand, decide
+from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
+from fea.links.solid_result import link_task
+from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
 from fea.outcomes.pins import PinStress, shared_stress
@@ -38,8 +41,11 @@ from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.solid_buckling import solid_buckling_outcomes
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, load_size, nothing_acts, undecided
+from fea.refine.link_series import STRESS
 from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
+from fea.superposition.solid_shares import Shares, solid_shares
+from fea.whole.layer_gaps import layer_gap_outcomes
 from fea.whole.outcomes import whole_numbers, whole_outcomes
 from geometry.base.errors import CaseError
 from geometry.bodies.body import PartKind
@@ -54,8 +60,6 @@ from loads.text.shares import parse_accuracy
 Progress = Callable[[str], None]
 FIDELITIES = ("auto", "beam", "frame", "solid")
 BY_HAND = ("beam", "frame")
-TELLING = 1.05
-"""Growth of a link's stress by the sharing of couples above which it is told of, where a check is open."""
 POINT_ROUNDS = 4
 """At most, in which links are solved or refined for the displacement of a point."""
 
@@ -101,6 +105,7 @@ class _LoadCase:
     """One load case by hand: what acts on every link cut free, its hand calculation, and what is out of proportion.
 
     ``plates`` has one of every link; of a pair whose plates bear differently both, first the worse one by hand.
+    ``shared`` is what the ways of sharing couples between layers make by hand, and ``uneven`` all else.
     """
 
     case: Case
@@ -108,32 +113,39 @@ class _LoadCase:
     load_case: str
     moved: LargeDisplacement
     plates: Mapping[str, Sequence[tuple[LinkLoads, LinkByHand]]]
+    grown: Growths
     uneven: Growths
+    shared: Growths
     size: float
-    air: AirDoubt
+    doubts: Sequence[Doubt]
 
     @classmethod
-    def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement, air: AirDoubt) -> "_LoadCase":
+    def of(cls, statics: CaseStatics, load_case: str, moved: LargeDisplacement, doubts: Sequence[Doubt]) -> "_LoadCase":
         case, loads = statics.standing[load_case].case, statics.loads[load_case]
         reactions = statics.reactions[load_case]
+        moved = with_growth(case, load_case, moved, loads)
         plates = {
             link: plates_by_hand(case, link, cut_link(case, link, load_case, moved, reactions, loads))
             for link in case.checked_links
         }
         hands = {link: found[0][1] for link, found in plates.items()}
-        grown = moved.state in ("off", "unknown")  # where ``cut_link`` adds it
+        forces = statics.forces[load_case]
+        grown = growths(case, load_case, statics.pose, loads, moved, reactions, hands)
+        uneven = grown.times(stiffness_doubt(case, load_case, forces, loads))
+        uneven = uneven.times(play_doubt(case, load_case, forces, loads))
+        for doubt in doubts:
+            uneven = uneven.times(doubt.growths)
         return cls(
             case=case,
             statics=statics,
             load_case=load_case,
             moved=moved,
             plates=plates,
-            uneven=growths(case, load_case, statics.pose, loads, moved, reactions, hands)
-            .times(force_doubt(case, load_case, statics.forces[load_case], loads, grown=grown))
-            .times(play_doubt(case, load_case, statics.forces[load_case], loads))
-            .times(air.growths),
+            grown=grown,
+            uneven=uneven,
+            shared=sharing_doubt(case, load_case, forces, loads, grown=_grown(moved)),
             size=load_size(loads, case.linkage.longest),
-            air=air,
+            doubts=doubts,
         )
 
     def acts_on(self, link: str) -> bool:
@@ -155,45 +167,97 @@ class _LoadCase:
         """Loads of every link cut free; empty where equilibrium alone does not give the joint forces."""
         return self.cut if self.forces.by_equilibrium else {}
 
+    def _columns(self, link: str) -> Plates:
+        """Return the plates of a link of which the slenderest is judged as a column."""
+        found: Plates = self.plates[link]
+        for doubt in self.doubts:
+            found = doubt.slenderest(self.case, link, found)
+        return found
+
     @property
     def forces(self) -> JointForces:
         """Joint forces."""
         return self.statics.forces[self.load_case]
 
-    def links(self, decided: Mapping[str, DecidedLink]) -> dict[str, LinkResult]:
-        """Return the results of links; of a pair, that of its worse plate."""
+    def links(
+        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, Shares] | None = None
+    ) -> dict[str, LinkResult]:
+        """Return the results of links; of a pair, that of its worse plate.
+
+        ``solved`` is what the ways of sharing couples make of links that are solids; of any other the shares by hand
+        stand.
+        """
         found = {}
         for link, plates in self.plates.items():
             own = self.case, link, self.load_case
+            shares = (solved or {}).get(link) or by_hand_shares(self.shared, link)
             found[link] = worse_plate(
-                [link_result(*own, hand, decided.get(link), self.uneven, name=loads.name) for loads, hand in plates]
+                [
+                    link_result(*own, hand, decided.get(link), self.uneven, shares, name=loads.name)
+                    for loads, hand in plates
+                ]
             )
         return found
 
-    def judged(self, decided: Mapping[str, DecidedLink], whole: Sequence[CheckOutcome]) -> LoadCaseResult:
+    def _with_growth(self, outcome: CheckOutcome) -> CheckOutcome:
+        """Return the buckling factor of a link with what the joint forces grow by in its band."""
+        joints = self.case.linkage.joints_of(outcome.subject.name)
+        found = [self.grown.joints[name] for name in joints if name in self.grown.joints]
+        low, high = min((1.0, *(one.low for one in found))), max((1.0, *(one.high for one in found)))
+        spread = Scatter(low=low, high=high, sources=SOURCES if found else ())
+        return widened(outcome, spread)
+
+    def solid_shares(self, decided: Mapping[str, DecidedLink], threads: int) -> dict[str, Shares]:
+        """Return what the ways of sharing couples make of the links that are solved as solids."""
+        found: dict[str, Shares] = {}
+        for link, one in decided.items() if self.forces.sharings else ():
+            if one.solid is not None and self.acts_on(link):
+                loads, grown = self.statics.loads[self.load_case], _grown(self.moved)
+                ways = ways_borne(self.case, self.load_case, link, self.forces, loads, grown=grown)
+                found[link] = solid_shares(link_task(self.case, link, ways[0]), one.solid, ways, threads=threads)
+        return found
+
+    def couples(self, solved: Mapping[str, Shares], checks: Sequence[CheckOutcome]) -> SharedCouples:
+        """Return what the sharing of couples leaves open of links' strength."""
+        decisive = {link: STRESS[self.case.material_of(link).brittle] for link in solved}
+        return SharedCouples(
+            case=self.case,
+            load_case=self.load_case,
+            forces=self.forces,
+            loads=self.statics.loads[self.load_case],
+            grown=_grown(self.moved),
+            by_hand=self.shared.stress,
+            told={**self.shared.stress, **{link: shares[decisive[link]] for link, shares in solved.items()}},
+            checks=checks,
+        )
+
+    def judged(
+        self, decided: Mapping[str, DecidedLink], solved: Mapping[str, Shares], whole: Sequence[CheckOutcome]
+    ) -> LoadCaseResult:
         """Return the result, with the outcomes of the linkage as a whole after those of links and joints."""
-        case, load_case, moved = self.case, self.load_case, self.moved
+        case, load_case, links = self.case, self.load_case, self.links(decided, solved)
+        moved = with_known_stiffness(case, self.moved, self.forces, links, self.cut)
         reactions = moved.reactions or self.statics.reactions[load_case]
-        links, pins = self.links(decided), _pins(case, reactions, self.forces)
+        pins, joints = _pins(case, reactions, self.forces), self.uneven.times(self.shared).joints
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
-        columns = {x: slenderest(case, x, self.air.slenderest(case, x, found)) for x, found in self.plates.items()}
+        columns = {x: slenderest(case, x, self._columns(x)) for x in self.plates}
         solids = {x: found for x, found in links.items() if self.acts_on(x)}
         buckling = (
             *buckling_outcomes(case, load_case, columns, moved),
             *solid_buckling_outcomes(case, load_case, solids),
         )
         every = (
-            *outcomes(case, load_case, links, pins, moved, self.free, self.uneven.joints, self.forces),
-            *_bearing(case, load_case, reactions, self.forces, self.uneven),
-            *buckling,
+            *outcomes(case, load_case, links, pins, moved, self.free, joints, self.forces),
+            *_bearing(case, load_case, reactions, self.forces, joints),
+            *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
             *whole,
         )
-        found = [self.air.on_buckling(one) for one in every]
+        found = [reduce(lambda one, doubt: doubt.on_buckling(one), self.doubts, outcome) for outcome in every]
         checks: Iterable[CheckOutcome] = unless_it_gives_way(found, {load_case} if moved.gives_way else ())
         if self.idle:
-            joints = {name: joint.magnitude for name, joint in reactions.joints.items()}
-            checks = undecided(checks, load_case, self.size, joints)
+            borne = {name: joint.magnitude for name, joint in reactions.joints.items()}
+            checks = undecided(checks, load_case, self.size, borne)
         return LoadCaseResult(
             name=load_case,
             forces=self.forces,
@@ -204,7 +268,7 @@ class _LoadCase:
             linkage=linkage,
             standing=self.statics.standing[load_case],
             checks=tuple(checks),
-            work=self.statics.work.get(load_case),
+            work=with_ends(self.statics, load_case),
             loads=tuple(self.statics.loads[load_case]),
         )
 
@@ -229,7 +293,7 @@ def check_case(
     name : str, optional
         Path or built-in name of the case, for companion files and the report.
     fidelity : {"auto", "beam", "frame", "solid"}
-        "auto" takes the cheapest model that decides each link (``fea.check.fidelity``). The others take one model for
+        "auto" takes the cheapest model that decides each link (``fea.links.fidelity``). The others take one model for
         all links. "beam" is hand calculation alone; a link without calibrated bands gets no verdict. "frame" means
         the same: a frame is solved wherever joint forces need one.
     threads : int, optional
@@ -266,8 +330,10 @@ def check_case(
         for load_case, forces in statics.forces.items()
     }
     airs = {x: AirDoubt.of(statics, x, one) for x, one in moved.items()}
+    rubs = {x: FrictionDoubt.of(statics, x, one) for x, one in moved.items()}
     moved = {
-        x: airs[x].on_shape(shaken(statics.standing[x].case, x, statics.forces[x], one)) for x, one in moved.items()
+        x: rubs[x].on_shape(airs[x].on_shape(shaken(statics.standing[x].case, x, statics.forces[x], one)))
+        for x, one in moved.items()
     }
     clock("frames")
     start = replace(START, curved=case.solid.curved).scaled(case.solid.mesh_size)
@@ -275,13 +341,18 @@ def check_case(
     if fidelity not in BY_HAND:
         statics, first = with_solids(statics, moved, start, always=fidelity == "solid", threads=threads)
         clock("frames of solids")
-    by_load_case = {x: _LoadCase.of(statics, x, what, airs[x]) for x, what in moved.items()}
+    by_load_case = {x: _LoadCase.of(statics, x, what, (airs[x], rubs[x])) for x, what in moved.items()}
     clock("hand calculations")
     decided = _decided(case, list(by_load_case.values()), fidelity, effort, start, first, only, threads, progress)
     if fidelity not in BY_HAND:
         clock("solid models")
-    judged = whole_outcomes(whole)
-    load_cases = {load_case: one.judged(decided, judged[load_case]) for load_case, one in by_load_case.items()}
+    outlines = None if whole.clearance is None else whole.clearance.assembly
+    judged = {
+        x: (*own, *layer_gap_outcomes(by_load_case[x].case, x, moved[x], outlines))
+        for x, own in whole_outcomes(whole).items()
+    }
+    solved = {load_case: one.solid_shares(decided, threads) for load_case, one in by_load_case.items()}
+    load_cases = {x: one.judged(decided, solved[x], judged[x]) for x, one in by_load_case.items()}
     clock("stress")
     return CheckResult(
         name=name,
@@ -298,10 +369,11 @@ def check_case(
         timings=clock.stages,
         warnings=(
             *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),
-            *_shared_couples(list(by_load_case.values()), load_cases),
+            *tight_pin_warnings([one.couples(solved[x], load_cases[x].checks) for x, one in by_load_case.items()]),
             *_warnings(case, statics, moved),
             *play_warnings(moved, statics.forces),
             *air_warnings(moved),
+            *friction_warnings(moved),
         ),
     )
 
@@ -352,6 +424,11 @@ def _wanted(load_cases: Sequence[_LoadCase], decided: Mapping[str, DecidedLink])
     return found
 
 
+def _grown(moved: LargeDisplacement) -> bool:
+    """Return whether what acts on links holds their bending on free pins already, which ``cut_link`` adds."""
+    return moved.state in ("off", "unknown")
+
+
 def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, PinStress]:
     """Stresses of the pins that a check asks for."""
     checks = [check for check in case.all_checks.values() if isinstance(check, PinCheck)]
@@ -360,14 +437,14 @@ def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, Pi
 
 
 def _bearing(
-    case: Case, load_case: str, reactions: Reactions, forces: JointForces, uneven: Growths
+    case: Case, load_case: str, reactions: Reactions, forces: JointForces, growth: Mapping[str, Scatter]
 ) -> Iterator[CheckOutcome]:
     """Outcomes of the checks that ask for bearing."""
     for name, check in case.checks.items():
         if isinstance(check, BearingCheck):
             for joint in check.joints or case.bearing_joints:
                 every = [one.joints[joint].wrench for one in (reactions, *(way.reactions for way in forces.sharings))]
-                yield bearing_outcome(case, load_case, name, check, joint, every, uneven.joints.get(joint))
+                yield bearing_outcome(case, load_case, name, check, joint, every, growth.get(joint))
 
 
 def _cantilever(case: Case, calculation: str) -> CantileverCheck:
@@ -380,26 +457,6 @@ def _cantilever(case: Case, calculation: str) -> CantileverCheck:
 
 def _of(names: Sequence[str]) -> str:
     return f"load case{'s' if len(names) > 1 else ''} {', '.join(names)}"
-
-
-def _shared_couples(load_cases: Sequence[_LoadCase], results: Mapping[str, LoadCaseResult]) -> list[str]:
-    """Say once of each link whose strength the sharing of couples between layers leaves open what would tell."""
-    found: dict[str, dict[str, float]] = {}
-    joints_of: dict[str, list[str]] = {}
-    for one in load_cases:
-        open_links = {c.subject.name for c in results[one.load_case].checks if c.verdict is Verdict.UNDECIDED}
-        for link, growth in one.uneven.stress.items():
-            joints = [name for name in one.case.linkage.joints_of(link) if one.case.linkage.rise(name) != 0.0]
-            unknown = [name for name in joints if one.case.joints[name].tight_in is None]
-            if link in open_links and unknown and set(COUPLES) <= set(growth.sources) and growth.high > TELLING:
-                found.setdefault(link, {})[one.load_case] = growth.high
-                joints_of[link] = unknown
-    return [
-        f"{_of(list(times))}: how pins share the couples between layers may make the stress of {link} "
-        f"{'up to ' if len(times) > 1 else ''}{max(times.values()):.3g} times as large; tight_in of joints "
-        f"{', '.join(joints_of[link])} would narrow its band"
-        for link, times in found.items()
-    ]
 
 
 def _warnings(case: Case, statics: CaseStatics, moved: Mapping[str, LargeDisplacement]) -> list[str]:

@@ -4,7 +4,7 @@ Where a linkage is redundant, or bonded, or loaded out of its plane, its links s
 frame of centre lines has it within the bounds of ``fea.frame.displacement_band`` where links are like those that were
 measured, and may be far off elsewhere: in short plates, and in parts that are no beams. ``centre_lines_do`` tries
 these bounds. Where they matter, every link of the frame that can be meshed is the flexibility of its solid
-(``fea.solid.condensation``) on the first mesh.
+(``fea.solid.condensation``) on the first mesh. So it is where the bounds leave the displacement of a point open.
 
 What remains open is tried cause by cause, since a frame takes milliseconds: the mesh of each link, by the estimated
 error of its energy, and each pin under either pressure. The frame is linear; all causes count at their worst together.
@@ -22,6 +22,7 @@ from fea.beam.cut_free import link_loads
 from fea.common.link_loads import LinkLoads
 from fea.common.plates import plates
 from fea.common.source import PIN_PRESSURE, Source, SourceKind
+from fea.common.verdict import Verdict
 from fea.elements.space import displacement_space
 from fea.frame.build import build_frame
 from fea.frame.case_statics import CaseStatics
@@ -32,15 +33,17 @@ from fea.frame.joint_forces import LAYERED_FRAME, OF_SOLIDS, JointForces
 from fea.frame.linear import FrameSolution, solve_frame
 from fea.frame.linkage_frame import LinkageFrame
 from fea.nonlinear.large_displacement import LargeDisplacement
+from fea.outcomes.point_displacement import point_outcome
+from fea.outcomes.point_shares import condensable
 from fea.refine.error_estimate import estimate_error
 from fea.solid.condensation import CondensedSolid, Give, condense
-from fea.solid.solution import LARGEST_POISSON_RATIO
 from fea.solid.stress import stress_field
 from geometry.meshing.mesh import MeshSettings, mesh_bodies
 from geometry.meshing.tagged_mesh import TaggedMesh
 from loads.case.case import Case
 from loads.case.forks import apart
 from loads.records.applied import Load
+from loads.records.check_spec import DisplacementCheck
 from loads.statics.statics import Reactions
 
 Real = NDArray[np.float64]
@@ -80,7 +83,8 @@ def with_solids(
     settings : MeshSettings
         Of the meshes.
     always : bool
-        True where solids are asked for; else they are taken where centre lines do not do.
+        True where solids are asked for; else they are taken where centre lines do not do, or leave the check of a
+        point open.
     threads : int or None, optional
         That may work at once.
 
@@ -93,7 +97,9 @@ def with_solids(
     open_cases = [
         name
         for name, found in forces.items()
-        if found.frame is not None and found.model != LAYERED_FRAME and (always or not centre_lines_do(case, found))
+        if found.frame is not None
+        and found.model != LAYERED_FRAME
+        and (always or not centre_lines_do(case, found) or _leave_a_point_open(case, name, moved[name], found))
     ]
     for name in open_cases:
         if moved[name].followed:
@@ -102,7 +108,7 @@ def with_solids(
             )
             forces[name] = replace(forces[name], reason=reason)
     wanted = [name for name in open_cases if not moved[name].followed]
-    bodies = {link: case.body(link) for link in case.bending_links if wanted and _is_solid(case, link)}
+    bodies = {link: case.body(link) for link in case.bending_links if wanted and condensable(case, link)}
     if not bodies:
         return replace(statics, forces=forces), {}
     meshes = mesh_bodies(bodies, settings, processes=threads)
@@ -126,11 +132,14 @@ def with_solids(
     return replace(statics, forces=forces), meshes
 
 
-def _is_solid(case: Case, link: str) -> bool:
-    """Whether a link can be condensed to bores and patches: it carries no slot, and there are two or more of them."""
-    carries = any(joint.type != "revolute" and joint.links[0] == link for joint in case.joints.values())
-    meshable = case.material_of(link).poissons_ratio <= LARGEST_POISSON_RATIO
-    return not carries and meshable and len(case.links[link].points) > 1
+def _leave_a_point_open(case: Case, load_case: str, moved: LargeDisplacement, forces: JointForces) -> bool:
+    """Whether centre lines leave the check of a point open; what was followed on its deformed shape keeps them."""
+    return not moved.followed and any(
+        outcome.verdict is Verdict.UNDECIDED
+        for name, check in case.checks.items()
+        if isinstance(check, DisplacementCheck) and check.at is not None
+        for outcome in [point_outcome(case, name, check, load_case, moved, {}, {}, forces)]
+    )
 
 
 def centre_lines_do(case: Case, forces: JointForces) -> bool:

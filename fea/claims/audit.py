@@ -226,7 +226,8 @@ def _off(value: Value | str, printed: Printed | None) -> str:
         return ", where the source prints zero" if printed.number == 0.0 else ""
     if value.dimensions == ANGLE:
         apart = printed.number - ours
-        return f": the printed figure is {abs(apart):.2g} {printed.unit} too {'large' if apart > 0.0 else 'small'}"
+        much = f"{float(f'{abs(apart):.2g}'):g}"  # 110, not 1.1e+02
+        return f": the printed figure is {much} {printed.unit} too {'large' if apart > 0.0 else 'small'}"
     ratio = printed.number / ours
     if ratio < 0.0:
         turned = abs(abs(ours) - abs(printed.number)) <= printed.half * 1.000001

@@ -1,7 +1,41 @@
-"""The least that a convex function of one number may reach, from its values at a few places."""
+"""Ends of convex functions: the least of one from its values at a few places, the largest at outermost points."""
 
 from collections.abc import Iterable
 from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+FLAT = 1e-4
+"""Extent of points in a direction, over their largest, below which they have none."""
+MOST_DIRECTIONS = 6
+"""Beyond so many nearly all points are corners of their convex hull, and finding it takes long."""
+
+
+def outermost(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the corners of the convex hull of points: at one of them a convex function is largest.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, d)
+
+    Returns
+    -------
+    ndarray of int
+        Their numbers, rising; of points in more than ``MOST_DIRECTIONS`` directions all.
+    """
+    from scipy.spatial import ConvexHull
+
+    place, extent, _ = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    place = place[:, extent > FLAT * extent[0]]  # the hull has the same corners however it is stretched
+    count, directions = place.shape
+    if directions == 0:
+        return np.array([0])
+    if directions == 1:
+        return np.unique([place.argmin(), place.argmax()])
+    if directions > MOST_DIRECTIONS or count <= directions + 1:
+        return np.arange(count)
+    return np.sort(ConvexHull(place).vertices).astype(np.int64)
 
 
 def least_of_convex(found: Iterable[tuple[float, float]]) -> float:

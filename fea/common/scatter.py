@@ -2,7 +2,7 @@
 
 Everything that a load case does in linear theory is in proportion to its loads, a safety factor to the strength, and a
 link's displacement to 1/E. So the ends of a band are multiplied by the ends of what scatters, and by what grows beyond
-proportion (``fea.check.load_growth``); independent sources are taken at their worst together. Conditions are in the
+proportion (``fea.doubts.load_growth``); independent sources are taken at their worst together. Conditions are in the
 material already (``loads.records.conditions``): a strength's range is as warm as the strength, and a creep modulus has
 none.
 """

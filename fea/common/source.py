@@ -33,6 +33,7 @@ class SourceKind(StrEnum):
     CHORDS = "chords in place of arcs"
     PLAY = "play of pins"
     AIR = "air on wings that flap"
+    FRICTION = "friction of joints"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +69,7 @@ CONTACT = Source(
 )
 TORQUE_TRANSFER = Source(kind=SourceKind.TORQUE_TRANSFER, detail="by eye-faces and by bore-shear")
 
-COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in the one link or in the other"),)
+COUPLES = (Source(kind=SourceKind.COUPLES, detail="pins tight in either link, or tilting in all holes"),)
 
 
 def air_source(least: float, largest: float) -> Source:
@@ -145,6 +146,25 @@ def play_source(clearances: Mapping[str, float]) -> Source:
     least, most = min(clearances.values()), max(clearances.values())
     sizes = f"{least:.3g} mm" if least == most else f"{least:.3g} to {most:.3g} mm"
     return Source(kind=SourceKind.PLAY, detail=f"{sizes} at {', '.join(clearances)}")
+
+
+def friction_source(ranges: Mapping[str, tuple[float, float]]) -> Source:
+    """Return the friction of joints as a source of error.
+
+    Parameters
+    ----------
+    ranges : mapping of str to tuple of float
+        Joint -> its least and largest coefficient.
+
+    Returns
+    -------
+    Source
+    """
+    told = [
+        f"{low:.3g} to {high:.3g} at {', '.join(name for name, one in ranges.items() if one == (low, high))}"
+        for low, high in dict.fromkeys(ranges.values())
+    ]
+    return Source(kind=SourceKind.FRICTION, detail="; ".join(told))
 
 
 def distinct(*groups: tuple[Source, ...]) -> tuple[Source, ...]:

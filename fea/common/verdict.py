@@ -83,6 +83,8 @@ class Quantity(StrEnum):
     """Life over the repetitions that are wanted."""
     CLEARANCE = "clearance", "mm", Sense.AT_LEAST
     """Least gap between outlines that lie at one height; negative where they lie in each other."""
+    LAYER_GAP = "gap between layers", "mm", Sense.AT_LEAST
+    """Least gap along the pins that deflection and tilting pins leave between links that pass over each other."""
     FREQUENCY_RATIO = "natural over driving frequency", "", Sense.AT_LEAST
     """The lowest natural frequency over the motion, over that of the drive."""
     DRIVE_POWER = "drive power", "W", Sense.AT_MOST
@@ -228,6 +230,8 @@ class CheckOutcome:
     verdict : Verdict
     reason : str
         One sentence that says why the verdict is what it is.
+    applies : bool
+        False where there is nothing to judge, such as a stress where the linkage gives way; undecided then.
     """
 
     name: str
@@ -238,6 +242,7 @@ class CheckOutcome:
     limit: float
     verdict: Verdict
     reason: str
+    applies: bool = True
 
     @classmethod
     def of(
@@ -299,12 +304,30 @@ class CheckOutcome:
         -------
         CheckOutcome
         """
-        return replace(self, verdict=Verdict.UNDECIDED, reason=reason)
+        return replace(self, verdict=Verdict.UNDECIDED, reason=reason, applies=True)
+
+    def not_applicable(self, reason: str) -> "CheckOutcome":
+        """Return the outcome undecided, since there is nothing to judge.
+
+        Parameters
+        ----------
+        reason : str
+
+        Returns
+        -------
+        CheckOutcome
+        """
+        return replace(self, verdict=Verdict.UNDECIDED, reason=reason, applies=False)
 
     @property
     def link(self) -> str:
         """The subject as text: a link's own name, ``pin A``, ``point H of CH`` or ``the linkage``."""
         return str(self.subject)
+
+    @property
+    def answer(self) -> str:
+        """What people read: the verdict, or ``not applicable``."""
+        return self.verdict.value if self.applies else "not applicable"
 
     @property
     def margin(self) -> float:
@@ -336,6 +359,8 @@ class CheckOutcome:
 def by_nearness(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     """Return checks in the order of their verdicts, fail, undecided, pass; of each the nearest to its limit first.
 
+    Those that are not applicable come last.
+
     Parameters
     ----------
     checks : iterable of CheckOutcome
@@ -344,7 +369,7 @@ def by_nearness(checks: Iterable[CheckOutcome]) -> list[CheckOutcome]:
     -------
     list of CheckOutcome
     """
-    return sorted(checks, key=lambda check: (_DECISIVE.index(check.verdict), check.margin))
+    return sorted(checks, key=lambda check: (not check.applies, _DECISIVE.index(check.verdict), check.margin))
 
 
 def reason_for(value: Band, limit: float, verdict: Verdict) -> str:

@@ -2,9 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
 
 from fea.frame.joint_forces import JointForces, joint_forces
-from fea.frame.rubbing import with_friction
+from fea.frame.rubbing import ENDS, End, at_end, presses_of, with_friction
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
 from geometry.linkage.slot_ends import refuse_slot_ends
@@ -20,10 +23,11 @@ from loads.states.masses import part_masses
 from loads.states.play import play_of
 from loads.states.rubbing import each_direction
 from loads.states.standing import Standing, stand
+from loads.statics.friction import NOTHING_MORE
 from loads.statics.statics import Reactions
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class CaseStatics:
     """Pose, loads and reactions of every load case of a case.
 
@@ -61,7 +65,7 @@ class CaseStatics:
         return {load_case: forces.reactions for load_case, forces in self.forces.items()}
 
 
-def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
+def solve_case_statics(case: Case, name: str = "", end: End = "stated") -> CaseStatics:
     """Solve pose and statics of every load case.
 
     Parameters
@@ -69,6 +73,8 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     case : Case
     name : str, optional
         Path or built-in name of the case, for companion files.
+    end : {"least", "stated", "largest"}, optional
+        Of what friction may be.
 
     Returns
     -------
@@ -79,7 +85,7 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     CaseError
         For a pose that cannot be assembled or has no single equilibrium.
     """
-    case = each_direction(case)
+    case = at_end(each_direction(case), end)
     if case.motion is not None:
         stated = case.solve_pose()
         refuse_slot_ends(
@@ -96,17 +102,18 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
         for load_case, stated in case.load_cases.items()
     }
     forces = {load_case: joint_forces(standing[load_case].case, pose, loads[load_case]) for load_case in loads}
-    work = {}
+    work, presses = {}, {}
     if rubbing_joints(case):
         for load_case, plain in forces.items():
             own = standing[load_case].case
-            loads[load_case], forces[load_case] = with_friction(own, load_case, pose, loads[load_case], plain)
+            loads[load_case], forces[load_case] = with_friction(own, load_case, pose, loads[load_case], plain, end)
+            presses[load_case] = presses_of(own, forces[load_case], end)
             if standing[load_case].stop:
                 standing[load_case] = _rubbed(standing[load_case], load_case, forces[load_case].reactions)
             else:
                 work[load_case] = pose_work(own, load_case, pose, plain.reactions, forces[load_case].reactions)
     if not case.pose.equilibrium:
-        played = {x: play_of(standing[x].case, x, pose, masses) for x in loads}
+        played = {x: play_of(standing[x].case, x, pose, masses, presses.get(x, NOTHING_MORE)) for x in loads}
         forces = {x: replace(found, play=played[x]) for x, found in forces.items()}
     found = None
     if case.published_statics is not None:
@@ -121,6 +128,69 @@ def solve_case_statics(case: Case, name: str = "") -> CaseStatics:
     return CaseStatics(
         case=case, pose=pose, standing=standing, loads=loads, forces=forces, masses=masses, audit=found, work=work
     )
+
+
+@lru_cache(maxsize=64)
+def at_friction_ends(statics: CaseStatics, load_case: str) -> tuple[CaseStatics | None, ...]:
+    """Return a load case with the least and with the largest friction that may be.
+
+    Parameters
+    ----------
+    statics : CaseStatics
+    load_case : str
+        Its name.
+
+    Returns
+    -------
+    tuple of CaseStatics or None
+        None where the linkage then locks itself; empty where no joint rubs.
+    """
+    if not rubbing_joints(statics.case):
+        return ()
+    found: list[CaseStatics | None] = []
+    for end in ENDS:
+        try:
+            found.append(solve_case_statics(alone(statics.case, load_case), end=end))
+        except CaseError:
+            found.append(None)
+    return tuple(found)
+
+
+def alone(case: Case, load_case: str) -> Case:
+    """Return a case with one of its load cases alone, and without published statics.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+
+    Returns
+    -------
+    Case
+    """
+    return case.model_copy(update={"load_cases": {load_case: case.load_cases[load_case]}, "published_statics": None})
+
+
+def with_ends(statics: CaseStatics, load_case: str) -> DriveWork | None:
+    """Return what the drive does in a load case, with the ends of what friction may be.
+
+    Parameters
+    ----------
+    statics : CaseStatics
+    load_case : str
+        Its name.
+
+    Returns
+    -------
+    DriveWork or None
+        None where no joint rubs, or a stop bears.
+    """
+    work = statics.work.get(load_case)
+    if work is None:
+        return None
+    solved = [None if one is None else one.reactions[load_case] for one in at_friction_ends(statics, load_case)]
+    return work.between([np.nan if one is None else one.drive_torque + one.drive_force for one in solved])
 
 
 def _rubbed(standing: Standing, load_case: str, reactions: Reactions) -> Standing:

@@ -37,8 +37,8 @@ class Sharing(Deviation):
 
     Attributes
     ----------
-    joints : frozenset of str
-        Whose pins tilt in one of their links.
+    hinges : frozenset of tuple of 2 str
+        The holes in which pins tilt: joint, and link.
     """
 
-    joints: frozenset[str]
+    hinges: frozenset[tuple[str, str]]

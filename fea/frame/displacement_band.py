@@ -239,8 +239,8 @@ def point_bounds(
     point : str
         Its name.
     solids : dict of str to sequence of Band, optional
-        Link whose solid tells what it adds, and its share of the displacement along x and y [mm], which takes the
-        place of its beams and bores.
+        Link whose solid tells what it adds, and its share of the displacement along x, y and, where anything moves out
+        of the plane, z [mm], which takes the place of its beams and bores.
     carried : dict of str to sequence of float, optional
         Of links whose solids bear other loads than the frame has: what plain beams would add under these [mm]. Of such
         a solid what it adds beyond its beam counts, beside the frame's plain beam.
@@ -255,7 +255,7 @@ def point_bounds(
     beams, bores = _links(case, frame, solids)
     without = {i for i, beam in frame.beams.items() if beam.link in solids and beam.link not in carried}
     moved, least, largest = np.zeros(3), np.zeros(3), np.zeros(3)
-    planar = bool(solids) or not np.any(solution.displacements[:, 2:5])
+    planar = not np.any(solution.displacements[:, 2:5])
     for axis in range(2 if planar else 3):
         load = NodeLoad(node=node, wrench=np.eye(6)[axis])
         unit = solve_frame(replace(frame.model, elements=bare, loads=(load,)))
@@ -283,11 +283,38 @@ def compliance_range(case: Case, frame: LinkageFrame, solution: FrameSolution) -
     Scatter
         Least and largest ratio of the work of all loads; 1 where they do none.
     """
-    band = bounds(solution, solution, *_links(case, frame, ()), pins=frame.pin_beams.values())
-    if band.value <= 0.0:
-        return Scatter()
-    low, high = max(band.low / band.value, STIFFEST), band.high / band.value
-    return Scatter(low=low, high=high, sources=(Source(kind=SourceKind.EYES),))
+    found = softness(case, frame, solution, {})
+    return Scatter(low=found.low, high=found.high, sources=found.sources)
+
+
+def softness(case: Case, frame: LinkageFrame, solution: FrameSolution, known: Mapping[str, Band]) -> Band:
+    """Return how soft a linkage is under its loads over its frame of plain beams, where that of some links is known.
+
+    Parameters
+    ----------
+    case, frame, solution
+        As of ``flexibility_ranges``.
+    known : mapping of str to Band
+        Link, and how soft it is over its plain beam.
+
+    Returns
+    -------
+    Band
+        Ratio of the work of all loads; 1 where they do none.
+    """
+    without = {i for i, beam in frame.beams.items() if beam.link in known}
+    band = bounds(solution, solution, *_links(case, frame, known), without=without, pins=frame.pin_beams.values())
+    plain = {link: work.value for link, work in works_of_links(case, frame, solution) if link in known}
+    whole = band.value + sum(plain.values())
+    if whole <= 0.0:
+        return Band.exact(1.0)
+    value, low, high = (
+        (end + sum(work * getattr(known[link], name) for link, work in plain.items())) / whole
+        for name, end in (("value", band.value), ("low", band.low), ("high", band.high))
+    )
+    others = any(beam.link not in known for beam in frame.beams.values())
+    sources = (Source(kind=SourceKind.EYES),) if others else ()
+    return Band(value=value, low=max(low, STIFFEST), high=high, sources=sources)
 
 
 def flexibility_ranges(case: Case, frame: LinkageFrame, solution: FrameSolution) -> dict[str, tuple[float, float]]:
@@ -310,7 +337,7 @@ def flexibility_ranges(case: Case, frame: LinkageFrame, solution: FrameSolution)
     """
     return {
         link: (max(band.low / band.value, STIFFEST), band.high / band.value)
-        for link, band in _works(case, frame, solution)
+        for link, band in works_of_links(case, frame, solution)
     }
 
 
@@ -327,12 +354,23 @@ def shares_of_work(case: Case, frame: LinkageFrame, solution: FrameSolution) -> 
     dict of str to float
         Of the links that bear something; they sum to 1.
     """
-    works = {link: band.value for link, band in _works(case, frame, solution)}
+    works = {link: band.value for link, band in works_of_links(case, frame, solution)}
     return {link: work / sum(works.values()) for link, work in works.items()}
 
 
-def _works(case: Case, frame: LinkageFrame, solution: FrameSolution) -> Iterator[tuple[str, Band]]:
-    """Yield each link that bears something, and twice the strain energy of its beams between its bounds [N mm]."""
+def works_of_links(case: Case, frame: LinkageFrame, solution: FrameSolution) -> Iterator[tuple[str, Band]]:
+    """Yield each link that bears something, and twice the strain energy of its beams between its bounds.
+
+    Parameters
+    ----------
+    case, frame, solution
+        As of ``flexibility_ranges``.
+
+    Yields
+    ------
+    tuple of str and Band
+        Work of what acts on the link, on its deformation [N mm].
+    """
     beams, bores = _links(case, frame, ())
     for link in dict.fromkeys(beam.link for beam in frame.beams.values()):
         others = {i for i in range(len(frame.model.elements)) if i not in frame.beams or frame.beams[i].link != link}

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
-from fea.common.source import Source, distinct
+from fea.common.source import Source, SourceKind, distinct
 from fea.frame.deviation import Deviation, Sharing
 from fea.frame.linkage_frame import out_of_plane
 from geometry.linkage.pose import Pose
@@ -75,12 +75,11 @@ class JointForces:
     def sharings(self) -> tuple[Sharing, ...]:
         """The answers with pins that tilt in one of their links, so that the other bears the whole couple between them.
 
-        Empty without layers, and where links are condensed solids. Solved where they are asked for, since they are
-        dozens.
+        Empty without layers. Solved where they are asked for, since they are dozens.
         """
         from fea.frame.sharing import sharings
 
-        return () if self.frame is None or self.solids else sharings(self.frame)
+        return () if self.frame is None else sharings(self.frame)
 
     @property
     def by_equilibrium(self) -> bool:
@@ -97,8 +96,8 @@ class JointForces:
         """What makes joint forces uncertain that depend on the links' stiffness."""
         return distinct(tuple(one.source for one in self.deviations if one.source is not None))
 
-    def displaced(self, link: str, point: str, *, sunk: bool = False) -> Band:
-        """Return how far a point moves by a frame of solids, with all that their stiffness leaves open at its worst.
+    def displaced(self, link: str, point: str, *, meshes: float = 1.0, sunk: bool = False) -> Band:
+        """Return how far a point moves by a frame of solids, with all that stiffness and pins leave open at its worst.
 
         Parameters
         ----------
@@ -106,6 +105,8 @@ class JointForces:
             On which the point lies.
         point : str
             Its name.
+        meshes : float, optional
+            Share of what meshes of solids leave open that the band holds.
         sunk : bool, optional
             Whether pins may sink into their bores.
 
@@ -120,9 +121,13 @@ class JointForces:
         size = float(np.linalg.norm(moved))
         along = moved / (size or 1.0)
         every = self.deviations if sunk else self.open_by
-        steps = np.array([float(along @ one.points[link, point]) - size for one in every])
-        low, high = np.minimum(steps, 0.0).sum(), np.maximum(steps, 0.0).sum()
-        return Band(value=size, low=max(size + float(low), 0.0), high=size + float(high))
+        kinds = [one.source and one.source.kind for one in every]
+        parts = [meshes if kind is SourceKind.DISCRETISATION else 1.0 for kind in kinds]
+        steps = np.array(parts) * [float(along @ one.points[link, point]) - size for one in every]
+        shared = [0.0, *(float(np.linalg.norm(one.points[link, point])) - size for one in self.sharings)]
+        low = float(np.minimum(steps, 0.0).sum()) + min(shared)
+        high = float(np.maximum(steps, 0.0).sum()) + max(shared)
+        return Band(value=size, low=max(size + low, 0.0), high=size + high)
 
     @property
     def condition(self) -> float:

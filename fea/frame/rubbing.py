@@ -1,34 +1,159 @@
-"""Joint forces with friction at one pose: by equilibrium where it gives them, else by rounds of the frame."""
+"""Joint forces with friction at one pose, in turns with what presses in the bores and with redundant joints.
 
-from collections.abc import Sequence
+Friction and the forces in the plane balance at once where equilibrium gives these. What couples press in bores beside
+the forces follows from the frame, and so do the forces of a redundant linkage: there the
+frame and friction are solved in turn.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fea.frame.joint_forces import JointForces, joint_forces
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
-from loads.records.applied import Load, chosen
+from loads.case.forks import eyes
+from loads.case.joint_rules import rubbing_joints
+from loads.records.applied import Load, chosen, shifted
 from loads.states.kinetostatics import is_determinate
 from loads.states.rubbing import WAYS, at_one_pose, pose_friction
-from loads.statics.friction import friction_under
+from loads.statics.friction import NOTHING_MORE, Presses, friction_under, friction_wrenches
+from loads.statics.pressing import pressing
+
+Real = NDArray[np.float64]
 
 ROUNDS = 60
 SETTLED = 1e-10
 """Change of friction from one round to the next, as a share of it, at which it has settled."""
 
+End = Literal["least", "stated", "largest"]
+"""Of what friction may be: the least coefficients, and bores pressed by forces alone; the stated coefficients, with the
+couples of pins that are tight in both links; the largest, with the largest couples of any way in which pins share them.
+"""
 
-def with_friction(
-    case: Case, load_case: str, pose: Pose, loads: Sequence[Load], plain: JointForces
-) -> tuple[tuple[Load, ...], JointForces]:
-    """Return the loads on the links with friction among them, and the joint forces.
 
-    Friction follows from the forces in the plane. Where equilibrium gives these, it is solved with them, whatever acts
-    out of the plane. In a redundant linkage the frame and its friction are solved in turn until neither changes.
+ENDS: tuple[End, End] = ("least", "largest")
+
+
+NOTHING = 1e-9
+"""Force of a joint, over the largest, below which its bore counts as pressed by nothing."""
+
+
+def bore_presses(case: Case, wrenches: Mapping[str, Real]) -> dict[str, Real]:
+    """Return what presses on the walls of bores over their forces.
+
+    A pin turns in the link in which it is not tight. Where that is not stated, the bore counts on which more presses.
 
     Parameters
     ----------
     case : Case
+    wrenches : mapping of str to array (n, 6)
+        Joint -> what its first link does to its second, about the second's point [N, N mm].
+
+    Returns
+    -------
+    dict of str to array (n,)
+        Joint -> that ratio, at least 1; without joints whose pins bear no couple, and those of links without parts.
+    """
+    found: dict[str, Real] = {}
+    least = NOTHING * max(float(np.abs(wrench[:, :2]).max(initial=0.0)) for wrench in wrenches.values())
+    for name in rubbing_joints(case):
+        joint = case.joints[name]
+        if joint.type != "revolute":
+            continue
+        try:
+            rings = eyes(case, name)
+        except CaseError:
+            continue
+        second = wrenches[name]
+        first = shifted(second, np.array([0.0, 0.0, case.linkage.rise(name)]))
+        size = np.hypot(second[:, 0], second[:, 1])
+        ratios = [
+            pressing(wrench[:, 0] + 1j * wrench[:, 1], wrench[:, 3] + 1j * wrench[:, 4], ring)
+            / np.where(size > least, size, np.inf)
+            for link, ring, wrench in zip(joint.links, rings, (first, second), strict=True)
+            if not joint.is_tight_in(link)
+        ]
+        ratio = np.where(size > least, np.max(ratios, axis=0), 1.0)
+        if np.any(ratio > 1.0):
+            found[name] = ratio
+    return found
+
+
+def largest(every: Iterable[Presses]) -> dict[str, Real]:
+    """Return the largest ratio of every bore.
+
+    Parameters
+    ----------
+    every : iterable of mapping of str to array (n,)
+        From ``bore_presses``.
+
+    Returns
+    -------
+    dict of str to array (n,)
+    """
+    found: dict[str, Real] = {}
+    for one in every:
+        for name, ratio in one.items():
+            found[name] = np.maximum(ratio, found.get(name, 1.0))
+    return found
+
+
+def at_end(case: Case, end: End) -> Case:
+    """Return a case with its coefficients of friction at an end of their ranges.
+
+    Parameters
+    ----------
+    case : Case
+    end : {"least", "stated", "largest"}
+
+    Returns
+    -------
+    Case
+        Without ranges, but for the stated coefficients.
+    """
+    if end == "stated":
+        return case
+    joints = dict(case.joints)
+    for name in rubbing_joints(case):
+        mu = joints[name].friction_ends[end == "largest"]
+        joints[name] = joints[name].model_copy(update={"friction": mu, "friction_range": (mu, mu)})
+    return case.model_copy(update={"joints": joints})
+
+
+def presses_of(case: Case, found: JointForces, end: End = "stated") -> Presses:
+    """Return what presses on the walls of bores over their forces, under joint forces.
+
+    Parameters
+    ----------
+    case : Case
+    found : JointForces
+    end : {"least", "stated", "largest"}, optional
+
+    Returns
+    -------
+    mapping of str to array (1,)
+    """
+    if end == "least" or found.frame is None:
+        return NOTHING_MORE
+    every = [found.reactions, *(one.reactions for one in (found.sharings if end == "largest" else ()))]
+    return largest(
+        bore_presses(case, {name: joint.wrench[None] for name, joint in one.joints.items()}) for one in every
+    )
+
+
+def with_friction(
+    case: Case, load_case: str, pose: Pose, loads: Sequence[Load], plain: JointForces, end: End = "stated"
+) -> tuple[tuple[Load, ...], JointForces]:
+    """Return the loads on the links with friction among them, and the joint forces.
+
+    Parameters
+    ----------
+    case : Case
+        With the coefficients of that end.
     load_case : str
         Its name; it states its direction.
     pose : Pose
@@ -36,6 +161,8 @@ def with_friction(
         All else that acts.
     plain : JointForces
         Under these, without friction.
+    end : {"least", "stated", "largest"}, optional
+        Of what couples press in bores.
 
     Returns
     -------
@@ -46,20 +173,25 @@ def with_friction(
     CaseError
         Where the linkage locks itself, or the rounds do not settle.
     """
-    if is_determinate(case.linkage):
-        acting = (*loads, *pose_friction(case, load_case, pose, loads))
-        return acting, joint_forces(case, pose, acting)
-    place, found, before = at_one_pose(pose).virtual, plain, np.zeros(0)
-    way = case.load_cases[load_case].direction
+    determinate, place = is_determinate(case.linkage), at_one_pose(pose).virtual
+    way, found, before = case.load_cases[load_case].direction, plain, np.zeros(0)
+    presses = NOTHING_MORE if determinate else presses_of(case, found, end)
     for _ in range(ROUNDS):
-        joints = {name: joint.wrench[None] for name, joint in found.reactions.joints.items()}
-        friction = [chosen(load, 0) for load in friction_under(place, case.pinned_drive, WAYS[way], joints)]
-        now = np.concatenate([load.wrench for load in friction])
+        if determinate:
+            friction = pose_friction(case, load_case, pose, loads, presses)
+        else:
+            joints = {name: joint.wrench[None] for name, joint in found.reactions.joints.items()}
+            rubbed = friction_under(place, case.pinned_drive, WAYS[way], joints, presses)
+            friction = tuple(chosen(load, 0) for load in rubbed)
+        now = np.concatenate(list(friction_wrenches(friction).values()))
         if len(before) and np.abs(now - before).max() <= SETTLED * np.abs(now).max():
             return (*loads, *friction), found
         before = now
         found = joint_forces(case, pose, (*loads, *friction))
+        presses = presses_of(case, found, end)
+        if determinate and not presses:
+            return (*loads, *friction), found
     raise CaseError(
-        f"load_cases.{load_case}: the joint forces of this redundant linkage do not settle with their friction, driven "
-        f"{way}, so it may lock itself; state less friction, or remove redundant joints"
+        f"load_cases.{load_case}: the joint forces of this linkage do not settle with their friction, driven {way}, so "
+        "it may lock itself; state less friction, or remove redundant joints"
     )

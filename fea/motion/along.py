@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from fea.motion.envelope_result import StressAlong, VariantCurve
 from fea.solid.stress import extreme_principal, von_mises
 from fea.superposition.unit_solutions import UnitSolutions
+from geometry.base.ties import first_largest
 
 Real = NDArray[np.float64]
 
@@ -50,7 +51,7 @@ def stress_along(
     StressAlong
         Of fewer stretches where the mesh has some without a node.
     """
-    poses = np.union1d(spread_poses(len(evaluated)), [np.nanargmax(curve.stress)])
+    poses = np.union1d(spread_poses(len(evaluated)), [first_largest(curve.stress)])
     poses = poses[evaluated[poses]]
     loads = curve.first + np.cumsum(evaluated)[poses] - 1
     x = solved.space.nodes[solved.nodes, 0]

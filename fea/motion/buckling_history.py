@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from fea.beam.column_factor import AxialForce
 from fea.beam.cut_free import beam_loads
 from fea.buckling.buckling import NO_COMPRESSION, ColumnFactors, link_factors
-from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
+from fea.links.second_order import second_order_loads
 from fea.nonlinear.large_displacement import LEAST_FACTOR
 from fea.superposition.unit_loads import unit_forces
 from geometry.bodies.body import no_beam
@@ -49,7 +49,7 @@ def factors_over_motion(case: Case, link: str, history: LinkLoads) -> ColumnFact
 def with_second_order(case: Case, link: str, history: LinkLoads, evaluated: NDArray[np.bool_]) -> LinkLoads:
     """Return a history with what bending under compression adds, at the evaluated poses near to buckling.
 
-    As ``fea.check.second_order.second_order_loads`` does for one pose with ``stays=False``.
+    As ``fea.links.second_order.second_order_loads`` does for one pose with ``stays=False``.
 
     Parameters
     ----------

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from fea.motion.fatigue import equivalent_peak, signed_stress
 from fea.superposition.peaks import ModeMeasures, signed_bounds
+from geometry.base.ties import first_largest
 from geometry.materials.material import Material
 
 Real = NDArray[np.float64]
@@ -74,5 +75,5 @@ def _most_harmed(
     low, high = signed.min(axis=1), signed.max(axis=1)
     cycles = np.column_stack([high - low, (high + low) / 2.0, np.ones(k)])
     harm = equivalent_peak(cycles, material.fatigue, material.ultimate_strength)
-    worst = int(np.argmax(harm))
+    worst = first_largest(harm)
     return float(harm[worst]), int(nodes[worst]), signed[worst]

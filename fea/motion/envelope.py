@@ -3,7 +3,7 @@
 import math
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import copy_context
@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from fea.buckling.linkage import unless_it_gives_way
 from fea.check.run import effort_of
-from fea.check.solid_result import link_task
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter, load_scatter
 from fea.common.threads import bounded, bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.elements.space import DisplacementSpace, displacement_space
+from fea.links.solid_result import link_task
 from fea.motion.buckling_history import with_second_order
 from fea.motion.envelope_outcomes import FOLLOWED, column_outcomes, envelope_outcomes
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope
@@ -29,18 +29,21 @@ from fea.motion.layered import with_couples
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
-from fea.motion.loosened import in_other_air, loosened
+from fea.motion.loosened import loosened, otherwise
 from fea.outcomes.limits import layers_of
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
+from fea.refine.link_series import STRESS, Measure
 from fea.refine.refinement import START, Effort, refine_links
 from fea.solid.solution import require_compressible
+from fea.superposition.solid_shares import solid_shares
 from fea.whole.outcomes import unloaded_outcomes, whole_numbers
+from fea.whole.rubbed_motion import rubbed_motion
 from geometry.base.errors import AlulaError, CannotRunError, CaseError
 from geometry.meshing.mesh import MeshSettings, mesh_body
 from loads.case.case import Case
 from loads.case.forks import of_pair
-from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.case_motion import CaseMotion
 
 Real = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -60,13 +63,14 @@ class _Envelope:
     threads: int
     progress: Progress
     shares: Mapping[tuple[str, str], Scatter] = field(default_factory=dict)
+    ways: Mapping[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = field(default_factory=dict)
     ended: threading.Event = field(default_factory=threading.Event)
 
     @classmethod
     def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
         layered = with_couples(moved, evaluated)
-        shares = dict(layered.shares)
-        for doubt in (loosened(layered.moved, evaluated), in_other_air(layered.moved, evaluated)):
+        shares: dict[tuple[str, str], Scatter] = {}
+        for doubt in (loosened(layered.moved, evaluated), otherwise(layered.moved, evaluated)):
             for key, scatter in doubt.items():
                 shares[key] = shares.get(key, Scatter()).times(scatter)
         moved, case, loaded = layered.moved, moved.case, {}
@@ -87,6 +91,7 @@ class _Envelope:
             threads=threads,
             progress=progress,
             shares=shares,
+            ways=layered.ways,
         )
 
     @property
@@ -131,16 +136,27 @@ class _Envelope:
                 space = refined.solution.space
                 self._tell(f"Solving {link} over the motion: {len(space.cells)} elements, {poses} poses ...")
                 motion = self._motion(link, space)
-            scatter = {
-                load_case: load_scatter(case, load_case).times(self.shares.get((load_case, link), Scatter()))
-                for load_case in case.load_cases
-            }
-            found = motion.envelope(repetitions=repetitions, refined=refined, scatter=scatter)
-            found = replace(found, notes=(*of_pair(case, link), *found.notes))
             layers = layers_of(case, link)
+            shared = {
+                load_case: solid_shares(replace(task, layers=layers), refined, self.ways[load_case, link], threads=1)
+                for load_case in dict.fromkeys(history.name for history in self.loaded[link])
+                if (load_case, link) in self.ways
+            }
+
+            def scatter(quantity: Measure) -> dict[str, Scatter]:
+                return {
+                    load_case: load_scatter(case, load_case)
+                    .times(self.shares.get((load_case, link), Scatter()))
+                    .times(shared.get(load_case, {}).get(quantity, Scatter()))
+                    for load_case in case.load_cases
+                }
+
+            own = scatter(STRESS[task.brittle])
+            found = motion.envelope(repetitions=repetitions, refined=refined, scatter=own)
+            found = replace(found, notes=(*of_pair(case, link), *found.notes))
             if layers is None or not found.worst.known:
                 return found
-            return replace(found, layers=layer_envelopes(motion, layers, scatter, repetitions))
+            return replace(found, layers=layer_envelopes(motion, layers, scatter("layers"), repetitions))
 
     def _tell(self, message: str) -> None:
         """Report progress; ends the work on a link once another has failed or the run was interrupted."""
@@ -224,7 +240,7 @@ def envelope_case(
     """
     clock = Clock()
     _require(case, repetitions)
-    moved = solve_case_motion(case)
+    moved = rubbed_motion(case)
     case = moved.case
     if moved.locks:
         raise CaseError(f"{moved.locks[0]}; shorten the motion, state less friction, or another direction or drive")

@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.buckling.buckling import column_outcome, worst_column
-from fea.check.air_doubt import widened
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
-from fea.common.ties import first_largest
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from fea.doubts.other_case import widened
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
@@ -25,6 +24,7 @@ from fea.outcomes.layers import no_strength, without_shear
 from fea.outcomes.limits import layer_limit
 from fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of
 from fea.outcomes.solid_buckling import undecided_buckling
+from geometry.base.ties import first_largest
 from geometry.materials.material import Fatigue, Material
 from loads.records.check_spec import (
     BearingCheck,

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.solid.stress import extreme_principal, von_mises
+from geometry.base.ties import first_largest
 from geometry.materials.material import Fatigue, Material
 
 Real = NDArray[np.float64]
@@ -149,7 +150,7 @@ def repeated_cycles(history: Real) -> Real:
     ndarray, shape (k, 3)
         Range, mean and count of each.
     """
-    start = int(np.argmax(history))
+    start = first_largest(history)
     whole = np.concatenate([history[start:], history[: start + 1]])
     halves = rainflow(whole)
     found: dict[tuple[float, float], float] = {}

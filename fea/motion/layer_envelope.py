@@ -15,6 +15,7 @@ from fea.motion.layer_fatigue import LayerCycle, critical_layer
 from fea.motion.link_envelope import LinkMotion
 from fea.solid.layers import Layers
 from fea.superposition.peaks import ModeMeasures, largest_stress
+from geometry.base.ties import first_largest
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW
 
 Real = NDArray[np.float64]
@@ -98,13 +99,13 @@ def _over_motion(
     count = int(motion.evaluated.sum())
     peaks = {}
     for curve in curves:
-        number = curve.first + int(np.argmax(value[curve.first : curve.first + count]))
+        number = curve.first + first_largest(value[curve.first : curve.first + count])
         error = layers.sensitivity * motion.local_error(number, int(place[number]))
         contact = 1.0 - CONTACT_SHORTFALL if curve.span == NARROW.span else 1.0
         peak = float(value[number])
         peaks[number] = peak, max(peak - error, 0.0), (peak + error) / contact, curve
     own = [number for number, (*_, curve) in peaks.items() if curve.transfer in (None, motion.stated)]
-    worst = max(own, key=lambda number: value[number])
+    worst = own[first_largest([value[number] for number in own])]
     curve = peaks[worst][-1]
     stress = Band(
         value=float(value[worst]),
@@ -165,7 +166,7 @@ def _critical(motion: LinkMotion, layers: Layers, curve: VariantCurve) -> tuple[
         found.append((LayerCycle.of(closed), int(solved.nodes[number]), sign, traction))
     cycle, node, sign, traction = max(found, key=lambda one: one[0].stress(data, layers.across))
     size = np.linalg.norm(traction, axis=0)
-    pose = int(np.argmax(size))
+    pose = first_largest(size)
     if size[pose] == 0.0:
         return cycle, solved.space.nodes[node] * (1.0, 1.0, sign), (1.0, 1.0)
     error = layers.sensitivity * motion.local_error(curve.first + pose, node) / float(size[pose])

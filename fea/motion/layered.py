@@ -2,10 +2,10 @@
 
 Equilibrium in the plane gives the joint forces of all poses at once. What acts out of it, F_z, M_x and M_y of every
 joint, is that of the spatial frame of each pose. The ways in which pins may share the couples (``fea.frame.sharing``)
-are tried where a link bears most, and widen its bands by what they change of its hand calculation there.
+are tried where a link bears most, and widen its bands by what they make of its solid there.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import force_doubt
-from fea.common.scatter import Scatter
+from fea.common.link_loads import LinkLoads
+from fea.doubts.force_doubt import ways_borne
 from fea.frame.joint_forces import JointForces, joint_forces, solved_frame
+from geometry.base.ties import first_largest
 from loads.records.applied import Load, chosen
 from loads.states.case_motion import CaseMotion
 from loads.states.dead_point_reach import pose_at
@@ -31,12 +32,13 @@ class LayeredMotion:
     ----------
     moved : CaseMotion
         With all six components of the joint forces at the poses that count; as it was without layers.
-    shares : mapping of tuple of 2 str to Scatter
-        (load case, link) -> by what its stress may differ by how pins share the couples; empty without layers.
+    ways : mapping of tuple of 2 str to tuple of tuple of LinkLoads
+        (load case, link) -> what acts on it with tight pins and in every way of sharing (``ways_borne``), where it
+        bears most; empty without layers.
     """
 
     moved: CaseMotion
-    shares: Mapping[tuple[str, str], Scatter] = field(default_factory=dict)
+    ways: Mapping[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = field(default_factory=dict)
 
 
 def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMotion:
@@ -61,7 +63,7 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
     if not case.layered or not moved.forces:
         return LayeredMotion(moved=moved)
     forces: dict[str, Kinetostatics] = {}
-    shares: dict[tuple[str, str], Scatter] = {}
+    ways: dict[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = {}
     for name, solved in moved.forces.items():
         wrenches = {joint: reaction.wrench.copy() for joint, reaction in solved.joints.items()}
         for i in map(int, np.flatnonzero(evaluated)):
@@ -73,12 +75,11 @@ def with_couples(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> LayeredMoti
         joints = {joint: replace(reaction, wrench=wrenches[joint]) for joint, reaction in solved.joints.items()}
         forces[name] = replace(solved, joints=joints)
         poses = _worst_poses(moved, name, forces[name], evaluated)
-        for pose in set(poses.values()):
-            loads = _loads_at(moved, name, pose)
-            here = [link for link, own in poses.items() if own == pose]
-            doubt = force_doubt(case, name, forces_at(moved, name, pose), loads, grown=True, links=here).stress
-            shares |= {(name, link): scatter for link, scatter in doubt.items()}
-    return LayeredMotion(moved=replace(moved, forces=forces), shares=shares)
+        for link, pose in poses.items():
+            here = forces_at(moved, name, pose)
+            if here.sharings:
+                ways[name, link] = ways_borne(case, name, link, here, _loads_at(moved, name, pose), grown=True)
+    return LayeredMotion(moved=replace(moved, forces=forces), ways=ways)
 
 
 @lru_cache(maxsize=64)
@@ -111,5 +112,5 @@ def _worst_poses(
     for link in case.checked_links:
         loads = link_loads(load_case, link, case.body(link), forces, moved.loads[load_case])
         size = np.where(evaluated, loads.size(case.linkage.longest), -np.inf)
-        found[link] = int(np.argmax(size))
+        found[link] = first_largest(size)
     return found

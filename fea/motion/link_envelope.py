@@ -27,6 +27,7 @@ from fea.superposition.unit_loads import unit_loads
 from fea.superposition.unit_solutions import UnitSolutions, solve_units
 from fea.tractions.traction import Transfer
 from geometry.base.errors import CannotRunError
+from geometry.base.ties import first_largest
 from geometry.materials.material import Material, stress_measure
 from geometry.parts.part import Body, Pin
 from loads.records.bearing import CONTACT_SHORTFALL, NARROW, WIDE, PressureLaw
@@ -191,7 +192,7 @@ class LinkMotion:
     def worst_poses(self) -> dict[str, int]:
         """Number of the pose with the largest peak, for every load case."""
         governing = {name: self._governing(variants) for name, variants in self.curves.items()}
-        return {name: int(np.nanargmax(variant.stress)) for name, variant in governing.items()}
+        return {name: first_largest(variant.stress) for name, variant in governing.items()}
 
     def envelope(
         self,
@@ -262,7 +263,7 @@ class LinkMotion:
         """Return the envelope in bands by the meshes of the worst pose."""
         own = [v for v in variants if v.transfer in (None, self.stated)]
         governing = self._governing(variants)
-        pose = int(np.nanargmax(governing.stress))
+        pose = first_largest(governing.stress)
         value = np.array([v.stress for v in own]).max(axis=0)
         # Under compression the ends of a band change places. Compression does not break a brittle part, so 0 is least.
         ends = np.array([factor * v.stress for v in variants for factor in series.of_variant(v)])
@@ -373,7 +374,7 @@ class LinkMotion:
 
     def _fatigue_factors(self, variant: VariantCurve, node: int, history: Real) -> tuple[float, float]:
         """Factors for a node that no mesh was refined for, by the estimate beside it in its worst pose."""
-        pose = int(np.argmax(np.abs(history)))
+        pose = first_largest(np.abs(history))
         stress = abs(float(history[pose]))
         if stress == 0.0:
             return 1.0, 1.0

@@ -20,6 +20,7 @@ from fea.frame.linear import solve_frame
 from fea.nonlinear.large_displacement import blind_link, examine, stated_scatter
 from fea.nonlinear.stability import dead_point_factor, linkage_factor
 from geometry.base.errors import CannotRunError, CaseError
+from geometry.base.ties import first_largest, first_least
 from loads.records.applied import chosen
 from loads.records.check_spec import LimitLoadCheck
 from loads.states.case_motion import CaseMotion
@@ -91,7 +92,7 @@ def linkage_outcomes(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> Iterato
                 continue
         if not found:
             continue
-        least, factor, i, eyes = min(found, key=lambda one: one[0] / one[3].high)
+        least, factor, i, eyes = found[first_least([one[0] / one[3].high for one in found])]
         where = f"{motion.coordinate} = {np.degrees(motion.angles[i]):.5g} deg"
         how = f"at {where} linear theory finds it unstable or at a dead point at {least:.3g} times the load"
         remedy = "check that pose with alula check, which follows the deformed shape"
@@ -172,9 +173,9 @@ def limit_load_outcomes(moved: CaseMotion, found: Mapping[str, LinkageOverMotion
 def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[int]:
     """Numbers of the pose next to a dead point of the driven link and of that with the largest torque."""
     counted = [int(i) for i in np.flatnonzero(evaluated)]
-    nearest = min(counted, key=lambda i: moved.drive.dead_point_distance(pose_at(moved.motion, i)))
-    hardest = max(counted, key=lambda i: abs(float(moved.torque[load_case][i])))
-    return list(dict.fromkeys((nearest, hardest)))
+    distances = [moved.drive.dead_point_distance(pose_at(moved.motion, i)) for i in counted]
+    torques = np.abs(moved.torque[load_case][counted])
+    return list(dict.fromkeys((counted[first_least(distances)], counted[first_largest(torques)])))
 
 
 def _at(moved: CaseMotion, load_case: str, i: int) -> tuple[Band, Band, str]:

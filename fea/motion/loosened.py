@@ -1,29 +1,34 @@
-"""Links with play of pins, or in other air, over a motion: by how much their stress and joint forces may differ.
+"""Links with play of pins, in other air, or with other friction, over a motion: what stress and joint forces may be.
 
 With play each link is looked at in two poses: that in which most acts on it, and that in which most may act with play,
 by the first-order ends of its joint forces at all poses. There it is calculated by hand as a check of one pose does
-(``fea.check.play_doubt``), and the larger stress of both, over that without play, widens its bands.
+(``fea.doubts.play_doubt``), and the larger stress of both, over that without play, widens its bands.
 
 So does the range of C_N of wings that flap: a link is calculated by hand at its worst poses with the stated C_N and
-with either end of the range, and its largest stress of each is compared, as in a check (``fea.check.air_doubt``).
+with either end of the range, and its largest stress of each is compared, as in a check
+(``fea.doubts.range_doubt``). And so does friction, at either end of what it may be.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_free import link_loads
-from fea.check.air_doubt import air_scatter
-from fea.check.force_doubt import measures
-from fea.check.play_doubt import play_doubt
-from fea.common.air_range import air_range
 from fea.common.scatter import Scatter
 from fea.common.source import distinct, play_source
+from fea.doubts.force_doubt import measures
+from fea.doubts.play_doubt import play_doubt
+from fea.doubts.range_doubt import air_scatter, friction_scatter
 from fea.motion.buckling_history import factors_over_motion
 from fea.motion.layered import forces_at
 from fea.motion.link_history import link_histories
+from fea.whole.air_range import air_range
+from fea.whole.rubbed_motion import friction_range
 from geometry.base.errors import CaseError
+from geometry.base.ties import first_largest
+from loads.case.joint_rules import friction_ranges
 from loads.records.applied import chosen
 from loads.states.case_motion import CaseMotion
 from loads.states.loose_motion import LooseMotion, loose_motion
@@ -68,8 +73,8 @@ def _refuse_dead_points(loose: LooseMotion, evaluated: NDArray[np.bool_]) -> Non
         )
 
 
-def in_other_air(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[tuple[str, str], Scatter]:
-    """Return what the range of C_N makes of the greatest stress of links over a motion.
+def otherwise(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[tuple[str, str], Scatter]:
+    """Return what the range of C_N and the friction that may be make of the greatest stress of links over a motion.
 
     Parameters
     ----------
@@ -80,23 +85,23 @@ def in_other_air(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[tuple[
     Returns
     -------
     dict of tuple of 2 str to Scatter
-        (load case, link) -> by what it may differ; empty without a range.
+        (load case, link) -> by what it may differ; empty where neither is in doubt.
     """
-
-    def stress(one: CaseMotion, load_case: str, link: str, poses: set[int]) -> float:
-        return max(_hand(one, load_case, link, pose) for pose in poses)
-
     found = {}
-    for load_case, airs in _airs(moved).items():
-        for link in moved.case.checked_links:
-            poses = {int(np.argmax(np.where(evaluated, _size(one, load_case, link), -np.inf))) for _, one in airs}
-            numbers = [(c, stress(one, load_case, link, poses)) for c, one in airs]
-            found[load_case, link] = _spread(numbers)
+    for load_case in moved.loads:
+        every = _others(moved, load_case, evaluated)
+        for link in moved.case.checked_links if len(every) > 1 else ():
+            poses = {first_largest(np.where(evaluated, _size(one, load_case, link), -np.inf)) for one in every}
+
+            def stress(one: CaseMotion, link: str = link, poses: set[int] = poses, load_case: str = load_case) -> float:
+                return max(_hand(one, load_case, link, pose) for pose in poses)
+
+            found[load_case, link] = _spread(moved, load_case, evaluated, stress)
     return found
 
 
 def column_growth(moved: CaseMotion, load_case: str, link: str, evaluated: NDArray[np.bool_]) -> Scatter:
-    """Return what the range of C_N makes of the inverse of a link's least buckling factor over a motion.
+    """Return what the range of C_N and friction make of the inverse of a link's least buckling factor over a motion.
 
     Parameters
     ----------
@@ -117,24 +122,39 @@ def column_growth(moved: CaseMotion, load_case: str, link: str, evaluated: NDArr
             float(1.0 / factors_over_motion(one.case, link, h).value[evaluated].min(initial=np.inf)) for h in histories
         )
 
-    airs = _airs(moved).get(load_case, [])
-    return _spread([(c, inverse(one)) for c, one in airs]) if airs else Scatter()
+    return _spread(moved, load_case, evaluated, inverse)
 
 
-def _airs(moved: CaseMotion) -> dict[str, list[tuple[float, CaseMotion]]]:
-    """Load case -> motions at the stated C_N and at the ends of its range; those with a range alone."""
-    airs, found = air_range(moved), {}
-    for name, load_case in moved.case.load_cases.items():
-        air = load_case.flapping
-        if air is not None and airs is not None and (ends := airs.at(name)):
-            found[name] = [(air.normal_coefficient, moved), *zip(air.ends, ends, strict=True)]
-    return found
+def _airs(moved: CaseMotion, load_case: str) -> tuple[CaseMotion, ...]:
+    """Motions at the ends of the range of C_N; none where it has no range."""
+    air, airs = moved.case.load_cases[load_case].flapping, air_range(moved)
+    return () if air is None or airs is None else airs.at(load_case)
 
 
-def _spread(numbers: list[tuple[float, float]]) -> Scatter:
-    stated, *others = numbers
-    ends = [c for c, _ in others]
-    return air_scatter(stated, dict(others), (min(ends), max(ends)))
+def _rubbed(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[CaseMotion]:
+    """Motions at the ends of what friction may be, but for those that lock themselves at a pose that counts."""
+    return [one for one in friction_range(moved) if np.isfinite(one.torque[load_case][evaluated]).all()]
+
+
+def _others(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[CaseMotion]:
+    return [moved, *_airs(moved, load_case), *_rubbed(moved, load_case, evaluated)]
+
+
+def _spread(
+    moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_], number: Callable[[CaseMotion], float]
+) -> Scatter:
+    """Return what the range of C_N and friction make of a number, each alone, times one another."""
+    airs, rubbed, air = _airs(moved, load_case), _rubbed(moved, load_case, evaluated), Scatter()
+    if not airs and not moved.rubbing:
+        return air
+    stated, flapping = number(moved), moved.case.load_cases[load_case].flapping
+    if airs and flapping is not None:
+        found = dict(zip(flapping.ends, map(number, airs), strict=True))
+        air = air_scatter((flapping.normal_coefficient, stated), found, flapping.ends)
+    if not moved.rubbing:
+        return air
+    locks = len(rubbed) < len(friction_range(moved))
+    return air.times(friction_scatter(stated, [number(one) for one in rubbed], friction_ranges(moved.case), locks))
 
 
 def _size(moved: CaseMotion, load_case: str, link: str) -> NDArray[np.float64]:
@@ -152,7 +172,7 @@ def _hand(moved: CaseMotion, load_case: str, link: str, pose: int) -> float:
 
 
 def joint_growth(moved: CaseMotion, load_case: str, joint: str, evaluated: NDArray[np.bool_]) -> Scatter:
-    """Return what play and the range of C_N make of a joint's greatest force over a motion, play to first order.
+    """Return what play, C_N and friction make of a joint's greatest force over a motion, play to first order.
 
     Parameters
     ----------
@@ -172,13 +192,13 @@ def joint_growth(moved: CaseMotion, load_case: str, joint: str, evaluated: NDArr
     def sizes(one: CaseMotion) -> NDArray[np.float64]:
         return np.asarray(np.linalg.norm(one.forces[load_case].forces[joint], axis=1)[evaluated])
 
-    force, airs = sizes(moved), _airs(moved).get(load_case, [])
-    air = _spread([(c, float(sizes(one).max())) for c, one in airs]) if airs else Scatter()
+    force = sizes(moved)
+    found = _spread(moved, load_case, evaluated, lambda one: float(sizes(one).max()))
     if loose is None or not force.max() > 0.0:
-        return air
+        return found
     slack = loose.slack(load_case, f"force {joint}")[evaluated]
     low, high = (float((force + sign * slack).max() / force.max()) for sign in (-1.0, 1.0))
-    return Scatter(low=max(low, 0.0), high=high, sources=(play_source(loose.clearances),)).times(air)
+    return Scatter(low=max(low, 0.0), high=high, sources=(play_source(loose.clearances),)).times(found)
 
 
 def _link(loose: LooseMotion, load_case: str, link: str, evaluated: NDArray[np.bool_]) -> Scatter:
@@ -186,7 +206,7 @@ def _link(loose: LooseMotion, load_case: str, link: str, evaluated: NDArray[np.b
     pins = case.linkage.joints_of(link)
     size = _size(moved, load_case, link)
     reach = size + sum(loose.slack(load_case, f"force {joint}") for joint in pins)
-    first, second = (int(np.argmax(np.where(evaluated, of, -np.inf))) for of in (size, reach))
+    first, second = (first_largest(np.where(evaluated, of, -np.inf)) for of in (size, reach))
     found = {pose: _at(loose, load_case, link, pose) for pose in (first, second)}
     (plain, own), (other, far) = found[first], found[second]
     if not plain > 0.0:

@@ -12,6 +12,7 @@ from fea.refine.discretisation import Discretisation, discretisation_source, jud
 from fea.refine.link_series import STRESS
 from fea.refine.refinement import RefinedSolid
 from fea.tractions.traction import Transfer
+from geometry.base.ties import first_largest
 from geometry.materials.material import Material
 from loads.records.bearing import Span
 
@@ -98,7 +99,7 @@ class MeshFactors:
         """
         if self.was_not_refined_for(variant):
             return False
-        peak = int(variant.node[int(np.nanargmax(variant.stress))])
+        peak = int(variant.node[first_largest(variant.stress)])
         return bool(np.linalg.norm(nodes[node] - nodes[peak]) <= self._size)
 
     def of_variant(self, variant: VariantCurve) -> tuple[float, float]:

@@ -79,8 +79,8 @@ def solve_large_displacement(
 ) -> CorotationalSolution:
     """Find the equilibrium of a frame on its deformed shape, following it from the unloaded state.
 
-    The step in load is halved where Newton's method fails (within ``most_iterations``) and grows where it is quick. No
-    unconverged shape is ever returned.
+    A step in load is as long as the path bends little, whatever the load is (``EquilibriumPath.follow``), and halved
+    where Newton's method fails (within ``most_iterations``). No unconverged shape is ever returned.
 
     Parameters
     ----------

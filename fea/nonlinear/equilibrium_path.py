@@ -31,6 +31,16 @@ first tangent.
 """
 _RESOLUTION = 1.0 / 64.0
 """Step over the load that was reached, below which ``least_step`` gives way to it: a limit load far below the load."""
+_BEND = 1.0 / 3.0
+"""Share by which the rate of no unknown may change in a step.
+
+A shallow toggle then starts with three quarters of its limit load, and a path goes nine tenths of the way that is left
+to a limit point at a time.
+"""
+_SLOW = 0.3
+"""Share of the largest rate that is added to each, so that an unknown which happens to stand still bounds no step."""
+_DIFFERENCE = 1e-3
+"""Turn [rad], or displacement over the frame's size, by which the bend of the path is measured."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -146,7 +156,7 @@ class EquilibriumPath:
         return self.elements.respond(state.displacements[self.pairs], state.rotations[self.pairs], factor)
 
     def follow(self, least_step: float, most_iterations: int, *, stable: bool = False) -> None:
-        """Go on to the whole load, halving the step where Newton's method fails.
+        """Go on to the whole load in steps over which the path bends little, halved where Newton's method fails.
 
         Parameters
         ----------
@@ -162,20 +172,39 @@ class EquilibriumPath:
         NoEquilibriumError
             Where the step falls below ``least_step`` and a 64th of the load that was reached.
         """
-        step = 0.25
+        step = first = self._straight()
         while self.reached < 1.0:
-            target = min(1.0, self.reached + step)
+            finest = min(least_step, _RESOLUTION * (self.reached or first))
+            target = min(1.0, self.reached + max(step, finest))
             found = self._newton(target, most_iterations)
             buckled = found is not None and stable and not self.is_stable(found[0], target)
             if found is None or buckled:
                 step = (target - self.reached) / 2.0
-                if step < min(least_step, max(_RESOLUTION * self.reached, least_step**2)):
+                if step < finest:
                     raise NoEquilibriumError(self.reached, target, buckled=buckled)
                 continue
             self.state, iterations = found
             self.reached = target
-            if iterations <= 6:
-                step *= 2.0
+            if target < 1.0:
+                step = min(2.0 * step if iterations <= 6 else step, self._straight())
+
+    def _straight(self) -> float:
+        """Return the share of the load that lies ahead before the path bends much, however large the load is.
+
+        With the rates u' of the unknowns and their change u'', both by the load factor, |u''| h is at most a share of
+        |u'|. The forces left over where the frame goes on along u' by t are -t² K u''/2.
+        """
+        state, factor, unit = self.state, self.reached, self.unit[: self.chain.count]
+        left, tangent = self.balance(state, factor)
+        rate = -self._solve(tangent, self.balance(state, factor + 1.0)[0] - left)
+        largest = float(np.abs(rate[: len(unit)] / unit).max(initial=0.0))
+        if largest < _TOLERANCE:  # as of a force straight into the ground
+            return 1.0
+        t = _DIFFERENCE / largest
+        ahead, behind = (self.balance(self._moved(state, d * rate), factor + d)[0] for d in (t, -t))
+        change = np.abs(self._solve(tangent, ahead - 2.0 * left + behind)[: len(unit)] / unit) / t**2
+        allowed = np.abs(rate[: len(unit)] / unit) + _SLOW * largest
+        return _BEND / max(float((change / allowed).max()), _BEND)
 
     def _newton(self, factor: float, most_iterations: int) -> tuple[State, int] | None:
         """Equilibrium at a load factor from the present state, with the iterations it took; None where it fails."""
@@ -187,7 +216,8 @@ class EquilibriumPath:
                     tangents = (tangents + self._solve(tangent, self.balance(state, self.reached)[0])) / 2.0
                     moved = state.displacements - self.state.displacements
                     missed = float(np.linalg.norm(moved - self._displacements(tangents)))
-                    return (state, iteration) if missed <= _ROUGH * float(np.linalg.norm(moved)) else None
+                    most = max(_ROUGH * float(np.linalg.norm(moved)), _TOLERANCE * self.model.size)
+                    return (state, iteration) if missed <= most else None
                 change = -self._solve(tangent, residual)
             except CannotRunError:
                 return None

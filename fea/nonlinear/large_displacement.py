@@ -14,8 +14,9 @@ that even a shallow toggle would hold ``MOST`` times the load, nothing is follow
 breaks is no part of the factor. Its band covers the steps of the path; stated scatter of load and modulus; what plain
 beams do not know of eyes, bores and holes (all links are then softer by what these add to the work of the loads: for
 the owl wing with springs of its own beside every pin this meets the limit load within 4 %); and faults of shape, by a
-third of the linear buckling factor: a frame without them stands straight up to its buckling load. The share of the
-load that is held is the same number, up to 1.
+third of the linear buckling factor: a frame without them stands straight up to its buckling load. Solids of links that
+are known take the place of what plain beams do not know (``fea.check.known_stiffness``). The share of the load that is
+held is the same number, up to 1.
 """
 
 import math
@@ -86,6 +87,10 @@ class LargeDisplacement:
         Of load over modulus, as stated.
     eyes : Scatter
         Of how soft the links are under the loads, beside the frame's plain beams.
+    softness : Band or None
+        The same of the links under the loads with what solids of them are known; None where none is.
+    alone : float
+        Least factor at which a link that is no beam buckles by itself as a solid; infinite where none is known.
     blind : str
         A link for which the frame's beam does not tell how far it gives; "" where there is none.
     buckling : float or None
@@ -116,6 +121,14 @@ class LargeDisplacement:
         The range of C_N of wings that flap, where one is stated.
     airs : tuple of tuple of (float, LargeDisplacement)
         C_N -> what becomes of it: first at the stated one, then at others of the range.
+    grown : LargeDisplacement or None
+        Of a small one what holds on the deformed shape, where that was asked for and found.
+    friction : Source or None
+        What friction may be, where joints rub.
+    rubbed : tuple of LargeDisplacement
+        What becomes of it with the least and with the largest friction, but for those with which it locks itself.
+    locks : bool
+        True where it locks itself with some of that friction, so that no load is sure to be held.
     """
 
     state: State
@@ -126,6 +139,8 @@ class LargeDisplacement:
     lost: float = math.inf
     scatter: Scatter = field(default_factory=Scatter)
     eyes: Scatter = field(default_factory=Scatter)
+    softness: Band | None = None
+    alone: float = math.inf
     blind: str = ""
     buckling: float | None = None
     dead_point: float = math.inf
@@ -140,6 +155,10 @@ class LargeDisplacement:
     passes: bool = False
     air: Source | None = None
     airs: tuple[tuple[float, "LargeDisplacement"], ...] = ()
+    grown: "LargeDisplacement | None" = None
+    friction: Source | None = None
+    rubbed: tuple["LargeDisplacement", ...] = ()
+    locks: bool = False
 
     @property
     def share(self) -> float:
@@ -168,15 +187,16 @@ class LargeDisplacement:
 
     @property
     def limit_load(self) -> Band:
-        """Factor on all loads at which the linkage gives way, wherever its pins stand in their play, in any air."""
-        found, doubts = self._limit_load, tuple(source for source in (self.play, self.air) if source is not None)
+        """Factor on all loads at which the linkage gives way, with all that play, air and friction may make of it."""
+        causes = self.play, self.air, self.friction
+        found, doubts = self._limit_load, tuple(source for source in causes if source is not None)
         if not doubts or found.unknowable:
             return found
-        others = [one.limit_load for one in (*self.shaken, *(other for _, other in self.airs[1:]))]
+        others = [one.limit_load for one in (*self.shaken, *(other for _, other in self.airs[1:]), *self.rubbed)]
         every = [found, *(one for one in others if not one.unknowable)]
         return replace(
             found,
-            low=0.0 if self.passes else min(one.low for one in every),
+            low=0.0 if self.passes or self.locks else min(one.low for one in every),
             high=max(one.high for one in every),
             sources=distinct(found.sources, doubts),
         )
@@ -204,6 +224,28 @@ class LargeDisplacement:
         least, most = max(least_of_convex(found), 0.0), max(size for _, size in found)
         return Scatter(low=least / value, high=most / value, sources=(self.air,))
 
+    def with_any_friction(self, link: str, point: str) -> Scatter:
+        """Return what the friction that may be makes of the displacement of a point.
+
+        Parameters
+        ----------
+        link, point : str
+            Their names.
+
+        Returns
+        -------
+        Scatter
+        """
+        if self.friction is None:
+            return Scatter()
+        known = all((link, point) in one.points for one in (self, *self.rubbed))
+        sizes = [float(np.linalg.norm(one.points[link, point])) for one in (self, *self.rubbed)] if known else []
+        if not sizes or (not sizes[0] > 0.0 and max(sizes) > 0.0):
+            return Scatter(low=0.0, high=math.inf, sources=(self.friction,))
+        least, most = (end / (sizes[0] or 1.0) for end in (min(sizes), max(sizes)))
+        known_end = Scatter(low=least, high=most, sources=(self.friction,)) if most > 0.0 else Scatter()
+        return replace(known_end, high=math.inf, sources=(self.friction,)) if self.locks else known_end
+
     @cached_property
     def _limit_load(self) -> Band:
         """That with pins in the middle of their holes.
@@ -214,18 +256,25 @@ class LargeDisplacement:
             return Band.unknown(self.sentence)
         if self.blind:
             return Band.unknown(f"the frame takes link {self.blind} for a beam along its axis, which does not tell")
-        slack = self.slack
+        known, soft = self.softness, 1.0 if self.softness is None else self.softness.value
+        eyes = self.eyes if known is None else Scatter(low=known.low, high=known.high, sources=known.sources)
+        slack = self.scatter.times(eyes)
         sources, faults = slack.sources, self.buckling / LEAST_LINEAR / slack.high
         if self.state == "off" or self.factor / SNAP / slack.high >= MOST:
-            value, low, high = self.factor, self.factor / SNAP / slack.high, self.buckling / slack.low
+            value, low, high = self.factor / soft, self.factor / SNAP / slack.high, self.buckling / slack.low
             sources = (*sources, Source(kind=SourceKind.SNAP_THROUGH, detail="linear theory puts it too high"))
         else:
             value, lost = (self.held, self.lost) if self.gives_way else _end(self.frame, self.held)
             low, high = value / slack.high, lost / slack.low
+            value = value / soft if math.isfinite(lost) else MOST
             sources = (Source(kind=SourceKind.PATH, detail="steps of the load"), *sources)
             if faults < low:
                 detail = f"buckling at less than {LEAST_LINEAR:g} times the load"
                 low, sources = faults, (*sources, Source(kind=SourceKind.IMPERFECTION, detail=detail))
+        by_itself = self.alone / LEAST_LINEAR / self.scatter.high
+        if self.alone < value or by_itself < low:
+            value, low = min(value, self.alone), min(low, by_itself)
+            sources = (*sources, Source(kind=SourceKind.IMPERFECTION, detail="buckling of a link by itself"))
         if value >= MOST:
             return Band(value=MOST, low=min(low, MOST), high=math.inf, sources=distinct(sources))
         return Band(value=value, low=min(low, value), high=max(high, value), sources=distinct(sources))
@@ -332,6 +381,32 @@ def examine(
     if scatter.high * linear <= LARGE * size and min(factor, near) >= told:
         return small
     return _deformed(case, title, frame, small, loads)
+
+
+def with_growth(case: Case, title: str, moved: LargeDisplacement, loads: Sequence[Load]) -> LargeDisplacement:
+    """Return what became of a load case, with what a small one becomes on its deformed shape.
+
+    Parameters
+    ----------
+    case : Case
+    title : str
+        Of the load case.
+    moved : LargeDisplacement
+    loads : sequence of Load
+        That act on the links, global axes.
+
+    Returns
+    -------
+    LargeDisplacement
+        The same unless small; the answer on the deformed shape itself where that does not hold the load.
+    """
+    if moved.state != "small" or moved.frame is None:
+        return moved
+    try:
+        grown = _deformed(case, title, moved.frame, moved, loads)
+    except (CaseError, CannotRunError):
+        return moved
+    return grown if grown.gives_way else replace(moved, grown=grown)
 
 
 def stated_scatter(case: Case, load_case: str) -> Scatter:

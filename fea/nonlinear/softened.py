@@ -37,6 +37,8 @@ def displaced(frame: LinkageFrame, link: str, point: str, factor: float) -> floa
     float
         Distance [mm]; infinite where nothing holds.
     """
+    if not math.isfinite(factor):
+        return math.inf
     try:
         found = followed(frame, factor)
     except NoEquilibriumError:

@@ -120,7 +120,7 @@ def bearing_outcome(
     wrenches : sequence of ndarray, shape (6,)
         As of ``weakest_eye``.
     growth : Scatter, optional
-        By which that force grows beside scattered loads (``fea.check.load_growth``).
+        By which that force grows beside scattered loads (``fea.doubts.load_growth``).
 
     Returns
     -------

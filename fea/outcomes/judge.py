@@ -52,7 +52,7 @@ def outcomes(
     free : mapping of str to LinkLoads
         Loads of every link cut free; empty where equilibrium alone does not give the joint forces.
     uneven : mapping of str to Scatter, optional
-        Joint -> how its force grows beside scattered loads (``fea.check.load_growth``).
+        Joint -> how its force grows beside scattered loads (``fea.doubts.load_growth``).
     forces : JointForces, optional
         Where these come from a frame of solids, which tells how far points move as well.
 

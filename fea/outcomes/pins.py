@@ -50,7 +50,7 @@ from geometry.base.errors import CaseError
 from geometry.bodies.features import Ring
 from loads.case.case import Case
 from loads.case.eyes import other_link
-from loads.case.forks import eye_of, outer_link
+from loads.case.forks import eye_of, eyes, outer_link
 from loads.records.applied import shifted
 from loads.records.check_spec import PinCheck
 from loads.statics.joint_reaction import JointReaction
@@ -204,35 +204,6 @@ def _taken(eye: Ring, lever: float) -> tuple[float, float]:
     return max(moments), max(shears)
 
 
-def eyes(case: Case, joint: str) -> tuple[Ring, Ring]:
-    """Return a joint's holes in its two links; that of a link without part is like that of the other link's plate.
-
-    Parameters
-    ----------
-    case : Case
-    joint : str
-
-    Returns
-    -------
-    tuple of (Ring, Ring)
-        With their rims and walls.
-
-    Raises
-    ------
-    CaseError
-        Where neither link has a part.
-    """
-    links = case.joints[joint].links
-    found = {link: eye_of(case, joint, link) for link in links if case.links[link].part is not None}
-    if not found:
-        raise CaseError(f"joints.{joint}: neither link has a part, so the pin's length is unknown; give one a part")
-    if len(found) == 1:
-        [link] = found
-        body = case.body(link)
-        found[other_link(case.linkage, joint, link)] = body.ring(body.pin(case.linkage.point_of(joint, link)))
-    return found[links[0]], found[links[1]]
-
-
 def stress_at(case: Case, joint: str, reaction: JointReaction) -> PinStress:
     """Return the stresses of a joint's pin under its reaction.
 
@@ -378,7 +349,7 @@ def pin_outcome(
     stress : PinStress
         Of its pin.
     growth : Scatter, optional
-        By which the joint's force grows beside scattered loads (``fea.check.load_growth``).
+        By which the joint's force grows beside scattered loads (``fea.doubts.load_growth``).
 
     Returns
     -------

@@ -6,22 +6,23 @@ the outcome states it.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
-from fea.common.scatter import compliance_scatter, load_scatter
-from fea.common.source import Source, SourceKind, distinct, play_source
+from fea.common.scatter import Scatter, compliance_scatter, load_scatter
+from fea.common.source import COUPLES, Source, SourceKind, distinct, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
 from fea.frame.displacement_band import point_bounds
 from fea.frame.joint_forces import JointForces
 from fea.nonlinear.large_displacement import LARGE, LargeDisplacement
 from fea.nonlinear.softened import displaced
 from fea.nonlinear.stability import SNAP, growth
-from fea.outcomes.point_shares import Shares, has_centre_line, shares_of
+from fea.outcomes.free_motion import FreeMotion, free_motion, unknown_lengths
+from fea.outcomes.point_shares import Shares, condensable, has_centre_line, shares_of
 from fea.outcomes.result import LinkResult, SolidResult
 from loads.case.case import Case
 from loads.records.check_spec import DisplacementCheck
@@ -109,14 +110,53 @@ class PointDisplacement:
         )
 
     @property
+    def in_any_air(self) -> Scatter:
+        """What the range of C_N makes of it."""
+        return self.moved.in_any_air(self.link, self.point)
+
+    @property
     def play(self) -> Play | None:
         """What the play of pins does; None where no joint has play."""
         return None if self.forces is None else self.forces.play
+
+    @property
+    def by_centre_lines(self) -> bool:
+        """True where a frame of centre lines tells it that could have links' solids in their place."""
+        forces = self.forces
+        known = forces is None or forces.by_equilibrium or self.shares.framed is not None or self.moved.followed
+        return not known and any(condensable(self.case, link) for link in self.case.bending_links)
 
     @cached_property
     def value(self) -> Band:
         """The displacement [mm]."""
         return Band.unknown() if self.why else self.band()
+
+    @cached_property
+    def no_end(self) -> str:
+        """Why the band has no upper end; "" where it has one."""
+        if self.why or math.isfinite(self.value.high):
+            return ""
+        on_tight_pins = replace(self, forces=None)
+        if math.isfinite(self.elastic().high):
+            why = "play of pins may take the linkage through a dead point"
+        elif self.in_any_air.high == math.inf:
+            why = "the linkage gives way within the stated range of C_N"
+        elif self.moved.with_any_friction(self.link, self.point).high == math.inf:
+            why = "the linkage locks itself or gives way with friction as large as it may be"
+        elif math.isfinite(on_tight_pins.elastic().high):
+            plain, _, most = self._tilted
+            every = self.case.linkage.joints.items()
+            turning = [name for name, joint in every if joint.type == "revolute" and not joint.bonded]
+            loose = [x for x in turning if self.case.linkage.rise(x) != 0.0 and not self.case.joints[x].tight_in]
+            why = (
+                f"pins that tilt in their holes let the frame move it by {most:.3g} mm in place of {plain:.3g} mm, so "
+                f"softly held that nothing bounds how this grows; tight_in of joints {', '.join(loose)} narrows it"
+            )
+        elif self.moved.followed:
+            why = "the linkage gives way with links as soft, or a load as large, as they may be"
+        else:
+            why = f"by linear theory a factor of {SNAP:.2g} or less on the load may make it give way"
+        return f"the band has no upper end, since {why}"
 
     @cached_property
     def sinking(self) -> float:
@@ -144,19 +184,39 @@ class PointDisplacement:
         size = float(np.linalg.norm(moved))
         plane, across = complex(*moved[:2]) / (size or 1.0), float(moved[2]) / (size or 1.0)
 
-        def told(elastic: float, in_plane: float) -> float:
-            return math.hypot(in_plane, elastic * across)
-
-        at_rest = abs(found.value * plane + complex(play.shift(self.link, self.point)))
-        least = play.loose.spread(self.link, self.point, found.low * plane)[0]
-        most = play.loose.spread(self.link, self.point, found.high * plane)[1] if found.high < math.inf else math.inf
-        value = told(found.value, at_rest)
+        value = math.hypot(abs(found.value * plane + complex(play.shift(self.link, self.point))), found.value * across)
+        least, most = (self._loose(play, end * plane, abs(end * across)) for end in (found.low, found.high))
         return Band(
             value=value,
-            low=min(told(found.low, least), value),
-            high=max(told(found.high, most), value),
+            low=min(math.hypot(*least[0]), value),
+            high=max(math.hypot(*most[1]), value),
             sources=distinct(found.sources, (play_source(play.clearances),)),
         )
+
+    def _loose(self, play: Play, plane: complex, across: float) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Least and largest displacement in the plane and across it, where pins take up their play beside one."""
+        if not math.isfinite(abs(plane)):
+            return (0.0, 0.0), (math.inf, math.inf)
+        least, most = play.loose.spread(self.link, self.point, plane)
+        tilting = self.tilting
+        if tilting is None:
+            return (least, across), (most, across)
+        least, most = min(least, tilting.plane.least(plane)), max(most, tilting.plane.largest(plane))
+        return (least, max(across - tilting.across, 0.0)), (most, across + tilting.across)
+
+    @cached_property
+    def free_motion(self) -> float:
+        """How far the play of pins lets the point go by itself [mm]."""
+        return 0.0 if self.play is None else math.hypot(*self._loose(self.play, 0j, 0.0)[1])
+
+    @cached_property
+    def tilting(self) -> FreeMotion | None:
+        """How far play lets the point go as pins tilt in their holes; None without play, or where all is in a plane."""
+        moved = self.moved
+        if self.play is None or moved.frame is None or moved.solution is None:
+            return None
+        spatial = self.case.layered or np.any(moved.solution.displacements[:, 2:5])
+        return free_motion(self.case, moved.frame, self.link, self.point) if spatial else None
 
     def elastic(self, *, meshes: float = 1.0, sunk: bool = False) -> Band:
         """Return the band without play: what solids or beams leave open, the moduli, and the load.
@@ -181,45 +241,73 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         solids = shares.bands(meshes=meshes, sunk=sunk)
-        load, frame = load_scatter(case, self.load_case).times(moved.in_any_air(link, point)), moved.frame
+        load = load_scatter(case, self.load_case).times(self.in_any_air).times(moved.with_any_friction(link, point))
         materials = [case.material_of(other) for other in case.checked_links]
         ratios = [m.youngs_modulus / e for m in materials for e in (m.youngs_modulus_range or ())]
         if shares.framed is None:
-            found = self._shared(point_bounds(case, frame, moved.solution, link, point, solids, shares.carried))
+            found = self._shared(point_bounds(case, moved.frame, moved.solution, link, point, solids, shares.carried))
         else:
-            found = shares.framed.displaced(link, point, sunk=sunk)
+            found = shares.framed.displaced(link, point, meshes=meshes, sunk=sunk)
         slack = min((*ratios, 1.0)) * load.low, max((*ratios, 1.0)) * load.high
         moduli = (compliance_scatter(material).sources for material in materials)
-        sources = distinct(shares.sources, *moduli, load.sources)
+        sources = distinct(shares.sources, found.sources, *moduli, load.sources)
         if moved.followed:
             return self._followed(found, solids, slack, sources)
-        linear = float(np.linalg.norm(moved.solution.displacements[frame.points[link, point], :3]))
         # The ground's part is in no frame: it adds to the displacement, but does not make the frame softer.
-        framed = self._framed(found, solids)
-        near_by = 0.0
-        if moved.factor is not None:
-            near_by = (framed.high / linear if linear > 0.0 else 1.0) * slack[1] / moved.factor
-        grown = growth(1.0 / near_by) if near_by > 0.0 else 1.0
+        near_by = self._near_by(self._framed(found, solids), slack[1])
+        grown, least = growth(1.0 / near_by) if near_by > 0.0 else 1.0, 1.0
+        if moved.grown is not None and self._linear > 0.0:  # as it is on the deformed shape
+            after = float(np.linalg.norm(moved.grown.points[link, point])) / self._linear
+            grown, least = max(grown, after), min(after, 1.0)
         value = found.value if solids or shares.framed is not None else float(np.linalg.norm(moved.points[link, point]))
         grows = Source(kind=SourceKind.GROWTH, detail="towards buckling or a dead point")
         return Band(
             value=value,
-            low=min(found.low * slack[0], value),
+            low=min(found.low * slack[0] * least, value),
             high=max(found.high * slack[1] * grown, value),
             sources=(*sources, grows),
         )
 
-    def _shared(self, found: Band) -> Band:
-        """Band with all ways in which pins may share couples between layers."""
+    def _near_by(self, framed: Band, slack: float) -> float:
+        """Return one over the factor on its loads at which the linkage may give way, with links as soft as may be."""
+        if self.moved.factor is None:
+            return 0.0
+        return (framed.high / self._linear if self._linear > 0.0 else 1.0) * slack / self.moved.factor
+
+    @cached_property
+    def _linear(self) -> float:
+        """Displacement of the node by the linear frame [mm]."""
+        moved = self.moved
+        assert moved.frame is not None
+        assert moved.solution is not None
+        node = moved.frame.points[self.link, self.point]
+        return float(np.linalg.norm(moved.solution.displacements[node, :3]))
+
+    @cached_property
+    def _tilted(self) -> tuple[float, float, float]:
+        """Displacement by plain beams with pins tight in both links, and the least and largest as pins tilt in them."""
         moved, at = self.moved, (self.link, self.point)
         assert moved.frame is not None
         assert moved.solution is not None
-        if self.forces is None or not self.forces.sharings:
-            return found
         plain = float(np.linalg.norm(moved.frame.at_points(moved.solution.displacements)[at]))
-        sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in self.forces.sharings)]
-        least, most = (end / plain if plain > 0.0 else 1.0 for end in (min(sizes), max(sizes)))
-        return Band(value=found.value, low=least * found.low, high=most * found.high, sources=found.sources)
+        sharings = () if self.forces is None or self.shares.framed is not None else self.forces.sharings
+        sizes = [plain, *(float(np.linalg.norm(one.points[at])) for one in sharings)]
+        return plain, min(sizes), max(sizes)
+
+    def _shared(self, found: Band) -> Band:
+        """Band with all ways in which pins may share couples between layers.
+
+        What tilting adds goes with the softness of the links, or is that of plain beams beside it if that is more.
+        """
+        plain, least, most = self._tilted
+        less, more = (end / plain if plain > 0.0 else 1.0 for end in (least, most))
+        sources = COUPLES if most - least > WORTH_TELLING * plain else ()
+        return replace(
+            found,
+            low=less * found.low,
+            high=max(more * found.high, found.high + most - plain),
+            sources=(*found.sources, *sources),
+        )
 
     def _framed(self, found: Band, solids: Mapping[str, tuple[Band, ...]]) -> Band:
         """Band of the displacement without what the ground's part adds."""
@@ -229,7 +317,8 @@ class PointDisplacement:
         assert moved.frame is not None
         assert moved.solution is not None
         bending = {other: bands for other, bands in solids.items() if other != ground}
-        return point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
+        framed = point_bounds(case, moved.frame, moved.solution, self.link, self.point, bending, self.shares.carried)
+        return self._shared(framed)
 
     def _followed(
         self,
@@ -241,9 +330,11 @@ class PointDisplacement:
         """Band on the deformed shape."""
         moved, link, point = self.moved, self.link, self.point
         assert moved.frame is not None
-        assert moved.solution is not None
-        framed, size = self._framed(found, solids), float(np.linalg.norm(moved.points[link, point]))
-        linear = float(np.linalg.norm(moved.solution.displacements[moved.frame.points[link, point], :3]))
+        framed, size, linear = (
+            self._framed(found, solids),
+            float(np.linalg.norm(moved.points[link, point])),
+            self._linear,
+        )
         low, high = (framed.low / linear, framed.high / linear) if linear > 0.0 else (1.0, 1.0)
         low, high = low * slack[0], high * slack[1]
         if solids and linear > 0.0:
@@ -271,7 +362,7 @@ class PointDisplacement:
         dict of str to float
             Link -> relative error; infinite for a link that is to be solved as a solid in the first place.
         """
-        if self.why or not self.value.low <= limit < self.value.high:
+        if self.why or not self.value.low <= limit < self.value.high or self.free_motion > limit:
             return {}
         if self.shares.unsolved:
             return dict.fromkeys(self.shares.unsolved, math.inf)
@@ -329,7 +420,8 @@ def point_outcome(
     if told.why:
         return found
     shape = "on its deformed shape" if moved.followed else "by linear theory"
-    notes = list(() if moved.frame is None else moved.frame.notes)
+    notes = [told.no_end] if told.no_end else []
+    notes += () if moved.frame is None else moved.frame.notes
     if told.sinking > WORTH_TELLING * told.value.value:
         beyond = found.verdict is Verdict.PASS and told.value.high + told.sinking > check.maximum
         notes.append(
@@ -339,8 +431,13 @@ def point_outcome(
     if told.play is not None:
         alone = Quantity.DISPLACEMENT.sense.verdict(told.elastic(), check.maximum)
         decides = f"; without play the verdict would be {alone.value}" if alone is not found.verdict else ""
-        loose = told.play.free_motion(told.link, told.point)
-        notes.append(f"play of pins lets it move by up to {loose:.3g} mm to either side{decides}")
+        loose, tilting = told.play.free_motion(told.link, told.point), told.tilting
+        tilted = ""
+        if tilting is not None:
+            loose = max(loose, tilting.plane.largest())
+            tilted = f" in the plane and, as they tilt in their holes, by up to {tilting.across:.3g} mm across it"
+        notes.append(f"play of pins lets it move by up to {loose:.3g} mm to either side{tilted}{decides}")
+        notes += unknown_lengths(case) if tilting is not None else ()
     if found.verdict is Verdict.UNDECIDED:
         notes += _remedies(told, check.maximum, links)
     return found.because("; ".join([f"by {told.shares.model}, {shape}: {found.reason}", *notes]))
@@ -377,8 +474,13 @@ def meshes_to_refine(
 
 def _remedies(told: PointDisplacement, limit: float, links: Mapping[str, LinkResult]) -> list[str]:
     """Say what would decide, where something would."""
-    if told.shares.unsolved:
+    if told.free_motion > limit:
+        return ["only less play decides: a smaller clearance, or longer holes"]
+    if told.shares.unsolved or told.by_centre_lines:
         return ["solid models of all links, --fidelity solid, have a narrower band"]
+    if told.shares.framed is not None:
+        exact = Quantity.DISPLACEMENT.sense.verdict(told.band(meshes=0.0), limit)
+        return [f"{'no finer mesh' if exact is Verdict.UNDECIDED else 'a smaller solid.mesh_size'} decides"]
     wanted = told.meshes_to_refine(limit, links)
     if not told.shares.beams and not wanted:
         return ["no finer mesh decides"]

@@ -11,9 +11,10 @@ from fea.beam.theory import internal_forces
 from fea.common.band import Band
 from fea.common.link_loads import LinkLoads
 from fea.common.source import CONTACT, Source, SourceKind, pin_sources
-from fea.frame.joint_forces import JointForces, joint_forces
+from fea.frame.joint_forces import JointForces, solved_frame
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.result import LinkResult, SolidResult
+from fea.solid.solution import LARGEST_POISSON_RATIO
 from fea.solid.virtual_work import Work, virtual_work
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
@@ -32,7 +33,7 @@ class Shares:
     Attributes
     ----------
     solids : dict of str to tuple of Work
-        Link, and what its solid adds along x and y [mm].
+        Link, and what its solid adds along x and y, and between layers along z [mm].
     carried : dict of str to tuple of float
         The same of its plain beam, where the solid bears the loads of the deformed shape [mm].
     beams : tuple of str
@@ -79,7 +80,7 @@ class Shares:
         return {link: max(work.missing for work in works) for link, works in self.solids.items()}
 
     def bands(self, *, meshes: float = 1.0, sunk: bool = False) -> dict[str, tuple[Band, ...]]:
-        """Return what every solid adds along x and y.
+        """Return what every solid adds along each axis.
 
         Parameters
         ----------
@@ -132,7 +133,8 @@ def shares_of(
         return Shares(beams=case.checked_links)
     pose, held = moved.frame.pose, moved.frame.held
     longest = pose.linkage.longest
-    units = [PointLoad(link=link, point=point, wrench=unit) for unit in np.eye(6)[:2]]
+    axes = 3 if forces is not None and forces.frame is not None else 2  # links in layers move out of the plane as well
+    units = [PointLoad(link=link, point=point, wrench=unit) for unit in np.eye(6)[:axes]]
     reactions = [_virtual(case, pose, held, unit, forces) for unit in units]
     solids: dict[str, tuple[Work, ...]] = {}
     carried: dict[str, tuple[float, ...]] = {}
@@ -157,7 +159,7 @@ def shares_of(
                 unsolved.append(name)
             continue
         if moved.state != "small":
-            carried[name] = tuple(_beam_work(case, name, real, loads) for loads in virtual)
+            carried[name] = tuple(beam_work(case, name, real, loads) for loads in virtual)
         error = result.discretisation.displacement.index
         solids[name] = virtual_work(result.solution, real, virtual, transfer=case.torque_transfer, error=error)
         driven = driven or any(loads.couples for loads in (real, *virtual))
@@ -166,8 +168,9 @@ def shares_of(
 
 def _virtual(case: Case, pose: Pose, held: Drive | None, unit: PointLoad, forces: JointForces | None) -> Reactions:
     """Joint forces under a unit load: by equilibrium, which between layers is that of a frame."""
-    if forces is not None and forces.sharings:
-        return joint_forces(case, pose, (unit,)).reactions
+    if forces is not None and forces.frame is not None:
+        frame, solution = solved_frame(case, pose, (unit,), held)
+        return frame.reactions(solution.joint_wrenches, solution.residual)
     return solve_statics(pose, held, (unit,))
 
 
@@ -186,9 +189,40 @@ def has_centre_line(case: Case, link: str) -> bool:
     return link != case.linkage.ground and case.part_of(link).has_centre_line(case.body(link))
 
 
-def _beam_work(case: Case, link: str, real: LinkLoads, virtual: LinkLoads) -> float:
-    """Work of virtual loads on a link's plain beam [N mm]."""
+def condensable(case: Case, link: str) -> bool:
+    """Return whether a link can be an element of a frame as its solid, condensed to bores and patches.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+
+    Returns
+    -------
+    bool
+        It carries no slot, and has two or more points.
+    """
+    carries = any(joint.type != "revolute" and joint.links[0] == link for joint in case.joints.values())
+    meshable = case.material_of(link).poissons_ratio <= LARGEST_POISSON_RATIO
+    return not carries and meshable and len(case.links[link].points) > 1
+
+
+def beam_work(case: Case, link: str, real: LinkLoads, virtual: LinkLoads) -> float:
+    """Return the work of virtual loads on the plain beam that a link is in a frame.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    real, virtual : LinkLoads
+        Each a set that balances.
+
+    Returns
+    -------
+    float
+        [N mm]
+    """
     body, material = case.body(link), case.material_of(link)
     first, second = (internal_forces(beam_loads(loads, body, material.density)) for loads in (real, virtual))
-    section, young, poisson = case.part_of(link).section, material.youngs_modulus, material.poissons_ratio
+    section, young, poisson = body.part.frame_section(body), material.youngs_modulus, material.poissons_ratio
     return plain_work(first, second, section, young=young, poisson=poisson)

@@ -8,7 +8,6 @@ from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import CheckOutcome, Quantity, Subject
-from fea.nonlinear.large_displacement import LEAST_FACTOR
 from fea.outcomes.result import LinkResult, SolidResult
 from fea.refine.link_buckling import SolidBuckling
 from fea.solid.buckling_factor import MOST
@@ -94,7 +93,7 @@ def solid_growth(found: SolidBuckling | None) -> Scatter:
     Parameters
     ----------
     found : SolidBuckling or None
-        Its buckling factors n; below 10 the growth is 1/(1 - 1/n) at most (``fea.buckling.buckling``).
+        Its buckling factors n; the growth is 1/(1 - 1/n) at most (``fea.buckling.buckling``).
 
     Returns
     -------
@@ -102,7 +101,7 @@ def solid_growth(found: SolidBuckling | None) -> Scatter:
         None at n <= 1, where no factor bounds it, and the link does not pass.
     """
     least = found.least * (1.0 - found.error) if found is not None and not found.without else math.inf
-    if not 1.0 < least < LEAST_FACTOR:
+    if not 1.0 < least < math.inf:
         return Scatter()
     detail = f"bending towards buckling at {least:.3g} times the load"
     return Scatter(high=1.0 / (1.0 - 1.0 / least), sources=(Source(kind=SourceKind.GROWTH, detail=detail),))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from geometry.materials.plausible import unusual
+from geometry.materials.plausible import untold, unusual
 from loads.case.case import Case
 from loads.records.check_spec import MassCheck, PinCheck, SafetyFactorCheck, SizeCheck, SustainedCheck
 from loads.states.extent import unmeasured
@@ -48,7 +48,7 @@ def unchecked(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Sus
 
 
 def unusual_materials(case: Case) -> list[str]:
-    """Return a sentence for every unusual value of the materials of links and of checked pins.
+    """Return a sentence for what is unusual in materials of links and checked pins, and for what lacks a source.
 
     Parameters
     ----------
@@ -62,4 +62,5 @@ def unusual_materials(case: Case) -> list[str]:
     for check in case.all_checks.values():
         if isinstance(check, PinCheck):
             used += [case.joints[name].pin_material for name in check.joints or case.pinned_joints]
-    return [said for name in dict.fromkeys(used) for said in unusual(name, case.all_materials[name])]
+    cards = {name: case.all_materials[name] for name in dict.fromkeys(used)}
+    return [said for name, card in cards.items() for said in (*unusual(name, card), *untold(name, card))]

@@ -14,11 +14,15 @@ does the same. That is told where it follows:
   what its joint forces add to its stiffness, so that no factor follows;
 * where a band holds what grows faster than the load (``SourceKind.GROWTH``) a load smaller by that factor suffices, and
   a load that may grow may do so by less.
+
+What follows so is tried before it is told (``fea.sizing.tried``), as it is rounded: the check, and all that passes
+under its load case, must pass with it. Where it does not, the margin that is left gives the next value, ``TRIES`` in
+all.
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from fea.common.source import Source, SourceKind, widest
@@ -35,6 +39,7 @@ from fea.frame.displacement_band import shares_of_work
 from fea.nonlinear.large_displacement import LARGE, LEAST_FACTOR, LargeDisplacement
 from fea.nonlinear.stability import SNAP
 from fea.outcomes.result import CheckResult, LoadCaseResult
+from fea.sizing.tried import Scaled, Trials, goes_with_load
 from geometry.base.errors import CaseError
 from geometry.materials.material import Material
 from loads.case.case import Case
@@ -42,6 +47,13 @@ from loads.records.check_spec import PinCheck
 
 MOST = 3
 """Checks for which it is told what would change them."""
+TRIES = 3
+"""Of each load, strength or modulus."""
+STIFFEST, STRONGEST = 1.2e6, 1e4
+"""Beyond the modulus of diamond [MPa], and beyond the strength of any fibre, nothing is told."""
+_CLOSER = 0.99
+"""Factor beside the margin that is left, since the path to a limit load is followed in steps."""
+_EXACT = 1e-9
 REACHES = (2.0, 1.8, 1.6, 1.4, 1.2)
 """Ratios of the ends of the range of a size, the widest that the case's own rules take."""
 Property = Literal[
@@ -110,6 +122,8 @@ class VerdictChange:
         Of an open check, what most of its band comes from; several where they are not known one by one.
     size : SizeRange or None
         What to size with ``alula size``; None, too, where the check is open for its model rather than for its number.
+    refuted : bool
+        True where a load or material was tried and none was found that does.
     """
 
     check: CheckOutcome
@@ -119,6 +133,27 @@ class VerdictChange:
     material: MaterialChange | None = None
     widest: tuple[Source, ...] = ()
     size: SizeRange | None = None
+    refuted: bool = False
+
+
+def rounded(value: float, *, up: bool, digits: int = 3) -> float:
+    """Return a number to some digits, upwards or downwards, so that it still does what it should.
+
+    Parameters
+    ----------
+    value : float
+    up : bool
+    digits : int, optional
+
+    Returns
+    -------
+    float
+    """
+    if value <= 0.0 or not math.isfinite(value):
+        return value
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    steps = math.ceil(value / step - _EXACT) if up else math.floor(value / step + _EXACT)
+    return steps * step
 
 
 def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
@@ -133,12 +168,62 @@ def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
     tuple of VerdictChange
         Of checks that fail and are open, the nearest to their limits first; of a pass, of the check that limits it.
     """
+    if _latest and _latest[0][0] is result:
+        return _latest[0][1]
     checks = by_nearness(check for case in result.load_cases.values() for check in case.checks)
     chosen = [check for check in checks if check.verdict is not Verdict.PASS and not _rests_on_nothing(result, check)]
     every: dict[object, CheckOutcome] = {}
     for check in chosen or checks[:1]:
         every.setdefault((check.name, check.quantity, check.subject), check)
-    return tuple(_change(result, check) for check in list(every.values())[:MOST])
+    trials = Trials(result=result)
+    found = tuple(_tried(trials, _change(result, check)) for check in list(every.values())[:MOST])
+    _latest[:] = [(result, found)]
+    return found
+
+
+_latest: list[tuple[CheckResult, tuple[VerdictChange, ...]]] = []
+"""Console, page and record ask for the same ones."""
+
+
+def _tried(trials: Trials, change: VerdictChange) -> VerdictChange:
+    """Return a change with what was tried and holds alone."""
+    check, material = change.check, change.material
+    if not goes_with_load(check):
+        return change
+    load = change.load
+    if load is not None:
+        load = _held(load, lambda by: trials.share(check, Scaled.loads(rounded(by, up=False))))
+    if material is not None:
+        stated, name = material.stated, material.material
+        stiffer = "modul" in material.what
+
+        case = trials.result.case
+        most = max(case.material_of(link).youngs_modulus for link in case.bending_links) if not name else 1.0
+
+        def share(by: float) -> float:
+            needed = rounded(stated / by, up=True)
+            if needed * most > (STIFFEST if stiffer else STRONGEST):
+                return 0.0
+            times = needed / stated
+            return trials.share(check, Scaled(**{"modulus" if stiffer else "strength": times}, material=name))
+
+        by = _held(stated / material.needed, share)
+        material = None if by is None else replace(material, needed=stated / by)
+    refuted = (load is None) is not (change.load is None) or (material is None) is not (change.material is None)
+    return replace(change, load=load, material=material, refuted=refuted)
+
+
+def _held(first: float, share: Callable[[float], float]) -> float | None:
+    """Return the first factor on the load, or on one over a property, with which all limits are kept."""
+    factor = first
+    for _ in range(TRIES):
+        kept = share(factor)
+        if kept >= 1.0 - _EXACT:
+            return factor
+        factor *= kept * _CLOSER
+        if factor <= 0.0 or (first > 1.0 >= factor):
+            return None
+    return None
 
 
 def _rests_on_nothing(result: CheckResult, check: CheckOutcome) -> bool:
@@ -260,7 +345,7 @@ def _needed(what: Property, material: str, stated: float, margin: float) -> Mate
 def _size(case: Case, load_case: LoadCaseResult, check: CheckOutcome) -> SizeRange | None:
     """Return the size that bears on a check, with a range from what it is upwards, or downwards of a pass."""
     subject = check.subject
-    if check.quantity in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES):
+    if check.quantity in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES, Quantity.LAYER_GAP):
         return None
     if subject.kind == "pin":
         path, size = f"joints.{subject.name}.pin_diameter", case.joints[subject.name].pin_diameter

@@ -101,10 +101,10 @@ def _numbers(task: Task, contents: Mapping[str, bytes]) -> Any:
 
     case = validate(dict(task.tables), _folder(tuple(contents.items())))
     if task.analysis == "motion":
-        from loads.states.case_motion import solve_case_motion
+        from fea.whole.rubbed_motion import rubbed_motion
 
         with bounded(1):
-            return numbers.of_motion(solve_case_motion(case), weighs=task.weighs)
+            return numbers.of_motion(rubbed_motion(case), weighs=task.weighs)
     from fea.check.run import check_case, effort_of
 
     effort = effort_of(case, task.accuracy)

@@ -62,7 +62,7 @@ def margin_band(number: VariantNumber) -> tuple[float, float, float]:
 
 
 def least_margin(result: VariantResult) -> tuple[float, float, float]:
-    """Return the least margin of all checks: by the values, and the interval that it may lie in.
+    """Return the least margin of all checks that apply: by the values, and the interval that it may lie in.
 
     The interval lies above 1 where all checks pass, below 1 where one fails, and holds 1 where values leave it open.
 
@@ -76,7 +76,7 @@ def least_margin(result: VariantResult) -> tuple[float, float, float]:
     tuple of float
         Value, low and high; the value is NaN where no check's value is known.
     """
-    bands = [margin_band(number) for number in result.numbers if number.check]
+    bands = [margin_band(number) for number in result.numbers if number.verdict is not None]
     value = min((value for value, _, _ in bands if not math.isnan(value)), default=math.nan)
     return value, min(low for _, low, _ in bands), min(high for _, _, high in bands)
 
@@ -114,6 +114,6 @@ def nearest(result: VariantResult, *, worst: bool = True) -> VariantNumber | Non
     VariantNumber or None
         None where nothing was checked.
     """
-    checked = [number for number in result.numbers if number.check]
+    checked = [number for number in result.numbers if number.verdict is not None]
     deciding = [number for number in checked if number.verdict is result.verdict] if worst else []
     return min(deciding or checked, key=lambda number: margin(number, worst=worst), default=None)

@@ -47,7 +47,7 @@ class VariantNumber:
     limit : float
         NaN without check.
     verdict : Verdict or None
-        None without check.
+        None without check, and of a check that is not applicable.
     """
 
     check: str = ""
@@ -124,7 +124,7 @@ class VariantNumber:
             low=float(outcome.value.low),
             high=float(outcome.value.high),
             limit=float(outcome.limit),
-            verdict=outcome.verdict,
+            verdict=outcome.verdict if outcome.applies else None,
         )
 
 

@@ -11,6 +11,7 @@ from fea.common.clock import Clock
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome
 from fea.frame.case_statics import CaseStatics, solve_case_statics
+from fea.frame.rubbing import presses_of
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from fea.outcomes.result import CheckResult
 from fea.refine.refinement import Effort
@@ -91,7 +92,10 @@ def tolerance_case(
     masses = part_masses(case) if needs_masses(case) else {}
     reaches = {one.variable.tolerance: one.masses for one in ends} if masses else {}
     plane = case.in_one_plane() if case.layered else case
-    sampler = Sampler(case=plane, pose=plane.solve_pose(), masses=masses, variables=variables, reaches=reaches)
+    presses = {x: presses_of(case, forces) for x, forces in statics.forces.items()}
+    sampler = Sampler(
+        case=plane, pose=plane.solve_pose(), masses=masses, variables=variables, reaches=reaches, presses=presses
+    )
     rng = np.random.default_rng(seed)
     progress("unit solutions of the links")
     pilots = _pilots(variables, rng)

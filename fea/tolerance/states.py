@@ -23,7 +23,7 @@ from loads.records.load_case import LoadCase
 from loads.states.actions import acting_loads
 from loads.states.rubbing import WAYS, is_of
 from loads.states.springs import spring_loads
-from loads.statics.friction import solve_friction
+from loads.statics.friction import Presses, solve_friction
 from loads.statics.statics import NEARLY_SINGULAR, Equilibrium, assemble, joint_reactions
 
 Real = NDArray[np.float64]
@@ -96,6 +96,8 @@ class Sampler:
         The d columns of the samples.
     reaches : mapping of str to Reach
         Toleranced size -> its ends, between which masses of links are interpolated.
+    presses : mapping of str to mapping of str to ndarray, shape (1,)
+        Load case -> joint -> what presses on the wall of its bore over its force, in layers, without deviations.
     """
 
     case: Case
@@ -103,6 +105,7 @@ class Sampler:
     masses: Mapping[str, PartMass]
     variables: Sequence[Variable]
     reaches: Mapping[str, Reach] = field(default_factory=dict)
+    presses: Mapping[str, Presses] = field(default_factory=dict)
 
     def shifts(self, deviations: Real) -> dict[tuple[str, str], NDArray[np.complex128]]:
         """Return the shifts of points in their links' frames.
@@ -206,7 +209,8 @@ class Sampler:
         driven = DrivenClosure(here.closure, self.pose.coordinate, self.pose.slides)
         moving = replace(here, qdot=driven.coefficients(here.q)[0])
         for name, (loads, _) in systems.items():
-            friction = solve_friction(moving, drive, loads, WAYS[self.case.load_cases[name].direction])
+            way, presses = WAYS[self.case.load_cases[name].direction], self.presses.get(name, {})
+            friction = solve_friction(moving, drive, loads, way, presses=presses)
             locked |= friction.locked
             found[name] = (*loads, *friction.loads), assemble(here, drive, (*loads, *friction.loads))
         return found, locked

@@ -12,13 +12,14 @@ from fea.vibration.harmonics import HIGHEST, Meeting, in_words, meetings
 from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes
 from fea.vibration.modes import Mode
-from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies
+from fea.vibration.over_motion import CaseFrequencies, FrequencyHistory, case_frequencies, lowest_pose
+from fea.vibration.running_holes import running_holes
+from geometry.base.ties import first_least
 from loads.case.case import Case
 from loads.records.check_spec import FrequencyCheck
 
 POSES = 13
 """Over the motion, of which the least frequency is sought in between: every 30 degrees of a turn."""
-_ROUNDING = 1e-9
 _ENDINGS = {1: "st", 2: "nd", 3: "rd"}
 
 
@@ -72,7 +73,7 @@ def frequency_outcomes(found: CaseFrequencies | None) -> Iterator[CheckOutcome]:
             yield _linkage(case, name, check, load_case, history)
         for link in check.links or case.checked_links:
             for load_case, modes in _by_itself(found, link):
-                yield _link(name, check, load_case, modes, found.histories[load_case].driving)
+                yield _link(case, name, check, load_case, modes, found.histories[load_case].driving)
 
 
 def deciding_load_case(found: CaseFrequencies) -> str:
@@ -89,7 +90,8 @@ def deciding_load_case(found: CaseFrequencies) -> str:
     cases, every = found.case.load_cases, found.histories
     turning = {name: one for name, one in every.items() if cases[name].speed != 0.0}
     driven = turning or {name: one for name, one in every.items() if one.driving > 0.0} or every
-    return min(driven, key=lambda name: least_frequency(driven[name]).low / (driven[name].driving or 1.0))
+    names = list(driven)
+    return names[first_least([least_frequency(driven[name]).low / (driven[name].driving or 1.0) for name in names])]
 
 
 def least_frequency(history: FrequencyHistory) -> Band:
@@ -120,13 +122,12 @@ def least_at(history: FrequencyHistory) -> float:
     float
         Value of the coordinate [rad, mm].
     """
-    low = history.low[:, 0]
-    return float(history.at[int(np.argmax(low <= (1.0 + _ROUNDING) * low.min()))])
+    return float(history.at[lowest_pose(history.low[:, 0], history.frequencies[:, 0])])
 
 
 def _linkage(case: Case, name: str, check: FrequencyCheck, load_case: str, history: FrequencyHistory) -> CheckOutcome:
     ratio = least_frequency(history).times(1.0 / history.driving)
-    reason = f"{lowest_sentence(case, history)}; {harmonic_sentence(case, history)}"
+    reason = f"{lowest_sentence(case, history)}; {harmonic_sentence(case, history)}{running_clause(case, None)}"
     return CheckOutcome.of(name, LINKAGE, load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
 
 
@@ -142,11 +143,34 @@ def _by_itself(found: CaseFrequencies, link: str) -> Iterator[tuple[str, LinkMod
             yield fastest, link_modes(case, link, count=1, solid=own.model == "solid", carried=False) if bare else own
 
 
-def _link(name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
+def running_clause(case: Case, link: str | None) -> str:
+    """Say in which joints the low end of a frequency has hinges, since nothing states that their pins are tight.
+
+    Parameters
+    ----------
+    case : Case
+    link : str or None
+        By itself; None for the linkage.
+
+    Returns
+    -------
+    str
+        After a semicolon; "" where all pins between layers are stated to be tight.
+    """
+    joints = dict.fromkeys(name for name, _ in running_holes(case) if link in (None, *case.joints[name].links))
+    if not joints:
+        return ""
+    return (
+        f"; the low end has hinges in holes at {', '.join(joints)}, where pins may run: nothing states that they are "
+        "tight in both links (tight_in, or bonded)"
+    )
+
+
+def _link(case: Case, name: str, check: FrequencyCheck, load_case: str, own: LinkModes, driving: float) -> CheckOutcome:
     link, mode = own.link, own.modes[0]
     reason = (
         f"by itself, {own.held}, {link} vibrates at {_hertz(mode.frequency)}, {in_words(mode.in_plane)}; "
-        f"the drive turns at {_plain(driving)} Hz"
+        f"the drive turns at {_plain(driving)} Hz{running_clause(case, link)}"
     )
     ratio = mode.frequency.times(1.0 / driving)
     return CheckOutcome.of(name, Subject.link(link), load_case, Quantity.FREQUENCY_RATIO, ratio, check.minimum, reason)
@@ -235,8 +259,8 @@ def harmonic_sentence(case: Case, history: FrequencyHistory) -> str:
     if float(low.min()) > HIGHEST * driving:
         return f"all harmonics up to the {ordinal(HIGHEST)}, {_plain(HIGHEST * driving)} Hz, stay below it"
     apart = {n: np.maximum(low / (n * driving), n * driving / np.maximum(high, 1e-12)) for n in range(1, HIGHEST + 1)}
-    nearest = min(apart, key=lambda n: float(apart[n].min()))
-    i, k = np.unravel_index(int(np.argmin(apart[nearest])), low.shape)
+    nearest = first_least([float(ratio.min()) for ratio in apart.values()]) + 1
+    i, k = np.unravel_index(first_least(np.ravel(apart[nearest])), low.shape)
     return (
         f"no harmonic up to the {ordinal(HIGHEST)} meets a natural frequency; the {ordinal(nearest)}, "
         f"{_plain(nearest * driving)} Hz, comes nearest to the {ordinal(int(k) + 1)} one"

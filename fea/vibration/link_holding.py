@@ -10,12 +10,13 @@ pin in a slot  on the link with the pin and on the one with the slot alike: no d
                about the slot's direction; all else is free
 slider         all but the displacement along its guide
 
+Between layers a pin that may run in a hole (``running_holes``) keeps no direction of the bore at the low ends of bands.
 A pin that slides in several slots is held in all their directions. The ground's part is held where its support holds
 it, and its joints hold nothing: the links there hang on it. What motions of the rigid link are left free by all that
 (a link with a single pin turns about it) are no vibration.
 """
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,7 +84,7 @@ class LinkHolding:
     words: str
 
 
-def link_holding(case: Case, link: str, pose: Pose) -> LinkHolding:
+def link_holding(case: Case, link: str, pose: Pose, *, running: Container[str] = ()) -> LinkHolding:
     """Return how joints hold a link in a pose.
 
     Parameters
@@ -93,6 +94,8 @@ def link_holding(case: Case, link: str, pose: Pose) -> LinkHolding:
         With a part.
     pose : Pose
         In which pins stand in slots, and slots in their directions.
+    running : container of str, optional
+        Joints whose pins tilt freely in a hole.
 
     Returns
     -------
@@ -112,7 +115,7 @@ def link_holding(case: Case, link: str, pose: Pose) -> LinkHolding:
             moves, turns = found.setdefault(key, ([], []))
             more = _held(case, link, joint, pose)
             moves += more[0]
-            turns += more[1]
+            turns += [axis for axis in more[1] if joint not in running or axis is Z]
             at[key] = _pin_place(case, link, joint, pose) if key[1] else _point(case, link, point)
     places = tuple(
         HeldPlace(
@@ -181,6 +184,8 @@ def _words(case: Case, link: str, places: Sequence[HeldPlace], free: int) -> str
             kind = "on rigid pins at {}"
         elif sizes == (2, 3):
             kind = "in the guide at {}"
+        elif sizes[0] == 3:
+            kind = "on pins that tilt at {}"
         else:
             kind = "held across the slot at {}"
         groups.setdefault(kind, []).append(place.joint or place.point)

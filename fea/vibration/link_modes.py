@@ -1,11 +1,13 @@
 """Natural frequencies and shapes of one link by itself, by its beams or by its solid.
 
-The link is held as its joints hold it (``link_holding``), and bears what it carries. Loads are left out: what they pull
+The link is held as its joints hold it (``link_holding``), with pins that may run in holes both tight and tilting, and
+bears what it carries. Loads are left out: what they pull
 or press would raise or lower the frequencies of the beams and of the solid alike, by some half of the load's share of
 the one that buckles it.
 """
 
 import math
+from collections.abc import Container
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +26,7 @@ from fea.vibration.link_solid import LinkSolid, first_mesh, refined_modes
 from fea.vibration.linkage_modes import BASIS, SUBDIVISIONS, divide, frame_modes, node_motion
 from fea.vibration.mass_matrix import mass_matrix
 from fea.vibration.modes import Mode, frequency
+from fea.vibration.running_holes import running_holes, with_low_ends
 from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
@@ -100,10 +103,17 @@ def link_modes(
             f"{', '.join(case.checked_links) or 'none'}"
         )
     case, pose = _standing(case)
-    holding = link_holding(case, link, pose)
-    return _by_solid(case, link, holding, count, carried, threads) if solid else _by_beams(
-        case, link, pose, holding, count, carried
-    )  # fmt: skip
+
+    def held(running: Container[str] = ()) -> LinkModes:
+        holding = link_holding(case, link, pose, running=running)
+        if solid:
+            return _by_solid(case, link, holding, count, carried, threads)
+        return _by_beams(case, link, pose, holding, count, carried)
+
+    found, running = held(), {name for name, _ in running_holes(case) if link in case.joints[name].links}
+    if not running or link == case.linkage.ground:
+        return found
+    return replace(found, modes=with_low_ends(found.modes, held(running).modes))
 
 
 def _standing(case: Case) -> tuple[Case, Pose]:

@@ -5,7 +5,7 @@ stiffness K_g of the forces that the load case's weight, inertia and stated load
 weights and springs hold a linkage), and the mass M of parts, pins and what links carry (``mass_matrix``). The pose is
 frozen: Coriolis and gyroscopic terms, and the change of inertia forces with the motion, are left out, which are small
 while links turn slowly beside the frequency. So are friction, play, and the air that moves along. Pins between layers
-are tight in both links.
+are tight in both links; the low ends of bands have hinges in the holes in which they may run (``running_holes``).
 
 The drive holds its link rigidly; with a stiffness of its own it is a spring about its joint or along its guide, about
 the state in which it held the linkage. A stop that bears is pressed on and holds rigidly. Where the pose balances by
@@ -13,6 +13,7 @@ itself nothing holds but springs and weights.
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +29,8 @@ from fea.nonlinear.stability import stiffness_parts
 from fea.vibration.flexibility_doubt import flexibility_doubt
 from fea.vibration.mass_matrix import MassMatrix, mass_matrix
 from fea.vibration.modes import Mode, NaturalModes, lowest
+from fea.vibration.running_holes import running_holes, with_hinges, with_low_ends
+from geometry.base.errors import CannotRunError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.records.applied import PartMass
@@ -39,8 +42,8 @@ SUBDIVISIONS = 4
 BASIS = 12
 """Modes beyond those asked for in which the doubt about flexibilities is resolved."""
 TIGHT_PINS = (
-    "pins between layers are taken to be tight in both of their links; where one tilts in a hole, frequencies of "
-    "motions out of the plane are lower"
+    "pins between layers are taken to be tight in both of their links; low ends of bands have hinges in the holes in "
+    "which pins may run"
 )
 _ROUNDING = 1e-12
 """Negative eigenvalue over the largest that was found, above which it may be rounding."""
@@ -114,15 +117,28 @@ def linkage_modes(
     stiffness = _drive_stiffness(case, frame)
     if stiffness is not None:
         model, guide_forces = _released(case, frame, divided, held)
-    path = EquilibriumPath(model)
-    K, G = stiffness_parts(path, held.end_forces, guide_forces)
-    tangent = K + G
-    if stiffness:
-        way = _drive_way(frame, path)
-        tangent[: path.chain.count, : path.chain.count] += stiffness * np.outer(way, way)
-    mass = mass_matrix(case, frame, model, parents, masses, carried=case.load_cases[load_case].carried)
-    found = frame_modes(path, tangent, mass, count + BASIS)
-    modes, notes = _modes(case, frame, path, mass, found, count, parents)
+    carried = case.load_cases[load_case].carried
+
+    def solved(model: FrameModel) -> tuple[tuple[Mode, ...], float]:
+        path = EquilibriumPath(model)
+        K, G = stiffness_parts(path, held.end_forces, guide_forces)
+        tangent = K + G
+        if stiffness:
+            way = _drive_way(frame, path)
+            tangent[: path.chain.count, : path.chain.count] += stiffness * np.outer(way, way)
+        mass = mass_matrix(case, frame, model, parents, masses, carried=carried)
+        found = frame_modes(path, tangent, mass, count + BASIS)
+        unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
+        rate = float(np.sqrt(-found.values[0])) if unstable.any() else 0.0
+        return _modes(case, frame, path, mass, found, count, parents), rate
+
+    (modes, rate), holes = solved(model), running_holes(case)
+    if holes:
+        hinged: tuple[Mode, ...] = ()
+        with suppress(CannotRunError):  # a pin alone may move freely, as between a hinge and a slot
+            hinged, _ = solved(with_hinges(frame, model, parents, holes))
+        modes = with_low_ends(modes, hinged)
+    notes = _notes(frame, rate)
     return LinkageModes(pose=frame.pose, load_case=load_case, frame=frame, model=model, modes=modes, notes=notes)
 
 
@@ -184,8 +200,8 @@ def _modes(
     found: NaturalModes,
     count: int,
     parents: NDArray[np.int64],
-) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
-    """Modes with the bands of their frequencies, and notes."""
+) -> tuple[Mode, ...]:
+    """Modes with the bands of their frequencies."""
     shapes = np.array([node_motion(path, vector) for vector in found.vectors.T])
     bands = flexibility_doubt(case, frame, path.model, parents, found, shapes, count)
     modes = []
@@ -193,16 +209,19 @@ def _modes(
         whole, plane = mass.energies(shape)
         size = float(np.linalg.norm(shape[:, :3], axis=1).max()) or 1.0
         modes.append(Mode(frequency=band, shape=shape / size, in_plane=plane / whole))
+    return tuple(modes)
+
+
+def _notes(frame: LinkageFrame, rate: float) -> tuple[str, ...]:
+    """What the reader must know; ``rate`` by which an unstable pose departs [1/s]."""
     notes = list(frame.notes)
     if any(not frame.model.elements[i].rigid for i in frame.pin_beams.values()):
         notes.append(TIGHT_PINS)
-    unstable = found.values[:count] < -_ROUNDING * abs(found.values[-1])
-    if unstable.any():
-        rate = float(np.sqrt(-found.values[0]))
+    if rate > 0.0:
         notes.append(
             f"the pose is unstable under its loads: what moves it off grows by the factor e every {1.0 / rate:.3g} s"
         )
-    return tuple(modes), tuple(notes)
+    return tuple(notes)
 
 
 def node_motion(path: EquilibriumPath, vector: Floats) -> Floats:

@@ -16,8 +16,13 @@ from geometry.base.errors import CannotRunError
 
 Floats = NDArray[np.float64]
 
-_FIRST_SHIFT, _SHIFTS = 1e-16, 20
-"""First shift over the largest ratio of diagonal entries, and how often it is made ten times as large."""
+_FIRST_SHIFT, _SHIFTS = 1e-10, 14
+"""First shift over the largest ratio of diagonal entries, and how often it is made ten times as large.
+
+It is far below what an elastic frame has, and far above the rounding of a motion without strain, whose 1/λ would hide
+all others."""
+_ROUNDING = 1e-13
+"""Pivot over its diagonal entry below which it is rounding."""
 _NO_MASS = 1e-14
 """Share of the largest 1/λ below which an unknown counts as without mass."""
 
@@ -108,9 +113,11 @@ def _factorised(K: Floats, M: Floats) -> tuple[Floats, float]:
     ratio = float(np.diag(K).max() / np.diag(M).max())
     for shift in (0.0, *(_FIRST_SHIFT * ratio * 10.0**k for k in range(_SHIFTS))):
         try:
-            return np.asarray(cholesky(K + shift * M, lower=True, check_finite=False)), shift
+            L = np.asarray(cholesky(K + shift * M, lower=True, check_finite=False))
         except LinAlgError:
             continue
+        if shift > 0.0 or np.all(np.diag(L) ** 2 > _ROUNDING * np.diag(K)):
+            return L, shift
     raise CannotRunError(
         "the frame is unstable in a motion in which nothing has mass, so that it has no natural frequencies; check "
         "what holds its links"

@@ -17,6 +17,7 @@ from fea.frame.build import build_frame
 from fea.vibration.link_modes import LinkModes, link_modes
 from fea.vibration.linkage_modes import LinkageModes, linkage_modes
 from geometry.base.errors import CannotRunError, CaseError
+from geometry.base.ties import TIE, first_least
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.joint_rules import rubbing_joints
@@ -162,13 +163,13 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
                     known[i] = None
         return known[i]
 
-    def least(i: int) -> float:
+    def least(i: int) -> tuple[float, float]:
         found = modes(i)
-        return math.inf if found is None else found.modes[0].frequency.low
+        return (math.inf, math.inf) if found is None else _ends(found)
 
     size = len(motion.angles)
     coarse = range(0, size, FINE)
-    best = min(coarse, key=least)
+    best = coarse[first_least([least(i) for i in coarse])]
     if modes(best) is None:
         raise CannotRunError(f"load case {name}: no pose of the motion has an equilibrium that a frame can hold")
     _least_between(least, max(best - FINE, 0), min(best + FINE, size - 1))
@@ -180,14 +181,19 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
     return _history(abs(speed) / (2.0 * math.pi), found, left_out, count)
 
 
-def _least_between(function: Callable[[int], float], low: int, high: int) -> None:
+def _ends(modes: LinkageModes) -> tuple[float, float]:
+    """Low end of the lowest frequency, and the frequency, which tells where pins that run leave all poses at 0."""
+    return modes.modes[0].frequency.low, modes.modes[0].frequency.value
+
+
+def _least_between(function: Callable[[int], tuple[float, float]], low: int, high: int) -> None:
     """Look for the least value of a function of whole numbers, which keeps what it found, by golden section."""
     while high - low > 2:
         step = max(round(_GOLDEN * (high - low)), 1)
         first, second = low + step, high - step
         if first >= second:
             first, second = low + 1, high - 1
-        low, high = (low, second) if function(first) < function(second) else (first, high)
+        low, high = (low, second) if first_least([function(second), function(first)]) else (first, high)
     for i in range(low, high + 1):
         function(i)
 
@@ -199,6 +205,22 @@ def _at(
     return linkage_modes(case, name, frame, masses, count=count)
 
 
+def lowest_pose(low: Floats, value: Floats) -> int:
+    """Return the number of the pose of the least low end; of several alike, such as 0, that of the least value.
+
+    Parameters
+    ----------
+    low, value : array (n,)
+        Lowest natural frequency of every pose, and the low end of its band [Hz].
+
+    Returns
+    -------
+    int
+    """
+    least = low[first_least(low)]
+    return first_least(np.where(low <= (1.0 + TIE) * least, value, math.inf))
+
+
 def _history(
     driving: float, found: Mapping[float, LinkageModes], left_out: tuple[float, ...], count: int
 ) -> FrequencyHistory:
@@ -208,7 +230,9 @@ def _history(
         values = [[float(getattr(band, end)) for band in row] for row in bands]
         return np.array([row + [math.inf] * (count - len(row)) for row in values])
 
-    lowest = min(found.values(), key=lambda modes: (modes.modes[0].frequency.low, modes.modes[0].frequency.value))
+    first = [modes.modes[0].frequency for modes in found.values()]
+    number = lowest_pose(np.array([band.low for band in first]), np.array([band.value for band in first]))
+    lowest = list(found.values())[number]
     if left_out:
         told = f"{len(left_out)} poses were left out, in which there is no equilibrium"
         lowest = replace(lowest, notes=(*lowest.notes, told))

@@ -4,7 +4,7 @@ A motor that turns evenly with a flywheel gives the mean of all power, for the f
 what is below, negative power too; a motor alone gives the peak. So the mean and the peak are the ends of a band. Play
 of pins moves both: each is taken with the drive torque at either end of what play makes of it, at all poses together.
 So does the air on wings that flap: each is taken at either end of the range of C_N, of which the mean is an affine and
-the peak a convex function.
+the peak a convex function. And so does friction, at either end of what it may be (``fea.frame.rubbing``).
 """
 
 import math
@@ -14,15 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.air_range import AirRange, air_range
 from fea.common.band import Band
 from fea.common.convex import least_of_convex
-from fea.common.source import Source, SourceKind, air_source, play_source
+from fea.common.source import Source, SourceKind, air_source, friction_source, play_source
 from fea.common.verdict import CheckOutcome, Quantity, Subject, Verdict
+from fea.whole.air_range import AirRange, air_range
+from fea.whole.rubbed_motion import friction_range, rubbed_motion
+from geometry.base.ties import TIE
 from loads.case.case import Case
+from loads.case.joint_rules import friction_ranges
 from loads.records.check_spec import MotorCheck
 from loads.records.flapping import Flapping
-from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.case_motion import CaseMotion
 from loads.states.kinetostatics import relative_motion
 from loads.states.loose_motion import loose_motion
 
@@ -63,11 +66,9 @@ def demand(power: Real, torque: Real, times: Real) -> MotorDemand:
     -------
     MotorDemand
     """
-    mean = _mean(power, times)
-    rounding = 1e-9 * float(np.abs(power).max())
     return MotorDemand(
         peak_power=max(float(power.max()), 0.0) / 1000.0,
-        mean_power=mean / 1000.0 if mean > rounding else 0.0,
+        mean_power=max(_mean(power, times), 0.0) / 1000.0,
         peak_torque=float(np.abs(torque).max()),
     )
 
@@ -103,7 +104,9 @@ def line_share(torque: Real, speed: Real, times: Real, stall: float, free: float
 
 
 def _mean(values: Real, times: Real) -> float:
-    return float(np.trapezoid(values, times)) / float(times[-1] - times[0])
+    """Return the mean over time; 0 where it is rounding beside the greatest value."""
+    mean = float(np.trapezoid(values, times)) / float(times[-1] - times[0])
+    return 0.0 if abs(mean) <= TIE * float(np.abs(values).max()) < math.inf else mean
 
 
 def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[CheckOutcome, ...]]:
@@ -126,8 +129,8 @@ def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[
     """
     moving = {title: load_case for title, load_case in case.load_cases.items() if load_case.speed != 0.0}
     empty_cases = {title: load_case.model_copy(update={"carried": False}) for title, load_case in moving.items()}
-    laden = solve_case_motion(case.model_copy(update={"load_cases": moving}))
-    empty = solve_case_motion(case.model_copy(update={"load_cases": empty_cases})) if case.carried else laden
+    laden = rubbed_motion(case.model_copy(update={"load_cases": moving}))
+    empty = rubbed_motion(case.model_copy(update={"load_cases": empty_cases})) if case.carried else laden
     return {
         title: (_power(case, name, check, title, laden, empty), *_limits(name, check, title, laden)) for title in moving
     }
@@ -144,6 +147,14 @@ def _band(moved: CaseMotion, title: str, of: Callable[[Real], tuple[float, float
             high = max(high, most)
         low = max(least_of_convex(lows.items()), 0.0)
         sources = (*sources, air_source(*air.ends))
+    for other in friction_range(moved):
+        if np.isfinite(other.torque[title]).all():
+            _, least, most, _ = _loosened(other, title, of)
+        else:  # the linkage locks itself
+            least, most = low, math.inf
+        low, high = min(low, least), max(high, most)
+    if moved.rubbing:
+        sources = (*sources, friction_source(friction_ranges(moved.case)))
     return Band(value=value, low=low, high=high, sources=sources)
 
 

@@ -1,9 +1,11 @@
 """What all records of the case file have in common."""
 
 import math
+import tomllib
 import unicodedata
 from collections.abc import Iterable
-from itertools import pairwise
+from functools import cache
+from importlib.resources import files
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, WithJsonSchema
@@ -19,35 +21,21 @@ class CaseModel(BaseModel):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> dict[str, Any]:
-        """Describe each entry by the text that stands below it in the source.
-
-        pydantic's ``use_attribute_docstrings`` does the same, but reads the source of every record at each start.
-        """
+        """Describe each entry by the text that stands below it in the source, as ``entry_texts.toml`` holds it."""
         schema: dict[str, Any] = handler(core_schema)
         entries = handler.resolve_ref_schema(schema).get("properties", {})
         for record in reversed(cls.__mro__):
-            if issubclass(record, CaseModel) and record is not CaseModel:
-                for name, text in _entry_texts(record).items():
-                    field = cls.model_fields.get(name)  # None for what no case file states
-                    if field is not None and field.description is None:
-                        entries[field.alias or name]["description"] = text
+            for name, text in _entry_texts().get(f"{record.__module__}.{record.__name__}", {}).items():
+                field = cls.model_fields.get(name)  # None for what no case file states
+                if field is not None and field.description is None:
+                    entries[field.alias or name]["description"] = text
         return schema
 
 
-def _entry_texts(record: type) -> dict[str, str]:
-    """Return the texts below the entries of a record, by the entries' names."""
-    import ast
-    import inspect
-    import textwrap
-
-    [body] = ast.parse(textwrap.dedent(inspect.getsource(record))).body
-    assert isinstance(body, ast.ClassDef)
-    found = {}
-    for entry, below in pairwise(body.body):
-        match entry, below:
-            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
-                found[name] = inspect.cleandoc(text)
-    return found
+@cache
+def _entry_texts() -> dict[str, dict[str, str]]:
+    """Return the texts below the entries of all records, by the records' full names."""
+    return tomllib.loads(files("geometry.base").joinpath("entry_texts.toml").read_text(encoding="utf-8"))
 
 
 def refusal(rule: str) -> PydanticCustomError:

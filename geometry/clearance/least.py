@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.ties import first_largest, first_least
 from geometry.clearance.shape import Core, Shape, error_of, gaps, meeting, nearest, overlap
 from geometry.linkage.placement import Placement
 
@@ -108,8 +109,8 @@ class Gap:
     low, high : float
         What it may be between the poses that were looked at, and with arcs in place of chords [mm].
     at : float or None
-        Coordinate of the motion there: of the first contact where there is one, else of the least gap [rad, mm]; None
-        for a single pose.
+        Coordinate of the motion there: of the first contact where there is one, else of the least gap, the first
+        of those that rounding alone tells apart [rad, mm]; None for a single pose.
     place : tuple of float
         (x, y) between the two there, in global axes [mm].
     """
@@ -160,7 +161,9 @@ class Pair:
         Pair or None
             None where they pass over each other.
         """
-        first, second = sorted((one, other), key=lambda entry: -entry[0].circle[1])
+        entries = one, other
+        larger = first_largest([entry[0].circle[1] for entry in entries])
+        first, second = entries[larger], entries[1 - larger]
         cores = meeting(first[0], second[0])
         return cls(one=first[0], other=second[0], at=(first[1], second[1]), cores=tuple(cores)) if cores else None
 
@@ -304,8 +307,8 @@ def least_gap(
     error = error_of(pair.cores)
     touching = known.first_contact
     if touching is None:
-        k = int(np.argmin(known.gap))
-        value, low = float(known.gap[k]), float(min(known.gap[k], known.lower.min()))
+        value, low = float(known.gap.min()), float(min(known.gap.min(), known.lower.min()))
+        k = first_least(known.gap, pair.one.circle[1])
         spot = _place(pair, at(known.s[k : k + 1]))
         return Gap(names=pair.names, value=value, low=low - error, high=value + error, at=float(known.s[k]), place=spot)
     first = _contact(pair, at, known, touching, step)

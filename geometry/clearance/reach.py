@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.ties import first_largest
 from geometry.clearance.least import POSES, Spot
 from geometry.clearance.shape import Shape
 from geometry.linkage.placement import Placement
@@ -138,8 +139,8 @@ def _told(outlines: Sequence[Standing], found: Real, s: Real | None, most: Real)
     sides = []
     for k in range(4):
         own = found[1, :, k]
-        i, pose = np.unravel_index(int(own.argmax()), own.shape)
-        value, least = float(own[i, pose]), float(found[0, :, k].max())
+        i, pose = np.unravel_index(first_largest(np.ravel(own)), own.shape)
+        value, least = float(own.max()), float(found[0, :, k].max())
         name, at = outlines[int(i)][0].name, None if s is None else float(s[pose])
         coordinate = value if k % 2 else -value
         sides.append(Outermost(value=coordinate, less=value - least, more=float(most[k]) - value, name=name, at=at))

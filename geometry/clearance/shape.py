@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.ties import first_least
 from geometry.bodies.body import Body
 from geometry.bodies.footprint import Footprint
 
@@ -317,6 +318,9 @@ def overlap(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -
 def nearest(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -> complex:
     """Return the place between two outlines where they are nearest, or touch.
 
+    Outlines that lie apart are nearest at a corner of one of them. Where they are as near at several, as along sides
+    that are parallel, the first corner counts, in the order of the pieces and of their corners.
+
     Parameters
     ----------
     pairs : sequence of (Core, Core)
@@ -331,19 +335,17 @@ def nearest(pairs: Sequence[tuple[Core, Core]], turn: complex, shift: complex) -
     """
     import shapely
 
-    best = (np.inf, 0j)
-    for a, b in pairs:
-        [moved] = _placed(b.geometry, np.array([turn]), np.array([shift]))
-        apart = shapely.distance(a.geometry, moved)
-        if apart - a.radius - b.radius >= best[0]:
-            continue
-        if apart > 0.0:
-            p, q = (complex(*end) for end in shapely.shortest_line(a.geometry, moved).coords)
-            place = p + (q - p) * (a.radius + apart - b.radius) / (2.0 * apart)
-        else:
-            place = complex(*a.geometry.intersection(moved).centroid.coords[0])
-        best = (apart - a.radius - b.radius, place)
-    return best[1]
+    placed = [(a, b, _placed(b.geometry, np.array([turn]), np.array([shift]))[0]) for a, b in pairs]
+    apart = [shapely.distance(a.geometry, moved) - a.radius - b.radius for a, b, moved in placed]
+    a, b, moved = placed[first_least(apart, max(abs(a.corners).max() for a, _ in pairs))]
+    if not shapely.distance(a.geometry, moved) > 0.0:
+        return complex(*a.geometry.intersection(moved).centroid.coords[0])
+    own, others = (shapely.points(shapely.get_coordinates(one)) for one in (a.geometry, moved))
+    ways = np.concatenate([shapely.distance(own, moved), shapely.distance(others, a.geometry)])
+    k = first_least(ways)
+    ends = (own[k], moved) if k < len(own) else (a.geometry, others[k - len(own)])
+    p, q = (complex(*end) for end in shapely.shortest_line(*ends).coords)
+    return complex(p + (q - p) * (a.radius + ways[k] - b.radius) / (2.0 * ways[k]))
 
 
 def _placed(geometry: Any, turn: Complex, shift: Complex) -> Any:

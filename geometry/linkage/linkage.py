@@ -7,12 +7,26 @@ from functools import cached_property
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from geometry.base.errors import CaseError
 from geometry.base.model import CaseModel, Name
 from geometry.base.units import NOT_NEGATIVE, POSITIVE, Angle, Length
 from geometry.parts.part import EyeSizes, HoleRow, Slot
+
+
+def _as_list(stated: object) -> object:
+    return (stated,) if isinstance(stated, str) else stated
+
+
+_NAME = {"type": "string", "format": "name"}
+TightIn = Annotated[
+    tuple[Name, ...],
+    Field(min_length=1, max_length=2),
+    BeforeValidator(_as_list),
+    WithJsonSchema({"anyOf": [_NAME, {"type": "array", "items": _NAME, "minItems": 1, "maxItems": 2}]}),
+]
+"""One link, or both as a list."""
 
 
 class Link(CaseModel):
@@ -62,6 +76,11 @@ class Link(CaseModel):
         return (*itertools.pairwise(chain), *((foot, point) for point, foot in self.arms.items()))
 
 
+Coefficient = Annotated[float, Field(ge=0.0, le=2.0)]
+UNSTATED = 0.3
+"""Share by which a coefficient of friction without a stated range may be off to either side."""
+
+
 class Joint(CaseModel):
     """A joint between two links."""
 
@@ -79,12 +98,15 @@ class Joint(CaseModel):
     """Material of the pin, for the check of pins."""
     pin_gap: Annotated[Length, NOT_NEGATIVE] = 0.0
     """Free length of the pin between the two eyes that it joins, for the check of pins; layers tell it as well."""
-    tight_in: Name | None = None
-    """The one of the two links in which the pin is tight, where links lie in layers; in the other it may tilt. Left
+    tight_in: TightIn = ()
+    """The link in which the pin is tight, where links lie in layers, or a list of both; in any other it may tilt. Left
     out, it may be tight in either, and the band holds both."""
-    friction: Annotated[float, Field(ge=0.0, le=2.0)] = 0.0
+    friction: Coefficient = 0.0
     """Coefficient of friction of the pin in its bore, of a pin in its slot or of a slider on its guide, from 0 to 2. It
     opposes the motion, so every load case is solved for both directions of it, or for the one that it states."""
+    friction_range: tuple[Coefficient, Coefficient] | None = None
+    """Least and largest coefficient of friction that may be; bands of all that friction enters hold it. Left out, 30 %
+    less and 30 % more."""
     guide_length: Annotated[Length, POSITIVE] | None = None
     """Length over which the guide holds a slider, half of it on either side of the second link's point. With it a
     moment on the slider presses its ends on the guide, and these rub; without it the normal force alone does."""
@@ -101,9 +123,29 @@ class Joint(CaseModel):
     ones. It then bears a moment about its pin."""
 
     @property
+    def friction_ends(self) -> tuple[float, float]:
+        """Least and largest coefficient of friction."""
+        return self.friction_range or ((1.0 - UNSTATED) * self.friction, (1.0 + UNSTATED) * self.friction)
+
+    @property
     def fixes_angle(self) -> bool:
         """Whether the case states the angle between its links, which takes part in closing the loops."""
         return self.type == "slider" or (self.bonded and "angle" in self.model_fields_set)
+
+    def is_tight_in(self, link: str) -> bool:
+        """Return True if the pin is stated to be tight in one of the joint's links.
+
+        Parameters
+        ----------
+        link : str
+            One of ``links``.
+
+        Returns
+        -------
+        bool
+            False where nothing states it: the pin may run there. A bonded joint is tight in both links.
+        """
+        return self.bonded or link in self.tight_in
 
     @property
     def bears_moment(self) -> bool:

@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.ties import first_largest
 from geometry.linkage.closure import LoopClosure
 from geometry.linkage.placement import Placement
 from geometry.linkage.pose_record import CLOSED
@@ -106,7 +107,7 @@ class Reach:
         dict of str to array (2,)
             Joint -> shares of its two half axes, together of size 1 (zeros where it adds nothing).
         """
-        direction = _DIRECTIONS[int(np.argmax(self._extents(nominal)))]
+        direction = _DIRECTIONS[first_largest(self._extents(nominal))]
         along: Real = (np.conj(direction) * self.axes).real
         sizes = np.linalg.norm(along, axis=-1, keepdims=True)
         shares = np.divide(along, sizes, out=np.zeros_like(along), where=sizes > 0.0)

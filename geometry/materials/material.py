@@ -2,6 +2,7 @@
 
 import itertools
 import tomllib
+from collections.abc import Collection
 from functools import cache
 from importlib.resources import files
 from typing import Annotated, Literal
@@ -24,7 +25,7 @@ TOLD = (
     "strength_across_layers",
     "shear_strength_between_layers",
 )
-"""Entries whose source and status every card states, where it states the entry."""
+"""Entries whose source and status every card should state, where it states the entry."""
 _ROOM = 23.0
 """Temperature at which strengths are stated [°C] (ISO 291)."""
 
@@ -107,9 +108,9 @@ class Material(CaseModel):
     minimum_safety_factor_tested: Annotated[float, Field(gt=0)] | None = None
     """Default limit where parts of the same make were tested."""
     sources: dict[str, Text]
-    """Entry -> where its value comes from; at least of density, elastic constants and strengths."""
+    """Entry -> where its value comes from. A warning lists density, elastic constants and strengths left out."""
     status: dict[str, Status]
-    """Entry -> how well it is known; at least of density, elastic constants and strengths."""
+    """Entry -> how well it is known. A warning lists density, elastic constants and strengths left out."""
 
     @model_validator(mode="after")
     def _strengths(self) -> "Material":
@@ -154,18 +155,6 @@ class Material(CaseModel):
                 "sources or status name '{entry}', but a material has no such entry; correct the name",
                 {"entry": unknown[0]},
             )
-        for where, told in (("sources", self.sources), ("status", self.status)):
-            for entry in TOLD:
-                if getattr(self, entry) is not None and entry not in told:
-                    raise PydanticCustomError(
-                        "not_told",
-                        "{where} says nothing of {entry}; add {entry} = {example} to {where}",
-                        {
-                            "where": where,
-                            "entry": entry,
-                            "example": '"data sheet of the maker"' if where == "sources" else '"datasheet"',
-                        },
-                    )
         return self
 
     @model_validator(mode="after")
@@ -237,6 +226,14 @@ class Material(CaseModel):
         if self.strength_range is not None:
             changed["strength_range"] = tuple(ratio * bound for bound in self.strength_range)
         return self.model_copy(update=changed)
+
+    @property
+    def untold(self) -> dict[str, tuple[str, ...]]:
+        """What of density, elastic constants and strengths ``sources`` and ``status`` leave out, by these names."""
+        stated = [entry for entry in TOLD if getattr(self, entry) is not None]
+        told: dict[str, Collection[str]] = {"sources": self.sources, "status": self.status}
+        left = {where: tuple(entry for entry in stated if entry not in known) for where, known in told.items()}
+        return {where: entries for where, entries in left.items() if entries}
 
     @property
     def allowable(self) -> float:

@@ -154,3 +154,26 @@ def unusual(name: str, material: Material) -> tuple[str, ...]:
         for entry, value, (least, most), unit in values
         if value is not None and not least <= value <= most
     )
+
+
+def untold(name: str, material: Material) -> tuple[str, ...]:
+    """Return the sentence that lists all values of a card without source or status.
+
+    Parameters
+    ----------
+    name : str
+        Name of the material's card.
+    material : Material
+        The card.
+
+    Returns
+    -------
+    tuple of str
+        One sentence for a warning, or none.
+    """
+    left = material.untold
+    if len({*left.values()}) == 1:
+        left = {" and ".join(left): next(iter(left.values()))}
+    lists = " and ".join(f"{where} of {', '.join(entries)}" for where, entries in left.items())
+    remedy = "add where each value comes from, and how well it is known"
+    return (f"materials.{name} does not state {lists}; {remedy}",) if lists else ()

@@ -63,8 +63,8 @@ class FilePart(Printable):
     flip: bool = False
     """Whether the part lies the other way up, where its bores alone do not tell."""
     plane: Length | None = None
-    """Height above the middle of the first point's bore, along z of the link, of the plane in which the forces act;
-    the mean of the bores' middles unless stated."""
+    """Height above the middle of the first bore with a joint, along z of the link, of the plane in which the forces
+    act; the mean of the middles of all bores with joints unless stated."""
 
     @property
     def mesh_unit(self) -> float | None:

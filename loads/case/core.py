@@ -159,7 +159,7 @@ class CoreCase(Revisable):
         """Return the case with all links in one plane, whatever their layers."""
         apart = {"layer": None, "z": None}
         links = {name: link.model_copy(update=apart) for name, link in self.links.items()}
-        joints = {name: joint.model_copy(update={"tight_in": None}) for name, joint in self.joints.items()}
+        joints = {name: joint.model_copy(update={"tight_in": ()}) for name, joint in self.joints.items()}
         return self.model_copy(update={"links": links, "joints": joints, "layer_spacing": None, "washer": None})
 
     @property

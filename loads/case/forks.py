@@ -117,6 +117,35 @@ def eye_of(case: CoreCase, joint: str, link: str) -> Ring:
     return ring if distance is None else ring.doubled(distance)
 
 
+def eyes(case: CoreCase, joint: str) -> tuple[Ring, Ring]:
+    """Return a joint's holes in its two links; that of a link without part is like that of the other link's plate.
+
+    Parameters
+    ----------
+    case : CoreCase
+    joint : str
+
+    Returns
+    -------
+    tuple of (Ring, Ring)
+        With their rims and walls.
+
+    Raises
+    ------
+    CaseError
+        Where neither link has a part.
+    """
+    links = case.joints[joint].links
+    found = {link: eye_of(case, joint, link) for link in links if case.links[link].part is not None}
+    if not found:
+        raise CaseError(f"joints.{joint}: neither link has a part, so the pin's length is unknown; give one a part")
+    if len(found) == 1:
+        [link] = found
+        body = case.body(link)
+        found[other_link(case.linkage, joint, link)] = body.ring(body.pin(case.linkage.point_of(joint, link)))
+    return found[links[0]], found[links[1]]
+
+
 def outer_link(case: CoreCase, joint: str) -> str | None:
     """Return the link in which the other link of a joint lies: a fork, or a pair of plates.
 

@@ -21,6 +21,20 @@ def rubbing_joints(case: CoreCase) -> tuple[str, ...]:
     return tuple(name for name, joint in case.joints.items() if joint.friction > 0.0)
 
 
+def friction_ranges(case: CoreCase) -> dict[str, tuple[float, float]]:
+    """Return the least and the largest coefficient of every joint with friction.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Returns
+    -------
+    dict of str to tuple of float
+    """
+    return {name: case.joints[name].friction_ends for name in rubbing_joints(case)}
+
+
 def check_friction(case: CoreCase) -> None:
     """Check that friction has what it follows from: a pin's diameter, a joint that moves, a direction.
 
@@ -39,6 +53,12 @@ def check_friction(case: CoreCase) -> None:
     rubbing = rubbing_joints(case)
     for name in rubbing:
         entry, joint = f"joints.{name}.friction: it is {case.joints[name].friction:g}", case.joints[name]
+        low, high = joint.friction_ends
+        if not low <= joint.friction <= high:
+            raise CaseError(
+                f"joints.{name}.friction_range: it goes from {low:g} to {high:g}, but friction is {joint.friction:g}; "
+                "state the least and the largest coefficient about it"
+            )
         if joint.type == "revolute" and joint.pin_diameter is None:
             raise CaseError(
                 f"{entry}, but the torque of friction needs the radius of the pin; add joints.{name}.pin_diameter"

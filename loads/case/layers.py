@@ -91,10 +91,10 @@ def pin_masses(case: CoreCase) -> dict[str, CarriedBody]:
 
 def _standing_in(case: CoreCase, names: list[str]) -> tuple[str, str]:
     """Return link and point with which the pin of joints on one axis moves."""
-    stated = [n for n in names if case.joints[n].tight_in is not None and case.joints[n].type == "revolute"]
+    stated = [n for n in names if case.joints[n].tight_in and case.joints[n].type == "revolute"]
     name = (stated or names)[0]
     joint = case.joints[name]
-    link = joint.links[1] if joint.type != "revolute" else joint.tight_in or joint.links[0]
+    link = joint.links[1] if joint.type != "revolute" else (*joint.tight_in, *joint.links)[0]
     return link, case.linkage.point_of(name, link)
 
 
@@ -114,11 +114,11 @@ def check_layers(case: CoreCase) -> None:
     case.linkage  # noqa: B018 - its own rules come first
     layered = case.layered
     for name, joint in case.joints.items():
-        if joint.tight_in is not None and joint.tight_in not in joint.links:
-            raise CaseError(
-                f"joints.{name}.tight_in: '{joint.tight_in}' is no link of this joint; choose one of "
-                f"{', '.join(joint.links)}"
-            )
+        for link in joint.tight_in:
+            if link not in joint.links:
+                raise CaseError(
+                    f"joints.{name}.tight_in: '{link}' is no link of this joint; choose one of {', '.join(joint.links)}"
+                )
         for entry in ("tight_in",) if not layered else ("pin_gap",):
             in_fork = layered and outer_link(case, name) is not None  # both links lie in one layer
             if entry in joint.model_fields_set and not in_fork:

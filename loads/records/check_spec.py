@@ -120,6 +120,7 @@ class ClearanceCheck(CaseModel):
     """Links that lie at one height, and pins and the links that they pass, must stay apart.
 
     Over the [motion], or in the pose where none is stated. Links in layers are checked even if no check asks for it.
+    Deflection and tilting pins must not close the gap between links of different layers.
     """
 
     type: Literal["clearance"]

@@ -32,6 +32,7 @@ from loads.states.masses import laden_masses, part_masses
 from loads.states.rubbing import Rubbing, each_direction, lock_sentence, motion_friction
 from loads.states.springs import spring_loads
 from loads.states.standing import refuse_stops
+from loads.statics.friction import Presses
 from loads.statics.momentum import LinkageMomentum, linkage_momentum
 from loads.statics.statics import Drive
 
@@ -160,7 +161,7 @@ class CaseMotion:
         return ("force", "N") if self.pushes else ("torque", "N·mm")
 
 
-def solve_case_motion(case: Case) -> CaseMotion:
+def solve_case_motion(case: Case, presses: Mapping[str, Presses] | None = None) -> CaseMotion:
     """Move the case's linkage as its table [motion] says and solve every load case at every pose.
 
     A load case with a speed of its own moves over the same poses at that speed of the pose's coordinate, with inertia.
@@ -168,6 +169,8 @@ def solve_case_motion(case: Case) -> CaseMotion:
     Parameters
     ----------
     case : Case
+    presses : mapping of str to mapping of str to array (n,), optional
+        Load case -> joint -> what presses on the wall of its bore over its force (``solve_friction``).
 
     Returns
     -------
@@ -205,7 +208,7 @@ def solve_case_motion(case: Case) -> CaseMotion:
         place = moved[name].placement
         loads[name] = acting_loads(case, load_case, place if with_inertia(case, name) else place.at_rest, masses)
         if rubbing_joints(case):
-            rubbing[name] = motion_friction(case, name, moved[name], drive, loads[name])
+            rubbing[name] = motion_friction(case, name, moved[name], drive, loads[name], (presses or {}).get(name, {}))
             frictionless[name] = torque_by_virtual_work(moved[name], drive, loads[name])
             loads[name] += rubbing[name].loads
     power = {n: _energies(case, n, moved[n], masses, rubbing[n].loads if rubbing else ()) for n in loads}

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base.errors import CaseError
+from geometry.base.ties import first_least, ranked
 from geometry.clearance.least import Gap, Pair, Spot, gap_at, least_gap
 from geometry.clearance.shape import Shape, link_shape, pin_shape
 from geometry.linkage.motion import Motion, solve_motion
@@ -142,7 +143,8 @@ class Clearance:
         if not touching or self.motion is None:
             return None
         start = float(self.motion.angles[0])
-        return min(touching, key=lambda gap: abs((gap.at or 0.0) - start))
+        ways = [abs((gap.at or 0.0) - start) for gap in touching]
+        return touching[first_least(ways, self.assembly.case.linkage.longest if self.motion.slides else 1.0)]
 
     @property
     def shown(self) -> Gap | None:
@@ -278,21 +280,21 @@ def clearance(case: Case, pose: Pose | None = None) -> Clearance | None:
         if gap.high < 0.0:
             raise CaseError(_through(case, pair, gap))
     if case.motion is None:
-        return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(gaps))
+        return Clearance(assembly=found, pose=pose, motion=None, gaps=_sorted(case, gaps))
     motion = way_of(case, pose)
     longest, start = case.linkage.longest, start_of(motion)
     step, at = _STEP * (longest if motion.slides else 1.0), along(motion)
     over: list[Gap] = []
-    order = sorted(zip(found.pairs, gaps, strict=True), key=lambda entry: entry[1].value)
-    for pair, _ in order:
+    for number in ranked([gap.value for gap in gaps], longest):
+        pair = found.pairs[number]
         enough = max(min((gap.value for gap in over), default=np.inf), 0.0)
         least = least_gap(pair, at, start, near=_NEAR * longest, step=step, enough=enough)
         over += [] if least is None else [least]
-    return Clearance(assembly=found, pose=pose, motion=motion, gaps=_sorted(over))
+    return Clearance(assembly=found, pose=pose, motion=motion, gaps=_sorted(case, over))
 
 
-def _sorted(gaps: list[Gap]) -> tuple[Gap, ...]:
-    return tuple(sorted(gaps, key=lambda gap: gap.value))
+def _sorted(case: Case, gaps: list[Gap]) -> tuple[Gap, ...]:
+    return tuple(gaps[number] for number in ranked([gap.value for gap in gaps], case.linkage.longest))
 
 
 def _through(case: Case, pair: Pair, gap: Gap) -> str:

@@ -1,6 +1,7 @@
 """What the drive does with and without friction: power, work, efficiency, and where the linkage holds itself."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,9 @@ class DriveWork:
         Power per unit speed of the coordinate, in the direction of the motion [N mm].
     angles : array (n,)
         The coordinate [rad, mm].
+    ends : array (2, n) or None
+        Least and largest effort with the friction that may be, infinite where the linkage then locks itself; None where
+        they were not calculated.
     """
 
     way: str
@@ -37,6 +41,7 @@ class DriveWork:
     power_without: Real
     power: Real
     angles: Real
+    ends: Real | None = None
 
     @property
     def efficiency(self) -> Real:
@@ -62,6 +67,23 @@ class DriveWork:
     def of_cycle(self) -> float:
         """Work out over work in over all poses; NaN where no work is left over them without friction."""
         return float(efficiency(self.total_without, self.total))
+
+    def between(self, efforts: Sequence[Real | float]) -> "DriveWork":
+        """Return the same with the ends of what friction may be.
+
+        Parameters
+        ----------
+        efforts : sequence of array (n,) or float
+            Of the drive, with the least and with the largest friction; NaN where the linkage then locks itself.
+
+        Returns
+        -------
+        DriveWork
+        """
+        drives = np.where(np.sign(self.power) == np.sign(self.effort), 1.0, -1.0)  # the sense of efforts that drive
+        every = [np.where(np.isnan(one), drives * np.inf, one) for one in efforts]
+        known = [self.effort, *every]
+        return replace(self, ends=np.array([np.minimum.reduce(known), np.maximum.reduce(known)]))
 
     def _integral(self, power: Real) -> float:
         return float(np.trapezoid(power, np.abs(self.angles - self.angles[0])))

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.ties import first_largest, first_least
 from geometry.linkage.play import LooseJoints
 from loads.case.joint_rules import clearances
 from loads.states.case_motion import CaseMotion, with_inertia
@@ -186,7 +187,7 @@ class LooseMotion:
             [mm], solved at the worst offsets there.
         """
         free = self.free_motion(link, point)
-        pose = int(np.argmax(free))
+        pose = first_largest(free)
         play = self._one(next(iter(self.plays)), pose)
         return (max(free[pose], play.free_motion(link, point)), pose) if np.isfinite(free[pose]) else (np.inf, pose)
 
@@ -198,7 +199,7 @@ class LooseMotion:
         tuple of (float, int)
             Solved at the worst offsets there.
         """
-        pose = int(np.argmin(self.distance[1]))
+        pose = first_least(self.distance[1])
         least = self.distance[1][pose]
         return (min(least, self._one(next(iter(self.plays)), pose).distance.low) if least > 0.0 else 0.0), pose
 
@@ -218,7 +219,7 @@ class LooseMotion:
             [N mm] or [N], solved at the worst offsets there.
         """
         ends = sign * self.effort(load_case)[int(sign > 0.0)]
-        pose = int(np.argmax(ends))
+        pose = first_largest(ends)
         if not np.isfinite(ends[pose]):
             return sign * np.inf, pose
         span = self._one(load_case, pose).effort

@@ -24,6 +24,7 @@ from loads.records.applied import Load, PartMass
 from loads.states.actions import acting_loads
 from loads.states.kinetostatics import is_determinate
 from loads.states.rubbing import WAYS, friction_at
+from loads.statics.friction import NOTHING_MORE, Presses
 from loads.statics.joint_reaction import JointReaction
 from loads.statics.statics import NEARLY_SINGULAR, Drive, assemble, joint_reactions
 
@@ -369,7 +370,9 @@ class Play:
         return replace(nominal, q=here.place.q, offsets=here.offsets)
 
 
-def play_of(case: Case, load_case: str, pose: Pose, masses: Mapping[str, PartMass]) -> Play | None:
+def play_of(
+    case: Case, load_case: str, pose: Pose, masses: Mapping[str, PartMass], presses: Presses = NOTHING_MORE
+) -> Play | None:
     """Return what play does under a load case.
 
     Parameters
@@ -381,6 +384,8 @@ def play_of(case: Case, load_case: str, pose: Pose, masses: Mapping[str, PartMas
         Without play.
     masses : mapping of str to PartMass
         Of the parts.
+    presses : mapping of str to array (1,), optional
+        As for ``solve_friction``.
 
     Returns
     -------
@@ -389,7 +394,7 @@ def play_of(case: Case, load_case: str, pose: Pose, masses: Mapping[str, PartMas
     """
     speed = case.load_cases[load_case].speed
     coordinate = pose.coordinate if speed != 0.0 else None
-    return play_at(case, load_case, pose.placement, masses, coordinate, pose.slides, speed)
+    return play_at(case, load_case, pose.placement, masses, coordinate, pose.slides, speed, presses=presses)
 
 
 def play_at(
@@ -401,6 +406,8 @@ def play_at(
     slides: bool,
     speed: float | Real,
     acceleration: float | Real = 0.0,
+    *,
+    presses: Presses = NOTHING_MORE,
 ) -> Play | None:
     """Return what play does under a load case at poses.
 
@@ -419,6 +426,8 @@ def play_at(
         Whether it is a slider or slot.
     speed, acceleration : float or array (n,)
         Of the coordinate.
+    presses : mapping of str to array (1,), optional
+        As for ``solve_friction``.
 
     Returns
     -------
@@ -429,7 +438,7 @@ def play_at(
     if not radii:
         return None
     rates = partial(_with_rates, coordinate, slides, speed, acceleration)
-    friction = partial(_rubbed, case, load_case, coordinate, slides)
+    friction = partial(_rubbed, case, load_case, coordinate, slides, presses)
     loose = LooseJoints(place=place.at_rest, radii=radii, held=held_rows(place, case.pinned_drive))
     return Play(case=case, load_case=load_case, loose=loose, masses=masses, rates=rates, friction=friction)
 
@@ -446,14 +455,20 @@ def _with_rates(
 
 
 def _rubbed(
-    case: Case, load_case: str, coordinate: str | None, slides: bool, place: Placement, loads: Sequence[Load]
+    case: Case,
+    load_case: str,
+    coordinate: str | None,
+    slides: bool,
+    presses: Presses,
+    place: Placement,
+    loads: Sequence[Load],
 ) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
     """Return what friction adds to the loads, and where it finds no balance."""
     name, sense = coordinate or case.pose.coordinate, WAYS.get(case.load_cases[load_case].direction)
     if not rubbing_joints(case) or name is None or sense is None or not is_determinate(case.linkage):
         return (), np.zeros(place.shape, dtype=np.bool_)
     travels = slides if coordinate else case.pose.travel is not None
-    return friction_at(DrivenClosure(place.closure, name, travels), place, case.pinned_drive, loads, sense)
+    return friction_at(DrivenClosure(place.closure, name, travels), place, case.pinned_drive, loads, sense, presses)
 
 
 def held_rows(place: Placement, drive: Drive | None) -> Real:

@@ -17,7 +17,7 @@ from loads.case.joint_rules import rubbing_joints
 from loads.records.applied import Load, at_poses, chosen
 from loads.records.load_case import LoadCase
 from loads.states.kinetostatics import is_determinate, leverage
-from loads.statics.friction import Friction, friction_loads, solve_friction
+from loads.statics.friction import NOTHING_MORE, Friction, Presses, friction_loads, solve_friction
 from loads.statics.statics import NEARLY_SINGULAR, Drive
 
 Real = NDArray[np.float64]
@@ -92,7 +92,9 @@ def at_one_pose(pose: Pose) -> Motion:
     return replace(solve_motion(pose, [pose.held]), q=pose.q[None])
 
 
-def pose_friction(case: Case, load_case: str, pose: Pose, loads: Sequence[Load]) -> tuple[Load, ...]:
+def pose_friction(
+    case: Case, load_case: str, pose: Pose, loads: Sequence[Load], presses: Presses = NOTHING_MORE
+) -> tuple[Load, ...]:
     """Return the friction at one pose as loads, where equilibrium alone gives the joint forces.
 
     Parameters
@@ -104,6 +106,8 @@ def pose_friction(case: Case, load_case: str, pose: Pose, loads: Sequence[Load])
         No dead point of the drive.
     loads : sequence of Load
         All else that acts.
+    presses : mapping of str to array (1,), optional
+        As for ``solve_friction``.
 
     Returns
     -------
@@ -116,7 +120,9 @@ def pose_friction(case: Case, load_case: str, pose: Pose, loads: Sequence[Load])
     """
     place = at_one_pose(pose).virtual
     way = case.load_cases[load_case].direction
-    found = solve_friction(place, case.pinned_drive, [at_poses(load, (1,)) for load in loads], WAYS[way])
+    found = solve_friction(
+        place, case.pinned_drive, [at_poses(load, (1,)) for load in loads], WAYS[way], presses=presses
+    )
     if found.locked[0]:
         raise CaseError(
             f"load_cases.{load_case}: with friction the linkage locks itself in this pose, driven "
@@ -128,7 +134,12 @@ def pose_friction(case: Case, load_case: str, pose: Pose, loads: Sequence[Load])
 
 
 def friction_at(
-    driven: DrivenClosure, place: Placement, drive: Drive | None, loads: Sequence[Load], sense: float
+    driven: DrivenClosure,
+    place: Placement,
+    drive: Drive | None,
+    loads: Sequence[Load],
+    sense: float,
+    presses: Presses = NOTHING_MORE,
 ) -> tuple[tuple[Load, ...], NDArray[np.bool_]]:
     """Return the friction at one pose or at n as loads, and where it locks the linkage.
 
@@ -143,6 +154,8 @@ def friction_at(
         All else that acts.
     sense : float
         1 where the coordinate grows, -1 where it falls.
+    presses : mapping of str to array (...), optional
+        As for ``solve_friction``.
 
     Returns
     -------
@@ -152,7 +165,7 @@ def friction_at(
     poses = place.q.reshape(-1, place.q.shape[-1])
     moved = replace(place, q=poses, qdot=driven.coefficients(poses)[0], qddot=None)
     acting = [at_poses(load, moved.shape) for load in loads]
-    found = solve_friction(moved, drive, acting, sense)
+    found = solve_friction(moved, drive, acting, sense, presses=presses)
     loads = found.loads if place.shape else tuple(chosen(load, 0) for load in found.loads)
     return loads, np.reshape(found.locked, place.shape)
 
@@ -179,7 +192,9 @@ class Rubbing:
     spans: tuple[tuple[float, float], ...]
 
 
-def motion_friction(case: Case, load_case: str, motion: Motion, drive: Drive, loads: Sequence[Load]) -> Rubbing:
+def motion_friction(
+    case: Case, load_case: str, motion: Motion, drive: Drive, loads: Sequence[Load], presses: Presses = NOTHING_MORE
+) -> Rubbing:
     """Return the friction at the poses of a motion; none at dead points of the drive.
 
     Parameters
@@ -192,6 +207,8 @@ def motion_friction(case: Case, load_case: str, motion: Motion, drive: Drive, lo
     drive : Drive
     loads : sequence of Load
         All else that acts, at these poses.
+    presses : mapping of str to array (n,), optional
+        As for ``solve_friction``.
 
     Returns
     -------
@@ -214,7 +231,8 @@ def motion_friction(case: Case, load_case: str, motion: Motion, drive: Drive, lo
 
     def solved(poses: NDArray[np.intp], most: float) -> Friction:
         acting = [chosen(load, poses) for load in loads]
-        return solve_friction(motion.virtual.chosen(poses), drive, acting, WAYS[way], most=most)
+        here = {name: found[poses] for name, found in presses.items()}
+        return solve_friction(motion.virtual.chosen(poses), drive, acting, WAYS[way], most=most, presses=here)
 
     for poses in np.array_split(solvable, max(1, math.ceil(len(solvable) / _BLOCK))):
         found = solved(poses, 1.0)

@@ -6,7 +6,8 @@ A x = b and a unit of friction at every contact, C,
     A x - t sum_k mu_k sgn(v_k) p_k(x) C_k = b
 
 at t = 1. v is the speed at the contact, and p what presses it: the size of the force in a bore (the friction circle has
-the radius mu r), the normal force in a slot and on a guide. Every p is homogeneous of degree one. So x = y / s with
+the radius mu r), times what a couple presses beside it (``loads.statics.pressing``), and the normal force in a slot and
+on a guide. Every p is homogeneous of degree one. So x = y / s with
 
     A y - t sum_k mu_k sgn(v_k) p_k(y) C_k = s b,        |y|^2 + s^2 fixed,
 
@@ -35,6 +36,9 @@ from loads.statics.statics import Drive, along_joint, assemble, joint_column
 from loads.statics.system import System
 
 Real = NDArray[np.float64]
+Presses = Mapping[str, Real]
+NOTHING_MORE: Presses = {}
+"""Bores that no couple presses: each by its force alone."""
 
 STANDS_STILL = 1e-9
 """Share of the links' speeds below which a joint does not move, and has no friction."""
@@ -112,7 +116,13 @@ class _Contact:
 
 
 def solve_friction(
-    place: Placement, drive: Drive | None, loads: Sequence[Load], sense: float, *, most: float = 1.0
+    place: Placement,
+    drive: Drive | None,
+    loads: Sequence[Load],
+    sense: float,
+    *,
+    most: float = 1.0,
+    presses: Presses = NOTHING_MORE,
 ) -> Friction:
     """Return the friction that balances with the joint forces that it depends on.
 
@@ -127,13 +137,15 @@ def solve_friction(
         1 where the coordinate grows, -1 where it falls.
     most : float, optional
         Share of the stated coefficients.
+    presses : mapping of str to array (n,), optional
+        Joint -> what presses on the wall of its bore over its force; 1 where left out.
 
     Returns
     -------
     Friction
     """
     system = assemble(place, drive, loads)
-    contacts = _contacts(place, system, sense)
+    contacts = _contacts(place, system, sense, presses)
     rubbed = [
         contact.against[:, None] * joint_column(place, contact.joint, contact.force, contact.moment) / system.row_scale
         for contact in contacts
@@ -151,7 +163,7 @@ def solve_friction(
 
 
 def friction_under(
-    place: Placement, drive: Drive | None, sense: float, joints: Mapping[str, Real]
+    place: Placement, drive: Drive | None, sense: float, joints: Mapping[str, Real], presses: Presses = NOTHING_MORE
 ) -> tuple[FrictionLoad, ...]:
     """Return the friction that given joint forces make, for models in which it does not follow from equilibrium.
 
@@ -164,6 +176,8 @@ def friction_under(
         1 where the coordinate grows, -1 where it falls.
     joints : mapping of str to array (n, 6)
         What each joint's first link exerts on its second about the second's point, global axes [N, N mm].
+    presses : mapping of str to array (n,), optional
+        As for ``solve_friction``.
 
     Returns
     -------
@@ -178,7 +192,7 @@ def friction_under(
         for column, value in own.items():
             if column in system.columns:
                 values[..., system.columns.index(column)] = value
-    return friction_loads(place, _wrenches(_contacts(place, system, sense), values / system.column_scale))
+    return friction_loads(place, _wrenches(_contacts(place, system, sense, presses), values / system.column_scale))
 
 
 def friction_loads(place: Placement, wrenches: Mapping[str, Real]) -> tuple[FrictionLoad, ...]:
@@ -234,7 +248,7 @@ def _wrenches(contacts: Sequence[_Contact], scaled: Real) -> dict[str, Real]:
     return found
 
 
-def _contacts(place: Placement, system: System, sense: float) -> list[_Contact]:
+def _contacts(place: Placement, system: System, sense: float, presses: Presses) -> list[_Contact]:
     """Return every contact that rubs, with the signed coefficient (n,) that opposes the motion."""
     linkage, found = place.linkage, []
     speeds = [np.abs(place.velocity(n)) ** 2 + (linkage.longest * place.spin(n)) ** 2 for n in linkage.moving]
@@ -249,12 +263,19 @@ def _contacts(place: Placement, system: System, sense: float) -> list[_Contact]:
     for name, joint in linkage.joints.items():
         if joint.friction == 0.0:
             continue
+        coefficient = joint.friction * presses.get(name, 1.0)
         turn = place.spin(joint.links[1]) - place.spin(joint.links[0])
         radius = (joint.pin_diameter or 0.0) / 2.0
         along = along_joint(place, name)
 
         def contact(
-            force: Complex, moment: float, forms: list[Real], speed: Real, *, of: str = name, by: float = joint.friction
+            force: Complex,
+            moment: float,
+            forms: list[Real],
+            speed: Real,
+            *,
+            of: str = name,
+            by: float | Real = coefficient,
         ) -> _Contact:
             way = np.where(np.abs(speed) > least, np.sign(speed), 0.0)
             return _Contact(

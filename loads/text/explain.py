@@ -36,6 +36,10 @@ _RULES = {
 }
 
 
+_LISTED = 20
+"""Missing entries that one sentence lists."""
+
+
 def printable(text: str) -> str:
     """Make text fit for a message.
 
@@ -82,7 +86,8 @@ def require(entry: str, name: str | None, known: Collection[str], rule: str, rem
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:
     """Put the first problem of a validation into one sentence: entry, value, rule, remedy.
 
-    A mistyped key comes before the entry that it leaves missing.
+    A mistyped key comes before the entry that it leaves missing. Where an entry is missing, all that are missing are
+    told.
 
     Parameters
     ----------
@@ -130,7 +135,11 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
     if kind == "extra_forbidden":
         rule = "this key is unknown" + (meant or "; correct its name or remove it")
     elif kind == "missing":
-        rule = "this entry is missing; add it"
+        lacking = [p["loc"] for p in problems if p["type"] == "missing" and not isinstance(p["loc"][-1], int)]
+        listed = list(dict.fromkeys((entry, *(printable(".".join(map(str, _place(loc)))) for loc in lacking))))
+        problems = problems[max(len(listed[:_LISTED]) - 1, 0) :]
+        entry = ", ".join(listed[:_LISTED])
+        rule = "this entry is missing; add it" if len(listed) == 1 else "these entries are missing; add them"
     elif kind == "too_few_values":
         rule = "the list has too few values; add what is missing"
     elif kind in _RULES:

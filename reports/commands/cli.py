@@ -160,8 +160,8 @@ def motion(
 ) -> None:
     """Analyse a motion: link directions, paths, joint forces and drive torque."""
     from fea.common.verdict import Verdict
+    from fea.whole.rubbed_motion import rubbed_motion
     from loads.case.case_file import read_case
-    from loads.states.case_motion import solve_case_motion
     from reports.commands.motion import print_motion, write_motion
     from reports.page.output import refuse_unusable, write_folder
     from reports.words.limits import limited
@@ -169,7 +169,7 @@ def motion(
     with limited(threads):
         parsed = read_case(case, overrides or ())
         refuse_unusable(output, "motion")
-        result = solve_case_motion(parsed)
+        result = rubbed_motion(parsed)
         print_motion(result, case, json=json)
         if output is not None:
             progress("Drawing figures and the animation ...")

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from fea.frame.case_statics import CaseStatics
+from fea.frame.case_statics import CaseStatics, with_ends
 from geometry.base.version import result_stamp
 from loads.statics.friction import friction_wrenches
 from loads.statics.rounding import rounded, size_of, without_rounding
@@ -74,8 +74,8 @@ def print_statics(statics: CaseStatics, *, matrix: bool, json: bool) -> None:
                 print(f"  drive force on {drive.link}: {clean.drive_force:.5g} N (along {drive.joint} +)")
             else:
                 print(f"  drive torque on {drive.link}: {clean.drive_torque:.5g} N·mm (counter-clockwise +)")
-        if title in statics.work:
-            print(f"  {friction_sentence(statics.work[title], reactions)}")
+        if (work := with_ends(statics, title)) is not None:
+            print(f"  {friction_sentence(work, reactions)}")
             for name, rubbed in friction_wrenches(statics.loads[title]).items():
                 wrench = rounded(rubbed, size_of(reactions))
                 joint, force = reactions.joints[name], ", ".join(_column(x).strip() for x in wrench[:2])
@@ -146,8 +146,8 @@ def _record(statics: CaseStatics, *, matrix: bool) -> dict[str, object]:
                 "residual": reactions.residual,
                 "condition": reactions.system.condition,
                 **(
-                    {"friction": friction_record(statics.work[title], statics.loads[title])}
-                    if title in statics.work
+                    {"friction": friction_record(work, statics.loads[title])}
+                    if (work := with_ends(statics, title)) is not None
                     else {}
                 ),
                 "play": finite(play_record(statics.forces[title].play), {}),

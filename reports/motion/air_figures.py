@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fea.common.air_range import air_range
+from fea.whole.air_range import air_range
 from loads.case.case import Case
 from loads.states.case_motion import CaseMotion
 from reports.figures.motion_figures import DPI, legend, over_angle

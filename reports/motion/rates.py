@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.ties import first_largest
 from geometry.linkage.motion import Motion
 from loads.states.case_motion import CaseMotion
 from loads.statics.momentum import LinkageMomentum, on_ground
@@ -191,7 +192,7 @@ def extreme_pose(values: Real) -> int:
     -------
     int
     """
-    return int(np.argmax(values >= np.nanmax(values) - 1e-9 * np.nanmax(np.abs(values))))
+    return first_largest(values, float(np.nanmax(np.abs(values))))
 
 
 def vector_extremes(motion: Motion, values: Values) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from geometry.base.errors import CannotRunError, CaseError
 from loads.statics.rounding import without_rounding
 from reports.notebook.shown import Picture, Row, Table, pick, summary
 from reports.tables.record import worst_load_case
-from reports.words.wording import checks_of, headline
+from reports.words.wording import checks_of, headline, inapplicable
 
 
 @dataclass(frozen=True)
@@ -295,13 +295,16 @@ class CheckReport:
         write_report(self.result, Path(folder), progress=progress)
 
     def __str__(self) -> str:
-        return f"{self.headline}\n\n{self.table()}"
+        checks = checks_of(self.result)
+        return "\n\n".join((self.headline, str(_applicable(checks)), *inapplicable(checks)))
 
     def __repr__(self) -> str:
         return f"<check of {self.result.case.title!r}: {self.verdict}>"
 
     def _repr_html_(self) -> str:
-        return summary(self.verdict, self.result.case.title, self.headline, self.table(), self.warnings)
+        checks, title = checks_of(self.result), self.result.case.title
+        table, below = _applicable(checks), inapplicable(checks)
+        return summary(self.verdict, title, self.headline, table, self.warnings, below)
 
     @property
     def _links(self) -> tuple[str, ...]:
@@ -349,6 +352,10 @@ class CheckReport:
         ]
 
 
+def _applicable(checks: Iterable[CheckOutcome]) -> Table:
+    return Table(tuple(check_rows(check for check in checks if check.applies)))
+
+
 def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:
     """Return one row per check.
 
@@ -372,7 +379,7 @@ def check_rows(checks: Iterable[CheckOutcome]) -> list[Row]:
             "unit": check.unit,
             "sense": check.quantity.sense.value,
             "limit": check.limit,
-            "verdict": check.verdict.value,
+            "verdict": check.answer,
         }
         for check in checks
     ]

@@ -138,7 +138,8 @@ class EnvelopeReport:
 
     @property
     def _lead(self) -> str:
-        missed = [c for c in self.result.checks if c.verdict is self.verdict and c.verdict is not Verdict.PASS]
+        decisive = (c for c in self.result.checks if c.verdict is self.verdict and c.applies)
+        missed = [c for c in decisive if c.verdict is not Verdict.PASS]
         named = joined(list(dict.fromkeys(f"{check.quantity}, {check.subject.long}" for check in missed)))
         poses = f"{int(self.result.evaluated.sum())} of {len(self.result.angles)} poses"
         return f"{self.verdict.value.capitalize()} over {poses}" + (f": {named}." if named else ".")

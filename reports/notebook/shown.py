@@ -137,7 +137,9 @@ def pick(named: Mapping[str, T], name: str, what: str) -> T:
     return named[name]
 
 
-def summary(verdict: Verdict, title: str, lead: str, table: Table, warnings: Sequence[str]) -> str:
+def summary(
+    verdict: Verdict, title: str, lead: str, table: Table, warnings: Sequence[str], below: Sequence[str] = ()
+) -> str:
     """Return a short account of a result as HTML, with all text escaped.
 
     Parameters
@@ -148,15 +150,18 @@ def summary(verdict: Verdict, title: str, lead: str, table: Table, warnings: Seq
         Its first sentence.
     table : Table
     warnings : sequence of str
+    below : sequence of str, optional
+        Paragraphs below the table.
 
     Returns
     -------
     str
     """
+    more = "".join(f"\n<p>{escape(line)}</p>" for line in below)
     told = "".join(f"<li>{escape(warning)}</li>" for warning in warnings)
     return (
         f"<p>{_marked(verdict.value, verdict.value.upper())} <b>{escape(title)}</b></p>\n<p>{escape(lead)}</p>\n"
-        f"{table._repr_html_()}" + (f"\n<p>Warnings:</p><ul>{told}</ul>" if told else "")
+        f"{table._repr_html_()}{more}" + (f"\n<p>Warnings:</p><ul>{told}</ul>" if told else "")
     )
 
 

@@ -1,7 +1,7 @@
 """What the verdict of a report does not cover, derived from the case and its result."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from fea.common.verdict import LINKAGE, Quantity, Subject
 from fea.outcomes.result import CheckResult, LinkResult, SolidResult
@@ -14,8 +14,25 @@ STACKING = (
     "offset causes additional bending and torsion."
 )
 LAYERS = (
-    "Pins between layers are beams from mid-plane to mid-plane; how they share couples is part of the bands. Washers, "
-    "heads and faces that touch take none of these."
+    "Pins between layers are beams from mid-plane to mid-plane. The bands hold how they share couples: with the pins "
+    "of any link tilting in it or in their other link, and with all holes open that are not tight_in. Washers, heads "
+    "and faces that touch take none of these."
+)
+TILT = (
+    " How far pins without a stated clearance tilt in their holes is in no displacement, and not in the gaps between "
+    "layers."
+)
+TRANSFER = (
+    "How the torque passes between {joints} and the links that turn with them, by a key, a clamp, a screw or glue, is "
+    "not checked: neither what holds there nor the stress beside it."
+)
+LINES = (
+    "Pins in slots at {joints} touch a flank along a line. The pressure of this line contact, indentation and wear are "
+    "not checked."
+)
+WINGS = (
+    "All force of the air acts on the axis of {links}: what turns a wing about that axis, the chordwise twist of wing "
+    "and link, and the give of the wing's plate are not modelled."
 )
 SPRINGS = (
     "Springs, tendons and stops have no mass, no friction and no give of their own but the stated stiffness. Where "
@@ -42,8 +59,9 @@ def not_covered(result: CheckResult) -> tuple[tuple[str, str], ...]:
     return (
         ("Other poses", "Only this pose was checked; another pose can give higher stresses"
          + (". The command alula envelope checks all poses of the motion." if moves else ".")),
-        ("Layers", LAYERS) if result.case.layered else ("Stacking", STACKING),
+        ("Layers", _layers(result)) if result.case.layered else ("Stacking", STACKING),
         ("Pins and contact", _pins(result)),
+        *_features(result),
         *springs,
         ("Fatigue", "The loads are static. Repeated loads break parts at lower stresses"
          + (". The command alula envelope checks fatigue over the motion." if moves else ".")),
@@ -54,6 +72,29 @@ def not_covered(result: CheckResult) -> tuple[tuple[str, str], ...]:
         ("Manufacture and scatter", _scatter(result)),
         ("Bands", _bands(result)),
     )  # fmt: skip
+
+
+def _layers(result: CheckResult) -> str:
+    linkage, loose = result.case.linkage, clearances(result.case)
+    tilting = [name for name in linkage.joints if linkage.rise(name) != 0.0 and name not in loose]
+    return LAYERS + TILT if any(not linkage.joints[name].bonded for name in tilting) else LAYERS
+
+
+def _features(result: CheckResult) -> Iterator[tuple[str, str]]:
+    """What is not checked of shafts, slots and wings, where the case has some."""
+    case = result.case
+    turned = [name for name, joint in case.linkage.joints.items() if joint.type == "revolute" and joint.bonded]
+    drive = case.pinned_drive
+    if drive is not None and not drive.pushes(case.linkage):
+        turned = [drive.joint, *turned]
+    if turned:
+        yield "Torque at shafts", TRANSFER.format(joints=f"the pins of {joined(list(dict.fromkeys(turned)))}")
+    slotted = [name for name, joint in case.joints.items() if joint.type == "pin-in-slot"]
+    if slotted:
+        yield "Contact in slots", LINES.format(joints=joined(slotted))
+    flapping = [name for name in result.load_cases if case.load_cases[name].flapping is not None]
+    if flapping:
+        yield "Wings", WINGS.format(links=joined(list(dict.fromkeys(wing.link for wing in case.wings))))
 
 
 def _pins(result: CheckResult) -> str:

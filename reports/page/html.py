@@ -99,6 +99,7 @@ def render(
         meaning=MEANING[result.verdict],
         checks=checks,
         most_checks=MOST_CHECKS,
+        applicable=[check for check in checks if check.applies],
         bands=_bands(checks_of(result)),
         reasons=_reasons(checks),
         drawings=_drawings(result, checks, figures),
@@ -196,9 +197,10 @@ def _bands(checks: Sequence[CheckOutcome]) -> dict[str, tuple[str, ...]]:
 
 def _reasons(checks: Sequence[CheckOutcome]) -> list[str]:
     """Return the reason of each check; "" where its row says the same, so not where the reason names the model."""
+    telling = (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.LAYER_GAP, Quantity.DISPLACEMENT, *UNLOADED_QUANTITIES)
     return [
         ""
-        if check.quantity not in (Quantity.DRIVE_POWER, Quantity.LAYERS, Quantity.DISPLACEMENT, *UNLOADED_QUANTITIES)
+        if check.quantity not in telling
         and (check.verdict is Verdict.PASS or check.reason == reason_for(check.value, check.limit, check.verdict))
         else check.reason
         for check in checks

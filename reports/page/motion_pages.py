@@ -5,6 +5,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from fea.common.verdict import by_nearness
 from fea.motion.envelope_result import EnvelopeResult
 from loads.states.case_motion import CaseMotion
 from reports.motion.rate_rows import ends, link_columns, places, point_columns, told_speed, whole_rows
@@ -59,6 +60,9 @@ def envelope_page(result: EnvelopeResult, curves: bytes, plots: Mapping[str, byt
         coordinate=result.moved.motion.coordinate,
         first=math.degrees(float(result.angles[0])),
         last=math.degrees(float(result.angles[-1])),
+        checks=by_nearness(result.checks),
+        reasons=(),
+        several=len(result.moved.forces) > 1,
         rows=rows,
         curves=curves,
         plots=plots,

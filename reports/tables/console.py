@@ -22,6 +22,7 @@ from reports.words.wording import (
     band,
     fixed,
     headline,
+    inapplicable,
     joined,
     number,
     percent,
@@ -66,9 +67,9 @@ def print_result(result: CheckResult, console: "Console") -> None:
         for check in case.checks:
             if check.quantity is Quantity.DRIVE_POWER:
                 say(console, f"Motor: {check.reason}.")
-            elif check.quantity is Quantity.DISPLACEMENT:
+            elif check.quantity is Quantity.DISPLACEMENT and check.applies:
                 say(console, f"Displacement of {check.subject}: {check.reason}.")
-            elif check.quantity in UNLOADED_QUANTITIES:
+            elif check.quantity in (Quantity.LAYER_GAP, *UNLOADED_QUANTITIES):
                 say(console, sentence(f"{check.quantity}: {check.reason}"))
         for line in _hand(case):
             say(console, line)
@@ -176,7 +177,7 @@ def _links(case: LoadCaseResult, console: "Console") -> None:
 
 
 def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
-    """Print the checks with value, band, limit and verdict.
+    """Print the checks with value, band, limit and verdict; those that are not applicable together below them.
 
     Parameters
     ----------
@@ -186,8 +187,8 @@ def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
     """
     from rich.text import Text
 
-    several = len({check.load_case for check in checks}) > 1
-    checks = by_nearness(checks)
+    several, together = len({check.load_case for check in checks}) > 1, inapplicable(checks)
+    checks = by_nearness(check for check in checks if check.applies)
     alike = Counter((check.quantity, check.link, check.load_case) for check in checks)
     columns = [("check", False), ("link", False), *([("load case", False)] if several else [])]
     columns += [("value (band)", True), ("limit", True), ("verdict", False)]
@@ -207,6 +208,8 @@ def say_checks(checks: Sequence[CheckOutcome], console: "Console") -> None:
             )
         )
     say_table(console, columns, rows)
+    for line in together:
+        say(console, line)
 
 
 def _hand(case: LoadCaseResult) -> list[str]:

@@ -69,7 +69,7 @@ def check_records(checks: Iterable[CheckOutcome]) -> list[dict[str, Any]]:
     list of dict
         One entry per check; the unit of a pure number is ``"1"``.
     """
-    names = "name link load_case quantity value limit margin verdict reason"
+    names = "name link load_case quantity value limit margin verdict applies reason"
     return [entries(check, names) | {"unit": check.unit or "1"} for check in checks]
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.whole.rubbed_motion import work_between
 from loads.records.applied import Load
 from loads.states.case_motion import CaseMotion
 from loads.states.drive_work import DriveWork
@@ -39,6 +40,7 @@ def friction_record(work: DriveWork, loads: Sequence[Load]) -> dict[str, Any]:
         "direction": work.way,
         "drive_without": float(work.without[0]),
         "drive": float(work.effort[0]),
+        "drive_band": None if work.ends is None else [_finite(end) for end in _ends(work)],
         "efficiency": _finite(work.efficiency[0]),
         "holds_itself": bool(work.holds_itself[0]),
         "joints": {
@@ -67,7 +69,7 @@ def friction_sentence(work: DriveWork, reactions: Reactions) -> str:
     unit, size = ("N", size_of(reactions)[0]) if pushes else ("N·mm", size_of(reactions)[5])
     found = (
         f"Friction, driven {told_direction(work.way, pose.coordinate, pose.slides)}: drive "
-        f"{number(float(work.effort[0]), beside=size)} {unit}, without friction "
+        f"{number(float(work.effort[0]), beside=size)}{_between(work, size)} {unit}, without friction "
         f"{number(float(work.without[0]), beside=size)} {unit}"
     )
     if bool(work.holds_itself[0]):
@@ -90,10 +92,11 @@ def motion_friction_record(moved: CaseMotion, load_case: str) -> dict[str, Any]:
     dict
         Spans are pairs of values of the coordinate in its unit.
     """
-    work, rubbing, motion = moved.work(load_case), moved.rubbing[load_case], moved.motion
+    work, rubbing, motion = work_between(moved, load_case), moved.rubbing[load_case], moved.motion
     shares = work.efficiency[np.isfinite(work.efficiency)]
     return {
         "direction": rubbing.way,
+        "drive_band": [_finite(end) for end in _ends(work)],
         "work": _finite(work.total),
         "work_without": _finite(work.total_without),
         "efficiency_of_motion": _finite(work.of_cycle),
@@ -123,7 +126,10 @@ def motion_friction_lines(moved: CaseMotion, load_case: str) -> list[str]:
     without = moved.frictionless[load_case]
     way = told_direction(data["direction"], motion.coordinate, motion.slides)
     what, unit, torque = *moved.effort, moved.torque[load_case]
-    found = [f"friction, driven {way}: drive {what} {_range(torque)} {unit}, without friction {_range(without)} {unit}"]
+    found = [
+        f"friction, driven {way}: drive {what} {_range(torque)} {unit}, without friction {_range(without)} {unit}",
+        f"with all friction that may be: drive {what} {_told(work_between(moved, load_case))} {unit}",
+    ]
     if data["efficiency_smallest"] is not None:
         text = f"efficiency {_percent(data['efficiency_smallest'])} to {_percent(data['efficiency_largest'])} by pose"
         if data["efficiency_of_motion"] is not None:
@@ -145,6 +151,25 @@ def _range(values: Real) -> str:
         return "not known"
     size = float(np.abs(known).max())
     return " to ".join(number(float(end), beside=size) for end in (known.min(), known.max()))
+
+
+def _between(work: DriveWork, size: float) -> str:
+    """Return the ends of the effort at one pose, for people."""
+    return "" if work.ends is None else f" ({_told(work, size)})"
+
+
+def _ends(work: DriveWork) -> tuple[float, float]:
+    """Return the least and the largest effort of all poses at which it is known as stated."""
+    assert work.ends is not None
+    known = work.ends[:, np.isfinite(work.effort)]
+    return (float(known[0].min()), float(known[1].max())) if known.size else (math.nan, math.nan)
+
+
+def _told(work: DriveWork, size: float | None = None) -> str:
+    ends = _ends(work)
+    size = max((abs(end) for end in ends if math.isfinite(end)), default=1.0) if size is None else size
+    low, high = (number(end, beside=size) if math.isfinite(end) else "−∞" if end < 0.0 else "∞" for end in ends)
+    return f"{low} to {high}"
 
 
 def _spans(spans: list[list[float]], unit: str) -> str:

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.check.anchor import anchor_loads
-from fea.common.air_range import air_range
 from fea.outcomes.result import CheckResult, LoadCaseResult
+from fea.whole.air_range import air_range
 from fea.whole.motor import demand
+from fea.whole.rubbed_motion import rubbed_motion
 from geometry.base.units import as_text
 from geometry.linkage.placement import Placement
 from loads.case.case import Case
@@ -18,7 +19,7 @@ from loads.records.aero import shares
 from loads.records.applied import LineLoad
 from loads.records.carried import CarriedSpread
 from loads.records.load_case import LoadCase
-from loads.states.case_motion import CaseMotion, solve_case_motion
+from loads.states.case_motion import CaseMotion
 from loads.states.flapping import flapping_loads, wing_reynolds, wing_span
 from reports.tables.data import entries
 from reports.words.wording import joined, number, plain
@@ -240,7 +241,7 @@ def motion_in_air(case: Case) -> CaseMotion | None:
     flapping = {name: one for name, one in case.load_cases.items() if one.flapping is not None}
     if not flapping or case.motion is None or case.drive is None:
         return None
-    return solve_case_motion(case.model_copy(update={"load_cases": flapping}))
+    return rubbed_motion(case.model_copy(update={"load_cases": flapping}))
 
 
 def air_lines(record: dict[str, Any] | None) -> list[str]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.common.verdict import Quantity, Subject, overall
+from fea.common.verdict import Quantity, Subject, by_nearness, overall
 from fea.motion.along import spread_poses
 from fea.motion.envelope_result import EnvelopeResult, StressAlong
 from fea.outcomes.result import CheckResult
@@ -54,11 +54,13 @@ def check_linkage(result: CheckResult) -> dict[str, Any]:
     for link in next(iter(result.load_cases.values())).links:
         worst = worst_load_case(result, link)
         found = worst.links[link]
-        own = [check.verdict for check in worst.checks if check.subject == Subject.link(link)]
+        own = [check for check in worst.checks if check.subject == Subject.link(link)]
+        verdict = overall(check.verdict for check in own)
+        decisive = by_nearness(check for check in own if check.verdict is verdict)
         factor = found.safety_factor
         shares[link] = np.array([math.nan if factor.unknowable else 100.0 / factor.value if factor.value else math.inf])
         told = f"safety factor {band(factor)} under load case {worst.name}"
-        texts[link] = told + (f"; checks of this link: {overall(own).value}" if own else "")
+        texts[link] = told + (f"; checks of this link: {decisive[0].answer}" if own else "")
     limits = [check.limit for check in checks_of(result) if check.quantity is Quantity.SAFETY_FACTOR]
     values = Values(
         label="stress over strength",

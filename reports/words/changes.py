@@ -1,22 +1,22 @@
 """What would change a verdict, in sentences."""
 
-import math
 import shlex
 
-from fea.common.source import Source, SourceKind
+from fea.common.source import SourceKind
 from fea.common.verdict import UNLOADED_QUANTITIES, CheckOutcome, Quantity, Verdict
-from fea.outcomes.result import CheckResult
-from fea.sizing.changes import MaterialChange, VerdictChange
+from fea.outcomes.result import CheckResult, HandResult
+from fea.sizing.changes import MaterialChange, VerdictChange, rounded
 from reports.words.wording import joined, named, number, plain, sentence
 
 _NARROWED: dict[SourceKind, str] = {
-    SourceKind.DISCRETISATION: "finer meshes (--accuracy, --max-unknowns)",
+    SourceKind.DISCRETISATION: "finer meshes (--accuracy, --max-unknowns; of frames solid.mesh_size)",
     SourceKind.CALIBRATION: "a solid model (--fidelity solid)",
+    SourceKind.EYES: "a solid model (--fidelity solid)",
     SourceKind.LOAD: "a narrower scatter of the load case",
     SourceKind.STRENGTH: "a narrower strength range on the material's card",
     SourceKind.MODULUS: "a narrower youngs_modulus range on the material's card",
     SourceKind.GROWTH: "a narrower scatter of load and modulus",
-    SourceKind.COUPLES: "tight_in of the joints, which says in which link a pin is tight",
+    SourceKind.COUPLES: "tight_in of the joints, which says in which links a pin is tight",
     SourceKind.PLAY: "a smaller clearance of the joints",
     SourceKind.AIR: "a narrower normal_coefficient_range of the load case's air",
     SourceKind.POSES: "more poses of the motion",
@@ -55,10 +55,12 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     """
     check = change.check
     told = [*_of_load(change, result), *_of_material(change.material, result, passes=check.verdict is Verdict.PASS)]
-    if check.verdict is Verdict.UNDECIDED and not told:
+    if change.refuted and not told:
+        told.append("Other loads and materials were tried, and none within reach does.")
+    elif check.verdict is Verdict.UNDECIDED and not told:
         told.append(sentence(check.reason))
     if change.widest:
-        told.append(_of_sources(change.widest))
+        told.append(_of_sources(change, result))
     if not told:
         told.append(
             _of_itself(check)
@@ -134,19 +136,25 @@ def _of_material(change: MaterialChange | None, result: CheckResult, *, passes: 
     return [f"{article} {change.what} of {needed} MPa in place of {stated} MPa ({title}) {verb}."]
 
 
-def _of_sources(sources: tuple[Source, ...]) -> str:
+def _of_sources(change: VerdictChange, result: CheckResult) -> str:
     """Return where most of a band comes from, and what narrows it."""
-    kinds = list(dict.fromkeys(source.kind for source in sources))
-    narrowed = [_NARROWED[kind] for kind in kinds if kind in _NARROWED]
+    kinds = list(dict.fromkeys(source.kind for source in change.widest))
+    narrowed = list(dict.fromkeys(_NARROWED[kind] for kind in kinds if _narrows(kind, change.check, result)))
     remedy = f"narrower by {joined(narrowed)}" if narrowed else "which no entry of the case and no option narrows"
     together = " together" if len(kinds) > 1 else ""
     return f"Most of its band comes from {joined([str(kind) for kind in kinds])}{together}, {remedy}."
 
 
+def _narrows(kind: SourceKind, check: CheckOutcome, result: CheckResult) -> bool:
+    """Whether what narrows a source does so here: no scatter that is not stated, no solids where all links are some."""
+    if kind is SourceKind.GROWTH:
+        return any(source.kind in (SourceKind.LOAD, SourceKind.MODULUS) for source in check.value.sources)
+    if kind is SourceKind.EYES:
+        links = result.load_cases[check.load_case].links.values()
+        return any(isinstance(link, HandResult) for link in links)
+    return kind in _NARROWED
+
+
 def _rounded(value: float, *, up: bool, digits: int = 3) -> str:
-    """Return a number to some digits, upwards or downwards, so that it still does what it should."""
-    if value <= 0.0 or not math.isfinite(value):
-        return number(value)
-    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
-    steps = math.ceil(value / step - 1e-9) if up else math.floor(value / step + 1e-9)
-    return number(steps * step, digits)
+    """Return a number as it was tried."""
+    return number(rounded(value, up=up, digits=digits), digits)

@@ -1,7 +1,7 @@
 """Numbers, bands and verdicts in words, for console and page alike."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from fea.common.band import Band
@@ -241,7 +241,7 @@ def _headline(result: "CheckResult") -> str:
         kept = "the only check keeps its limit" if count == 1 else f"all {count} checks keep their limits"
         closest = _with_limit(result, by_nearness(checks)[0])
         return f"Pass: {kept} over the whole error band. Closest to its limit: {closest}."
-    decisive = [c for c in checks if c.verdict is result.verdict]
+    decisive = [c for c in checks if c.verdict is result.verdict and c.applies]
     names = joined(list(dict.fromkeys(named(c) for c in decisive)))
     share = f"{len(decisive)} of {count} checks"
     if result.verdict is Verdict.UNDECIDED:
@@ -254,6 +254,43 @@ def _headline(result: "CheckResult") -> str:
         worst = min(collapses, key=lambda c: c.value.value)
         return f"Fail: {_under(result, worst)}{gives_way(worst)}. {missed}: {names}."
     return f"Fail: {missed}: {names}. Worst: {_with_limit(result, by_nearness(decisive)[0])}."
+
+
+def inapplicable(checks: Iterable[CheckOutcome]) -> list[str]:
+    """Tell the checks that are not applicable together, in one line for each reason.
+
+    Parameters
+    ----------
+    checks : iterable of CheckOutcome
+        All of them; load cases are named where there are several.
+
+    Returns
+    -------
+    list of str
+        Such as ``Not applicable, 2 checks: the linkage gives way. Safety factor of AE; buckling factor of AE.``
+    """
+    checks = list(checks)
+    several, groups = len({check.load_case for check in checks}) > 1, dict[str, list[CheckOutcome]]()
+    for check in checks:
+        if not check.applies:
+            groups.setdefault(check.reason, []).append(check)
+    return [
+        f"Not applicable, {len(group)} check{'s' if len(group) > 1 else ''}: {reason}. "
+        + sentence("; ".join(_gathered(group, several=several)))
+        for reason, group in groups.items()
+    ]
+
+
+def _gathered(checks: Iterable[CheckOutcome], *, several: bool) -> Iterator[str]:
+    """Yield each quantity with all that it is asked of; load cases that ask it of the same share a line."""
+    asked: dict[tuple[Quantity, str], dict[str, None]] = {}
+    for check in checks:
+        asked.setdefault((check.quantity, check.load_case), {})[str(check.subject)] = None
+    alike: dict[tuple[Quantity, tuple[str, ...]], list[str]] = {}
+    for (quantity, load_case), names in asked.items():
+        alike.setdefault((quantity, tuple(names)), []).append(load_case)
+    for (quantity, subjects), load_cases in alike.items():
+        yield f"{quantity} of {joined(subjects)}" + (f" under {joined(load_cases)}" if several else "")
 
 
 def gives_way(check: CheckOutcome) -> str:

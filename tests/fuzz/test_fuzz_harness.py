@@ -92,3 +92,28 @@ def test_a_few_inputs_of_every_kind(tmp_path: Path) -> None:
     records = [json.loads(path.read_text()) for path in tmp_path.iterdir()]
     assert len(records) == 11
     assert [record["faults"] for record in records if record["faults"]] == []
+
+
+UNKNOWN = """
+import tomllib
+from fuzz import guard
+from geometry.base.errors import CaseError
+from loads.case.case_file import read_text, validate
+from loads.plans.plan import StudyPlan
+from loads.text.entries import known_keys
+tables = tomllib.loads(read_text("ornithopter")[0])
+known_keys(StudyPlan, ())  # pydantic imports what it needs for schemas with the first of them
+guard.install()
+with guard.watched():
+    try:
+        validate(tables | {"ornithopter": tables["ornithopter"] | {"gera": 1}})
+    except CaseError as error:
+        print(error)
+"""
+
+
+def test_an_unknown_entry_is_told_without_a_look_into_the_sources() -> None:
+    """The schema behind the message parsed the program's own source, which compiled modules do not have."""
+    done = child(UNKNOWN)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("ornithopter.gera: "), done.stdout

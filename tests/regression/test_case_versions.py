@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from fea.check.run import check_case
 from geometry.base.errors import CaseError
 from geometry.base.version import CASE_SCHEMA_VERSION, RESULT_SCHEMA_VERSION
 from loads.case.case import Case
@@ -78,6 +79,32 @@ def test_a_case_of_0_1_means_what_it_meant(name):
     later = {"description": True, "source": True, "assumptions": True, "checks": {"motor": {"no_load_speed"}}}
     later |= {"layer_spacing": True, "washer": True, "links": {"__all__": {"layer", "thickness"}}}
     assert validate(FORMAT_1["cases"][name]).model_dump(exclude=later) == today.model_dump(exclude=later)
+
+
+REST = "youngs_modulus, poissons_ratio, yield_strength, ultimate_strength"
+
+
+@pytest.mark.parametrize(
+    ("left", "told"),
+    [
+        ({"sources": {}, "status": {}}, f"sources and status of density, {REST}"),
+        ({"sources": {"density": "a book"}}, f"sources of {REST}"),
+    ],
+)
+def test_a_card_without_sources_is_read_and_one_sentence_lists_what_it_leaves_out(left, told):
+    """0.1 let such cards pass; they were refused, one value at a time."""
+    tables = deepcopy(FORMAT_1["cases"]["four-bar-synthesis"])
+    [(name, card)] = tables["materials"].items()
+    plain = check_case(validate(tables), name="plain", fidelity="beam")
+    card |= left
+    found = check_case(validate(tables), name="bare", fidelity="beam")
+    [warning] = set(found.warnings) - set(plain.warnings)
+    assert warning == (
+        f"materials.{name} does not state {told}; add where each value comes from, and how well it is known"
+    )
+    assert [link.safety_factor for link in found.load_cases[next(iter(found.load_cases))].links.values()] == [
+        link.safety_factor for link in plain.load_cases[next(iter(plain.load_cases))].links.values()
+    ]
 
 
 def test_what_0_1_let_pass_and_is_a_mistake_is_told_with_its_remedy():

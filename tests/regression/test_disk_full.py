@@ -1,6 +1,7 @@
 """A disk that is full or may not be written: one sentence, status 4, and the earlier result untouched."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -45,7 +46,7 @@ def test_a_disk_that_is_full(tmp_path: Path) -> None:
     disk = tmp_path / "disk"
     disk.mkdir()
     command = ["mount", "-t", "tmpfs", "-o", "size=128k", "tmpfs", str(disk)]
-    if subprocess.run(command, capture_output=True, check=False).returncode:
+    if not shutil.which("mount") or subprocess.run(command, capture_output=True, check=False).returncode:
         pytest.skip("only root may mount a small disk")
     try:
         assert programs.script("write_folder(Path(sys.argv[1]), fill('old'))", str(disk / "out")).returncode == 0

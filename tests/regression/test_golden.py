@@ -32,5 +32,8 @@ def test_numbers_that_measure_error_count_from_a_floor_of_their_kind() -> None:
     kept = {"a.residual": 1e-15, "a.solver_error": 2e-10, "links.a.support_reaction": 3e-12, "a.stress": 1e-10}
     assert golden.differences(kept, {**kept, "a.residual": 9e-13}, 1e-6) == []
     assert golden.differences(kept, {**kept, "a.solver_error": 9e-9, "links.a.support_reaction": 9e-9}, 1e-6) == []
+    still = {"links.a.displacement_max.low": 4e-19, "motion.links.b.first": 7e-13}
+    assert golden.differences(still, dict.fromkeys(still, 0.0), 1e-9) == []
+    assert len(golden.differences(still, dict.fromkeys(still, 2e-9), 1e-9)) == 2
     for entry in kept:
         assert len(golden.differences(kept, {**kept, entry: 2e-8}, 1e-6)) == 1

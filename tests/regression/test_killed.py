@@ -171,18 +171,9 @@ def _meshing(process: subprocess.Popen[str]) -> list[int]:
 
 def _all_ended(pids: list[int]) -> bool:
     deadline = time.monotonic() + 10.0
-    while any(map(_alive, pids)) and time.monotonic() < deadline:
+    while not all(map(programs.ended, pids)) and time.monotonic() < deadline:
         time.sleep(0.05)
-    return not any(map(_alive, pids))
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    return state != "Z"
+    return all(map(programs.ended, pids))
 
 
 FINE = ("--fidelity", "solid", "--set", "solid.mesh_size=0.2")

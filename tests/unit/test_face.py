@@ -3,6 +3,7 @@
 import doctest
 import importlib
 import io
+import os
 import shutil
 import subprocess
 import sys
@@ -33,6 +34,30 @@ def test_examples_of_docstrings(module):
     found = doctest.testmod(importlib.import_module(module))
     assert found.attempted > 0
     assert found.failed == 0
+
+
+@pytest.mark.parametrize(
+    "mine", ["geometry.py", "loads.py", "fea.py", "reports.py", "geometry/__init__.py", "geometry/mine.py"]
+)
+def test_a_file_of_the_users_that_is_in_the_way_is_named(mine, tmp_path):
+    """Python finds what stands beside a script first; its modules were missing then, in whichever function asked."""
+    file = tmp_path / mine
+    file.parent.mkdir(exist_ok=True)
+    file.write_text("MINE = 1")
+    found = tmp_path / mine.partition("/")[0]
+    told = f"'{found}' is in the way of alula's own package '{found.stem}'; rename it, or move it to a folder of which"
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+
+    def run(*arguments):
+        command = [sys.executable, *arguments]
+        return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+
+    caught = "try:\n  import alula\nexcept ImportError as error:\n  print(type(error).__name__, error)"
+    assert run("-c", caught).stdout.startswith(f"ShadowedError {told}")
+    command = run("-m", "alula", "cases")
+    assert (command.returncode, command.stdout) == (2, "")
+    assert command.stderr.startswith(f"alula: {told}")
+    assert command.stderr.count("\n") == 1
 
 
 def test_the_version_is_that_of_the_project():

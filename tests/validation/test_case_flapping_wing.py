@@ -148,6 +148,7 @@ def test_the_check_ends_in_pass_but_for_how_pins_share_couples(case, name) -> No
     checks = [check for result in found.load_cases.values() for check in result.checks]
     assert all(check.verdict is not Verdict.FAIL for check in checks)
     left = [check for check in checks if check.verdict is Verdict.UNDECIDED]
-    assert {check.link for check in left} <= {"crank"}
+    assert {check.link for check in left} <= {"crank", "the linkage"}
+    assert {check.name for check in left if check.link == "the linkage"} <= {"resonance"}
     kind = COUPLES[0].kind
     assert all(kind in [source.kind for source in check.value.sources] for check in left)

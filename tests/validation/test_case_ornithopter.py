@@ -232,11 +232,14 @@ def test_closed_form_agrees_on_the_heaviest_wings() -> None:
 
 
 @pytest.mark.converged
-def test_the_check_ends_in_pass(case) -> None:
+def test_all_checks_pass_but_the_frequency_that_the_fits_of_pins_leave_open(case) -> None:
     result = check_case(
         case.model_copy(update={"solid": case.solid.model_copy(update={"mesh_size": 2.0})}), fidelity="solid"
     )
-    assert result.verdict is Verdict.PASS
+    every = [check for one in result.load_cases.values() for check in one.checks]
+    left = [check for check in every if check.verdict is not Verdict.PASS]
+    assert {(check.name, check.verdict) for check in left} == {("resonance", Verdict.UNDECIDED)}
+    assert all("where pins may run" in check.reason for check in left)
 
 
 def test_a_massless_part_has_no_say(case) -> None:

@@ -5,6 +5,8 @@
   pulled by 850 N (cosine pressure): the mean motions of its bores part by 0.019134 mm in plane stress, where centre
   lines have F L/(E A) = 0.01543 mm.
 * A bar of two halves, bonded at a pin, against the bar in one piece.
+* A bar with a raised eye, bonded at its ground and bent out of the plane, between two cantilevers: one as long as it is
+  free beyond its eye, and one as long as the whole bar.
 """
 
 from typing import Any
@@ -14,7 +16,7 @@ import pytest
 
 from fea.check.run import check_case
 from fea.common.source import SourceKind
-from fea.common.verdict import CheckOutcome, Quantity
+from fea.common.verdict import CheckOutcome, Quantity, Verdict
 from fea.outcomes.result import LoadCaseResult
 from loads.case.case import Case
 from loads.case.case_file import validate
@@ -166,3 +168,68 @@ def test_two_halves_bonded_at_a_pin_are_as_one_bar():
     assert also.value.value == pytest.approx(moved.value.value, rel=0.02)
     # Plain beams, which are stiffer at their built-in ends: P a b²/L² and P a² b/L².
     assert [abs(one.reactions.joints[n].wrench[5]) for n in "AS"] == pytest.approx([256.0, 64.0], rel=0.07)
+
+
+def raised_eye() -> Case:
+    """A bar of 12 x 4 mm on an eye of 20 x 9 mm, bonded to the ground; forces across the plane at its tip and half-way.
+
+    The limits lie within what eyes leave open of the frame of centre lines, beyond what solids do.
+    """
+    cases = {"tip": ("T", 5.0), "middle": ("M", -14.0)}
+    return validate(
+        {
+            "schema_version": 1,
+            "title": "a raised eye",
+            "links": {
+                "ground": {"ground": True, "points": {"K": mm(0.0, 0.0), "O": mm(0.0, 50.0)}},
+                "arm": {
+                    "part": "p",
+                    "points": {"K": mm(0.0, 0.0), "M": mm(30.0, 0.0), "T": mm(60.0, 0.0)},
+                    "end_patch": "4 mm",
+                },
+            },
+            "joints": {"K": {"links": ["ground", "arm"], "pin_diameter": "5 mm", "bonded": True, "angle": "0 deg"}},
+            "materials": {"m": material(68900.0, 0.33)},
+            "parts": {
+                "p": {
+                    "shape": "bar",
+                    "material": "m",
+                    "width": "12 mm",
+                    "thickness": "4 mm",
+                    "eye_diameter": "20 mm",
+                    "eye_thickness": "9 mm",
+                    "fillet_radius": "2 mm",
+                }
+            },
+            "load_cases": {
+                name: {"forces": [{"link": "arm", "at": at, "force": ["0 N", "0 N", f"{force} N"]}]}
+                for name, (at, force) in cases.items()
+            },
+            "checks": {
+                "strength": {"type": "safety-factor"},
+                "end": {"type": "displacement", "link": "arm", "at": "T", "maximum": "0.085 mm"},
+                "half": {"type": "displacement", "link": "arm", "at": "M", "maximum": "0.0285 mm"},
+            },
+        }
+    )
+
+
+def moves(case: Case, fidelity: str) -> dict[tuple[str, str], CheckOutcome]:
+    result = check_case(case, fidelity=fidelity, threads=1)
+    every = (check for load_case in result.load_cases.values() for check in load_case.checks)
+    return {(o.load_case, o.name): o for o in every if o.quantity is Quantity.DISPLACEMENT}
+
+
+def test_solids_tell_how_far_a_point_moves_where_centre_lines_leave_it_open():
+    """Their stiffness changes no joint force here, since there is one joint."""
+    beams, solids = (moves(raised_eye(), fidelity) for fidelity in ("beam", "auto"))
+    for at, load, span in (("end", "tip", 60.0), ("half", "middle", 30.0)):
+        hand, found = beams[load, at], solids[load, at]
+        assert hand.verdict is Verdict.UNDECIDED
+        assert "--fidelity solid" in hand.reason
+        assert found.verdict is Verdict.PASS
+        assert found.reason.startswith("by the frame of the links' solids")
+        force = {"tip": 5.0, "middle": 14.0}[load]
+        short, long = (force * reach**3 / (3.0 * 68900.0 * 64.0) for reach in (span - 10.0, span))
+        assert short < found.value.value < long
+        assert found.value.high - found.value.low < 0.2 * (hand.value.high - hand.value.low)

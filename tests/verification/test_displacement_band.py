@@ -88,6 +88,23 @@ def test_virtual_work_of_plain_beams_is_the_frames_displacement(case: Case, link
     assert band.value == pytest.approx(float(np.linalg.norm(solution.displacements[node, :3])), rel=1e-7)
 
 
+@pytest.mark.parametrize(
+    ("case", "link", "point"), [(slotted_lever(), "lever", "H"), (read_case("owl-wing-static"), "CH", "H")]
+)
+def test_a_load_that_is_turned_round_moves_a_point_as_far_the_other_way(case: Case, link: str, point: str) -> None:
+    """Least and largest are distances: the end beyond zero of a point that moves down is no least of 0."""
+    pose, title = case.solve_pose(), next(iter(case.load_cases))
+    loads = acting_loads(case, case.load_cases[title], pose.placement, {})
+    turned = tuple(replace(load, wrench=-load.wrench) for load in loads)
+    bands = []
+    for acting in (loads, turned):
+        frame = build_frame(case, pose, acting, held=case.pinned_drive)
+        found = point_bounds(case, frame, solve_frame(frame.model), link, point)
+        bands.append((found.low, found.value, found.high))
+    assert bands[0] == pytest.approx(bands[1], rel=1e-9)
+    assert 0.0 < bands[0][0] < bands[0][1]
+
+
 def test_the_factors_at_a_cross_hole_are_those_of_its_net_section() -> None:
     """By counting what is left of a section of many small squares."""
     part = TUBE.body.part
@@ -112,6 +129,27 @@ def test_terms_of_opposite_sign_are_each_taken_at_their_worst() -> None:
     assert (with_it.low, with_it.value, with_it.high) == pytest.approx((0.5 * moved, moved, 2.0 * moved), rel=1e-9)
     against = bounds(whole, FLAT.frame(1, -1.0), {0: [soft]}, [])
     assert (against.low, against.value, against.high) == pytest.approx((-2.0 * moved, -moved, -0.5 * moved), rel=1e-9)
+
+
+def test_what_pins_sink_by_is_taken_at_its_worst_though_it_cancels() -> None:
+    """The load lifts the tip as the pin sinks at it, and lowers it by what the pin turns at its clamped bore.
+
+    The unit load is a force and a couple, so that the moment at the clamped bore has the other sign: F L times -L.
+    """
+    whole, length = FLAT.frame(1, FORCE), FLAT.length
+    wrench = np.array([0.0, 1.0, 0.0, 0.0, 0.0, -2.0 * length])
+    unit = solve_frame(replace(whole.model, loads=(NodeLoad(node=1, wrench=wrench),)))
+    plain = bounds(whole, unit, {}, [])
+    sink, turn = 1e-5, 1e-5 / length**2
+    across, about = sink * np.eye(6)[1], turn * np.eye(6)[5]
+    for bores in ([(1, across), (0, about)], [(0, about), (1, across)]):
+        found = bounds(whole, unit, {}, bores)
+        assert found.value == plain.value
+        assert found.low - plain.value == pytest.approx(-FORCE * turn * length**2, rel=1e-9)
+        assert found.high - plain.value == pytest.approx(FORCE * sink, rel=1e-9)
+    both = bounds(whole, unit, {}, [(0, across + about)])  # one bore that sinks and turns
+    assert both.low - plain.value == pytest.approx(-FORCE * turn * length**2, rel=1e-9)
+    assert both.high - plain.value == pytest.approx(FORCE * sink, rel=1e-9)
 
 
 @pytest.mark.parametrize("force", [-1.0, -40.0])

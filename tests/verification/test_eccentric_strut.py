@@ -7,12 +7,12 @@ import pytest
 from bars_in_layers import parallel_bars
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import measures
-from fea.check.link_by_hand import link_by_hand
 from fea.check.run import check_case
-from fea.check.second_order import on_tilting_pins, second_order_loads
 from fea.common.link_loads import LinkLoads, PinLoad
+from fea.doubts.force_doubt import measures
 from fea.frame.case_statics import solve_case_statics
+from fea.links.link_by_hand import link_by_hand
+from fea.links.second_order import on_tilting_pins, second_order_loads
 from loads.case.case import Case
 
 WIDE, THICK, LONG, BESIDE = 16.0, 3.0, 100.0, 10.0
@@ -20,11 +20,16 @@ WIDE, THICK, LONG, BESIDE = 16.0, 3.0, 100.0, 10.0
 
 
 def pressed(share: float, **of_coupler: float) -> tuple[Case, float]:
-    """Parallel bars whose coupler bears this share of its Euler load out of the plane, P, with pins tight in it."""
+    """Parallel bars whose coupler bears this share of its Euler load out of the plane, P, with pins tight in it.
+
+    Elsewhere they are tight in both links.
+    """
     case = parallel_bars()
     thin = case.parts["bar"].model_copy(update={"width": WIDE, "thickness": THICK, **of_coupler})
     links = {**case.links, "coupler": case.links["coupler"].model_copy(update={"part": "thin"})}
-    joints = {n: j.model_copy(update={"tight_in": "coupler"}) if n in "BC" else j for n, j in case.joints.items()}
+    joints = {
+        n: j.model_copy(update={"tight_in": ("coupler",) if n in "BC" else j.links}) for n, j in case.joints.items()
+    }
     case = case.model_copy(update={"parts": {**case.parts, "thin": thin}, "links": links, "joints": joints})
     load = share * math.pi**2 * case.material_of("coupler").youngs_modulus * WIDE * THICK**3 / 12.0 / LONG**2
     # the rocker turns under a force along the coupler, which bears all of it
@@ -43,7 +48,7 @@ def secant(share: float, load: float) -> float:
 def test_the_band_of_a_strut_in_layers_holds_the_secant_formula(share: float) -> None:
     case, load = pressed(share)
     statics = solve_case_statics(case)
-    [both] = [one for one in statics.forces["lift"].sharings if one.joints == {"B", "C"}]
+    [both] = [one for one in statics.forces["lift"].sharings if one.hinges == {("B", "crank"), ("C", "rocker")}]
     acting = link_loads("lift", "coupler", case.body("coupler"), both.reactions, statics.loads["lift"])
     found = measures(case, "coupler", on_tilting_pins(case, "coupler", acting))[0]
     plain = measures(case, "coupler", acting)[0]

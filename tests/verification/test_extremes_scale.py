@@ -9,8 +9,8 @@ from arm_case import ARM
 
 from fea.beam.cut_free import link_loads
 from fea.check.run import check_case
-from fea.check.solid_result import link_task
 from fea.frame.case_statics import solve_case_statics
+from fea.links.solid_result import link_task
 from fea.solid.solution import solve_solid
 from fea.solid.stress import stress_field, von_mises
 from geometry.meshing.mesh import MeshSettings, mesh_body

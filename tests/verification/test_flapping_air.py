@@ -70,6 +70,9 @@ def test_a_plate_that_turns_about_its_root(chord):
     case = fan(wing)
     np.testing.assert_allclose(solve_case_motion(case).torque["air"], expected, rtol=1e-12)
     assert solve_case_statics(case).reactions["air"].drive_torque == pytest.approx(expected, rel=1e-12)
+    # Stated from its tip to its root it is the same wing.
+    mirrored = fan({"chord": wing["chord"][::-1], "start": "E", "end": "O"})
+    np.testing.assert_allclose(solve_case_motion(mirrored).torque["air"], expected, rtol=1e-12)
     # The added mass of a plate that turns evenly about its root does nothing.
     even = solve_case_motion(fan(wing, added_mass=True)).torque["air"]
     np.testing.assert_allclose(even, expected, rtol=1e-12)
@@ -307,8 +310,14 @@ def test_figure_record_and_sentences_tell_the_torque_of_a_fan():
     watts = [f"{coefficient * torque * omega / 1e3:.3g}" for coefficient in (C_N, low, high)]
     assert "0 W without air, {} W ({} to {}) with it".format(*watts) in air_lines(record)[1]
     figure = air_figures(moved)["air"]
-    drawn = figure.axes[0]
-    np.testing.assert_allclose(drawn.lines[0].get_ydata(), 0.0, atol=1e-12)
-    np.testing.assert_allclose(drawn.lines[1].get_ydata(), C_N * torque, rtol=1e-9)
+    for drawn, label, share in zip(
+        figure.axes, ("drive torque [N·mm]", "drive power [W]"), (torque, torque * omega / 1e3), strict=True
+    ):
+        assert drawn.get_ylabel() == label
+        np.testing.assert_allclose(drawn.lines[0].get_ydata(), 0.0, atol=1e-12)
+        np.testing.assert_allclose(drawn.lines[1].get_ydata(), C_N * share, rtol=1e-9)
+        [band] = drawn.collections
+        edges = band.get_paths()[0].vertices[:, 1]
+        assert (edges.min(), edges.max()) == pytest.approx((low * share, high * share), rel=1e-9)
     legends = [text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
     assert legends == ["without air", "C_N 2", "C_N 1.2 to 5"]

@@ -7,15 +7,15 @@ import pytest
 from edited_cases import edited
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import measures
 from fea.check.run import check_case
 from fea.common.convex import least_of_convex
 from fea.common.source import SourceKind
 from fea.common.verdict import Verdict
+from fea.doubts.force_doubt import measures
 from fea.motion.buckling_history import factors_over_motion
 from fea.motion.envelope import _Envelope
 from fea.motion.link_history import link_histories
-from fea.motion.loosened import column_growth, in_other_air, joint_growth
+from fea.motion.loosened import column_growth, joint_growth, otherwise
 from fea.whole.motor import motor_outcomes
 from loads.case.case import Case
 from loads.states.case_motion import solve_case_motion
@@ -152,7 +152,7 @@ def test_a_checks_bands_hold_every_coefficient_of_the_range():
 def test_over_a_motion_shares_hold_every_coefficient_at_every_pose():
     moved = solve_case_motion(swept())
     every = np.ones(len(moved.motion.angles), dtype=bool)
-    shares = in_other_air(moved, every)
+    shares = otherwise(moved, every)
     used = _Envelope.of(moved, every, 1, print).shares
     assert {key: {SourceKind.AIR} <= {s.kind for s in share.sources} for key, share in used.items()} == dict.fromkeys(
         (("air", link) for link in moved.case.checked_links), True

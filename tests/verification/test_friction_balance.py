@@ -13,6 +13,7 @@ from fea.beam.cut_free import link_loads
 from fea.check.anchor import anchor_loads
 from fea.check.run import check_case
 from fea.frame.case_statics import solve_case_statics
+from fea.frame.rubbing import presses_of
 from fea.motion.envelope import envelope_case
 from fea.nonlinear.large_displacement import examine
 from fea.tolerance.states import Sampler
@@ -138,8 +139,10 @@ def test_links_in_layers_balance_with_friction(case: Case) -> None:
                 origin = np.array([*statics.pose.origins[load.link], statics.case.heights[load.link]])
                 total += shifted(load.resultant(statics.pose.placement), origin)
         assert total == pytest.approx(np.zeros(6), abs=1e-9)
-        planar = solve_case_statics(statics.case.model_copy(update={"links": case.links | flat(links)})).reactions[name]
-        assert reactions.drive_torque == pytest.approx(planar.drive_torque, rel=1e-9)
+        planar = solve_case_statics(statics.case.model_copy(update={"links": case.links | flat(links)}))
+        work = [one.work[name] for one in (statics, planar)]  # couples between layers press the bores as well
+        assert work[0].power_without == pytest.approx(work[1].power_without, rel=1e-9)
+        assert work[0].power[0] - work[0].power_without[0] > 1.01 * (work[1].power[0] - work[1].power_without[0])
 
 
 @pytest.mark.parametrize("friction", [0.05, 0.2, 0.4])
@@ -424,11 +427,18 @@ def test_a_pin_without_size_has_no_friction() -> None:
         validate(data)
 
 
-def test_samples_of_tolerances_have_friction() -> None:
+@pytest.mark.parametrize("layers", [False, True])
+def test_samples_of_tolerances_have_friction(layers: bool) -> None:
+    """In layers what couples press in bores is that of the linkage without deviations."""
     case = edited(STARTER, [*PINS, "load_cases.turning.speed=0 rpm", "tolerances.pins=0.05 mm"])
+    if layers:
+        case = edited("slider-crank", ["tolerances.pins=0.05 mm"])
     statics = solve_case_statics(case)
     variables = toleranced(statics.case)
-    sampler = Sampler(case=statics.case, pose=statics.pose, masses=statics.masses, variables=variables)
+    plane = statics.case.in_one_plane() if layers else statics.case
+    presses = {name: presses_of(case, forces) for name, forces in statics.forces.items()}
+    assert all(map(bool, presses.values())) is layers
+    sampler = Sampler(case=plane, pose=statics.pose, masses=statics.masses, variables=variables, presses=presses)
     states = sampler.states(np.zeros((2, len(variables))))
     for name, reactions in statics.reactions.items():
         assert states.forces[name].drive_torque == pytest.approx(reactions.drive_torque, rel=1e-9)

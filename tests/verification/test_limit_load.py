@@ -3,13 +3,19 @@
 import math
 from functools import partial
 
+import numpy as np
 import pytest
 from edited_cases import edited
 
 from fea.check.run import check_case
 from fea.common.verdict import LINKAGE, Verdict
+from fea.elements.space import displacement_space
+from fea.solid.condensation import condense
 from fea.study.numbers import of_check, of_motion
+from geometry.materials.material import library
+from geometry.meshing.mesh import MeshSettings, mesh_bodies
 from loads.case.case_file import validate
+from loads.records.check_spec import DisplacementCheck
 from loads.states.case_motion import solve_case_motion
 
 BAR = {
@@ -28,15 +34,20 @@ def linkage(result, load_case):
 
 
 def straight(links, joints, load, **more):
-    """A case of bars, each from x = 0 to its length: name -> points, and one load."""
-    moving = {name: {"part": "bar", "points": points} for name, points in links.items() if name != "ground"}
+    """A case of bars, each from x = 0 to its length: name -> points, and one load; a part may have its link's name."""
+    parts = {"bar": BAR} | more.pop("parts", {})
+    moving = {
+        name: {"part": name if name in parts else "bar", "points": points}
+        for name, points in links.items()
+        if name != "ground"
+    }
     return validate(
         {
             "schema_version": 1,
             "title": "bars",
             "links": {"ground": {"ground": True, "points": links["ground"]}, **moving},
             "joints": joints,
-            "parts": {"bar": BAR},
+            "parts": parts,
             "load_cases": {"push": {"forces": [load]}},
         }
         | more
@@ -89,9 +100,90 @@ def wing(diameter):
     return edited("owl-wing-static", [f'parts.tube.outer_diameter="{diameter} mm"'])
 
 
+EYED = BAR | {"eye_diameter": "14 mm", "eye_thickness": "12 mm", "fillet_radius": "1 mm"}
+FLAT = {"shape": "plate", "material": BAR["material"], "thickness": "6 mm", "eye_diameter": "8 mm"}
+SHARES = {"most": 1.0 / 1.2, "half": 0.5}
+HALF, RISE = 60.0, 3.0
+FIRST = math.hypot(HALF, RISE)
+
+
+def eyed(right):
+    """A truss of a bar with raised eyes and of another part, and the limit load of two plain bars of 8 by 6 mm."""
+    now, slope = (FIRST * HALF**2) ** (1.0 / 3.0), math.degrees(math.atan2(RISE, HALF))
+    young = library()[BAR["material"]].youngs_modulus
+    limit = 2.0 * young * 48.0 * (1.0 / now - 1.0 / FIRST) * math.sqrt(now**2 - HALF**2)
+    case = straight(
+        {"ground": {"A": at(-HALF), "C": at(HALF)}, "left": {"A": at(0.0), "B": at(FIRST)},
+         "right": {"B": at(0.0), "C": at(FIRST)}},
+        {"A": pin("ground", "left"), "B": pin("left", "right"), "C": pin("right", "ground")},
+        {},
+        parts={"left": EYED, "right": right},
+        pose={"near": {"left": f"{slope!r} deg", "right": f"{-slope!r} deg"}},
+        load_cases={
+            name: {"forces": [{"link": "left", "at": "B", "force": ["0 N", f"{-share * limit!r} N"]}]}
+            for name, share in SHARES.items()
+        },
+        checks={"hold": {"type": "limit-load", "minimum": 1.0}},
+        solid={"mesh_size": 3.0},
+    )  # fmt: skip
+    return case, limit
+
+
+def give(case, link):
+    """How far the pins of a bar near each other, over their force, by its solid condensed to them."""
+    body, material = case.body(link), case.material_of(link)
+    (mesh,) = mesh_bodies({link: body}, MeshSettings().scaled(3.0)).values()
+    young, poisson = material.youngs_modulus, material.poissons_ratio
+    solid = condense(displacement_space(mesh), body, [], E=young, nu=poisson, density=material.density)
+    pushed = np.zeros(12)
+    pushed[[0, 6]] = 1.0, -1.0
+    # Directions 6 and 0 of 12: each pin pulls away from the other one.
+    pressed = solid.gives[solid.places[0]][1, 0] + solid.gives[solid.places[1]][1, 6]  # over 180°, along x and back
+    return pushed @ solid.flexibility @ pushed + pressed
+
+
+@pytest.mark.parametrize("right", [EYED, FLAT])
+def test_what_solids_of_links_give_takes_the_place_of_the_doubt_about_their_eyes(right):
+    """The limit load goes with one over how far the two bars give together; a plate is no beam, whose solid tells."""
+    case, limit = eyed(right)
+    young = case.material_of("left").youngs_modulus
+    plain = 2.0 * FIRST / (young * 48.0)
+    left = give(case, "left")
+    exact = limit * plain / (left + (left if right is EYED else give(case, "right")))
+    beams, solids = (check_case(case, fidelity=fidelity, threads=1) for fidelity in ("beam", "solid"))
+    for name, share in SHARES.items():
+        hand, found = linkage(beams, name).limit_load, linkage(solids, name).limit_load
+        assert found.value == pytest.approx(exact / (share * limit), rel=0.03)
+        assert found.low < exact / (share * limit) < found.high
+        assert found.low > 0.9 * found.value
+        assert hand.unknowable if right is FLAT else hand.low < 0.85 * found.low
+    held = [check for check in solids.load_cases["most"].checks if check.subject == LINKAGE]
+    assert {check.verdict for check in held} == {Verdict.PASS}
+    assert "times as soft as" in held[0].reason
+    open_by_eyes = [check.verdict for check in beams.load_cases["most"].checks if check.subject == LINKAGE]
+    assert set(open_by_eyes) == {Verdict.UNDECIDED}
+
+
 def linear(share):
     """The truss by linear theory alone."""
     return truss(share).model_copy(update={"large_displacement": "off"})
+
+
+@pytest.mark.parametrize(
+    ("case", "why"),
+    [
+        (partial(truss, 0.9), "the linkage gives way with links as soft, or a load as large, as they may be"),
+        (partial(linear, 0.44), "by linear theory a factor of 5.2 or less on the load may make it give way"),
+    ],
+)
+def test_a_displacement_whose_band_has_no_end_says_why(case, why):
+    """Plain beams would hold the load; links that are softer by their eyes may not, or not by enough."""
+    check = DisplacementCheck(type="displacement", link="left", at="B", maximum="9 mm")
+    found = case().model_copy(update={"checks": {"far": check}})
+    [one] = [c for c in check_case(found, fidelity="beam").load_cases["push"].checks if c.name == "far"]
+    assert one.value.high == math.inf
+    assert one.value.value < one.limit
+    assert f"the band has no upper end, since {why}" in one.reason
 
 
 @pytest.mark.parametrize(

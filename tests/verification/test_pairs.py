@@ -238,11 +238,7 @@ def test_bars_off_the_middle_of_a_pair_between_layers():
     case = off_the_middle(off)
     assert slab(case, "coupler") == (-13.0, 13.0)
     statics = check_case(case, fidelity="beam").load_cases["lift"]
-    [tilts] = [
-        way.reactions
-        for way in statics.forces.sharings
-        if way.joints == {"B", "C"} and not _couples(way.reactions, {"B": "crank", "C": "rocker"}) > 1e-3
-    ]
+    [tilts] = [way.reactions for way in statics.forces.sharings if way.hinges == {("B", "crank"), ("C", "rocker")}]
     force = float(np.hypot(*tilts.joints["C"].wrench[:2]))
     assert force > 0.1
     near, far = plates(link_loads("lift", "coupler", case.body("coupler"), tilts, statics.loads), span)
@@ -262,17 +258,6 @@ def test_bars_off_the_middle_of_a_pair_between_layers():
     pressure += force / 6.0 * (np.abs(z - middle) < 3.0)
     bending = np.abs(np.cumsum(np.cumsum(pressure)) * step**2).max()
     assert stress_at(case, "C", tilts.joints["C"]).moment.value == pytest.approx(bending, rel=0.02)
-
-
-def _couples(reactions, links):
-    """Largest lever of the couples of joints on links about their mid-planes [mm]."""
-    found = []
-    for name, link in links.items():
-        joint, rise = reactions.joints[name], reactions.pose.linkage.rise(name)
-        couple = np.array([joint.wrench[4], -joint.wrench[3]])
-        about = couple if link == joint.on else couple + rise * joint.wrench[:2]
-        found.append(float(np.linalg.norm(about) / np.linalg.norm(joint.wrench[:2])))
-    return max(found)
 
 
 @pytest.mark.parametrize(

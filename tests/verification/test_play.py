@@ -1,6 +1,8 @@
 """Play of pins: against closed forms, against the forces of unit loads, and against assembled linkages."""
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +16,7 @@ from geometry.linkage.pose import Pose, solve_pose
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.records.applied import PointLoad
-from loads.states.play import Play, held_rows, play_of
+from loads.states.play import Displaced, Play, held_rows, play_of
 from loads.statics.statics import Drive, solve_statics
 
 PLAY = {"A": 0.1, "B": 0.2, "C": 0.3, "D": 0.05}
@@ -226,9 +228,11 @@ def test_at_rest_the_load_is_as_low_as_play_lets_it() -> None:
             assert work({**here, name: here[name] * np.exp(1j * turn)}) < most
 
 
+ALL_LOOSE = {"A": "0.2 mm", "B": "0.5 mm", "C": "0.4 mm", "D": "0.3 mm"}
+
+
 def test_bands_hold_what_any_offsets_give() -> None:
-    play = {"A": "0.2 mm", "B": "0.5 mm", "C": "0.4 mm", "D": "0.3 mm"}
-    found, rng = played(linkage_case(play, ("4 N", "-7 N")), "load"), np.random.default_rng(2)
+    found, rng = played(linkage_case(ALL_LOOSE, ("4 N", "-7 N")), "load"), np.random.default_rng(2)
     tried = []
     for _ in range(300):
         angles = rng.uniform(0.0, 2.0 * math.pi, 4)
@@ -244,6 +248,63 @@ def test_bands_hold_what_any_offsets_give() -> None:
         assert span.low - slack <= min(values)
         assert max(values) <= span.high + slack
         assert max(values) - min(values) > 0.6 * (span.high - span.low)
+
+
+@pytest.mark.parametrize("push", [("4 N", "-7 N"), ("-4 N", "7 N")])
+def test_bands_reach_as_far_as_gradients_do_and_as_far_as_solved_extremes(push: tuple[str, str]) -> None:
+    """What bends one way lies within the first-order reach at one end and beyond it at the other: the outer one counts.
+
+    The reach is the sum of half of the play times the gradient, here by differences of solved linkages.
+    """
+    found, step = played(linkage_case(ALL_LOOSE, push), "load"), 1e-4
+
+    def gradients(number: Callable[[Displaced], Any]) -> dict[str, np.ndarray]:
+        return {
+            name: np.array([(number(solved({name: step * u})) - number(solved({name: -step * u}))) / (2.0 * step)
+                            for u in (1.0, 1j)])
+            for name in found.loose.radii
+        }  # fmt: skip
+
+    def solved(offsets: dict[str, complex]) -> Displaced:
+        here = found.at(offsets)
+        assert here is not None
+        return here
+
+    for span, number in (
+        (found.effort, lambda one: float(one.effort)),
+        (found.distance, lambda one: float(one.distance)),
+    ):
+        by = gradients(number)
+        reach = sum(radius * float(np.linalg.norm(by[name])) for name, radius in found.loose.radii.items())
+        worst = {name: complex(*(g / np.linalg.norm(g))) * found.loose.radii[name] for name, g in by.items()}
+        ends = [number(solved({name: sign * offset for name, offset in worst.items()})) for sign in (-1.0, 1.0)]
+        assert span.low == pytest.approx(min(span.value - reach, *ends), rel=1e-5)
+        assert span.high == pytest.approx(max(span.value + reach, *ends), rel=1e-5)
+        assert abs(ends[1] - span.value - reach) > 1e-3 * reach  # the two ways differ
+    for name, span in found.forces.items():
+        nominal = solved({}).force(name)
+        way = nominal / abs(nominal)
+        along = gradients(lambda one, name=name, way=way: (np.conj(way) * one.force(name)).real)
+        reach = sum(radius * float(np.linalg.norm(along[at])) for at, radius in found.loose.radii.items())
+        worst = {at: complex(*(g / np.linalg.norm(g))) * found.loose.radii[at] for at, g in along.items()}
+        assert span.high >= max(span.value + reach, abs(solved(worst).force(name))) * (1.0 - 1e-6)
+        assert span.low <= span.value - 0.99 * reach  # the force turns as well
+
+
+def test_a_dead_point_within_the_first_order_reach_counts_though_no_solved_end_passes_it() -> None:
+    """With its gradients made larger, which way it goes is the same, and how far it may go is not."""
+    found = played(toggle("0.2 mm", 120.0 - 0.4), "twist")
+    assert not found.through_dead_point
+    nominal = found.nominal
+    assert nominal is not None
+    far = 1.01 * float(nominal.distance) / float(found.slack("distance"))
+    for share, through in ((0.98 * far, False), (far, True)):
+        larger = {n: tuple({k: share * g for k, g in one.items()} for one in by) for n, by in found.gradients.items()}
+        other = replace(found)
+        other.__dict__["gradients"] = larger
+        assert other.through_dead_point is through
+        assert (other.nearest is None) is through
+        assert (other.distance.low == 0.0) is through
 
 
 def toggle(play: str, travel: float, guide: str = "0 mm") -> Case:

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from rocker_case import TOML
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import measures
 from fea.common.source import SourceKind
+from fea.doubts.force_doubt import measures
 from fea.motion.envelope import envelope_case
 from fea.motion.loosened import joint_growth, loosened
 from fea.refine.refinement import Effort
@@ -97,6 +97,10 @@ def test_drive_torque_at_all_poses() -> None:
     solved = max(torque(angles[pose], 0.2 * np.exp(1j * way)) for way in np.linspace(0.0, 2.0 * math.pi, 721))
     assert value == pytest.approx(solved, rel=1e-5)
     assert value >= most.max()
+    value, pose = loose(of).extreme_effort("load", -1.0)
+    solved = min(torque(angles[pose], 0.2 * np.exp(1j * way)) for way in np.linspace(0.0, 2.0 * math.pi, 721))
+    assert value == pytest.approx(min(solved, least.min()), rel=1e-5)
+    assert pose == int(np.argmin(least))
 
 
 def test_free_motion_at_all_poses() -> None:

@@ -12,9 +12,9 @@ from fea.beam.cut_beam import curving_forces
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import internal_forces
 from fea.check.run import check_case
-from fea.check.second_order import Bend, between_stations, on_its_pins
 from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
 from fea.common.verdict import Verdict
+from fea.links.second_order import Bend, between_stations, on_its_pins
 from fea.motion.buckling_history import with_second_order
 from fea.motion.link_history import link_histories
 from geometry.bodies.cut_section import CutSection

@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from euler_column import euler_load
 from fea.check.run import check_case
 from fea.common.link_loads import EndLoad, LinkLoads, PinLoad
 from fea.common.verdict import LINKAGE, Quantity, Subject
+from fea.refine.link_buckling import link_buckling
 from fea.solid.buckling_factor import BucklingProblem
 from fea.solid.solution import solve_solid
 from geometry.meshing.mesh import MeshSettings, mesh_body
@@ -31,8 +33,8 @@ BUILT_IN = conditions(*((0, motion) for motion in range(6)))
 ON_PINS = conditions((0, X), (0, Y), (0, Z), (0, TURN_X), (1, Y), (1, Z))
 
 
-def box_factor(size, counts, wrench, held, nu=0.0):
-    """Factor of a box on the wrench at its far end, balanced at the near one."""
+def pushed_box(size, counts, wrench, nu=0.0):
+    """A box under a wrench at its far end, balanced at the near one: its solution, its loads and the places of both."""
     mesh = solid_meshes.box((0.0, -size[1] / 2, -size[2] / 2), (size[0], size[1] / 2, size[2] / 2), counts)
     far = np.array([*wrench, 0.0, 0.0, 0.0])
     near = -far - np.array([0.0, 0.0, 0.0, *np.cross([size[0], 0.0, 0.0], wrench)])
@@ -43,8 +45,13 @@ def box_factor(size, counts, wrench, held, nu=0.0):
     )
     material = {"E": E, "nu": nu}
     solved = solve_solid(mesh, **material, density=1e-9, loads=[loads], line=("end:0", "end:1"), laws=[WIDE])
-    places = {name: point for name, (point, _) in ends.items()}
-    problem = BucklingProblem(solved.space, places, **material, halved=False)
+    return solved, loads, {name: point for name, (point, _) in ends.items()}
+
+
+def box_factor(size, counts, wrench, held):
+    """Factor of a box on a wrench at its far end."""
+    solved, loads, places = pushed_box(size, counts, wrench)
+    problem = BucklingProblem(solved.space, places, E=solved.E, nu=solved.nu, halved=False)
     return problem.least(problem.prestress(solved.cases[0].displacement, loads), held).factor
 
 
@@ -55,6 +62,24 @@ def test_a_column_buckles_about_its_weaker_axis_at_eulers_load(wide, tall, held,
     found = box_factor((60.0, wide, tall), (12, 2, 2), (-1.0, 0.0, 0.0), held)
     inertia = wide * tall * min(wide, tall) ** 2 / 12.0
     assert found == pytest.approx(euler_load(E, inertia, 60.0, effective), rel=0.01)
+
+
+FIXED_AND_PINNED = np.vstack([BUILT_IN, conditions((1, Y), (1, Z))])
+FIXED = np.vstack([FIXED_AND_PINNED, conditions((1, TURN_Y), (1, TURN_Z))])
+
+
+@pytest.mark.parametrize("alone", [(FIXED_AND_PINNED, BUILT_IN), (BUILT_IN, FIXED_AND_PINNED)])
+def test_a_column_has_the_least_factor_of_all_ways_in_which_its_joints_may_move(alone):
+    """At 40 N: on pins 1.85, fixed at one end 3.8, free at the other 0.46, and fixed at both 7.4 at its best."""
+    solved, loads, places = pushed_box((60.0, 6.0, 3.0), (12, 2, 2), (-40.0, 0.0, 0.0))
+    holding = SimpleNamespace(places=places, value=ON_PINS, alone=alone, most=FIXED, words="on pins")
+    task = SimpleNamespace(holding=holding, loads=(loads,))
+    found = link_buckling(solved, task, chord=0.0)["push"]
+    expected = [euler_load(E, 6.0 * 27.0 / 12.0, 60.0, k) / 40.0 for k in (1.0, 2.0, 0.5)]
+    assert (found.value, found.least, found.most) == pytest.approx(tuple(expected), rel=0.03)
+    assert found.error < 0.5
+    free = SimpleNamespace(holding=SimpleNamespace(**{**vars(holding), "alone": ()}), loads=(loads,))
+    assert link_buckling(solved, free, chord=0.0)["push"].least == found.value
 
 
 def test_a_strip_bent_in_its_plane_buckles_sideways():

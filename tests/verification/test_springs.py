@@ -1,6 +1,7 @@
 """Springs, tendons and stops against closed forms and energy balances that share no code with them."""
 
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.optimize import brentq
 from sprung_cases import CROWN, FOUR_BAR, HANG, LEVER, case_of, stands
 
 from geometry.base.errors import CaseError
+from loads.case.case_file import validate
 from loads.states.case_motion import solve_case_motion
 
 TURN = {"joint": "O", "stiffness": "300 N*mm/rad"}
@@ -95,6 +97,29 @@ def test_a_tendon_bends_a_finger_against_its_spring():
 
     assert found.pose.held == pytest.approx(brentq(moment, 0.0, 2.0, xtol=1e-15), abs=1e-10)
     assert found.springs[1].effort == 6.0
+
+
+@pytest.mark.parametrize("from_", ["base.S", "base.W"])
+def test_a_balance_at_which_a_cord_comes_taut_is_as_stiff_as_on_its_softer_side(from_):
+    """The lever hangs on a torsional spring where the cord has just its free length: it pulls to one side only.
+
+    S lies beyond the lever's end, so that the cord is taut below; W lies left of O, so that it is taut above.
+    """
+    data = tomllib.loads(LEVER + HANG)
+    data["links"]["base"]["points"]["W"] = ["-30 mm", "-80 mm"]
+    springs = {"back": {**TURN, "free_angle": "20 deg"}}
+    _, without = stands(validate({**data, "springs": springs}))
+    link, point = from_.split(".")
+    place = complex(*(float(x.split()[0]) for x in data["links"]["base"]["points"][point]))
+    arm = 40.0 * np.exp(1j * without.pose.held)
+    cord = {"through": [{"link": link, "at": point}, {"link": "lever", "at": "H"}], "stiffness": "5 N/mm",
+            "free_length": f"{float(abs(place - arm))!r} mm"}  # fmt: skip
+    _, found = stands(validate({**data, "springs": springs, "tendons": {"cord": cord}}))
+    assert found.pose.held == pytest.approx(without.pose.held, abs=1e-9)
+    rate = float((np.conj(1j * arm) * (arm - place)).real) / abs(place - arm)  # of its length by the angle
+    assert (rate > 0.0) == (point == "W")
+    assert 5.0 * rate**2 > without.stiffness
+    assert found.stiffness == pytest.approx(without.stiffness, rel=1e-4)
 
 
 def test_a_slack_tendon_does_nothing():

@@ -55,9 +55,9 @@ def test_pins_on_either_side_of_a_bar_are_pushed_by_its_couple_over_its_length()
     """The coupler bears P alone, 10 mm beside its mid-plane at either end; pins are tight in it and tilt elsewhere."""
     bars = {"start": 60.0, "end": 50.0}
     case = four_bars((0, 0, 1, 2), (60.0, 150.0, 120.0, 130.0), near=(15.0, 100.0), **bars)
-    tight = {name: case.joints[name].model_copy(update={"tight_in": "coupler"}) for name in "BC"}
+    tight = {name: case.joints[name].model_copy(update={"tight_in": ("coupler",)}) for name in "BC"}
     forces = forces_of(case.model_copy(update={"joints": {**case.joints, **tight}}))
-    [both] = [one for one in forces.sharings if one.joints == {"B", "C"}]
+    [both] = [one for one in forces.sharings if one.hinges == {("B", "crank"), ("C", "rocker")}]
     pull = float(np.hypot(*both.reactions.joints["B"].wrench[:2]))
     told = thrusts(forces)
     for name in "BC":

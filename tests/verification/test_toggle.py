@@ -6,23 +6,32 @@ keep their length, the load on the knee is P(w) = (2k/L²)(2h²w - 3hw² + w³),
 
 import math
 import tomllib
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
+from fea.frame.build import build_frame
+from fea.frame.case_statics import solve_case_statics
 from fea.motion.linkage_history import linkage_outcomes, over_motion
+from fea.nonlinear.equilibrium_path import NoEquilibriumError
+from fea.nonlinear.softened import followed
 from fea.nonlinear.stability import SNAP, growth
+from fea.outcomes.result import LoadCaseResult
+from fea.sizing.changes import _change, changes, rounded
 from fea.study.numbers import of_motion
 from loads.case.case import Case
 from loads.case.case_file import validate
 from loads.records.check_spec import BearingCheck, LimitLoadCheck, PinCheck
 from loads.states.case_motion import solve_case_motion
+from reports.words.changes import change_sentences
 
 HALF, LEVER = 50.0, 100.0
 TOGGLE = """
@@ -81,10 +90,10 @@ minimum = 1.5
 """
 
 
-def toggle(force: float, rise: float = 10.0, way: str = "auto", bars: str = "bar") -> Case:
+def toggle(force: float, rise: float = 10.0, way: str = "auto", bars: str = "bar", eyes: str = "16 mm") -> Case:
     slope = math.degrees(math.atan2(rise, HALF))
     text = TOGGLE.format(force=force, length=math.hypot(HALF, rise), slope=slope, down=-slope, way=way, bars=bars)
-    return validate(tomllib.loads(text))
+    return validate(tomllib.loads(text.replace('eye_diameter = "16 mm"', f'eye_diameter = "{eyes}"')))
 
 
 def compliance(case: Case) -> float:
@@ -95,13 +104,13 @@ def compliance(case: Case) -> float:
     return bending + LEVER / (section.shear_coefficient(material.poissons_ratio) * shear)
 
 
-def limit_load(case: Case, rise: float, bars: str = "bar") -> float:
-    """Largest load of the exact toggle: bars that shorten under their force, a spring that moves along x."""
+def exact(case: Case, rise: float, bars: str = "bar") -> Callable[[float], tuple[float, float]]:
+    """From the height of the knee to load and thrust: bars that shorten under their force, a spring along x."""
     material, section = case.material_of("left"), case.parts[bars].section
     spring, length = 1.0 / compliance(case), math.hypot(HALF, rise)
     stretch = material.youngs_modulus * section.area / length
 
-    def load(height: float) -> float:
+    def at(height: float) -> tuple[float, float]:
         # Half a toggle: the spring moves by 2x under the thrust T, each bar shortens by T/(stretch cos).
         low, high = 0.0, HALF
         for _ in range(80):
@@ -109,9 +118,16 @@ def limit_load(case: Case, rise: float, bars: str = "bar") -> float:
             now = math.hypot(HALF + x, height)
             thrust = stretch * (length - now) * (HALF + x) / now
             low, high = (x, high) if thrust > spring * 2.0 * x else (low, x)
-        return 2.0 * spring * 2.0 * x * height / (HALF + x)
+        thrust = spring * 2.0 * x
+        return 2.0 * thrust * height / (HALF + x), thrust
 
-    found = minimize_scalar(lambda y: -load(y), bounds=(0.0, rise), method="bounded")
+    return at
+
+
+def limit_load(case: Case, rise: float, bars: str = "bar") -> float:
+    """Largest load of the exact toggle."""
+    at = exact(case, rise, bars)
+    found = minimize_scalar(lambda y: -at(y)[0], bounds=(0.0, rise), method="bounded")
     return -float(found.fun)
 
 
@@ -149,6 +165,31 @@ def test_a_toggle_fails_beyond_its_limit_load_and_passes_below(rise: float, bars
         assert moved.dead_point == pytest.approx(SNAP / share, rel=0.1)
     # Near it stands what is not known of the lever's eyes.
     assert [one.verdict for one in found.values()] == ["pass", "undecided", "undecided", "fail"]
+
+
+@pytest.mark.parametrize(("rise", "bars"), [(1.5, "bar"), (10.0, "slender")])
+@pytest.mark.parametrize("times", [1e-3, 0.3, 80.0, 1e3, 1e4])
+def test_no_load_is_so_large_that_its_path_steps_over_the_limit_load(rise: float, bars: str, times: float) -> None:
+    """Loads of 80 times the limit once landed beyond the snap-through, where the toggle hangs and holds all of them."""
+    limit = limit_load(toggle(-1.0, rise, bars=bars), rise, bars)
+    case = toggle(-times * limit, rise, bars=bars)
+    statics = solve_case_statics(case)
+    frame = build_frame(case, statics.pose, statics.loads["push"], held=case.pinned_drive)
+    if times < 1.0:
+        assert followed(frame, 1.0).stable
+    with pytest.raises(NoEquilibriumError) as ended:
+        followed(frame, max(1.0, 3.0 / times))
+    shares = (ended.value.reached * max(times, 3.0), ended.value.failed * max(times, 3.0))
+    assert shares[0] < 1.005
+    assert shares[0] == pytest.approx(1.0, abs=0.02)
+    assert shares[1] == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("times", [80.0, 1e3])
+def test_a_toggle_under_many_times_its_limit_load_fails(times: float) -> None:
+    _, moved, (found,) = linkage(toggle(-times * limit_load(toggle(-1.0, 1.5), 1.5), 1.5))
+    assert (moved.state, found.verdict) == ("no equilibrium", Verdict.FAIL)
+    assert moved.limit_load.low < 1.0 / times < moved.limit_load.high < 2.0 / times
 
 
 def test_the_toggle_at_three_newtons_gives_way() -> None:
@@ -209,6 +250,42 @@ def scattered(force: float, way: str, high: float | None = None):
     checks = {"pins": PinCheck(type="pins", minimum=1.0), "bearing": BearingCheck(type="bearing", minimum=1.0)}
     case = case.model_copy(update={"load_cases": {"push": load}, "checks": {**case.checks, **checks}})
     return check_case(case, fidelity="beam").load_cases["push"]
+
+
+def test_bands_hold_what_the_deformed_shape_bears_on_both_sides_of_a_factor_of_ten() -> None:
+    """The undeformed pose once told 13 % too little of joint forces, and what pins and links bear, just beyond ten."""
+    case = toggle(-1.0)
+    at, (_, one, _) = exact(case, 10.0), linkage(case)
+    subjects = ("pin B", "pin C", "left", "lever")
+
+    def checked(force: float) -> tuple[LoadCaseResult, dict[tuple[str, str], Band]]:
+        found, strengths = scattered(-force, "auto"), (Quantity.SAFETY_FACTOR, Quantity.BUCKLING_FACTOR)
+        return found, {(c.name, c.link): c.value for c in found.checks if c.quantity in strengths}
+
+    least = one.factor / 2000.0
+    _, plain = checked(least)
+    asked = [key for key in plain if key[1] in subjects and key != ("buckling", "lever")]  # pressed by the load alone
+    assert len(asked) == 7  # both pins by shear and bending, and by bearing; both links by stress; the bar as a column
+    states, before = [], None
+    for factor in (40.0, 20.0, 12.0, 10.05, 9.95, 8.0):
+        force = one.factor / factor
+        height = brentq(lambda y, force=force: at(y)[0] - force, 7.0, 10.0, xtol=1e-13)
+        thrusts = at(height)[1], force * HALF / 20.0  # the latter in the undeformed pose
+        along, grown = (np.divide(*(math.hypot(t, p) for t in thrusts)) for p in (force / 2.0, 0.0))
+        result, found = checked(force)
+        states.append(result.large_displacement.state)
+        assert result.linkage.displacement.low <= 10.0 - height <= result.linkage.displacement.high
+        lows = {}
+        for key in asked:
+            # Without growth a band would be that at the least load over the load; thrust bends the lever.
+            band, share = found[key], least / force / (grown if key[1] == "lever" else along)
+            lows[key] = band.low * force
+            assert band.low == pytest.approx(plain[key].low * share, rel=2e-3), (factor, key)
+            assert band.low * 0.998 <= plain[key].value * share <= band.high * 1.002, (factor, key)
+        if before is not None and factor == 9.95:
+            assert all(lows[key] == pytest.approx(before[key], rel=5e-3) for key in asked)
+        before = lows
+    assert states == ["small"] * 4 + ["deformed"] * 2
 
 
 @pytest.mark.parametrize("way", ["auto", "off"])
@@ -284,3 +361,69 @@ def test_over_a_motion_the_least_factor_is_that_of_its_worst_pose():
     asked, plain = (n for n in numbers if n.quantity == "limit-load factor")
     assert (asked.check, plain.check, asked.value) == ("holds", "", plain.value) == ("holds", "", over.limit_load.value)
     assert verdict is asked.verdict
+
+
+def changed(case: Case, modulus: float = 1.0, strength: float = 1.0) -> Case:
+    """The case with a card of its own, as many times as stiff and as strong."""
+    card = case.material_of("left")
+    update = {"youngs_modulus": modulus * card.youngs_modulus, "yield_strength": strength * card.yield_strength}
+    return case.model_copy(update={"materials": {"pvc-paredes-2018": card.model_copy(update=update)}})
+
+
+@pytest.mark.parametrize("times", [3.0, 80.0])
+def test_what_is_told_to_save_a_toggle_that_gives_way_does(times: float) -> None:
+    """Moduli 64 times as large were once told where 84 are needed, and were never tried."""
+    force = times * limit_load(toggle(-1.0, 1.5), 1.5)
+    told = changes(check_case(toggle(-force, 1.5), fidelity="beam"))[0]
+    assert (told.check.quantity, told.refuted, told.material.material) == (Quantity.LOAD_SHARE, False, "")
+    modulus, load = rounded(told.material.needed, up=True), rounded(told.load, up=False)
+    assert modulus > times
+    for case, kept in (
+        (changed(toggle(-force, 1.5), modulus), True),
+        (changed(toggle(-force, 1.5), modulus / 1.04), False),
+        (toggle(-force * load, 1.5), True),
+        (toggle(-force * load * 1.04, 1.5), False),
+    ):
+        _, moved, (found,) = linkage(case)
+        assert (found.verdict is Verdict.PASS) is kept
+        assert (moved.held_share.low >= 1.0) is kept
+
+
+def test_a_change_that_fails_when_it_is_tried_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Proposals of which each is too little: another one is found that holds, or none is told."""
+    force = 3.0 * limit_load(toggle(-1.0, 5.0), 5.0)
+    plain = _change
+    monkeypatch.setattr(
+        "fea.sizing.changes._change",
+        lambda result, check: replace(
+            (found := plain(result, check)),
+            load=1.3 * found.load,
+            material=replace(found.material, needed=found.material.needed / 1.3),
+        ),
+    )
+    result = check_case(toggle(-force, 5.0), fidelity="beam")
+    again = changes(result)[0]
+    assert again.load * again.material.needed == pytest.approx(1.0, rel=0.03)
+    for case in (toggle(-force * again.load, 5.0), changed(toggle(-force, 5.0), again.material.needed)):
+        assert linkage(case)[2][0].verdict is Verdict.PASS
+    monkeypatch.setattr("fea.sizing.changes.TRIES", 1)
+    none = changes(replace(result))[0]
+    assert (none.load, none.material, none.refuted) == (None, None, True)
+    assert "none within reach does" in " ".join(change_sentences(none, result))
+
+
+def test_no_strength_is_told_for_a_link_of_a_linkage_that_gives_way() -> None:
+    """At twice the limit load stronger links hold no more; below the limit load they do."""
+    limit = limit_load(toggle(-1.0), 10.0)
+    told = {}
+    for times in (0.4, 2.0):
+        case = changed(toggle(-times * limit, eyes="13 mm"), strength=0.01)
+        found = changes(check_case(case, fidelity="beam"))
+        told[times] = [one for one in found if one.check.subject.kind == "link"]
+        assert told[times]
+    assert all(one.material is None and one.refuted for one in told[2.0])
+    for one in told[0.4]:
+        stronger = rounded(one.material.needed, up=True) / one.material.stated
+        again = check_case(changed(toggle(-0.4 * limit, eyes="13 mm"), strength=0.01 * stronger), fidelity="beam")
+        (same,) = [c for c in again.load_cases["push"].checks if (c.name, c.link) == (one.check.name, one.check.link)]
+        assert same.margin >= 1.0

@@ -1,11 +1,15 @@
 import tomllib
 
+import numpy as np
 import pytest
 from arm_case import ARM, BAR
 from edited_cases import edited
 
 from fea.check.run import check_case
+from fea.common.scatter import Scatter
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import Verdict
+from fea.outcomes.bearing import weakest_eye
 from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 
@@ -75,6 +79,18 @@ def test_the_weaker_of_two_eyes_decides(arm, strut, weaker):
     (found,) = (c for c in checks.load_cases["tip"].checks if (c.name, c.link) == ("eyes", "pin B"))
     assert found.value.value == pytest.approx(52.0 / (4.0 / 3.0))
     assert f"eye of {weaker}" in found.reason
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (1, 2, 0), (2, 0, 1)])
+def test_an_eye_bears_the_largest_force_of_all_ways_of_sharing(order):
+    """3 and 4 N are 5 N on 2 mm by 3 mm, at 1.2 times the load; 2 and 4 N are less."""
+    case = validate(tomllib.loads(ARM.format(part=BAR, fillet=1.0, force=-2.0, minimum=3.0, thickness=3.0)))
+    wrenches = np.zeros((3, 6))
+    wrenches[:, :2] = (2.0, 0.0), (3.0, 4.0), (0.0, -4.0)
+    scatter = Scatter(low=0.9, high=1.2, sources=(Source(kind=SourceKind.LOAD),))
+    eye, factor = weakest_eye(case, "bearing", "B", wrenches[list(order)], scatter)
+    assert eye == "arm"
+    assert (factor.value, factor.low) == pytest.approx((52.0 / (5.0 / 6.0), 52.0 / (6.0 / 6.0)))
 
 
 def test_joint_that_does_not_exist():

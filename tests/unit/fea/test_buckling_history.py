@@ -1,18 +1,25 @@
 """Buckling factors of links over a motion, against the check of single poses."""
 
+import tomllib
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from edited_cases import PLANAR
+from rocker_case import TOML
 
 from fea.beam.cut_free import beam_loads
 from fea.beam.theory import BeamCheck, check_beam, internal_forces
-from fea.buckling.buckling import column
-from fea.common.link_loads import LinkLoads
+from fea.buckling.buckling import ColumnFactors, column, worst_column
+from fea.common.link_loads import LinkLoads, PinLoad
+from fea.common.scatter import Scatter
+from fea.motion import envelope_outcomes
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.link_history import link_histories
 from geometry.bodies.body import hand_section
 from loads.case.case import Case
-from loads.case.case_file import read_case
+from loads.case.case_file import read_case, validate
+from loads.records.applied import LineLoad
 from loads.states.case_motion import solve_case_motion
 
 CASES = [
@@ -68,3 +75,65 @@ def test_compression_is_that_of_the_internal_forces() -> None:
             expected = [-forces.at(float(x))[0] for x in at]
             assert along.at(at)[:, pose] == pytest.approx(expected, abs=1e-9 * np.abs(along.values).max())
             assert compression[pose] == pytest.approx(max(sampled, 0.0), rel=1e-3, abs=1e-9 * np.abs(compression).max())
+
+
+POSES = np.ones(4, dtype=bool)
+FACTORS = ColumnFactors(
+    value=np.array([8.0, 5.0, 7.0, 2.0]),
+    least=np.array([4.5, 4.0, 3.0, 1.0]),
+    most=np.array([9.0, 12.0, 14.0, 3.0]),
+)
+
+
+@pytest.mark.parametrize("order", [[0, 1, 2, 3], [2, 0, 1, 3]])
+def test_of_the_poses_that_count_the_column_has_the_least_of_each_factor(order: list[int]) -> None:
+    """Value, least and most are least in three different poses; it stands in that of the least value."""
+    case, counted = read_case("owl-wing-static", [PLANAR]), np.arange(4) < 3
+    factors = ColumnFactors(**{name: getattr(FACTORS, name)[order] for name in ("value", "least", "most")})
+    found = worst_column(case, "AE", 10.0 * np.array(order), factors, counted)
+    assert found is not None
+    assert (found.value, found.least, found.most) == (5.0, 3.0, 9.0)
+    assert (order[found.pose], found.compression) == (1, 10.0)
+
+
+@pytest.mark.parametrize("worse", [0, 1, 2])
+def test_of_both_plates_and_all_poses_the_least_factor_is_told_where_it_is(
+    monkeypatch: pytest.MonkeyPatch, worse: int
+) -> None:
+    """Three records of what acts on a link under one load case; poses that were left out leave it open."""
+    case = read_case("owl-wing-static", [PLANAR])
+    moved = SimpleNamespace(case=case, motion=SimpleNamespace(coordinate="GF", angles=np.radians([10, 20, 30, 40])))
+    histories = [SimpleNamespace(name="weight", number=i) for i in range(3)]
+
+    def factors(_: Case, __: str, history: SimpleNamespace) -> ColumnFactors:
+        times = 20.0 if history.number == worse else 30.0
+        return ColumnFactors(**{name: times * getattr(FACTORS, name) for name in ("value", "least", "most")})
+
+    monkeypatch.setattr(envelope_outcomes, "factors_over_motion", factors)
+    monkeypatch.setattr(envelope_outcomes, "axial_compression", lambda *_: (np.ones(4), None))
+    monkeypatch.setattr(envelope_outcomes, "column_growth", lambda *_: Scatter())
+    every, some = POSES, np.arange(4) < 3
+    for counted, verdict, value, said in (
+        (every, "pass", 40.0, "at GF = 40 deg"),
+        (some, "undecided", 100.0, "were left out"),
+    ):
+        [found] = envelope_outcomes.column_outcomes(moved, {"AE": histories}, counted)
+        assert (found.value.value, found.verdict.value) == (value, verdict)
+        assert said in found.reason
+
+
+def test_compression_by_spread_loads_is_largest_between_stations() -> None:
+    """3 - 0.1 x N/mm along 40 mm add up to 45 N at 30 mm, and to 40 N at half of the way and at its end."""
+    case = validate(tomllib.loads(TOML))
+    ends, total = [(3.0, -1.0), (-1.0, 3.0), (1.0, 1.0)], np.array([40.0, 40.0, 40.0])
+    at = np.zeros((2, 3, 3))
+    at[:, :, 0] = np.transpose(ends)
+    wrenches = np.zeros((2, 3, 6))
+    wrenches[1, :, 0] = -total
+    pins = tuple(
+        PinLoad(name=name, centre=np.array([x, 0.0, 0.0]), diameter=3.0, wrench=wrench)
+        for name, x, wrench in zip(("O4", "B"), (0.0, 40.0), wrenches, strict=True)
+    )
+    line = LineLoad(link="rocker", start=0.0, end=40.0, at_start=at[0], at_end=at[1], axes="link")
+    largest, _ = axial_compression(case, "rocker", LinkLoads(name="turn", pins=pins, lines=(line,)))
+    assert largest == pytest.approx([45.0, 40.0, 40.0])

@@ -8,11 +8,11 @@ from edited_cases import PLANAR
 from solved import by_hand
 
 from fea.check.run import check_case
-from fea.check.solid_result import _width
 from fea.common.band import Band
 from fea.common.source import CONTACT, PIN_PRESSURE, TORQUE_TRANSFER, Source, SourceKind, distinct, widest
 from fea.common.verdict import Quantity, Verdict
 from fea.frame.displacement_band import shares_of_work
+from fea.links.solid_result import _width
 from fea.sizing.changes import _change, changes
 from geometry.materials.material import library
 from loads.case.case_file import read_case

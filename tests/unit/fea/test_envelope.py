@@ -18,16 +18,20 @@ from fea.beam.cut_free import beam_loads, link_loads
 from fea.beam.theory import check_beam
 from fea.buckling.buckling import buckling_outcomes
 from fea.common.band import Band
-from fea.common.source import SourceKind
+from fea.common.scatter import Scatter
+from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.elements.space import displacement_space
 from fea.frame.case_statics import solve_case_statics
 from fea.motion import envelope
+from fea.motion import envelope_outcomes as outcomes_over_motion
 from fea.motion.envelope import envelope_case, evaluated_poses
 from fea.motion.envelope_outcomes import envelope_outcomes
+from fea.motion.envelope_result import LoadCaseEnvelope, VariantCurve
 from fea.motion.fatigue import closed_history, missing_data, signed_stress
-from fea.motion.link_envelope import link_motion
+from fea.motion.link_envelope import LinkMotion, _balanced, _scattered, link_motion
 from fea.motion.link_history import link_histories
+from fea.motion.mesh_factors import MeshFactors
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.pins import stress_at, stress_of
 from fea.refine.refinement import START, Effort
@@ -37,6 +41,7 @@ from fea.superposition.unit_solutions import nodal_stress
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.meshing.mesh import mesh_body
 from loads.case.case_file import read_case
+from loads.records.check_spec import BearingCheck
 from loads.states.case_motion import solve_case_motion
 
 TOML = """
@@ -378,6 +383,28 @@ def test_joints_are_judged_at_the_poses_that_count_with_the_scatter_of_the_pins(
     assert found["eyes"].value.value == pytest.approx(eye)
 
 
+@pytest.mark.parametrize("second", [False, True])
+def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, second):
+    """Not where the joint force is largest, nor at a pose that was left out."""
+    told, wrenches = [], np.arange(4.0)[:, None] * np.ones(6)
+    eyes = [np.array([1.0, 5.0, 2.0, 30.0]), np.array([4.0, 3.0, 9.0, 20.0])]
+    monkeypatch.setattr(outcomes_over_motion, "pressing", lambda *_: dict(enumerate(eyes[:: -1 if second else 1])))
+    monkeypatch.setattr(outcomes_over_motion, "joint_growth", lambda *_: None)
+    monkeypatch.setattr(outcomes_over_motion, "bearing_outcome", lambda *given: told.append(given[5]))
+    monkeypatch.setattr(
+        outcomes_over_motion, "_complete", lambda *_: SimpleNamespace(reason="", because=lambda _: None)
+    )
+    forces = {"B": np.array([[9.0, 0.0], [8.0, 0.0], [7.0, 0.0], [6.0, 0.0]])}
+    solved = SimpleNamespace(joints={"B": SimpleNamespace(wrench=wrenches)}, forces=forces)
+    case = SimpleNamespace(bearing_joints=["B"], linkage=SimpleNamespace(rise=lambda joint: 0.0))
+    motion = SimpleNamespace(coordinate="crank", angles=np.zeros(4))
+    check = BearingCheck.model_validate({"type": "bearing"})
+    moved = SimpleNamespace(case=case, forces={"push": solved}, motion=motion)
+    list(outcomes_over_motion._joints(moved, "eyes", check, np.arange(4) < 3))
+    [[wrench]] = told
+    assert wrench[0] == 2.0
+
+
 def test_no_joint_passes_where_poses_were_left_out(path):
     moved = solve_case_motion(edited(path, ['checks.eyes={type="bearing", minimum=0.001}']))
     every = np.ones(25, dtype=bool)
@@ -421,6 +448,58 @@ def test_loads_that_do_not_balance_are_refused(path, moved, share, refused):
             solve()
     else:
         assert solve().imbalance > 1e-5
+
+
+@pytest.mark.parametrize("worst", [0, 1, 2])
+@pytest.mark.parametrize(
+    ("entry", "said"), [("imbalance", "leave a resultant of 50"), ("reaction", "free body react of 50")]
+)
+def test_one_pose_out_of_balance_is_enough(entry, said, worst):
+    """Whichever pose it is, and of loads and supports whichever it is."""
+    good = np.full(3, 1e-9)
+    bad = np.where(np.arange(3) == worst, 0.5, good)
+    _balanced(SimpleNamespace(imbalance=good, reaction=good))
+    with pytest.raises(CannotRunError, match=said):
+        _balanced(SimpleNamespace(**{"imbalance": good, "reaction": good, entry: bad}))
+
+
+def test_scatter_of_the_load_widens_tension_and_compression_to_both_sides():
+    """Stress between -4 and -2 MPa is between -8 and -1 MPa under half to twice the load, that of 3 to 6 1.5 to 12."""
+    own = LoadCaseEnvelope(
+        name="push", variants=(), governing=None, value=np.array([-3.0, 4.0]), low=np.array([-4.0, 3.0]),
+        high=np.array([-2.0, 6.0]), stress=Band(value=4.0, low=3.0, high=6.0), safety_factor=Band.exact(15.0),
+        pose=1, location=np.zeros(3), fatigue=None, discretisation=None,
+    )  # fmt: skip
+    load = Scatter(low=0.5, high=2.0, sources=(Source(kind=SourceKind.LOAD),))
+    found = _scattered(own, SimpleNamespace(allowable=60.0, strength_range=(48.0, 90.0)), load)
+    assert found.low == pytest.approx([-8.0, 1.5])
+    assert found.high == pytest.approx([-1.0, 12.0])
+    assert (found.stress.low, found.stress.high) == (1.5, 12.0)
+    factor = found.safety_factor
+    assert (factor.value, factor.low, factor.high) == pytest.approx((15.0, 48.0 / 12.0, 90.0 / 1.5))
+
+
+@pytest.mark.parametrize("order", [[0, 1, 2, 3], [1, 3, 2, 0], [2, 0, 3, 1]])
+def test_an_envelope_holds_every_way_in_which_pins_press_and_torque_enters(order):
+    """At each pose the least and the largest of four ways; the value is the largest of the two as stated."""
+    stresses = {(180.0, "eye-faces"): [5.0, -2.0, 9.0], (180.0, "bore-shear"): [3.0, -6.0, 11.0],
+                (100.0, "eye-faces"): [6.0, -1.0, 8.0], (100.0, "bore-shear"): [4.0, -3.0, 10.0]}  # fmt: skip
+    every = [
+        VariantCurve(span=span, transfer=transfer, stress=np.array(stress), node=np.arange(3), first=0)
+        for (span, transfer), stress in stresses.items()
+    ]
+    motion = SimpleNamespace(
+        stated="eye-faces",
+        material=SimpleNamespace(allowable=60.0),
+        solved=SimpleNamespace(space=SimpleNamespace(nodes=np.eye(3))),
+    )
+    motion._governing = lambda variants: LinkMotion._governing(motion, variants)
+    found = LinkMotion._by_meshes(motion, "push", [every[i] for i in order], MeshFactors())
+    assert found.value == pytest.approx([6.0, -1.0, 9.0])
+    assert found.low == pytest.approx([3.0, -6.0, 8.0])
+    assert found.high == pytest.approx([6.0, -1.0, 11.0])
+    assert (found.stress.value, found.stress.low, found.stress.high, found.pose) == (9.0, 8.0, 11.0, 2)
+    assert found.safety_factor.low == pytest.approx(60.0 / 11.0)
 
 
 def test_what_cannot_be_enveloped_is_refused(path, tmp_path):

@@ -8,8 +8,8 @@ import pytest
 
 from fea.beam.calibration import calibrations
 from fea.beam.critical_locations import critical_locations, shoulder_factors
-from fea.check.fidelity import decide, decided_by_hand, hand_bands
 from fea.check.run import check_case
+from fea.links.fidelity import decide, decided_by_hand, hand_bands
 from fea.refine.refinement import START, Effort
 from geometry.parts.part import HoleRow
 from loads.case.case_file import read_case

@@ -4,6 +4,7 @@ import math
 import tomllib
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import programs
@@ -17,8 +18,11 @@ from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.sizing.changes import _change
 from fea.vibration.frequency_outcomes import (
     asked_frequencies,
+    deciding_load_case,
     frequency_outcomes,
     harmonic_sentence,
+    least_at,
+    least_frequency,
     lowest_sentence,
     most_moved,
 )
@@ -63,6 +67,25 @@ def history(low, high, driving=10.0, at=None):
     at = np.radians(np.linspace(0.0, 90.0, len(low))) if at is None else at
     own = found().histories["turning"]
     return replace(own, driving=driving, at=at, low=low, high=high, frequencies=(low + high) / 2.0)
+
+
+def test_over_a_motion_value_and_ends_of_the_lowest_frequency_are_each_the_least_of_all_poses():
+    """They are least in three different poses; it is told at the one whose low end is least."""
+    own = history([20.0, 15.0, 18.0], [31.0, 35.0, 26.0])
+    own = replace(own, frequencies=np.array([[21.0], [30.0], [25.0]]))
+    band = least_frequency(own)
+    assert (band.value, band.low, band.high) == (21.0, 15.0, 26.0)
+    assert math.degrees(least_at(own)) == pytest.approx(45.0)
+
+
+def test_the_load_case_that_decides_is_the_one_nearest_to_its_own_driving_frequency():
+    """30 Hz at 20 Hz is nearer than 15 Hz at 5 Hz, whichever comes first, though 15 Hz is the lower one."""
+    near, far = history([30.0], [31.0], driving=20.0), history([15.0], [16.0], driving=5.0)
+    turning = found().case.load_cases["turning"]
+    for names in (("near", "far"), ("far", "near")):
+        case = SimpleNamespace(load_cases=dict.fromkeys(names, turning))
+        every = {name: {"near": near, "far": far}[name] for name in names}
+        assert deciding_load_case(SimpleNamespace(case=case, histories=every)) == "near"
 
 
 def test_a_harmonic_meets_a_frequency_where_it_lies_in_its_band():

@@ -183,6 +183,17 @@ def test_which_links_are_checked():
     assert layer_limit(stiff, "AE") is None
 
 
+@pytest.mark.parametrize("minima", [(2.0, 5.0), (5.0, 2.0)])
+def test_layers_have_the_greatest_limit_of_all_checks_of_their_link(minima):
+    """And a check of another link has no part in it."""
+    asked = [f'c{i}={{type="safety-factor",minimum={least}}}' for i, least in enumerate(minima)]
+    asked.append('other={type="safety-factor",minimum=9,links=["CH"]}')
+    more = ['parts.tube.material="pla-fdm-xy"', "parts.tube.build_direction=[1,0,0]"]
+    case = read_case(OWL, [*more, f"checks={{{','.join(asked)}}}"])
+    assert (layer_limit(case, "AE"), layer_limit(case, "CH")) == (5.0, 9.0)
+    assert layer_limits(case, "AE")[0][0] == pytest.approx(12.0 / 5.0)
+
+
 def test_peaks_over_many_loads_are_those_of_all_nodes():
     """Loads of a motion, of which most nodes are left out by their bounds."""
     turn = np.linspace(0.0, 2.0 * np.pi, 61)

@@ -17,7 +17,7 @@ from fea.motion.envelope_outcomes import FOLLOWED
 from fea.outcomes.unchecked import unchecked
 from fea.study.numbers import of_check, of_motion
 from fea.whole.outcomes import unloaded_outcomes, whole_numbers
-from fea.whole.size import size_band
+from fea.whole.size import size_band, size_limits
 from geometry.base.errors import CaseError
 from loads.case.case import Case
 from loads.case.case_file import read_case, validate
@@ -257,6 +257,13 @@ def test_an_imported_part_counts_by_its_own_outline(tmp_path):
     plate = 60.0 * 20.0 * 5.0 - math.pi * 2.5**2 * 5.0 - math.pi * 3.0**2 * 5.0
     assert high - low == pytest.approx(9.0)
     assert 1e6 * found.mass.total.total == pytest.approx(1.45e-3 * (plate + boss), rel=1e-4)
+
+
+def test_the_box_that_is_drawn_about_a_linkage_has_the_least_limit_of_all_checks_along_each_axis():
+    limits = [(300.0, 250.0, 40.0), (280.0, 260.0, 30.0), (290.0, 270.0, 50.0)]
+    more = "".join(SIZE.replace("size]", f"size-{i}]").format(*one) for i, one in enumerate(limits))
+    assert size_limits(bars((0, 1, 2, 1), {}, more)) == (280.0, 250.0, 30.0)
+    assert size_limits(bars((0, 1, 2, 1), {}, "")) == ()
 
 
 def test_without_motion_the_box_is_that_of_the_pose():

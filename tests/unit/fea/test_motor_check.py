@@ -1,12 +1,15 @@
 """The motor's demand from a known power, and the heaviest load that it drives."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from edited_cases import edited
 
+from fea.common.source import SourceKind
 from fea.common.verdict import Verdict
+from fea.whole import motor
 from fea.whole.motor import demand, largest_factor, line_share, motor_outcomes
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case
@@ -53,6 +56,49 @@ def test_shares_of_a_straight_torque_speed_line() -> None:
     assert mean == pytest.approx((3.0 + (12.0 - 3.0) / 4.0) / 15.0)
     assert line_share(-pulling, speed, times, 20.0, 100.0) == (0.0, pytest.approx(12.0 / 25.0))
     assert line_share(pulling, 5.0 * speed, times, 20.0, 100.0) == (math.inf, math.inf)
+    for phase in (0.4, 1.2, 2.0, 3.0):  # what is lent and given back over a turn is zero, and its sum is rounding
+        turning = np.cos(2.0 * np.pi * np.linspace(0.0, 1.0, 73) + phase)
+        assert demand(turning, turning, np.linspace(0.0, 2.0, 73)).mean_power == 0.0
+        assert line_share(turning, np.full(73, 50.0), np.linspace(0.0, 2.0, 73), 20.0, 100.0)[0] == 0.0
+
+
+@pytest.mark.parametrize("heaviest", [1.0, 2.0, 3.0])
+def test_what_a_motor_needs_in_a_range_of_air_has_the_outer_ends_of_all_airs(monkeypatch, heaviest) -> None:
+    """The largest is that of any C_N; the least is that of a convex function through 3, 2 and 2.5: no less than 1."""
+    found = {1.0: (3.0, 6.0), 2.0: (2.0, 5.0), 3.0: (2.5, 7.0)}
+    found = {c: (c, low, 9.0 if c == heaviest else high, ()) for c, (low, high) in found.items()}
+    air = SimpleNamespace(normal_coefficient=2.0, ends=(1.0, 3.0))
+    stated, least, largest = (
+        SimpleNamespace(c=c, case=SimpleNamespace(load_cases={"flap": SimpleNamespace(flapping=air)}))
+        for c in (2.0, 1.0, 3.0)
+    )
+    monkeypatch.setattr(motor, "air_range", lambda moved: SimpleNamespace(at=lambda title: (least, largest)))
+    monkeypatch.setattr(motor, "_loosened", lambda moved, title, of: found[moved.c])
+    band = motor._band(stated, "flap", lambda torque: (0.0, 0.0, 0.0))
+    assert (band.value, band.low, band.high) == pytest.approx((2.0, 1.0, 9.0))
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_play_asks_a_motor_for_the_most_and_the_least_power_whichever_way_it_turns(monkeypatch, way) -> None:
+    """It turns one way at the first pose and back at the second; power is least with [1, 4] or [4, 1] N mm of torque.
+
+    The root mean square is least with the torques of least size.
+    """
+    least, most, rate = np.array([1.0, -2.0]), np.array([4.0, 4.0]), way * np.array([1.0, -1.0])
+    loose = SimpleNamespace(effort=lambda title: (least, most), clearances={"B": 0.1})
+    monkeypatch.setattr(motor, "loose_motion", lambda moved: loose)
+    monkeypatch.setattr(motor, "_rate", lambda moved, title: rate)
+    moved = SimpleNamespace(forces={"turn": SimpleNamespace(drive_torque=np.array([2.0, 2.0]))})
+
+    def power(torque):
+        asked = torque * rate
+        return asked.max(), asked.mean(), asked.max()
+
+    value, low, high, sources = motor._loosened(moved, "turn", power)
+    assert (value, low, high) == ((2.0, -1.5, 4.0) if way > 0.0 else (2.0, -3.0, 4.0))
+    assert SourceKind.PLAY in {source.kind for source in sources}
+    size = motor._loosened(moved, "turn", lambda torque: (*[float(np.hypot(*torque))] * 3,))
+    assert size[:3] == (np.hypot(2.0, 2.0), 1.0, np.hypot(4.0, 4.0))
 
 
 MOTOR = ['checks.motor.no_load_speed="3500 rpm"']

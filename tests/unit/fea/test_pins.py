@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,12 +10,14 @@ from edited_cases import PLANAR, edited
 from materials import SOURCED
 
 from fea.check.run import check_case
+from fea.common.band import Band
 from fea.common.verdict import Verdict
-from fea.outcomes.pins import eyes, pin_stress, stress_at
+from fea.outcomes.pins import PinStress, pin_stress, shared_stress, stress_at
 from geometry.base.errors import CaseError
 from geometry.bodies.features import Ring
 from geometry.materials.material import library
 from loads.case.case_file import read_case
+from loads.case.forks import eyes
 from loads.statics.joint_reaction import JointReaction
 
 WING = "owl-wing-static"
@@ -230,3 +233,26 @@ def test_a_thicker_pin_of_drawn_wire_is_weaker(diameter, least):
 def test_a_pin_thicker_than_any_wire_of_its_card_is_refused():
     with pytest.raises(CaseError, match=r"^joints\.A\.pin_diameter: 12 mm is thicker than .*; set at most 11\.1\d* mm"):
         library()["steel-wire"].drawn("joints.A.pin_diameter", 12.0)
+
+
+@pytest.mark.parametrize("worst", [0, 1, 2])
+def test_a_pin_between_layers_has_the_widest_of_all_ways_in_which_couples_are_shared(monkeypatch, worst):
+    """Shares of 2 N are 1 and, of three ways, 0.5, 1.2 and one of 3: of bending, and of the shear that is told."""
+    sizes = [0.5, 1.2, 0.8]
+    sizes[worst] = 3.0
+
+    def at(_, joint, size):
+        bands = {name: Band.exact(10.0 * size) for name in ("moment", "bending", "equivalent")}
+        return PinStress(lever=1.0, shear=size, **bands)
+
+    def ways(size):
+        return SimpleNamespace(reactions=SimpleNamespace(joints={"B": size}))
+
+    monkeypatch.setattr("fea.outcomes.pins.stress_at", at)
+    case = SimpleNamespace(linkage=SimpleNamespace(rise=lambda joint: 2.0))
+    forces = SimpleNamespace(reactions=ways(2.0).reactions, sharings=[ways(2.0 * size) for size in sizes])
+    found = shared_stress(case, "B", 4.0, forces)
+    assert found.shear == pytest.approx(12.0)
+    for name in ("moment", "bending", "equivalent"):
+        band = getattr(found, name)
+        assert (band.value, band.low, band.high) == pytest.approx((40.0, 40.0 * min(sizes), 120.0))

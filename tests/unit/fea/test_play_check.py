@@ -2,6 +2,7 @@
 
 import tomllib
 from functools import cache
+from types import SimpleNamespace
 
 import pytest
 from edited_cases import PLANAR, edited
@@ -10,6 +11,7 @@ from rocker_case import TOML
 from fea.check.run import check_case
 from fea.common.source import SourceKind
 from fea.common.verdict import Verdict
+from fea.doubts import play_doubt as doubt_of_play
 from fea.outcomes.result import LoadCaseResult
 from loads.case.case_file import validate
 from reports.tables.frames import play_line, play_record
@@ -144,3 +146,28 @@ def test_ways_to_hold_tell_their_own_play() -> None:
     held = {way.name: way.play for way in found.load_cases["weight"].ways_to_hold}
     assert held["pinned, held at AE"] > 0.05
     assert held["bonded, A, G built in"] == 0.0
+
+
+def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_worst_offsets(monkeypatch) -> None:
+    """Slopes of two joints are (3, 4) and (0, 2): 7 to either side of 10. The worst offsets give 2.5 and 19.
+
+    Of the displacement the slopes reach further than the worst offsets.
+    """
+    told = {"plain": (10.0, 1.0), "B0": (13.0, 1.3), "B1": (14.0, 1.4), "C0": (10.0, 1.0), "C1": (12.0, 1.2),
+            "most": (19.0, 1.5), "least": (2.5, 0.5)}  # fmt: skip
+    stubs = {
+        "_told": lambda *given: told[given[-1]],
+        "_ends": lambda play, forces, name: [(None, f"{name}{i}") for i in range(2)],
+        "_worst": lambda *_: [(None, "most"), (None, "least")],
+        "_reactions": lambda *_: None,
+        "link_loads": lambda *_: None,
+    }
+    for name, stub in stubs.items():
+        monkeypatch.setattr(doubt_of_play, name, stub)
+    play = SimpleNamespace(clearances={"B": 0.1, "C": 0.2}, forces={}, through_dead_point=False, nominal="plain",
+                           loose=SimpleNamespace(radii={"B": 0.05, "C": 0.1}))  # fmt: skip
+    case = SimpleNamespace(checked_links=["arm"], body=lambda link: None, layered=False)
+    found = doubt_of_play.play_doubt(case, "tip", SimpleNamespace(play=play, reactions=None), ())
+    stress, displacement = found.stress["arm"], found.displacement["arm"]
+    assert (stress.low, stress.high) == pytest.approx((0.25, 1.9))
+    assert (displacement.low, displacement.high) == pytest.approx((0.3, 1.7))

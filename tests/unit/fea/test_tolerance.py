@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -12,6 +13,7 @@ from sprung_cases import FOUR_BAR, HANG, case_of
 from sprung_cases import LEVER as LEVER_LET_GO
 
 from benchmarks.tolerances import direct_case
+from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity, Subject
 from fea.frame.case_statics import solve_case_statics
@@ -205,6 +207,30 @@ def test_probability_of_strength_under_a_load_follows_from_the_nominal_band():
     assert result.possible.count == strength.possible.count
     corner = result.corner
     assert corner.value == pytest.approx(factor[0] / 1.4, rel=1e-6)
+
+
+def test_no_sample_surely_passes_what_the_nominal_check_left_open(monkeypatch):
+    """Two checks keep their limits in every sample, and one of them was left open whatever its band says."""
+
+    def left_open(*arguments, **options):
+        found = check_case(*arguments, **options)
+        own = found.load_cases["pull"]
+        checks = tuple(one.left_open("why") if one.name == "strength" else one for one in own.checks)
+        return replace(found, load_cases={"pull": replace(own, checks=checks)})
+
+    monkeypatch.setattr("fea.tolerance.analysis.check_case", left_open)
+    case = lever(
+        tolerances={"load_cases.pull.forces.0": "10 %"},
+        checks={
+            "strength": {"type": "safety-factor", "minimum": 0.1},
+            "stiff": {"type": "displacement", "maximum": "9 mm"},
+        },
+    )
+    result = tolerance_case(case, samples=200, threads=1, effort=ONE_MESH)
+    strength, stiff = result.numbers[:2]
+    assert strength.low.min() > strength.limit
+    assert (strength.certain.count, strength.possible.count, stiff.certain.count) == (0, 200, 200)
+    assert (result.certain.count, result.possible.count) == (0, 200)
 
 
 def test_strength_and_modulus_change_the_numbers_in_proportion():

@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Iterator
 
+import programs
 import pytest
 
 from geometry.base import child, child_server
@@ -63,7 +64,7 @@ def test_the_time_limit_is_of_each_request(pool: ServerPool) -> None:
     with pytest.raises(subprocess.TimeoutExpired):
         ask(pool, b"sleep", time_limit=0.3)
     assert ask(pool, b"who") != first
-    assert not _alive(first)
+    assert programs.ended(int(first))
 
 
 def test_a_child_that_waits_holds_no_place_and_keeps_its_topic(pool: ServerPool) -> None:
@@ -99,7 +100,7 @@ def test_an_exception_beside_the_request_ends_the_child(pool: ServerPool) -> Non
     lent = pool.server(COMMAND, child.environment(), "")
     first = lent.__enter__().ask(b"who", 30.0)
     assert not lent.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)
-    assert not _alive(first)
+    assert programs.ended(int(first))
 
 
 STOPPED = f"""
@@ -148,17 +149,8 @@ def test_a_request_that_waits_for_its_answer_ends_when_all_are_stopped() -> None
     assert done.stdout.splitlines()[1:] == ["ChildEndedError True", "interrupted"]
 
 
-def _alive(pid: bytes) -> bool:
-    try:
-        os.kill(int(pid), 0)
-    except ProcessLookupError:
-        return False
-    state = subprocess.run(["ps", "-o", "stat=", "-p", str(int(pid))], capture_output=True, text=True, check=False)
-    return bool(state.stdout.strip()) and not state.stdout.startswith("Z")
-
-
 def _until_gone(pid: bytes) -> None:
     deadline = time.monotonic() + 10.0
-    while _alive(pid):
+    while not programs.ended(int(pid)):
         assert time.monotonic() < deadline, "it lives on"
         time.sleep(0.05)

@@ -178,6 +178,18 @@ def test_two_discs_lie_apart_by_the_distance_of_their_centres_less_their_radii()
     assert abs(centre) == pytest.approx(4.0, abs=0.05)  # the lens lies from 3 to 5 mm along the line of the centres
 
 
+@pytest.mark.parametrize("rounding", [-1e-14, 0.0, 1e-14])
+def test_outlines_that_are_as_near_at_two_corners_are_nearest_at_the_first(rounding):
+    """Sides that are parallel, and two pieces on either side: which place was told depended on the last digit."""
+    box = Core(geometry=shapely.box(0.0, 0.0, 10.0, 10.0), radius=0.0, low=0.0, high=1.0, error=0.0)
+    bars = [Core(geometry=shapely.LineString([(0.0, y), (30.0, y)]), radius=1.0, low=0.0, high=1.0, error=0.0)
+            for y in (-4.0, 14.0)]  # fmt: skip
+    turn, shift = 1.0 + 1j * rounding, complex(0.0, 100.0 * rounding)
+    assert gaps([(box, bar) for bar in bars], np.array([turn]), np.array([shift])) == pytest.approx([3.0])
+    assert nearest([(box, bar) for bar in bars], turn, shift) == pytest.approx(10.0 - 1.5j)
+    assert nearest([(box, bar) for bar in reversed(bars)], turn, shift) == pytest.approx(10.0 + 11.5j)
+
+
 def test_outlines_that_overlap_here_and_touch_there_have_a_depth():
     """Their intersection is an area and a line; the search for the largest circle stopped at the line."""
     square = shapely.box(0.0, 0.0, 10.0, 10.0)

@@ -9,7 +9,7 @@ from geometry.base.errors import CaseError
 from geometry.imported.facts import Bore
 from geometry.parts.step import StepPart
 from geometry.placement.fit import Wanted
-from geometry.placement.match import place, points_of_part
+from geometry.placement.match import place, points_of_part, with_loaded_bores
 
 POINTS = {"A": (0.0, 0.0), "B": (60.0, 0.0), "C": (22.0, 34.0)}
 DIAMETERS = {"A": 5.0, "B": 4.0, "C": 6.0}
@@ -77,6 +77,18 @@ def test_the_plane_of_forces_is_the_mean_of_the_middles_or_as_stated():
     assert [found.middle(name)[2] for name in points] == pytest.approx([-2.0, 4.0])
 
 
+def test_a_bore_without_a_joint_leaves_the_plane_of_forces_where_it_is():
+    """Middles at 1 and 7.5 mm hold joints: 4.25 mm, where the mean of all three would be 3.67 mm."""
+    heights = {"A": 1.0, "P": 2.5, "B": 7.5}
+    places = {"A": (0.0, 0.0), "P": (22.0, 34.0), "B": (60.0, 0.0)}
+    bores = [bore(f"bore {name}", (*at, heights[name]), DIAMETERS.get(name, 8.0)) for name, at in places.items()]
+    loaded = {"P": places.pop("P")}
+    for own, plane in ((part(), 4.25), (part(plane="2 mm"), 3.0)):
+        found = with_loaded_bores(own, place(own, bores, wanted(places)), bores, loaded)
+        assert found.bores["P"].name == "bore P"
+        assert {name: found.middle(name)[2] + plane for name in heights} == pytest.approx(heights)
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -88,6 +100,22 @@ def test_what_fits_no_bore_is_refused(change, said):
     points = POINTS if change else POINTS | {"B": (61.0, 0.0)}
     with pytest.raises(CaseError, match=said):
         place(part(), moved(np.eye(3), np.zeros(3)), wanted(points, DIAMETERS | change))
+
+
+@pytest.mark.parametrize("off", POINTS)
+def test_every_bore_has_to_lie_at_its_point(off):
+    """One of three off by twice place_tolerance: it is refused though the others are nearer than that."""
+    points = POINTS | {off: (POINTS[off][0], POINTS[off][1] + (0.2 if off == "C" else 0.35))}
+    with pytest.raises(CaseError, match="no parallel bores lie as the link's points do"):
+        place(part(), moved(np.eye(3), np.zeros(3)), wanted(points))
+
+
+def test_a_third_bore_that_is_not_parallel_fits_no_point():
+    """It has the diameter and the place of its point, and is the one that decides nothing about direction."""
+    bores = moved(np.eye(3), np.zeros(3))
+    tilted = [*bores[:2], bore("bore 3", bores[2].centre, 6.0, (0.0, 0.1, np.sqrt(0.99)))]
+    with pytest.raises(CaseError, match="no parallel bores lie as the link's points do"):
+        place(part(), tilted, wanted())
 
 
 def test_named_bores_that_are_not_parallel_are_refused_with_the_angle():

@@ -2,16 +2,21 @@
 
 import math
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from bars_in_layers import bar_on_a_pin, four_bars, parallel_bars
 
 from fea.common.verdict import Verdict
-from fea.whole.clearance import clearance_outcomes
+from fea.whole.clearance import clearance_band, clearance_outcomes
 from geometry.base.errors import CaseError
+from geometry.clearance import least
+from geometry.clearance.least import Gap, _bounds, least_gap
 from geometry.clearance.shape import gaps
-from loads.states.clearance import along, clearance
+from geometry.linkage.motion import solve_motion
+from loads.case.case_file import read_case
+from loads.states.clearance import along, assembly, clearance
 
 
 def test_two_parallel_bars_touch_where_their_distance_is_their_width():
@@ -47,6 +52,87 @@ def test_the_least_gap_of_two_bars_that_do_not_touch():
         assert least.high - least.low < 0.1
         [outcome] = clearance_outcomes(case, found)
         assert (outcome.name, outcome.verdict.value) == ("apart", verdict)
+
+
+def test_rounding_chooses_neither_pose_nor_place_nor_order_of_the_least_gaps(monkeypatch):
+    """The six-bar's halves mirror each other, and pins pass some of its links at one distance over a stretch."""
+    case, found = read_case("six-bar"), []
+    for seed in (0, 1):
+        noise = np.random.default_rng(seed)
+        monkeypatch.setattr(
+            least, "gaps", lambda *of, noise=noise: gaps(*of) + noise.uniform(-1e-12, 1e-12, len(of[1]))
+        )
+        told = clearance(case)
+        assert told is not None
+        found.append([(gap.names, gap.at, *gap.place) for gap in told.gaps])
+    assert len(found[0]) > 2
+    for one, other in zip(*found, strict=True):
+        assert one[0] == other[0]
+        assert one[1:] == pytest.approx(other[1:], rel=1e-9)
+
+
+@pytest.mark.parametrize("wide", [0, 1, 2])
+def test_the_band_of_the_least_gap_is_that_of_all_pairs(wide):
+    """Another pair than the one of the least value may come nearer, and no pair's upper end counts but the least."""
+    ends = [(2.0, 1.9, 2.1), (2.2, 2.05, 2.4), (2.5, 2.45, 2.6)]
+    value, _, high = ends[wide]
+    ends[wide] = value, 0.5, high
+    pairs = [
+        Gap(names=(f"link {i}", "pin A"), value=one, low=low, high=high, at=None, place=(0.0, 0.0))
+        for i, (one, low, high) in enumerate(ends)
+    ]
+    band = clearance_band(SimpleNamespace(gaps=tuple(pairs), least=pairs[0], motion=None))
+    assert (band.value, band.low, band.high) == (2.0, 0.5, 2.1)
+
+
+def swung_over_the_pin(poses):
+    """The gap of a bar and a pin, looked at in so many poses from 6 to -6 degrees."""
+    case = bar_on_a_pin()
+    [pair] = [pair for pair in assembly(case).pairs if set(pair.names) == {"link crank", "pin D"}]
+    motion = solve_motion(case.solve_pose(), np.radians([60.0, -6.0]))
+    found = least_gap(pair, along(motion), np.radians(np.linspace(6.0, -6.0, poses)), near=0.01, step=1e-4)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("poses", [2, 4, 400])
+def test_how_deep_two_outlines_lie_in_each_other_between_poses_is_in_the_band(poses):
+    """A bar of 16 mm swings over a pin of 8 mm: 1.55 mm deep at -6 and 6 degrees, and over all of the pin between them.
+
+    Of 400 poses, which all touch, not every one is asked how deep.
+    """
+    found = swung_over_the_pin(poses)
+    assert found.at == pytest.approx(math.radians(6.0))
+    assert found.low <= -8.0
+    if poses == 2:
+        assert found.value == pytest.approx(100.0 * math.sin(math.radians(6.0)) - 12.0, abs=0.05)
+    else:
+        assert found.value == pytest.approx(-8.0, abs=0.05)
+    assert found.low >= -8.0 - 200.0 * math.radians(12.0) / (min(poses, 60) - 1)
+
+
+def test_where_few_poses_are_asked_how_deep_the_band_holds_those_that_are_not(monkeypatch):
+    """Of thirteen poses that touch only the first is asked, where the pin lies 1.55 mm deep."""
+    monkeypatch.setattr("geometry.clearance.least._DEEPEST", 1)
+    found = swung_over_the_pin(13)
+    assert found.value == pytest.approx(100.0 * math.sin(math.radians(6.0)) - 12.0, abs=0.05)
+    assert found.low <= -8.0
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_the_bound_between_poses_knows_how_fast_an_outline_is_at_either_and_that_it_may_come_and_go(way):
+    """Gaps of 5 + cos s mm are 4 mm at s = π, which no pose shows; the outline is fastest in the middle of the way.
+
+    From 0 to 2π it stands still at both ends, and what is left is how fast its speed changes.
+    """
+    for s in (np.array([0.0, 2.0 * math.pi]), np.array([0.0, 1.2 * math.pi]), np.array([1.5, 1.2 * math.pi])):
+        at = s[::way]
+        [bound] = _bounds(at, 5.0 + np.cos(at), np.abs(np.sin(at)), np.abs(np.cos(at)))
+        assert bound <= 4.0
+    [bound] = _bounds(
+        np.array([0.0, 1.0])[::way], np.array([5.0, 3.0])[::way], np.array([4.0, 0.0])[::way], np.zeros(2)
+    )
+    assert bound == 2.0  # 4 mm of way at the most: from 5 mm down to 2 mm, and up to 3 mm
 
 
 def test_a_link_touches_a_pin_that_passes_its_layer():

@@ -1,6 +1,7 @@
 """Joint forces and drive torque over a motion: single poses, closed forms, superposition, virtual work."""
 
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -21,11 +22,15 @@ from motion_poses import (
     wing_pose,
 )
 from planar_linkages import four_bar
+from rocker_case import TOML
 
 from geometry.base.errors import CaseError
 from geometry.linkage.motion import solve_motion
 from geometry.linkage.pose import solve_pose
+from loads.case.case_file import validate
 from loads.records.applied import PartMass, PointLoad
+from loads.states.case_motion import solve_case_motion
+from loads.states.dead_point_reach import way_to_dead_point
 from loads.states.kinetostatics import is_determinate
 from loads.statics.statics import Drive, solve_statics
 
@@ -238,3 +243,26 @@ def test_loads_on_the_ground_do_nothing():
     ground = PointLoad(link="ground", point="D", wrench=np.arange(6.0))
     both, alone = kinetostatics(motion, drive, [*stated, ground]), kinetostatics(motion, drive, stated)
     np.testing.assert_array_equal(both.drive_torque, alone.drive_torque)
+
+
+LOWER, UPPER = (
+    180.0 - math.degrees(math.acos((60.0**2 + 40.0**2 - (60.0 + way * 20.0) ** 2) / (2.0 * 60.0 * 40.0)))
+    for way in (1.0, -1.0)
+)
+"""Directions of the rocker where coupler and crank, 60 and 20 mm, are in line: 75.5 and 138.6 degrees."""
+
+
+@pytest.mark.parametrize(("ends", "way"), [((90.0, 120.0), 90.0 - LOWER), ((100.0, 130.0), UPPER - 130.0)])
+@pytest.mark.parametrize("back", [False, True])
+def test_the_way_to_a_dead_point_is_that_from_the_nearer_end_of_the_range(ends, way, back):
+    """A rocker that drives turns between crank and coupler stretched out and folded, by the law of cosines."""
+    data = tomllib.loads(TOML)
+    for entry in ("parts", "solid"):
+        del data[entry]
+    data["links"]["rocker"] = {"points": data["links"]["rocker"]["points"]}
+    data["pose"] = {"coordinate": "rocker", "angle": "100 deg", "near": {"crank": "100 deg", "coupler": "19 deg"}}
+    data["drive"] = {"link": "rocker", "joint": "O4"}
+    first, last = ends[::-1] if back else ends
+    data["motion"] = {"range": [f"{first} deg", f"{last} deg"], "poses": 7}
+    moved = solve_case_motion(validate(data))
+    assert math.degrees(way_to_dead_point(moved)) == pytest.approx(way, abs=1e-6)

@@ -23,7 +23,8 @@ LONG = 16.0
 def weighing(**joints: str) -> Case:
     """Parallel bars under their own weight, with ``tight_in`` of joints."""
     case = parallel_bars()
-    tight = {name: joint.model_copy(update={"tight_in": joints.get(name)}) for name, joint in case.joints.items()}
+    stated = {name: (link,) for name, link in joints.items()}
+    tight = {name: joint.model_copy(update={"tight_in": stated.get(name, ())}) for name, joint in case.joints.items()}
     heavy = {"lift": case.load_cases["lift"].model_copy(update={"own_weight": True, "forces": ()})}
     return case.model_copy(update={"joints": tight, "load_cases": heavy})
 

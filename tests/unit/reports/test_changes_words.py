@@ -62,6 +62,8 @@ def test_own_weight_is_named_where_it_is_part_of_the_load(result, check):
             "comes from calibration of the hand calculation, narrower by a solid model (--fidelity solid)",
         ),
         (["COUPLES", "EYES"], "between layers and flexibility of eyes, bores and holes together, narrower by tight_in"),
+        (["EYES", "GROWTH"], "growth with the load together, narrower by a solid model (--fidelity solid)."),
+        (["GROWTH"], "growth with the load, which no entry of the case and no option narrows"),
         (["IMPERFECTION"], "geometric imperfection, which no entry of the case and no option narrows"),
     ],
 )
@@ -72,6 +74,19 @@ def test_an_open_check_says_where_its_band_comes_from_and_what_narrows_it(result
         widest=tuple(Source(kind=SourceKind[k]) for k in kinds),
     )
     assert words in told(result, change)
+
+
+def test_what_narrows_a_band_is_told_only_where_it_does(result, check):
+    """A scatter is stated, so that growth is less with less of it; all links are solids, so that no other ones help."""
+    growth, eyes, load = (Source(kind=SourceKind[kind]) for kind in ("GROWTH", "EYES", "LOAD"))
+    value = replace(check.value, sources=(*check.value.sources, load))
+    grown = VerdictChange(check=replace(check, verdict=Verdict.UNDECIDED, value=value), widest=(growth,))
+    assert "narrower by a narrower scatter of load and modulus" in told(result, grown)
+    one = result.load_cases["weight"]
+    solids = replace(result, load_cases={"weight": replace(one, links={})})
+    open_by_eyes = VerdictChange(check=grown.check, widest=(eyes,))
+    assert "narrower by a solid model" in told(result, open_by_eyes)
+    assert "no option narrows" in told(solids, open_by_eyes)
 
 
 def test_the_command_names_case_entry_range_and_what_was_set(result, check):

@@ -148,3 +148,25 @@ def test_kinds_of_sources_are_told_without_particulars(result):
     checks = tuple(replace(check, value=band) for check in case.checks)
     page = render(replace(result, load_cases={"weight": replace(case, checks=checks)}), {})
     assert ": energy that a flywheel stores and discretisation." in page
+
+
+def test_shafts_slots_and_wings_are_said_where_the_case_has_them():
+    ornithopter, starter = solved.by_hand("ornithopter"), solved.by_hand("four-bar-synthesis")
+    found = told(ornithopter)
+    drive = ornithopter.case.pinned_drive
+    assert drive is not None
+    assert f"the pins of {drive.joint} and the links that turn with them" in found["Torque at shafts"]
+    assert found["Contact in slots"].startswith("Pins in slots at guide, slot-right and slot-left touch a flank")
+    wings = list(dict.fromkeys(one.link for one in ornithopter.case.wings))
+    assert len(wings) == 2
+    assert all(link in found["Wings"] for link in wings)
+    assert told(starter).keys() & {"Contact in slots", "Wings"} == set()
+    assert "Torque at shafts" in told(starter)
+
+
+def test_tilt_without_a_stated_clearance_is_said_of_layers():
+    layered = solved.by_hand("ornithopter")
+    assert "without a stated clearance" in told(layered)["Layers"]
+    held = {name: joint.model_copy(update={"clearance": 0.1}) for name, joint in layered.case.joints.items()}
+    loose = replace(layered, case=layered.case.model_copy(update={"joints": held}))
+    assert "without a stated clearance" not in told(loose)["Layers"]

@@ -6,6 +6,7 @@ A block of 50 g is all of its mass: at constant ω, x = r cos φ + √(l² - (r 
 import csv
 import math
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,9 @@ import pytest
 from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 from loads.states.case_motion import solve_case_motion
+from reports.figures.motion_figures import angles_figure, forces_figure, torque_figure
 from reports.motion.csv_tables import write_tables
+from reports.motion.figures import energy_figure, rate_figures
 from reports.motion.lines import motion_lines
 from reports.motion.rate_rows import ends
 from reports.motion.rates import series, vector_extremes
@@ -184,6 +187,58 @@ def test_lines_say_once_what_load_cases_share(moved):
     assert head.index("angular speed") + len("angular speed") == unit.index("[rad/s]") + len("[rad/s]")
     assert "linkage, shaking moment about O:" in slow
     assert max(map(len, slow.split("\n"))) < 160
+
+
+def test_figures_draw_what_tables_tell_in_the_units_of_their_axes(moved):
+    """Two load cases at two speeds: power by the torque of virtual work in W, energy in N mm, forces in N."""
+    figures = rate_figures(moved)
+    assert list(figures) == ["link-speeds", "point-speeds", "energy-1", "energy-2", "energy-3", "energy-4"]
+    for name, figure, omega in (("slow", "energy-1", 2.0 * math.pi), ("fast", "energy-4", 20.0 * math.pi)):
+        speed, rate = block(omega)
+        drawn = {axes.get_ylabel(): axes.lines for axes in figures[figure].axes}
+        assert list(drawn) == ["energy [N·mm]", "drive power [W]", "force on the ground [N]"]
+        kinetic, power, shaking = (lines[0] for lines in drawn.values())
+        np.testing.assert_allclose(kinetic.get_ydata(), 0.5 * MASS * speed**2, atol=1e-12)
+        np.testing.assert_allclose(power.get_ydata(), moved.torque[name] * omega / 1e3, rtol=1e-9)
+        np.testing.assert_allclose(shaking.get_ydata(), np.abs(MASS * rate), atol=1e-12)
+        np.testing.assert_allclose(power.get_xdata(), 30.0 + np.linspace(0.0, 360.0, 73))
+    ground, rates = figures["energy-1"].axes[2].lines[2], series(moved, "slow")
+    falling = replace(rates, whole=rates.whole | {"potential_energy": np.linspace(7.0, -5.0, 73)})
+    above = energy_figure(moved, "slow", falling).axes[0].lines[2]
+    assert above.get_label() == "potential, above its least"
+    np.testing.assert_allclose(above.get_ydata(), np.linspace(12.0, 0.0, 73), atol=1e-12)
+    np.testing.assert_allclose(ground.get_ydata(), np.hypot(5.0 + MASS * block(2.0 * math.pi)[1], MASS * 9810.0))
+    speed, rate = block(2.0 * math.pi)
+    for axes, expected, unit in zip(figures["point-speeds"].axes, (speed, rate), ("mm/s", "mm/s²"), strict=True):
+        assert axes.get_ylabel().endswith(f"[{unit}]")
+        [line] = [line for line in axes.lines if "B" in line.get_label().split(", ")]
+        np.testing.assert_allclose(line.get_ydata(), np.abs(expected), atol=1e-9)
+    [crank] = [line for line in figures["link-speeds"].axes[0].lines if line.get_label() == "crank"]
+    np.testing.assert_allclose(crank.get_ydata(), 2.0 * math.pi)
+
+
+def test_figures_of_a_motion_draw_directions_torques_and_sizes_of_forces(moved):
+    """Of a slider-crank with a rod at asin((e - r sin φ)/l), whose load case with friction is drawn without it, too."""
+    phi = 30.0 + np.linspace(0.0, 360.0, 73)
+    rod = np.degrees(np.arcsin((E - R * np.sin(np.radians(phi))) / L))
+    angles = {line.get_label(): line for line in angles_figure(moved).axes[0].lines}
+    assert list(angles) == ["crank", "rod", "block"]
+    for link, expected in (("crank", phi), ("rod", rod), ("block", 0.0 * phi)):
+        np.testing.assert_allclose(angles[link].get_ydata(), expected, atol=1e-9)
+    [axes] = torque_figure(moved).axes
+    assert axes.get_ylabel() == "drive torque on crank [N·mm]"
+    torques = {line.get_label(): line.get_ydata() for line in axes.lines}
+    for name, torque in moved.torque.items():
+        np.testing.assert_array_equal(torques[name], torque)
+    rubbing = {name: torques[f"{name} without friction"] for name in ("slow", "fast")}
+    for name, torque in rubbing.items():
+        np.testing.assert_array_equal(torque, moved.frictionless[name])
+        assert np.all((torques[name] - torque)[1:-1] >= -1e-9)  # turning forwards it drives against friction
+    assert np.ptp(torques["slow"] - rubbing["slow"]) > 1.0
+    [axes] = forces_figure(moved, "fast").axes
+    drawn = {joint: line.get_ydata() for line in axes.lines for joint in line.get_label().split(", ")}
+    for joint in "OABS":
+        np.testing.assert_allclose(drawn[joint], np.hypot(*moved.forces["fast"].forces[joint].T))
 
 
 def test_numbers_of_tables():

@@ -141,3 +141,15 @@ def test_nothing_checked_is_undecided(result):
     empty = {name: replace(case, checks=()) for name, case in result.load_cases.items()}
     text = wording.headline(replace(result, load_cases=empty, verdict=Verdict.UNDECIDED))
     assert text.startswith("Undecided: the case contains no check.")
+
+
+def test_no_headline_is_about_what_is_not_applicable(changed):
+    """Where one share of the load is open and leaves a case undecided, the headline is about that alone."""
+
+    def lost(check):
+        if (check.link, check.name, check.load_case) == ("GF", "strength", "weight"):
+            return check.left_open("its band straddles the limit")
+        return check.not_applicable("gone") if check.link in ("AE", "CF") else check
+
+    text = wording.headline(changed(lost))
+    assert text.startswith("Undecided: 1 of 20 checks is open: safety factor of GF. Safety factor of GF: its band")

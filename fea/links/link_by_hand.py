@@ -13,9 +13,9 @@ from fea.beam.loads import BeamLoads, PointLoad
 from fea.beam.section_stress import SectionStress
 from fea.beam.theory import BeamCheck, check_beam
 from fea.buckling.buckling import least_factor
-from fea.check.second_order import second_order_loads
 from fea.common.link_loads import LinkLoads
 from fea.common.plates import plates
+from fea.links.second_order import second_order_loads
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.outcomes.unloaded import load_size, without_rounding
 from geometry.bodies.body import hand_section, no_beam, reference_line

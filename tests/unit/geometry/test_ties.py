@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fea.beam.piecewise import Piecewise
-from fea.common.ties import first_largest
+from geometry.base.ties import first_largest, first_least, ranked
 
 
 @pytest.mark.parametrize(
@@ -30,3 +30,11 @@ def test_a_constant_has_its_peak_at_the_first_end_of_a_beam(rounding):
     )
     assert constant.largest(lambda f: abs(f[:, 0]))[:2] == (0.0, "after")
     assert constant.largest(lambda f: f[:, 0])[:2] == (0.0, "after")
+
+
+@pytest.mark.parametrize("rounding", [-1e-12, 0.0, 1e-12])
+def test_order_and_least_by_the_size_of_what_values_are_differences_of(rounding):
+    """Gaps of some 1e-4 mm between links of 100 mm have a rounding of 1e-9 of themselves."""
+    values = [3e-4, 1e-4 + rounding, 2.0, 1e-4, 3e-4 - rounding, math.nan]
+    assert first_least(values, 100.0) == 1
+    assert ranked(values[:5], 100.0) == [1, 3, 0, 4, 2]

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from loads.states.case_motion import CaseMotion, solve_case_motion
+from fea.whole.rubbed_motion import rubbed_motion
+from loads.states.case_motion import CaseMotion
 from loads.states.flapping import in_air
 
 
@@ -60,6 +61,6 @@ def air_range(moved: CaseMotion) -> AirRange | None:
     if all(load_case.flapping is None for load_case in moved.case.load_cases.values()):
         return None
     found: Mapping[float | None, CaseMotion] = {
-        share: solve_case_motion(in_air(moved.case, share)) for share in (None, 0.0, 1.0)
+        share: rubbed_motion(in_air(moved.case, share)) for share in (None, 0.0, 1.0)
     }
     return AirRange(without=found[None], least=found[0.0], largest=found[1.0])

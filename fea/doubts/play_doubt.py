@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.cut_free import link_loads
-from fea.check.force_doubt import measures
-from fea.check.load_growth import LEAST, Growths
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
 from fea.common.source import Source, play_source
+from fea.doubts.force_doubt import measures
+from fea.doubts.load_growth import LEAST, Growths
 from fea.frame.joint_forces import JointForces, joint_forces
 from fea.nonlinear.large_displacement import LargeDisplacement, examine
 from geometry.base.errors import CannotRunError, CaseError

@@ -1,8 +1,12 @@
-"""What grows out of proportion to scattered loads: bending under compression, and the forces in a linkage that moves.
+"""What grows out of proportion to the load: bending under compression, and the forces in a linkage that moves.
 
 The deformed shape of a linkage of linear material depends on the ratio of load to modulus alone. So the case is
 calculated again with all moduli divided by the least and by the largest value of that ratio. The forces found, times
 the load's scatter, are those under the scattered load.
+
+Where displacements are small, numbers are those of the undeformed pose, and what they become on the deformed shape is
+growth. There it goes with scattered loads no faster than a shallow toggle's (``fea.nonlinear.stability.growth``), which
+bounds it as well where no deformed shape was found.
 """
 
 import math
@@ -11,11 +15,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fea.check.link_by_hand import LinkByHand, cut_link, plates_by_hand
 from fea.common.scatter import Scatter, compliance_scatter, load_scatter
 from fea.common.source import Source, SourceKind
 from fea.frame.joint_forces import joint_forces
-from fea.nonlinear.large_displacement import LargeDisplacement, examine
+from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand
+from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
+from fea.nonlinear.stability import growth
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
@@ -25,6 +30,8 @@ from loads.statics.statics import Reactions
 SOURCES = (Source(kind=SourceKind.GROWTH, detail="of bending under compression and of joint forces"),)
 LEAST = 1e-3
 """Growth below which it is left out."""
+NOTHING = 1e-9
+"""Share of the largest number of its kind below which one is rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +83,7 @@ def growths(
     reactions: Reactions,
     hands: Mapping[str, LinkByHand],
 ) -> Growths:
-    """Return what the scatter of load and modulus makes of a load case beyond proportion, by hand calculation.
+    """Return what the load, with its scatter and that of the modulus, makes of numbers beyond proportion, by hand.
 
     Parameters
     ----------
@@ -100,9 +107,11 @@ def growths(
     slack = [compliance_scatter(material) for material in materials]
     low = load.low * min((s.low for s in slack), default=1.0)
     high = load.high * max((s.high for s in slack), default=1.0)
+    plain = _numbers(hands, moved.reactions or reactions)
+    if moved.state == "small":
+        return _of_small(case, load_case, loads, moved, reactions, plain, high)
     if low == high or moved.state not in ("deformed", "off", "unknown"):
         return Growths()
-    plain = _numbers(hands, moved.reactions or reactions)
     least, most = (_at(case, load_case, pose, loads, reactions, factor) for factor in (low, high))
     found = []
     for i, kind in enumerate(plain):
@@ -115,14 +124,50 @@ def growths(
             )
             for name, value in kind.items()
         }
-        found.append(
-            {
-                name: Scatter(low=a, high=b, sources=SOURCES)
-                for name, (a, b) in ends.items()
-                if a < 1.0 - LEAST or b > 1.0 + LEAST
-            }
-        )
-    return Growths(stress=found[0], displacement=found[1], joints=found[2])
+        found.append(ends)
+    return _told(found)
+
+
+def _told(ends: Sequence[Mapping[str, tuple[float, float]]]) -> Growths:
+    stress, displacement, joints = (
+        {
+            name: Scatter(low=low, high=high, sources=SOURCES)
+            for name, (low, high) in kind.items()
+            if low < 1.0 - LEAST or high > 1.0 + LEAST
+        }
+        for kind in ends
+    )
+    return Growths(stress=stress, displacement=displacement, joints=joints)
+
+
+def _of_small(
+    case: Case,
+    load_case: str,
+    loads: Sequence[Load],
+    moved: LargeDisplacement,
+    reactions: Reactions,
+    plain: _Numbers,
+    high: float,
+) -> Growths:
+    """Growth of the numbers of the undeformed pose, at the largest load over modulus."""
+    nominal, most = (growth(moved.factor / times) - 1.0 if moved.factor else 0.0 for times in (1.0, high))
+    if moved.grown is None:
+        return _told([dict.fromkeys(kind, (1.0 / (1.0 + most), 1.0 + most)) for kind in plain])
+    rise = max(most / nominal if nominal > 0.0 else high, 1.0)
+    found = []
+    for before, after in zip(plain, _by_hand(case, load_case, moved.grown, reactions, loads), strict=True):
+        least = NOTHING * max(before.values(), default=0.0)
+        over = {name: rise * (after[name] / value - 1.0) if value > least else 0.0 for name, value in before.items()}
+        found.append({name: (max(1.0 + min(x, 0.0), 0.0), 1.0 + max(x, 0.0)) for name, x in over.items()})
+    return _told(found)
+
+
+def _by_hand(
+    case: Case, load_case: str, moved: LargeDisplacement, reactions: Reactions, loads: Sequence[Load]
+) -> _Numbers:
+    cut = {link: cut_link(case, link, load_case, moved, reactions, loads) for link in case.checked_links}
+    hands = {link: plates_by_hand(case, link, borne)[0][1] for link, borne in cut.items()}
+    return _numbers(hands, moved.reactions or reactions)
 
 
 def _at(
@@ -140,14 +185,10 @@ def _at(
     soft = _softened(case, load_case, factor)
     try:
         forces = joint_forces(soft, pose, loads)
-        moved = examine(soft, load_case, forces, loads)
-        if moved.gives_way:
-            return None
-        cut = {link: cut_link(soft, link, load_case, moved, reactions, loads) for link in soft.checked_links}
-        hands = {link: plates_by_hand(soft, link, borne)[0][1] for link, borne in cut.items()}
+        moved = with_growth(soft, load_case, examine(soft, load_case, forces, loads), loads)
+        return None if moved.gives_way else _by_hand(soft, load_case, moved.grown or moved, reactions, loads)
     except (CaseError, CannotRunError):
         return None
-    return _numbers(hands, moved.reactions or reactions)
 
 
 def _numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> _Numbers:

@@ -1,0 +1,190 @@
+"""What doubt about the links' stiffness, and about their pins, makes of joint forces and of the stress that follows.
+
+Each cause changes a joint force, and a link's stress by hand calculation, by some share of it. To first order the
+shares of stiffnesses add up, each upwards or downwards; all causes are taken at their worst together. How pins share
+the couples between layers is one cause, with several answers: the least and the greatest of them count. A link in
+compression on pins that tilt bends out of the plane from the first newton, by the couples of its layers, and more than
+in the frame, whose pins keep its angles: the answers of sharing hold that growth (``fea.links.second_order``).
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from fea.beam.cut_free import link_loads
+from fea.common.convex import outermost
+from fea.common.link_loads import LinkLoads
+from fea.common.plates import plates
+from fea.common.scatter import Scatter
+from fea.common.source import COUPLES, Source
+from fea.doubts.load_growth import LEAST, Growths
+from fea.frame.deviation import Deviation
+from fea.frame.joint_forces import JointForces
+from fea.links.link_by_hand import link_by_hand
+from fea.links.second_order import on_tilting_pins
+from loads.case.case import Case
+from loads.case.forks import apart
+from loads.records.applied import Load
+
+_Around = Callable[[float, Sequence[float]], Scatter]
+"""From a value, and what it becomes by each cause alone, to the least and the largest factor on it."""
+
+
+def stiffness_doubt(case: Case, load_case: str, forces: JointForces, loads: Sequence[Load]) -> Growths:
+    """Return by how much stress, displacement and joint forces may differ since the links' stiffness is in doubt.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    forces : JointForces
+    loads : sequence of Load
+        That act on the links.
+
+    Returns
+    -------
+    Growths
+        Empty where no link's stiffness is in doubt since none is a solid.
+    """
+    if not forces.open_by:
+        return Growths()
+    around = _summed(forces.sources)
+    stress, displacement = {}, {}
+    for link in case.checked_links:
+        every = (forces.reactions, *(one.reactions for one in forces.open_by))
+        plain, *others = (
+            measures(case, link, link_loads(load_case, link, case.body(link), reactions, loads)) for reactions in every
+        )
+        stress[link], displacement[link] = (around(plain[i], [one[i] for one in others]) for i in (0, 1))
+    return Growths(
+        stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(forces, forces.open_by, around))
+    )
+
+
+def sharing_doubt(
+    case: Case,
+    load_case: str,
+    forces: JointForces,
+    loads: Sequence[Load],
+    *,
+    grown: bool = False,
+    links: Sequence[str] | None = None,
+) -> Growths:
+    """Return by how much stress, displacement and joint forces may differ since pins may tilt, by hand.
+
+    Parameters
+    ----------
+    case, load_case, forces, loads
+        As of ``stiffness_doubt``.
+    grown : bool, optional
+        As of ``ways_borne``.
+    links : sequence of str or None, optional
+        Links that are looked at; None for every one.
+
+    Returns
+    -------
+    Growths
+        Empty where nothing is shared.
+    """
+    if not forces.sharings:
+        return Growths()
+    stress, displacement = {}, {}
+    for link in case.checked_links if links is None else links:
+        ways = ways_borne(case, load_case, link, forces, loads, grown=grown)
+        plain, *others = (_by_hand(case, link, borne) for borne in ways)
+        stress[link], displacement[link] = (_widest(plain[i], [one[i] for one in others]) for i in (0, 1))
+    return Growths(
+        stress=_open(stress), displacement=_open(displacement), joints=_open(_joints(forces, forces.sharings, _widest))
+    )
+
+
+def ways_borne(
+    case: Case, load_case: str, link: str, forces: JointForces, loads: Sequence[Load], *, grown: bool = False
+) -> tuple[tuple[LinkLoads, ...], ...]:
+    """Return what acts on a link, or on each plate of a pair, with tight pins and in the ways of sharing that count.
+
+    In the plane all ways have the same forces, and stress is a convex function of what acts across it: it is largest at
+    a corner of the hull of all ways. These count, and the one with the least couples.
+
+    Parameters
+    ----------
+    case, load_case, link, forces, loads
+        As of ``stiffness_doubt``; the link is one of the case's.
+    grown : bool, optional
+        True where what acts with tight pins holds the growth on free pins already.
+
+    Returns
+    -------
+    tuple of tuple of LinkLoads
+    """
+    body = case.body(link)
+    tight, *others = (
+        link_loads(load_case, link, body, reactions, loads)
+        for reactions in (forces.reactions, *(one.reactions for one in forces.sharings))
+    )
+    longest = case.linkage.longest
+    across = np.array([[pin.wrench[2:5] / (1.0, longest, longest) for pin in way.pins] for way in others])
+    across = across.reshape(len(others), -1)
+    chosen = {*outermost(across).tolist(), int(np.argmin(np.linalg.norm(across, axis=1)))}
+    borne = [_borne(case, link, others[i], tilts=True) for i in sorted(chosen)]
+    return (_borne(case, link, tight, tilts=grown), *borne)
+
+
+def _joints(forces: JointForces, changes: Sequence[Deviation], around: _Around) -> dict[str, Scatter]:
+    joints = {}
+    for name, joint in forces.reactions.joints.items():
+        along = joint.force / (joint.magnitude or 1.0)
+        joints[name] = around(joint.magnitude, [float(along @ one.reactions.joints[name].force) for one in changes])
+    return joints
+
+
+def measures(case: Case, link: str, loads: LinkLoads, *, tilts: bool = False) -> tuple[float, float]:
+    """Return stress and displacement by hand; the largest pin force for both of a link for which no beam stands.
+
+    Parameters
+    ----------
+    case : Case
+    link : str
+    loads : LinkLoads
+        At one pose; of a pair the numbers are those of its worse plate.
+    tilts : bool, optional
+        Whether its pins tilt, so that bending grows as ``on_tilting_pins`` says.
+
+    Returns
+    -------
+    tuple of (float, float)
+        [MPa], [mm]; twice [N] without beam.
+    """
+    return _by_hand(case, link, _borne(case, link, loads, tilts=tilts))
+
+
+def _borne(case: Case, link: str, loads: LinkLoads, *, tilts: bool) -> tuple[LinkLoads, ...]:
+    borne = plates(loads, apart(case, link))
+    return tuple(on_tilting_pins(case, link, plate) for plate in borne) if tilts else borne
+
+
+def _by_hand(case: Case, link: str, borne: Sequence[LinkLoads]) -> tuple[float, float]:
+    hands = [link_by_hand(case, link, plate) for plate in borne]
+    if hands[0].check.without:
+        largest = max(float(np.linalg.norm(pin.wrench[:3])) for plate in borne for pin in plate.pins)
+        return largest, largest
+    return max(hand.worst[1].equivalent for hand in hands), max(hand.displacement for hand in hands)
+
+
+def _summed(sources: tuple[Source, ...]) -> _Around:
+    def around(value: float, changed: Sequence[float]) -> Scatter:
+        steps = np.array([one - value for one in changed]) / (value or np.inf)
+        low, high = float(np.minimum(steps, 0.0).sum()), float(np.maximum(steps, 0.0).sum())
+        return Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources)
+
+    return around
+
+
+def _widest(value: float, changed: Sequence[float]) -> Scatter:
+    shares = np.array([value, *changed]) / value if value > 0.0 else np.ones(1)
+    return Scatter(low=max(float(shares.min()), 0.0), high=float(shares.max()), sources=COUPLES)
+
+
+def _open(found: Mapping[str, Scatter]) -> dict[str, Scatter]:
+    return {name: one for name, one in found.items() if one.high - one.low > LEAST}

@@ -1,0 +1,227 @@
+"""How far pins that run in their holes let a point move, in the plane and across it.
+
+A straight pin touches its hole at the two rims, where its axis may stand anywhere in a circle of half the play. Both
+rims shifted alike are the play of the joint, shifted against each other they tilt the link, by up to c/t. By virtual
+work a shift v of a rim moves a point by R · v along a unit force there, with the force R that this unit force makes at
+the rim: so the point may move by
+
+    Σ c/2 |R|
+
+over all rims, to first order. It holds whatever loads act: in a redundant linkage the links give where the tilts do
+not fit together, which the frame's own R has in it. With rigid links the free motion is the least of that sum over all
+forces in equilibrium, and so no larger.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.frame.linear import solve_frame
+from fea.frame.linkage_frame import LinkageFrame
+from fea.frame.model import NodeLoad
+from geometry.linkage.play import Reach
+from loads.case.case import Case
+from loads.case.forks import eye_of
+from loads.case.heights import thickness
+from loads.records.applied import shifted
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RimReach(Reach):
+    """Where a vector may end by the play at rims, of which each of some groups has its play in any one hole.
+
+    Attributes
+    ----------
+    joints : tuple of str
+        Of each group.
+    axes : complex array (groups, holes, rims, 2)
+        Conjugate half axes of every rim's ellipse.
+    """
+
+    def support(self, direction: NDArray[np.complex128]) -> Real:
+        """Return how far the vector may go in directions.
+
+        Parameters
+        ----------
+        direction : complex array (n,)
+            Unit vectors.
+
+        Returns
+        -------
+        array (n,)
+        """
+        along = (np.conj(direction)[:, None, None, None, None] * self.axes).real
+        return np.asarray(np.sqrt((along**2).sum(axis=-1)).sum(axis=-1).max(axis=-1).sum(axis=-1))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FreeMotion:
+    """How far a point may move by the play of pins at the rims of their holes.
+
+    Attributes
+    ----------
+    plane : RimReach
+        In the plane [mm].
+    across : float
+        To either side of it [mm].
+    """
+
+    plane: RimReach
+    across: float
+
+
+def free_motion(case: Case, frame: LinkageFrame, link: str, point: str) -> FreeMotion:
+    """Return how far a point of a linkage may move by the play of pins.
+
+    Parameters
+    ----------
+    case : Case
+        With play.
+    frame : LinkageFrame
+        Of the linkage, held by its drive.
+    link, point : str
+        Their names.
+
+    Returns
+    -------
+    FreeMotion
+    """
+    node = frame.points[link, point]
+    at_rims = [rim_forces(case, frame, (NodeLoad(node=node, wrench=unit),)) for unit in np.eye(6)[:3]]
+    groups = [(name, group) for name in case.joints for group in loose_holes(case, name)]
+    shape = (len(groups), max((len(group) for _, group in groups), default=0), 2)
+    axes, across = np.zeros((*shape, 2), dtype=complex), np.zeros(shape)
+    for i, (name, group) in enumerate(groups):
+        for k, (held, play) in enumerate(group):
+            x, y, z = (play / 2.0 * found[name, held] for found in at_rims)
+            axes[i, k] = x + 1j * y
+            across[i, k] = np.linalg.norm(z, axis=-1)
+    plane = RimReach(joints=tuple(name for name, _ in groups), axes=axes)
+    return FreeMotion(plane=plane, across=float(across.sum(axis=-1).max(axis=-1, initial=0.0).sum()))
+
+
+def loose_holes(case: Case, joint: str) -> tuple[tuple[tuple[str, float], ...], ...]:
+    """Return the holes in which the play of a joint's pin may lie.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+
+    Returns
+    -------
+    tuple of tuple of (str, float)
+        Links with the play in their hole [mm]. Of those in one tuple any may have all of it, where nothing states in
+        which link the pin is tight; slot and hole, in different ones, have theirs beside each other.
+    """
+    record = case.joints[joint]
+    loose = tuple(link for link in record.links if not record.is_tight_in(link))
+    found = [tuple((link, record.clearance) for link in loose)]
+    if record.type == "pin-in-slot":
+        link, point = record.links[0], case.linkage.joint_points(joint)[0]
+        slot = case.links[link].slots.get(point)
+        found = [((record.links[1], record.clearance),), ((link, 0.0 if slot is None else slot.clearance),)]
+    return tuple(kept for each in found if (kept := tuple(hole for hole in each if hole[1] > 0.0)))
+
+
+def known_hole(case: Case, joint: str, link: str) -> tuple[float, float] | None:
+    """Return the rims of a joint's hole in one of its links.
+
+    Parameters
+    ----------
+    case : Case
+    joint, link : str
+
+    Returns
+    -------
+    tuple of 2 float or None
+        z of both, from the mid-plane of the link [mm]; None where neither a part nor a thickness of the link tells.
+    """
+    if case.links[link].part is not None:
+        ring = eye_of(case, joint, link)
+        return ring.low, ring.high
+    height = thickness(case.links[link], case.parts)
+    return None if height is None else (-height / 2.0, height / 2.0)
+
+
+def rims(case: Case, joint: str, link: str) -> tuple[float, float]:
+    """Return the rims of a joint's hole in one of its links; of an unknown one those of the shortest.
+
+    Parameters
+    ----------
+    case : Case
+        With a part whose holes are known.
+    joint, link : str
+
+    Returns
+    -------
+    tuple of 2 float
+        z of both, from the mid-plane of the link [mm].
+    """
+    found = known_hole(case, joint, link)
+    return found or (-_shortest(case) / 2.0, _shortest(case) / 2.0)
+
+
+def unknown_lengths(case: Case) -> tuple[str, ...]:
+    """Say how long holes with play are taken to be whose length no part and no thickness tells.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    tuple of str
+        A sentence, or none.
+    """
+    holes = {(joint, link) for joint in case.joints for group in loose_holes(case, joint) for link, _ in group}
+    unknown = [link for link in case.links if any(on == link and not known_hole(case, j, on) for j, on in holes)]
+    if not unknown:
+        return ()
+    return (
+        f"the holes of {', '.join(unknown)} are taken to be as long as the shortest of the others, "
+        f"{_shortest(case):.3g} mm, since no thickness is stated",
+    )
+
+
+def rim_forces(case: Case, frame: LinkageFrame, loads: tuple[NodeLoad, ...]) -> Mapping[tuple[str, str], Real]:
+    """Return the forces on the rims of every hole with play, under loads and nothing else.
+
+    Parameters
+    ----------
+    case : Case
+        With play.
+    frame : LinkageFrame
+        Of the linkage, held by its drive.
+    loads : tuple of NodeLoad
+
+    Returns
+    -------
+    mapping of (str, str) to ndarray
+        (joint, link) -> (rims, 2) along x and y [N].
+    """
+    bare = tuple(replace(e, load_first=np.zeros(3), load_last=np.zeros(3)) for e in frame.model.elements)
+    solved = solve_frame(replace(frame.model, elements=bare, loads=loads))
+    joints = frame.reactions(solved.joint_wrenches, solved.residual).joints
+    found = {}
+    for name in case.joints:
+        for link, _ in (hole for group in loose_holes(case, name) for hole in group):
+            wrench = joints[name].wrench
+            if link == case.joints[name].links[0]:
+                wrench = shifted(-wrench, np.array([0.0, 0.0, case.linkage.rise(name)]))
+            low, high = rims(case, name, link)
+            force, turned = wrench[:2], np.array([wrench[4], -wrench[3]])  # the sum of z R over both rims
+            found[name, link] = np.array([high * force - turned, turned - low * force]) / (high - low)
+    return found
+
+
+def _shortest(case: Case) -> float:
+    """Length of the shortest hole that is known [mm]."""
+    known = [
+        hole for name, joint in case.joints.items() for link in joint.links if (hole := known_hole(case, name, link))
+    ]
+    return min(high - low for low, high in known)

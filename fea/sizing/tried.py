@@ -1,0 +1,202 @@
+"""Whether what is told to change a verdict does so: the load case is checked again with it, by hand calculation.
+
+Loads times a factor are moduli and strengths over it: shape, and safety factors, are those under the larger loads.
+A number that solids gave is taken as many times as large as hand calculation finds its own at the changed value.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from fea.check.run import check_case
+from fea.common.verdict import LINKAGE, MOTOR_QUANTITIES, UNLOADED_QUANTITIES, CheckOutcome, Quantity, Subject, Verdict
+from fea.outcomes.result import CheckResult, HandResult, LoadCaseResult
+from geometry.base.errors import CannotRunError, CaseError
+from geometry.materials.material import Material
+from loads.case.case import Case
+from loads.records.check_spec import BearingCheck, DisplacementCheck, LimitLoadCheck, PinCheck, SafetyFactorCheck
+
+MODULI = ("youngs_modulus", "sustained_modulus")
+STRENGTHS = (
+    "yield_strength",
+    "ultimate_strength",
+    "strength_across_layers",
+    "shear_strength_between_layers",
+    "sustained_stress",
+    "ultimate_strength_by_diameter",
+    "strength",
+)
+"""Entries of a card, each with its range where it has one."""
+_STATIC = (SafetyFactorCheck, DisplacementCheck, PinCheck, BearingCheck, LimitLoadCheck)
+_OF_LINKAGE = (Quantity.LOAD_SHARE, Quantity.BUCKLING_FACTOR)
+"""One or the other says whether the linkage as a whole holds the load."""
+_Key = tuple[str, Quantity, Subject]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scaled:
+    """A change of a case.
+
+    Attributes
+    ----------
+    modulus, strength : float
+        Factors on moduli and on strengths.
+    material : str
+        Name of the one that changes; "" for all of them.
+    """
+
+    modulus: float = 1.0
+    strength: float = 1.0
+    material: str = ""
+
+    @classmethod
+    def loads(cls, factor: float) -> "Scaled":
+        """Return the change that stands for a factor on all loads.
+
+        Parameters
+        ----------
+        factor : float
+
+        Returns
+        -------
+        Scaled
+        """
+        return cls(modulus=1.0 / factor, strength=1.0 / factor)
+
+    def on(self, case: Case) -> Case:
+        """Return the changed case.
+
+        Parameters
+        ----------
+        case : Case
+
+        Returns
+        -------
+        Case
+        """
+        every = case.all_materials
+        names = [self.material] if self.material else list(every)
+        return case.model_copy(update={"materials": {**every, **{name: self._on(every[name]) for name in names}}})
+
+    def _on(self, material: Material) -> Material:
+        factors = {**dict.fromkeys(MODULI, self.modulus), **dict.fromkeys(STRENGTHS, self.strength)}
+        entries = {entry: factor for key, factor in factors.items() for entry in (key, f"{key}_range")}
+        return material.model_copy(
+            update={
+                entry: _times(value, factor)
+                for entry, factor in entries.items()
+                if (value := getattr(material, entry, None)) is not None and not isinstance(value, str)
+            }
+        )
+
+
+def _times(value: object, factor: float) -> object:
+    if isinstance(value, float):
+        return value * factor
+    assert isinstance(value, tuple)
+    if value and isinstance(value[0], tuple):  # (diameter, strength)
+        return tuple((diameter, strength * factor) for diameter, strength in value)
+    return tuple(end * factor for end in value)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trials:
+    """Checks of the load cases of a result with something changed.
+
+    Attributes
+    ----------
+    result : CheckResult
+    """
+
+    result: CheckResult
+    _done: dict[tuple[str, Scaled], LoadCaseResult | None] = field(default_factory=dict)
+
+    def share(self, check: CheckOutcome, change: Scaled) -> float:
+        """Return by which factor a check and all that passes beside it keep their limits with a change, the least.
+
+        Parameters
+        ----------
+        check : CheckOutcome
+        change : Scaled
+
+        Returns
+        -------
+        float
+            1 or more where the change holds; 0 where hand calculation has no answer.
+        """
+        plain, found = self._plain(check.load_case), self._checked(check.load_case, change)
+        if plain is None or found is None or (found.gives_way and check.subject != LINKAGE):
+            return 0.0
+        told = self.result.load_cases[check.load_case].checks
+        return min((1.0, *_shares(check, told, _outcomes(plain), _outcomes(found))))
+
+    def _plain(self, load_case: str) -> LoadCaseResult | None:
+        """The case as it is, by hand."""
+        case = self.result.load_cases[load_case]
+        by_hand = all(isinstance(link, HandResult) for link in case.links.values())
+        return case if by_hand else self._checked(load_case, Scaled())
+
+    def _checked(self, load_case: str, change: Scaled) -> LoadCaseResult | None:
+        if (load_case, change) not in self._done:
+            self._done[load_case, change] = self._check(load_case, change)
+        return self._done[load_case, change]
+
+    def _check(self, load_case: str, change: Scaled) -> LoadCaseResult | None:
+        case = change.on(self.result.case)
+        checks = {name: check for name, check in case.all_checks.items() if isinstance(check, _STATIC)}
+        alone = case.model_copy(update={"load_cases": {load_case: case.load_cases[load_case]}, "checks": checks})
+        try:
+            return check_case(alone, name=self.result.name, fidelity="beam", threads=1).load_cases[load_case]
+        except (CaseError, CannotRunError):
+            return None
+
+
+def _shares(
+    check: CheckOutcome,
+    told: Sequence[CheckOutcome],
+    plain: Mapping[_Key, CheckOutcome],
+    found: Mapping[_Key, CheckOutcome],
+) -> Iterator[float]:
+    """Yield by which factor each number that counts keeps its limit."""
+    if _whole(check) or all(one.verdict is Verdict.PASS for one in told if _whole(one)):
+        yield from (one.margin for one in found.values() if _whole(one))
+    for one in told:
+        asked = _key(one) == _key(check)
+        if _whole(one) or not goes_with_load(one) or not (asked or one.verdict is Verdict.PASS):
+            continue
+        before, after = plain.get(_key(one)), found.get(_key(one))
+        if before is None or after is None or after.margin == math.inf:
+            continue  # not compressed any more, or not told by hand
+        if 0.0 < before.margin < math.inf:
+            yield one.margin * after.margin / before.margin
+        elif before.margin == 0.0 and not before.value.unknowable:
+            yield 0.0
+        # Else no beam tells, and the number goes with the change by definition.
+
+
+def _outcomes(result: LoadCaseResult) -> dict[_Key, CheckOutcome]:
+    return {_key(one): one for one in result.checks}
+
+
+def _key(check: CheckOutcome) -> _Key:
+    return check.name, check.quantity, check.subject
+
+
+def _whole(check: CheckOutcome) -> bool:
+    return check.subject == LINKAGE and check.quantity in _OF_LINKAGE
+
+
+def goes_with_load(check: CheckOutcome) -> bool:
+    """Return True of a number that loads, moduli and strengths make in one pose, so that it can be tried.
+
+    Parameters
+    ----------
+    check : CheckOutcome
+
+    Returns
+    -------
+    bool
+        False of motors, whose linkage is rigid, of fatigue, and of what comes from no load.
+    """
+    others = (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES, Quantity.FATIGUE_STRESS, Quantity.FATIGUE_LIFE)
+    return check.quantity not in others

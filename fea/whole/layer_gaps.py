@@ -1,0 +1,281 @@
+"""Whether deflection and tilting pins close the gap between links that pass over each other.
+
+Links of different layers keep a gap along the pins. Under load they bend and twist across the plane, and with play
+their pins tilt in their holes. Where two outlines lie over each other in the pose, the gap at every corner of what they
+share is reduced by how far the lower link rises there against the upper one: by the linear frame of beams, in the band
+of its flexibility, of the load and of the moduli, and by the play at all rims at its worst
+(``fea.outcomes.free_motion``), for links that do not bend by it.
+"""
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.common.band import Band
+from fea.common.scatter import compliance_scatter, load_scatter
+from fea.common.source import distinct, play_source
+from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
+from fea.frame.displacement_band import compliance_range
+from fea.frame.linear import FrameSolution
+from fea.frame.linkage_frame import LinkageFrame
+from fea.frame.model import NodeLoad
+from fea.nonlinear.large_displacement import LargeDisplacement
+from fea.outcomes.free_motion import loose_holes, rim_forces
+from geometry.clearance.shape import TOUCHING
+from loads.case.case import Case
+from loads.case.joint_rules import clearances
+from loads.records.check_spec import ClearanceCheck
+from loads.states.clearance import Assembly
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Overlap:
+    """Where two links of different layers lie over each other.
+
+    Attributes
+    ----------
+    lower, upper : str
+        The links.
+    gap : float
+        Between them along the pins [mm].
+    places : ndarray, shape (n, 2)
+        Corners of what they share as seen along the pins, global axes [mm].
+    """
+
+    lower: str
+    upper: str
+    gap: float
+    places: Real
+
+
+def overlaps(frame: LinkageFrame, assembly: Assembly) -> Iterator[Overlap]:
+    """Yield where links of different layers lie over each other in a pose.
+
+    Parameters
+    ----------
+    frame : LinkageFrame
+        In the pose.
+    assembly : Assembly
+        With the links' outlines.
+
+    Yields
+    ------
+    Overlap
+        For every two pieces of two links, but for links on one slider, bonded ones, and faces that touch as they are.
+    """
+    import shapely
+
+    pose = frame.pose
+    together = {frozenset(joint.links) for joint in pose.linkage.joints.values() if joint.bears_moment}
+    placed = {
+        link: [
+            (core, shapely.transform(core.polygon, lambda xy, at=link: xy @ pose.rotation(at).T + pose.origins[at]))
+            for core in shape.cores
+        ]
+        for link, shape in assembly.links.items()
+    }
+    for one, other in itertools.permutations(placed, 2):
+        for core, outline in placed[one] if frozenset((one, other)) not in together else ():
+            for upper, over in placed[other]:
+                gap = upper.low - core.high
+                common = outline.intersection(over) if gap > TOUCHING * (core.high - core.low) else None
+                if common is not None and common.area > 0.0:
+                    yield Overlap(lower=one, upper=other, gap=gap, places=shapely.get_coordinates(common))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Raised:
+    """How far places of links move across the plane by the linear frame.
+
+    Attributes
+    ----------
+    frame : LinkageFrame
+    solution : FrameSolution
+        Of it.
+    """
+
+    frame: LinkageFrame
+    solution: FrameSolution
+
+    def at(self, link: str, places: Real) -> Real:
+        """Return the displacement of places of a link along z.
+
+        Between the stations of a beam its axis is the cubic that their displacements and slopes give; the section turns
+        with the twist between them.
+
+        Parameters
+        ----------
+        link : str
+            A link whose beam the frame has; another one stands still.
+        places : ndarray, shape (n, 2)
+            Global axes [mm].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [mm]
+        """
+        if link not in self.frame.stations:
+            return np.zeros(len(places))
+        from scipy.interpolate import CubicHermiteSpline
+
+        pose, stations = self.frame.pose, self.frame.stations[link]
+        x, y = ((places - pose.origins[link]) @ pose.rotation(link)).T
+        at, nodes = np.array([station[0] for station in stations]), [node for _, node in stations]
+        moved = self.solution.displacements[nodes]
+        arms = np.array([self.frame.arms.get(node, np.zeros(3)) for node in nodes])
+        axis = moved[:, 2] + np.cross(moved[:, 3:], arms)[:, 2]
+        twist, tilt = (moved[:, 3:5] @ pose.rotation(link)).T
+        inside = np.clip(x, at[0], at[-1])
+        along = np.interp(inside, at, -tilt)
+        return np.asarray(
+            CubicHermiteSpline(at, axis, -tilt)(inside) + (x - inside) * along + np.interp(x, at, twist) * y
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LayerGap:
+    """The gap that is left between two links, at the place where its low end is least.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The lower link and the upper one.
+    gap : float
+        Between them without load [mm].
+    left : Band
+        What is left of it [mm].
+    place : tuple of float
+        (x, y) in global axes [mm].
+    """
+
+    names: tuple[str, str]
+    gap: float
+    left: Band
+    place: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LayerGaps:
+    """The gaps between the layers of a linkage under a load case.
+
+    Attributes
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    moved : LargeDisplacement
+        What became of it; its frame is in small displacements.
+    assembly : Assembly
+        With the links' outlines.
+    """
+
+    case: Case
+    load_case: str
+    moved: LargeDisplacement
+    assembly: Assembly
+
+    @cached_property
+    def least(self) -> LayerGap | None:
+        """The gap of which least is left, by the low end of its band; None where no link passes over another."""
+        frame, solution = self.moved.frame, self.moved.solution
+        assert frame is not None
+        assert solution is not None
+        soft = compliance_range(self.case, frame, solution).times(load_scatter(self.case, self.load_case))
+        for material in {
+            self.case.part_of(link).material: self.case.material_of(link) for link in frame.stations
+        }.values():
+            soft = soft.times(compliance_scatter(material))
+        loose = clearances(self.case)
+        sources = distinct(soft.sources, (play_source(loose),) if loose else ())
+        raised, found = Raised(frame=frame, solution=solution), []
+        for over in overlaps(frame, self.assembly):
+            closed = raised.at(over.lower, over.places) - raised.at(over.upper, over.places)
+            free = self._free(frame, over) if loose else np.zeros(len(closed))
+            ends = np.sort([soft.low * closed, soft.high * closed, closed], axis=0)
+            k = int(np.argmax(ends[-1] + free))
+            left = Band(
+                value=over.gap - float(closed[k]),
+                low=over.gap - float(ends[-1][k] + free[k]),
+                high=over.gap - float(ends[0][k] - free[k]),
+                sources=sources,
+            )
+            place = float(over.places[k, 0]), float(over.places[k, 1])
+            found.append(LayerGap(names=(over.lower, over.upper), gap=over.gap, left=left, place=place))
+        return min(found, key=lambda one: one.left.low, default=None)
+
+    def _free(self, frame: LinkageFrame, over: Overlap) -> Real:
+        """How far play lets both links come nearer to each other at places (n,), by forces at rims there."""
+        total = np.zeros(len(over.places))
+        middle, units = over.places.mean(axis=0), {}
+        for link in (over.lower, over.upper):
+            if link in frame.stations:
+                near = [(float(np.linalg.norm(frame.model.nodes[n][:2] - middle)), n) for _, n in frame.stations[link]]
+                units[link] = self._units(frame, min(near)[1])
+        for name in self.case.joints:
+            for group in loose_holes(self.case, name):
+                each = []
+                for held, play in group:
+                    force = np.zeros((len(total), 2, 2))
+                    for link, sign in ((over.lower, 1.0), (over.upper, -1.0)):
+                        if link in units:
+                            origin, (push, about_x, about_y) = units[link]
+                            x, y = (over.places - origin).T[..., None, None]
+                            key = name, held
+                            force += sign * (push[key] + y * about_x[key] - x * about_y[key])
+                    each.append(play / 2.0 * np.linalg.norm(force, axis=-1).sum(axis=-1))
+                total += np.max(each, axis=0)
+        return total
+
+    def _units(self, frame: LinkageFrame, node: int) -> tuple[Real, list[dict[tuple[str, str], Real]]]:
+        """A node's place, and the forces at rims by a unit force across the plane and unit moments about x and y."""
+        if node not in self._known:
+            loads = [NodeLoad(node=node, wrench=unit) for unit in np.eye(6)[2:5]]
+            forces = [dict(rim_forces(self.case, frame, (load,))) for load in loads]
+            self._known[node] = frame.model.nodes[node][:2], forces
+        return self._known[node]
+
+    @cached_property
+    def _known(self) -> dict[int, tuple[Real, list[dict[tuple[str, str], Real]]]]:
+        return {}
+
+
+def layer_gap_outcomes(
+    case: Case, load_case: str, moved: LargeDisplacement, assembly: Assembly | None
+) -> Iterator[CheckOutcome]:
+    """Yield the outcome of every check of clearance, between layers, under a load case.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+        Its name.
+    moved : LargeDisplacement
+        What became of it.
+    assembly : Assembly or None
+        The links' outlines; None where they have no layers.
+
+    Yields
+    ------
+    CheckOutcome
+        Against 0: washers may fill the gap, so that what a check asks for in the plane is no measure of it.
+    """
+    if assembly is None or moved.frame is None or moved.solution is None:
+        return
+    found = LayerGaps(case=case, load_case=load_case, moved=moved, assembly=assembly).least
+    if found is None:
+        return
+    x, y = (0.0 if abs(end) < 1e-6 * case.linkage.longest else end for end in found.place)
+    reason = (
+        f"links {found.names[0]} and {found.names[1]}, {found.gap:.3g} mm apart along the pins without load, come "
+        f"nearest at x = {x:.4g}, y = {y:.4g} mm"
+    ).replace("= -", "= −")
+    for name, check in case.all_checks.items():
+        if isinstance(check, ClearanceCheck):
+            yield CheckOutcome.of(name, LINKAGE, load_case, Quantity.LAYER_GAP, found.left, 0.0, reason)

@@ -1,0 +1,86 @@
+"""What samples of tolerances say of pins and columns, where two eyes and three factors differ: without a mesh."""
+
+import tomllib
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from arm_case import ARM, BAR
+
+from fea.common.band import Band
+from fea.common.verdict import CheckOutcome, Quantity, Subject
+from fea.motion.buckling_history import axial_compression
+from fea.tolerance.states import Sampler
+from fea.tolerance.told import SolvedCheck, Told
+from geometry.materials.material import TOLD
+from loads.case.case_file import validate
+from loads.case.toleranced import toleranced
+
+BAND = Band(value=5.0, low=4.0, high=7.0)
+
+
+def card(name):
+    """A material with strengths of its own, whose factors differ in each sample."""
+    told = {"sources": dict.fromkeys(TOLD, "a test"), "status": dict.fromkeys(TOLD, "assumed")}
+    return {"title": name, "strength": "yield", "yield_strength": "40 MPa", "youngs_modulus": "2 GPa",
+            "poissons_ratio": 0.3, "density": "1200 kg/m^3", **told}  # fmt: skip
+
+
+def samples(rows):
+    """The arm on its strut with the deviations of one load, two strengths and a modulus: what they are told by."""
+    data = tomllib.loads(ARM.format(part=BAR, fillet=1.0, force=-2.0, minimum=3.0, thickness=3.0))
+    data["links"]["strut"]["part"] = "strut"
+    data["parts"]["arm"]["material"] = "one"
+    data["parts"]["strut"] = data["parts"]["arm"] | {"material": "other"}
+    entries = ("load_cases.tip.forces.0", "materials.one.yield_strength", "materials.other.yield_strength",
+               "materials.other.youngs_modulus")  # fmt: skip
+    more = {
+        "materials": {name: card(name) for name in ("one", "other")},
+        "checks": {"eyes": {"type": "bearing"}},
+        "tolerances": dict.fromkeys(entries, "50 %"),
+    }
+    case = validate(data | more)
+    variables = toleranced(case)
+    assert tuple(variable.tolerance for variable in variables) == entries
+    sampler = Sampler(case=case, pose=case.solve_pose(), masses={}, variables=variables)
+    deviations = np.array(rows)
+    none = np.zeros((1, len(entries)))
+    check = SolvedCheck(
+        result=SimpleNamespace(case=case), sampler=sampler, deviation=none, nominal=sampler.states(none), responses={}
+    )
+    return Told(check=check, states=sampler.states(deviations), deviations=deviations)
+
+
+ROWS = [
+    (0.0, 0.0, 0.0, 0.0),
+    (0.25, 0.0, 0.0, 0.0),
+    (0.0, 0.2, -0.3, 0.0),
+    (0.25, -0.4, 0.1, 0.5),
+    (0.0, 0.3, 0.2, 0.2),
+]
+
+
+def test_bearing_is_told_by_the_strength_of_the_worse_eye_of_each_sample():
+    """Now the one, now the other material of both links is the weaker one; the force divides."""
+    told = samples(ROWS)
+    for joint, strength in (("B", [1.0, 1.0, 0.7, 0.6, 1.2]), ("O", [1.0, 1.0, 1.2, 0.6, 1.3])):
+        outcome = CheckOutcome.of("eyes", Subject.pin(joint), "tip", Quantity.SAFETY_FACTOR, BAND, 3.0)
+        share = np.array(strength) / [1.0, 1.25, 1.0, 1.25, 1.0]
+        assert told.bands(outcome) == pytest.approx(np.outer([5.0, 4.0, 7.0], share))
+
+
+def test_a_column_is_told_by_the_least_and_the_largest_of_its_three_factors():
+    """Compression of 4 N and more; value, least and most fall with it unequally: the ends take the outer ones."""
+    told = samples(ROWS)
+    case = told.check.result.case
+    [compression], force = axial_compression(case, "strut", told.check.sampler.link_loads(
+        told.check.nominal, told.check.deviation, "tip", "strut"))  # fmt: skip
+    assert compression == pytest.approx(4.0)
+    share = np.zeros((3, *force.values.shape[:2]))
+    share[:, 0, 0] = np.array([1.0, 0.8, 1.3]) / force.values[0, 0, 0]
+    told.check._weights["strut", "tip"] = share
+    outcome = CheckOutcome.of("b", Subject.link("strut"), "tip", Quantity.BUCKLING_FACTOR, BAND, 1.0)
+    more = np.array([1.0, 1.25, 1.0, 1.25, 1.0])
+    young = np.array([1.0, 1.0, 1.0, 1.5, 1.2])
+    ends = np.array([5.0, 4.0 / 1.3, 7.0 / 0.8])
+    assert told.bands(outcome) == pytest.approx(np.outer(ends, young / more))

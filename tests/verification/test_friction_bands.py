@@ -1,0 +1,187 @@
+"""What friction may be, in bands: against direct calculations at and between its ends, and where a linkage locks."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from edited_cases import PLANAR, edited
+
+from fea.check.run import check_case
+from fea.common.source import SourceKind
+from fea.common.verdict import Verdict
+from fea.frame.case_statics import solve_case_statics, with_ends
+from fea.frame.rubbing import at_end, bore_presses
+from fea.motion.loosened import column_growth, joint_growth, otherwise
+from fea.whole.motor import motor_outcomes
+from fea.whole.rubbed_motion import rubbed_motion, work_between
+from geometry.base.errors import CaseError
+from loads.case.case import Case
+from loads.case.case_file import read_case
+from loads.records.applied import FrictionLoad
+from loads.states.rubbing import pose_friction
+from loads.statics.statics import solve_statics
+
+PINS = ("O2", "A", "B")
+
+
+def toggle(friction: float, stated: tuple[float, float] | None, *more: str) -> Case:
+    """A slider pushes the crank of the slider-crank a few degrees from its dead point; its pins rub."""
+    entries = [f"joints.{pin}.friction={friction}" for pin in PINS]
+    if stated is not None:
+        entries += [f"joints.{pin}.friction_range=[{stated[0]}, {stated[1]}]" for pin in PINS]
+    checks = (
+        '{ strength = { type = "safety-factor" }, point = { type = "displacement", at = "A", maximum = "1 mm" }, '
+        'pins = { type = "pins" }, limit = { type = "limit-load", minimum = 1.0 } }'
+    )
+    return edited(
+        "slider-crank",
+        [
+            *(PLANAR, *entries, "joints.guide.friction=0", 'drive.link="slider"', 'drive.joint="guide"'),
+            *('pose.angle="2 deg"', f"checks={checks}", 'large_displacement="off"', *more),
+            'load_cases.push.forces=[{link="crank",at="A",force=["0 N","-1 N"]}]',
+            'load_cases.push.direction="forward"',
+        ],
+    )
+
+
+def outcomes(case: Case):
+    result = check_case(case, fidelity="beam")
+    return result, {(one.name, str(one.subject), one.quantity): one for one in result.load_cases["push"].checks}
+
+
+@cache
+def stated():
+    return outcomes(toggle(0.2, (0.15, 0.25)))
+
+
+def test_bands_hold_the_forces_near_a_locked_pose() -> None:
+    """From 0.20 to 0.25 the rod's force grows by four fifths; by the slope at 0.20 it is less than half."""
+    result, found = stated()
+    forces, slope = {}, 0.0
+    for mu in (0.15, 0.2, 0.201, 0.23, 0.25):
+        direct, others = outcomes(toggle(mu, (mu, mu)))
+        forces[mu] = direct.load_cases["push"].reactions.joints["A"].magnitude
+        for key, one in others.items():
+            if one.value.unknowable:
+                continue
+            band = found[key].value
+            assert band.low <= one.value.low * (1.0 + 1e-3), (key, mu)
+            assert band.high >= one.value.high / 1.05, (key, mu)
+    assert forces[0.25] / forces[0.2] > 1.8
+    slope = (forces[0.201] - forces[0.2]) / 0.001
+    assert forces[0.2] + 0.05 * slope < 0.9 * forces[0.25]
+    told = {key[2].value for key, o in found.items() if SourceKind.FRICTION in {s.kind for s in o.value.sources}}
+    assert told >= {"safety factor", "displacement", "buckling factor"}
+    low, high = result.load_cases["push"].work.ends[:, 0]
+    ends = [solve_case_statics(toggle(mu, (mu, mu))).reactions["push"].drive_force for mu in (0.15, 0.25)]
+    assert sorted(ends) == pytest.approx([low, high], rel=1e-12)
+
+
+def test_without_a_stated_range_thirty_percent_count() -> None:
+    work = with_ends(solve_case_statics(toggle(0.15, None)), "push")
+    same = with_ends(solve_case_statics(toggle(0.15, (0.105, 0.195))), "push")
+    assert work is not None
+    assert same is not None
+    assert work.ends == pytest.approx(same.ends, rel=1e-12)
+    assert work.ends[1, 0] - work.ends[0, 0] > 0.1 * abs(work.effort[0])
+
+
+def test_where_the_largest_friction_locks_the_linkage_bands_have_no_end() -> None:
+    result, found = outcomes(toggle(0.25, None))
+    assert result.verdict is Verdict.UNDECIDED
+    strength = found["strength", "rod", "safety factor"]
+    assert (strength.verdict, strength.value.low) == (Verdict.UNDECIDED, 0.0)
+    assert strength.value.high < math.inf
+    assert found["point", "point A of crank", "displacement"].value.high == math.inf
+    assert found["limit", "the linkage", "limit-load factor"].value.low == 0.0
+    [warning] = [told for told in result.warnings if "locks itself" in told]
+    assert "with the largest friction that may be (0.175 to 0.325 at O2, A, B)" in warning
+    work = result.load_cases["push"].work
+    assert sorted(np.abs(work.ends[:, 0])) == [pytest.approx(abs(with_least()), rel=1e-12), math.inf]
+    assert math.copysign(1.0, work.ends[np.isinf(work.ends)][0]) == math.copysign(1.0, work.effort[0])
+
+
+def with_least() -> float:
+    return solve_case_statics(toggle(0.175, (0.175, 0.175))).reactions["push"].drive_force
+
+
+def torque(*entries: str) -> dict[str, float]:
+    case = edited("slider-crank", ['checks={strength={type="safety-factor"}}', *entries])
+    return {name: found.drive_torque for name, found in solve_case_statics(case).reactions.items()}
+
+
+def test_in_layers_the_least_is_by_forces_alone_and_the_largest_by_the_worst_couples() -> None:
+    """Each way in which pins may share couples makes a drive torque of its own: all of them lie in the band."""
+    statics = solve_case_statics(read_case("slider-crank"))
+    least = [f"joints.{pin}.friction=0.084" for pin in PINS] + ["joints.guide.friction=0.105"]
+    alone = torque(PLANAR, *least)
+    for name, reactions in statics.reactions.items():
+        work, case = with_ends(statics, name), at_end(statics.standing[name].case, "largest")
+        assert work is not None
+        lost = np.abs(work.ends[:, 0] - work.without[0])
+        assert min(lost) == pytest.approx(abs(alone[name] - work.without[0]), rel=1e-9)
+        assert abs(reactions.drive_torque - work.without[0]) > 1.4 * min(lost)
+        loads, found = [load for load in statics.loads[name] if not isinstance(load, FrictionLoad)], []
+        for shared in statics.forces[name].sharings:
+            wrenches = {joint: one.wrench[None] for joint, one in shared.reactions.joints.items()}
+            rubbed = (*loads, *pose_friction(case, name, statics.pose, loads, bore_presses(case, wrenches)))
+            found.append(abs(solve_statics(statics.pose, case.pinned_drive, rubbed).drive_torque - work.without[0]))
+        assert max(found) < max(lost)
+        assert max(found) > 0.6 * max(lost)
+
+
+def turning(friction: float, stated: tuple[float, float]) -> Case:
+    """The slider-crank in one plane, turning at a speed with a motor."""
+    motor = 'type = "motor", voltage = "6 V", current = "400 mA", efficiency = 0.5, rated_torque = "1500 N*mm"'
+    rubs = [f"joints.{pin}.friction={friction}" for pin in PINS]
+    rubs += [f"joints.{pin}.friction_range=[{stated[0]}, {stated[1]}]" for pin in PINS]
+    speed = ["load_cases.push.speed=60 rpm", "motion.poses=25", "joints.guide.friction=0"]
+    return edited("slider-crank", [PLANAR, *rubs, *speed, f"checks={{ motor = {{ {motor} }} }}"])
+
+
+def test_over_a_motion_bands_hold_direct_calculations() -> None:
+    """Of the motor, the drive torque, joint forces, stresses and columns."""
+    case = turning(0.3, (0.1, 0.45))
+    moved = rubbed_motion(case)
+    others = [rubbed_motion(turning(mu, (mu, mu))) for mu in (0.1, 0.2, 0.45)]
+    [name], every = moved.loads, np.ones(len(moved.motion.angles), dtype=bool)
+    asked = motor_outcomes(moved.case, "motor", moved.case.checks["motor"])[name]
+    told = [motor_outcomes(one.case, "motor", one.case.checks["motor"])[name] for one in others]
+    for outcome, *direct in zip(asked, *told, strict=True):
+        if outcome.quantity == "drive speed":
+            continue
+        assert SourceKind.FRICTION in {source.kind for source in outcome.value.sources}
+        assert outcome.value.low <= min(one.value.low for one in direct) * (1.0 + 1e-12)
+        assert outcome.value.high == pytest.approx(max(one.value.high for one in direct), rel=1e-12)
+    ends = work_between(moved, name).ends
+    for one in others:
+        assert (ends[0] <= one.torque[name] + 1e-9).all()
+        assert (ends[1] >= one.torque[name] - 1e-9).all()
+    for joint in moved.case.joints:
+        growth = joint_growth(moved, name, joint, every)
+        sizes = [np.linalg.norm(one.forces[name].forces[joint], axis=1).max() for one in (moved, *others)]
+        assert growth.low - 1e-9 <= min(sizes) / sizes[0]
+        assert growth.high == pytest.approx(max(sizes) / sizes[0], rel=1e-9)
+    shares = otherwise(moved, every)
+    for link in moved.case.checked_links:
+        assert shares[name, link].low < 1.0 < shares[name, link].high
+        assert column_growth(moved, name, link, every).high > 1.0
+
+
+def test_a_motion_that_the_largest_friction_locks_has_no_end() -> None:
+    """The slider drives the crank to two degrees from its dead point."""
+    moved = rubbed_motion(toggle(0.25, None, 'motion={ range = ["2 deg", "20 deg"], poses = 19 }'))
+    [name] = moved.loads
+    assert np.isfinite(moved.torque[name]).all()
+    ends = work_between(moved, name).ends
+    assert np.isinf(ends).any(axis=0).tolist() == [True] + [False] * 18
+    every = np.ones(len(moved.motion.angles), dtype=bool)
+    assert joint_growth(moved, name, "A", every).high == math.inf
+    assert joint_growth(moved, name, "A", every & (np.arange(19) > 0)).high < 3.0
+
+
+def test_a_range_is_about_its_coefficient() -> None:
+    for stated, friction in (((0.1, 0.2), 0.3), ((0.3, 0.2), 0.25)):
+        with pytest.raises(CaseError, match=r"joints\.O2\.friction_range: it goes from .* but friction is"):
+            toggle(friction, stated)

@@ -1,0 +1,85 @@
+"""The gap that deflection and tilting pins leave between layers: the frame's own axis, rigid links, and verdicts."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from tilting_pins import LOOSE, checked, four_bar, rigid_motion
+
+from fea.check.run import check_case
+from fea.common.verdict import CheckOutcome, Quantity, Verdict
+from fea.frame.joint_forces import solved_frame
+from fea.whole.layer_gaps import Raised, overlaps
+from loads.states.actions import acting_loads
+from loads.states.clearance import assembly
+
+CHECKS = {"c": {"type": "clearance"}, "far": {"type": "clearance", "minimum": "10 mm"}}
+
+
+@cache
+def gap(spacing: str, play: str | None = None, force: str = "-20 N") -> CheckOutcome:
+    loads = {
+        "l": {"forces": [{"link": "rocker", "at": "P", "force": ["0 N", force]}]},
+        "light": {"forces": [{"link": "rocker", "at": "P", "force": ["0 N", "-0.2 N"]}]},
+    }
+    case = checked(four_bar(play=play, layer_spacing=spacing, load_cases=loads, checks=CHECKS))
+    found = check_case(case, fidelity="beam").load_cases["l"].checks
+    one, other = [check for check in found if check.quantity is Quantity.LAYER_GAP]
+    assert (one.value, one.limit) == (other.value, other.limit)  # washers fill what a check asks for in the plane
+    return one
+
+
+def test_places_of_a_link_move_with_its_axis_and_its_twist():
+    case = checked(four_bar())
+    pose = case.solve_pose()
+    frame, solution = solved_frame(
+        case, pose, acting_loads(case, case.load_cases["l"], pose.placement, {}), case.pinned_drive
+    )
+    raised = Raised(frame=frame, solution=solution)
+    for i, beam in frame.beams.items():
+        length = beam.end - beam.start
+        stations = np.linspace(0.0, length, 5)
+        along = np.column_stack([beam.start + stations, np.zeros(5)])
+        places = along @ pose.rotation(beam.link).T + pose.origins[beam.link]
+        own = solution.axis_displacements(i, stations)[:, 2]
+        assert raised.at(beam.link, places) == pytest.approx(own, abs=0.02 * np.abs(own).max())  # shear of the beam
+        nodes = frame.model.elements[i].nodes
+        beside = places[[0, -1]] + pose.rotation(beam.link) @ [0.0, 3.0]
+        twists = solution.displacements[list(nodes), 3:5] @ pose.rotation(beam.link)[:, 0]
+        assert raised.at(beam.link, beside) - own[[0, -1]] == pytest.approx(3.0 * twists, rel=1e-6)
+
+
+def test_links_lie_over_each_other_at_their_common_joints_alone():
+    case = checked(four_bar())
+    frame, _ = solved_frame(case, case.solve_pose(), (), case.pinned_drive)
+    found = {(one.lower, one.upper) for one in overlaps(frame, assembly(case))}
+    assert found == {("crank", "coupler"), ("rocker", "coupler")}
+    assert all(one.gap == pytest.approx(0.5) for one in overlaps(frame, assembly(case)))
+
+
+def test_play_closes_the_gap_by_no_less_than_that_of_rigid_links():
+    """The corner of the rhombus about B that is furthest from it: the least of all equilibria bounds rigid links."""
+    plain, loose = gap("4.5 mm"), gap("4.5 mm", play="0.1 mm")
+    assert plain.verdict is Verdict.PASS
+    assert 0.49 < plain.value.low <= plain.value.value < 0.5
+    assert loose.value.value == plain.value.value
+    case, taken, rigid = checked(four_bar(play="0.1 mm")), plain.value.low - loose.value.low, []
+    frame, _ = solved_frame(case, case.solve_pose(), (), case.pinned_drive)
+    for one in overlaps(frame, assembly(case)):
+        far = max(one.places, key=lambda at: np.linalg.norm(at - one.places.mean(axis=0)))
+        up = rigid_motion(
+            case, one.lower, np.array([*far, 4.5]), np.eye(3)[2], holes=LOOSE, play=0.1, length=4.0, against=one.upper
+        )
+        rigid.append(up)
+    assert max(rigid) * (1.0 - 2e-3) < taken < 1.5 * max(rigid)
+    small = gap("4.2 mm", play="0.1 mm")
+    assert small.verdict is Verdict.UNDECIDED
+    assert "links rocker and coupler, 0.2 mm apart along the pins without load" in small.reason
+
+
+def test_deflection_that_closes_the_gap_fails_and_goes_with_the_load():
+    near, twice = gap("4.5 mm"), gap("4.5 mm", force="-40 N")
+    assert 0.5 - twice.value.value == pytest.approx(2.0 * (0.5 - near.value.value), rel=1e-6)
+    closed = gap("4.0002 mm")
+    assert closed.verdict is Verdict.FAIL
+    assert closed.value.high < 0.0

@@ -1,0 +1,106 @@
+"""Frequencies with hinges at holes in which pins may run: a four-bar that is known, bars on two pins, verdicts."""
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from tilting_pins import checked, four_bar
+
+from fea.common.verdict import LINKAGE, CheckOutcome, Verdict
+from fea.frame.build import build_frame
+from fea.nonlinear.equilibrium_path import EquilibriumPath
+from fea.nonlinear.stability import stiffness_parts
+from fea.vibration.frequency_outcomes import asked_frequencies, frequency_outcomes
+from fea.vibration.link_modes import link_modes
+from fea.vibration.linkage_modes import SUBDIVISIONS, divide, frame_modes
+from fea.vibration.mass_matrix import mass_matrix
+from fea.vibration.modes import frequency
+from fea.vibration.running_holes import running_holes, with_hinges
+from geometry.linkage.linkage import Joint
+from loads.case.case import Case
+from loads.states.masses import part_masses
+
+PLASTIC = {"youngs_modulus": "2500 MPa", "poissons_ratio": 0.36, "yield_strength": "50 MPa"}
+TURNING = {"forces": [{"link": "rocker", "at": "P", "force": ["0 N", "-0.001 N"]}], "speed": "1200 rpm"}
+
+
+def plastic(*, bonded: tuple[str, ...] = (), **further: Any) -> Case:
+    """The four-bar of a plastic, under a drive at 20 Hz, with some joints bonded."""
+    data = four_bar(tight={}, **further)
+    data["materials"]["m"] |= PLASTIC
+    data["load_cases"] = {"l": TURNING, "slow": {**TURNING, "speed": "60 rpm"}}
+    data["checks"] = {"f": {"type": "frequency", "minimum": 2.0}}
+    for name in bonded:
+        data["joints"][name]["bonded"] = True
+    return checked(data)
+
+
+def lowest(case: Case, *holes: tuple[str, str]) -> float:
+    """Lowest frequency of a case without loads, with hinges in holes."""
+    frame = build_frame(case, case.solve_pose(), (), held=case.pinned_drive)
+    divided, parents = divide(frame, SUBDIVISIONS)
+    model = with_hinges(frame, divided, parents, holes)
+    path = EquilibriumPath(model)
+    K, _ = stiffness_parts(path, np.zeros((len(model.elements), 2, 6)), np.zeros(0))
+    mass = mass_matrix(case, frame, model, parents, part_masses(case))
+    return frequency(float(frame_modes(path, K, mass, 4).values[0]))
+
+
+def test_a_single_running_hole_lowers_the_frequency_as_is_known():
+    """A frame of its own has 57.5 Hz with tight pins and 20.9 Hz with a hinge about both axes at O4."""
+    case = plastic()
+    tight = lowest(case)
+    assert tight == pytest.approx(57.5, rel=0.05)
+    for link in ("base", "rocker"):
+        assert lowest(case, ("O4", link)) == pytest.approx(20.9, rel=0.02)
+    for holes in ([("A", "crank")], [("A", "coupler")], [("B", "rocker")], [("O2", "base")]):
+        assert lowest(case, *holes) < tight
+    assert lowest(case, ("O2", "base"), ("O4", "base")) == pytest.approx(0.0, abs=1e-2)  # it swings about a line
+
+
+@pytest.mark.parametrize(("link", "length", "shear"), [("coupler", 120.0, 0.02), ("crank", 40.0, 0.06)])
+def test_a_link_by_itself_bends_between_running_pins_as_a_bar_on_two_supports(link, length, shear):
+    """f = π/2 √(E I/(ρ A)) / L² across the plane, less what shear takes; tight pins build it in."""
+    [mode] = link_modes(plastic(), link, count=1).modes
+    known = math.pi / 2.0 * math.sqrt(2500.0 * 4.0**2 / 12.0 / 1.2e-9) / length**2
+    assert mode.frequency.low == pytest.approx(known, rel=shear)
+    assert mode.frequency.low < 0.6 * mode.frequency.value
+
+
+@cache
+def outcomes(*bonded: str) -> list[CheckOutcome]:
+    return list(frequency_outcomes(asked_frequencies(plastic(bonded=bonded))))
+
+
+def test_pins_that_nobody_states_to_be_tight_leave_the_frequency_open():
+    found = {one.load_case: one for one in outcomes() if one.subject == LINKAGE}
+    assert found["l"].verdict is Verdict.UNDECIDED
+    assert found["l"].value.low == pytest.approx(0.0, abs=1e-3)
+    assert found["slow"].verdict is Verdict.UNDECIDED
+    told = "the low end has hinges in holes at O2, A, B, O4, where pins may run: nothing states that they are tight"
+    assert all(told in one.reason for one in found.values())
+    links = [one for one in outcomes() if one.subject != LINKAGE]
+    assert {one.verdict for one in links} == {Verdict.PASS}  # by themselves they bend far above the drive
+    assert any("hinges in holes at A, B, where pins may run" in one.reason for one in links)
+
+
+def test_the_fits_decide(monkeypatch):
+    """With all pins tight but that of the ground at O2 even a hinge there passes; with all tight nothing is open."""
+    assert {link for _, link in running_holes(checked(four_bar()))} == {"base", "coupler"}  # tight in the others
+    assert {name for name, _ in running_holes(plastic(bonded=("A", "B")))} == {"O2", "O4"}
+    lows = []
+    for holes in ((("O2", "base"),), ()):
+        runs = [(plastic().joints[name], link) for name, link in holes]
+        monkeypatch.setattr(Joint, "is_tight_in", lambda joint, link, runs=runs: (joint, link) not in runs)
+        assert running_holes(plastic()) == holes
+        [found] = [one for one in linkage_outcomes() if one.load_case == "l"]
+        assert found.verdict is Verdict.PASS
+        assert ("hinges in holes at O2, where" in found.reason) == bool(holes)
+        lows.append(20.0 * found.value.low)
+    assert lows[0] < 0.95 * lows[1] < 0.9 * 57.5
+
+
+def linkage_outcomes() -> list[CheckOutcome]:
+    return [one for one in frequency_outcomes(asked_frequencies(plastic())) if one.subject == LINKAGE]
