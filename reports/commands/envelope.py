@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fea.common.verdict import UNLOADED_QUANTITIES
 from fea.motion.envelope_result import EnvelopeResult, LinkEnvelope, LinkFatigue, LoadCaseEnvelope
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
-from fea.outcomes.unchecked import unchecked
+from fea.outcomes.unchecked import caveats, unchecked
 from geometry.base.version import result_stamp
 from geometry.materials.material import Material
 from loads.records.check_spec import SafetyFactorCheck
@@ -24,7 +24,7 @@ from reports.tables.frames import motion_linkage_line, motion_linkage_record
 from reports.tables.friction import motion_friction_lines, motion_friction_record
 from reports.tables.meshes import solver_record
 from reports.words.terminal import say, say_table
-from reports.words.wording import band, fixed, not_checked, number, sentence
+from reports.words.wording import band, besides, fixed, number, sentence
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -183,6 +183,7 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         **({"friction": {n: motion_friction_record(result.moved, n) for n in rubbing}} if rubbing else {}),
         "idle_links": list(result.idle),
         "not_checked": list(unchecked(result.case, (SafetyFactorCheck,))),
+        "caveats": [entries(one, "heading topic what why") for one in caveats(result.case, (SafetyFactorCheck,))],
         "checks": check_records(result.checks),
         "warnings": list(result.warnings),
         "timings_s": dict(result.timings),
@@ -295,7 +296,7 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
         f"Motion: {coordinate} from {first:.6g} to {last:.6g} deg, driven at {result.drive.link}; "
         f"{int(result.evaluated.sum())} of {len(result.angles)} poses.",
     )
-    if left_out := not_checked(unchecked(result.case, (SafetyFactorCheck,))):
+    if left_out := besides(caveats(result.case, (SafetyFactorCheck,))):
         say(console, left_out)
     _links(result, console)
     fatigued = {n: link for n, link in result.links.items() if any(c.fatigue for c in link.load_cases.values())}

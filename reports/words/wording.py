@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
-from fea.outcomes.unchecked import unchecked
+from fea.outcomes.unchecked import Caveat, Heading, caveats
 
 if TYPE_CHECKING:
     from fea.outcomes.result import CheckResult, SectionComparison
@@ -215,21 +215,27 @@ def headline(result: "CheckResult") -> str:
     str
         A few sentences, such as ``Fail: the linkage gives way at 20 % of its load.``
     """
-    return " ".join(filter(None, (_headline(result), not_checked(unchecked(result.case)))))
+    return " ".join(filter(None, (_headline(result), besides(caveats(result.case)))))
 
 
-def not_checked(what: tuple[str, ...]) -> str:
-    """Return what no check looks at as a sentence; empty where every check is there.
+def besides(found: Iterable[Caveat]) -> str:
+    """Return what a verdict stands on besides as sentences; empty where there is nothing.
 
     Parameters
     ----------
-    what : tuple of str
+    found : iterable of Caveat
 
     Returns
     -------
     str
+        Such as ``Assumed: pins of steel-wire (no pin_material stated). Not checked: vibration (no check).``
     """
-    return f"Not checked: {'; '.join(what)}." if what else ""
+    every = list(found)
+    told = {
+        heading: [str(one) for one in every if one.heading is heading]
+        for heading in (Heading.ASSUMED, Heading.UNUSUAL, Heading.NOT_CHECKED)
+    }
+    return " ".join(f"{heading.capitalize()}: {'; '.join(texts)}." for heading, texts in told.items() if texts)
 
 
 def _headline(result: "CheckResult") -> str:

@@ -7,7 +7,7 @@ import pytest
 from materials import with_material
 
 from fea.check.run import check_case
-from fea.outcomes.unchecked import unchecked
+from fea.outcomes.unchecked import caveats, unchecked
 from loads.case.case_file import validate
 from loads.records.check_spec import SafetyFactorCheck, SustainedCheck
 from reports.tables.record import result_record
@@ -64,7 +64,11 @@ def test_a_sustained_check_looks_at_stress_but_not_in_an_envelope():
 
 def test_verdict_and_record_name_a_link_without_part():
     result = check_case(starter({"a": STRENGTH, "b": PINS}, "coupler"), fidelity="beam")
-    assert headline(result).endswith(" Not checked: coupler (no part).")
+    assert headline(result).endswith(
+        " Assumed: pins of steel-wire (no pin_material stated). Unusual: checks.a.minimum = 0.01 (below 1 it lets pass "
+        "what the load breaks); checks.b.minimum = 0.01 (below 1 it lets pass what the load breaks). Not checked: "
+        "coupler (no part)."
+    )
     assert result_record(result)["not_checked"] == ["coupler (no part)"]
 
 
@@ -82,3 +86,57 @@ def test_an_unusual_material_is_warned_of_where_it_is_used(checks, warned):
     result = check_case(with_material(case, "steel-wire", card), fidelity="beam")
     said = [text for text in result.warnings if text.startswith("materials.steel-wire.youngs_modulus is 0.2 GPa")]
     assert len(said) == warned
+
+
+def told(**tables):
+    """Caveats of the starter with two load cases, by heading and topic, but for stress and pins without a check."""
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    data["load_cases"]["held"] = {"own_weight": True, "speed": "0 rpm"}
+    for name, more in tables.items():
+        data[name] = more if isinstance(more, list) else data.get(name, {}) | more
+    found = caveats(validate(data))
+    return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in ("stress", "pins")}
+
+
+FAST = {"turn": True, "speed": "600 rpm"}
+SPRING = {"type": "frequency", "minimum": 2.0}
+INERTIA, VIBRATION = ("not checked", "inertia"), ("not checked", "vibration")
+
+
+def test_inertia_that_is_left_out_is_told():
+    assert told() == told(motion={"turn": True}) == {}
+    assert told(motion=FAST) == {VIBRATION: 'vibration (no check of type "frequency")'}
+    assert told(motion=FAST, checks={"f": SPRING}) == {}
+    assert told(motion=FAST | {"inertia": False}) == {INERTIA: "inertia (motion.inertia is false)"}
+    running_up = told(motion=FAST | {"acceleration": "1 rad/s^2"})
+    assert running_up == {INERTIA: "inertia in this pose (alula envelope has that of the motion)"}
+
+
+def test_weight_that_is_left_out_is_told_with_its_load_cases():
+    mass = {"link": "rocker", "at": "P", "mass": "50 kg"}
+    light = {"light": {"own_weight": False}, "bare": {"own_weight": False, "carried": False}}
+    assert told(carried=[mass], load_cases=light) == {
+        ("not checked", "weight"): "weight of what links carry (no own_weight in light)"
+    }
+    assert told(load_cases=light) == {}
+
+
+def test_what_is_assumed_of_pins_is_told_where_they_are_checked():
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    joints = {name: joint | {"pin_material": "steel-wire"} for name, joint in data["joints"].items()}
+    check = {"p": {"type": "pins", "minimum": 2.0}}
+    assumed = ("assumed", "material")
+    assert told(checks=check) == {assumed: "pins of steel-wire (no pin_material stated)"}
+    assert told(checks=check, joints=joints) == {}
+    some = told(checks=check, joints={name: joints[name] for name in ("O2", "B")})
+    assert some == {assumed: "pins A, O4 of steel-wire (no pin_material stated)"}
+    assert told(checks={"p": check["p"] | {"joints": ["O2"]}}, joints={"O2": joints["O2"]}) == {}
+
+
+def test_limits_below_one_and_large_play_are_told():
+    checks = {"low": {"type": "bearing", "minimum": 0.5}, "whole": {"type": "limit-load", "minimum": 1.0}}
+    found = told(checks=checks)
+    assert found == {("unusual", "limit"): "checks.low.minimum = 0.5 (below 1 it lets pass what the load breaks)"}
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    loose = {name: data["joints"][name] | {"clearance": play} for name, play in (("A", "2.9 mm"), ("B", "0.3 mm"))}
+    assert told(joints=loose) == {("unusual", "play"): "play of 2.9 mm at A (its pin has 3 mm)"}
