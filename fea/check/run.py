@@ -35,7 +35,7 @@ from fea.links.solid_result import link_task
 from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from fea.outcomes.bearing import bearing_outcome
 from fea.outcomes.judge import outcomes
-from fea.outcomes.pins import PinStress, shared_stress
+from fea.outcomes.pins import PinStress, shared_stress, twist_of, twisted
 from fea.outcomes.point_displacement import meshes_to_refine
 from fea.outcomes.result import CheckResult, LinkResult, LoadCaseResult
 from fea.outcomes.solid_buckling import solid_buckling_outcomes
@@ -433,7 +433,12 @@ def _pins(case: Case, reactions: Reactions, forces: JointForces) -> dict[str, Pi
     """Stresses of the pins that a check asks for."""
     checks = [check for check in case.all_checks.values() if isinstance(check, PinCheck)]
     asked = dict.fromkeys(joint for check in checks for joint in check.joints or case.pinned_joints)
-    return {joint: shared_stress(case, joint, reactions.joints[joint], forces) for joint in asked}
+    found = {}
+    for joint in asked:
+        reaction = reactions.joints[joint]
+        twist = twist_of(case, joint, float(reaction.wrench[5]), float(reactions.drive_torque))
+        found[joint] = twisted(case, joint, shared_stress(case, joint, reaction, forces), twist)
+    return found
 
 
 def _bearing(

@@ -22,7 +22,7 @@ from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
 from fea.outcomes.layers import no_strength, without_shear
 from fea.outcomes.limits import layer_limit
-from fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of
+from fea.outcomes.pins import pin_outcome, shared_stress, stress_at, stress_of, twist_of, twisted
 from fea.outcomes.solid_buckling import undecided_buckling
 from geometry.base.ties import first_largest
 from geometry.materials.material import Fatigue, Material
@@ -206,7 +206,7 @@ def _joints(
 ) -> Iterator[CheckOutcome]:
     """Outcome of every joint at the pose of its largest force, to which in a plane all its stresses are in proportion.
 
-    Between layers a pin is judged where its own stress is largest.
+    Between layers, and where a torque goes through it, a pin is judged where its own stress is largest.
     """
     case = moved.case
     asked = case.bearing_joints if isinstance(check, BearingCheck) else case.pinned_joints
@@ -216,12 +216,18 @@ def _joints(
             bearing = isinstance(check, BearingCheck)
             pressed = np.max([*pressing(case, joint, wrenches).values()], axis=0)
             size = np.where(evaluated, pressed if bearing else np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
-            between_layers = isinstance(check, PinCheck) and case.linkage.rise(joint) != 0.0
-            if between_layers:
+            turning = np.broadcast_to(np.asarray(solved.drive_torque, dtype=float), evaluated.shape)
+            twists = [twist_of(case, joint, *of) for of in zip(wrenches[:, 5], turning, strict=True)]
+            by_itself = case.linkage.rise(joint) != 0.0 or any(twist.high > 0.0 for twist in twists)
+            by_itself = by_itself and isinstance(check, PinCheck)
+            if by_itself:
                 at_poses = [_at(solved.joints[joint], i) for i in range(len(evaluated))]
-                found = zip(at_poses, evaluated, strict=True)
+                found = zip(at_poses, twists, evaluated, strict=True)
                 size = np.array(
-                    [stress_at(case, joint, r).equivalent.value if counts else -np.inf for r, counts in found]
+                    [
+                        twisted(case, joint, stress_at(case, joint, r), twist).equivalent.high if counts else -np.inf
+                        for r, twist, counts in found
+                    ]
                 )
             pose = first_largest(size)
             growth = joint_growth(moved, load_case, joint, evaluated)
@@ -231,8 +237,9 @@ def _joints(
                 if case.linkage.rise(joint) != 0.0 and any(case.links[x].count == 2 for x in case.joints[joint].links):
                     every += [way.reactions.joints[joint].wrench for way in forces_at(moved, load_case, pose).sharings]
                 outcome = bearing_outcome(case, load_case, name, check, joint, every, growth)
-            elif between_layers:
+            elif by_itself:
                 shared = shared_stress(case, joint, at_poses[pose], forces_at(moved, load_case, pose))
+                shared = twisted(case, joint, shared, twists[pose])
                 outcome = pin_outcome(case, load_case, name, check, joint, shared, growth)
             else:
                 outcome = pin_outcome(case, load_case, name, check, joint, stress_of(case, joint, force), growth)

@@ -30,6 +30,10 @@ Moments about x and y that the joint carries besides (loads out of the plane) ad
 may take off what the eyes' couple can make in the gap's middle, F (t + g)/2. Bending stress 32 M/(π d³); largest shear
 stress of a solid circle (3 + 2ν)/(2 + 2ν) V/A, in the middle, where nothing bends (Love, Mathematical Theory of
 Elasticity, 4th ed., section 230).
+
+A torque that goes through the pin twists it, by 16 T/(π d³) at its surface: the drive's where it enters by
+"bore-shear", and the moment of a bonded joint, of which faces that are glued or screwed may take any part. There it
+adds to the shear where nothing bends, and at the extreme fibre to the bending by von Mises.
 """
 
 import math
@@ -56,6 +60,8 @@ from loads.records.check_spec import PinCheck
 from loads.statics.joint_reaction import JointReaction
 
 SOURCES = (Source(kind=SourceKind.EYE_SHARING),)
+NO_TORSION = Band.exact(0.0)
+TWIST = (Source(kind=SourceKind.TORQUE_TRANSFER, detail="of a bonded joint, by its pin or by its faces"),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +80,8 @@ class PinStress:
         Largest shear stress, at the neutral axis, where nothing bends [MPa].
     equivalent : Band
         Von Mises stress [MPa]: the bending at the extreme fibre, or √3 times the shear at the neutral axis.
+    torsion : Band
+        Shear stress at the surface by a torque through the pin [MPa].
     """
 
     lever: float
@@ -81,6 +89,66 @@ class PinStress:
     bending: Band
     shear: float
     equivalent: Band
+    torsion: Band = NO_TORSION
+
+
+def twist_of(case: Case, joint: str, moment: float, torque: float) -> Band:
+    """Return the torque that goes through a joint's pin.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    moment : float
+        Of the joint about its pin [N mm].
+    torque : float
+        Of the drive [N mm].
+
+    Returns
+    -------
+    Band
+        [N mm]; of a bonded joint from 0, since nothing states what its faces take.
+    """
+    drive = case.pinned_drive
+    if case.linkage.joints[joint].bonded:
+        return Band(value=abs(moment), low=0.0, high=abs(moment), sources=TWIST)
+    if drive is None or drive.joint != joint or drive.stop or drive.idle or drive.pushes(case.linkage):
+        return Band.exact(0.0)
+    return Band.exact(abs(torque) if case.torque_transfer == "bore-shear" else 0.0)
+
+
+def twisted(case: Case, joint: str, stress: PinStress, twist: Band) -> PinStress:
+    """Return the stresses of a joint's pin with a torque that goes through it.
+
+    Parameters
+    ----------
+    case : Case
+    joint : str
+    stress : PinStress
+        Without it.
+    twist : Band
+        The torque [N mm].
+
+    Returns
+    -------
+    PinStress
+    """
+    if twist.high == 0.0:
+        return stress
+    torsion = twist.times(16.0 / (math.pi * _pin_of(case, joint)[0] ** 3))
+
+    def both(alone: float, bending: float, sheared: float) -> float:
+        by_torque, beside = math.sqrt(3.0) * sheared, min(math.sqrt(3.0) * stress.shear, alone)
+        return max(alone, math.hypot(bending, by_torque), beside + by_torque)
+
+    found, bent = stress.equivalent, stress.bending
+    equivalent = Band(
+        value=both(found.value, bent.value, torsion.value),
+        low=both(found.low, bent.low, torsion.low),
+        high=both(found.high, bent.high, torsion.high),
+        sources=(*found.sources, *twist.sources),
+    )
+    return replace(stress, equivalent=equivalent, torsion=torsion)
 
 
 def pin_stress(

@@ -45,6 +45,7 @@ class Topic(StrEnum):
     INERTIA = "inertia"
     WEIGHT = "weight"
     VIBRATION = "vibration"
+    BONDS = "bonds"
     MATERIAL = "material"
     LIMIT = "limit"
     PLAY = "play"
@@ -87,7 +88,8 @@ def caveats(case: Case, strength: Sequence[Strength] = (SafetyFactorCheck, Susta
     -------
     tuple of Caveat
     """
-    return (*_left_out(case, strength), *_inertia(case, strength), *_weight(case), *_vibration(case), *_pins(case),
+    return (*_left_out(case, strength), *_inertia(case, strength), *_weight(case), *_vibration(case),
+        *_bonds(case), *_pins(case),
             *_limits(case), *_play(case))  # fmt: skip
 
 
@@ -156,6 +158,13 @@ def _vibration(case: Case) -> Iterator[Caveat]:
     asked = any(isinstance(check, FrequencyCheck) for check in case.checks.values())
     if not asked and any(load_case.speed != 0.0 for load_case in case.load_cases.values()):
         yield Caveat(topic=Topic.VIBRATION, what="vibration", why='no check of type "frequency"')
+
+
+def _bonds(case: Case) -> Iterator[Caveat]:
+    """Yield the joints that state that their links hold together, which no check judges."""
+    bonded = [name for name, joint in case.joints.items() if joint.bonded]
+    if bonded:
+        yield Caveat(topic=Topic.BONDS, what=f"bonds {', '.join(bonded)}", why="what holds them is not judged")
 
 
 def _pins(case: Case) -> Iterator[Caveat]:

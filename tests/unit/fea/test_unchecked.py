@@ -133,6 +133,12 @@ def test_what_is_assumed_of_pins_is_told_where_they_are_checked():
     assert told(checks={"p": check["p"] | {"joints": ["O2"]}}, joints={"O2": joints["O2"]}) == {}
 
 
+def test_bonds_are_told():
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    bonds = {name: data["joints"][name] | {"bonded": True} for name in ("A", "B")}
+    assert told(joints=bonds, motion={}) == {("not checked", "bonds"): "bonds A, B (what holds them is not judged)"}
+
+
 def test_limits_below_one_and_large_play_are_told():
     checks = {"low": {"type": "bearing", "minimum": 0.5}, "whole": {"type": "limit-load", "minimum": 1.0}}
     found = told(checks=checks)
