@@ -36,3 +36,9 @@ def edited(name: str, entries: Sequence[str], *, bare: bool = False) -> Case:
             here = here[int(key)] if isinstance(here, list) else here.setdefault(key, {})
         here[int(last) if isinstance(here, list) else last] = value
     return validate(data)
+
+
+def tight_pins(case: Case) -> Case:
+    """Return a case whose pins tilt in none of their holes, so that they share couples between layers in one way."""
+    tight = {n: {"tight_in": joint.links if joint.type == "revolute" else ()} for n, joint in case.joints.items()}
+    return case.model_copy(update={"joints": {n: j.model_copy(update=tight[n]) for n, j in case.joints.items()}})
