@@ -124,6 +124,9 @@ class Trials:
         float
             1 or more where the change holds; 0 where hand calculation has no answer.
         """
+        if change.modulus == 1.0:  # a strength changes no stress and no equilibrium
+            lost = self.result.load_cases[check.load_case].gives_way
+            return 0.0 if lost else min(1.0, check.margin * change.strength)
         plain, found = self._plain(check.load_case), self._checked(check.load_case, change)
         if plain is None or found is None or (found.gives_way and check.subject != LINKAGE):
             return 0.0
