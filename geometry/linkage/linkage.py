@@ -22,9 +22,9 @@ def _as_list(stated: object) -> object:
 _NAME = {"type": "string", "format": "name"}
 TightIn = Annotated[
     tuple[Name, ...],
-    Field(min_length=1, max_length=2),
+    Field(max_length=2),
     BeforeValidator(_as_list),
-    WithJsonSchema({"anyOf": [_NAME, {"type": "array", "items": _NAME, "minItems": 1, "maxItems": 2}]}),
+    WithJsonSchema({"anyOf": [_NAME, {"type": "array", "items": _NAME, "maxItems": 2}]}),
 ]
 """One link, or both as a list."""
 

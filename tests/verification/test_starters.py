@@ -7,7 +7,6 @@ import math
 from cmath import exp, phase, polar
 
 import pytest
-import solved
 from edited_cases import PLANAR, tight_pins
 from golden import STARTERS
 

@@ -69,11 +69,12 @@ def test_what_a_motor_needs_in_a_range_of_air_has_the_outer_ends_of_all_airs(mon
     found = {c: (c, low, 9.0 if c == heaviest else high, ()) for c, (low, high) in found.items()}
     air = SimpleNamespace(normal_coefficient=2.0, ends=(1.0, 3.0))
     stated, least, largest = (
-        SimpleNamespace(c=c, case=SimpleNamespace(load_cases={"flap": SimpleNamespace(flapping=air)}))
+        SimpleNamespace(c=c, rubbing={}, case=SimpleNamespace(load_cases={"flap": SimpleNamespace(flapping=air)}))
         for c in (2.0, 1.0, 3.0)
     )
     monkeypatch.setattr(motor, "air_range", lambda moved: SimpleNamespace(at=lambda title: (least, largest)))
     monkeypatch.setattr(motor, "_loosened", lambda moved, title, of: found[moved.c])
+    monkeypatch.setattr(motor, "friction_range", lambda moved: ())
     band = motor._band(stated, "flap", lambda torque: (0.0, 0.0, 0.0))
     assert (band.value, band.low, band.high) == pytest.approx((2.0, 1.0, 9.0))
 
@@ -146,7 +147,7 @@ def test_torque_over_the_line_and_over_time() -> None:
         ),
         (['checks.motor.voltage="6 A"'], "not a unit of voltage"),
         (['checks.motor.current="-1 mA"'], "greater than zero"),
-        (["load_cases={held={own_weight=true}}"], "no load case"),
+        (['load_cases={held={own_weight=true,speed="0 rpm"}}'], "no load case"),
     ],
 )
 def test_bad_motors_are_told(overrides: list[str], told: str) -> None:

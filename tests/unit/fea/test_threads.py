@@ -73,8 +73,8 @@ def test_a_whole_run_is_bounded_by_its_keyword_or_default(options, seen):
     ("stage", "arguments"),
     [
         ("fea.check.run.solve_case_statics", ("check", "--threads", "1")),
-        ("fea.motion.envelope.solve_case_motion", ("envelope", "--threads", "1")),
-        ("loads.states.case_motion.solve_case_motion", ("motion", "--threads", "1")),
+        ("fea.motion.envelope.rubbed_motion", ("envelope", "--threads", "1")),
+        ("fea.whole.rubbed_motion.rubbed_motion", ("motion", "--threads", "1")),
         ("fea.claims.sources.check_claims", ("claims", "--threads", "1")),
     ],
 )

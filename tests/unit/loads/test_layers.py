@@ -87,7 +87,6 @@ def test_without_layers_all_lies_in_one_plane() -> None:
         (['layer_spacing="7 mm"'], r"layer_spacing: no link states a layer"),
         ([*FOUR, 'layer_spacing="7 mm"', 'joints.A.tight_in="CH"'], r"joints\.A\.tight_in: 'CH' is no link"),
         ([*FOUR, 'layer_spacing="7 mm"', 'joints.A.tight_in=["AE", "CH"]'], r"joints\.A\.tight_in: 'CH' is no link"),
-        ([*FOUR, 'layer_spacing="7 mm"', "joints.A.tight_in=[]"], r"joints\.A\.tight_in"),
         (['joints.A.tight_in="AE"'], r"joints\.A\.tight_in: .*only where links lie in layers"),
         ([*FOUR, 'layer_spacing="7 mm"', 'joints.A.pin_gap="1 mm"'], r"joints\.A\.pin_gap: the layers tell the gap"),
         ([*FOUR, 'washer="1 mm"', "links.AG.layer=-1"], r"links\.AG\.thickness: how high"),
