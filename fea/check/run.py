@@ -200,12 +200,15 @@ class _LoadCase:
         return found
 
     def _with_growth(self, outcome: CheckOutcome) -> CheckOutcome:
-        """Return the buckling factor of a link with what the joint forces grow by in its band."""
-        joints = self.case.linkage.joints_of(outcome.subject.name)
-        found = [self.grown.joints[name] for name in joints if name in self.grown.joints]
-        low, high = min((1.0, *(one.low for one in found))), max((1.0, *(one.high for one in found)))
-        spread = Scatter(low=low, high=high, sources=SOURCES if found else ())
-        return widened(outcome, spread)
+        """Return the buckling factor of a link with what its joint forces grow by, over the largest, in its band."""
+        joints, grown = self.forces.reactions.joints, self.grown.joints
+        every = self.case.linkage.joints_of(outcome.subject.name)
+        own, largest = [x for x in every if x in grown], max((joints[x].magnitude for x in every), default=0.0)
+        if not own or not largest > 0.0:
+            return outcome
+        low = min(joints[name].magnitude * (grown[name].low - 1.0) for name in own) / largest
+        high = max(joints[name].magnitude * (grown[name].high - 1.0) for name in own) / largest
+        return widened(outcome, Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=SOURCES))
 
     def solid_shares(self, decided: Mapping[str, DecidedLink], threads: int) -> dict[str, Shares]:
         """Return what the ways of sharing couples make of the links that are solved as solids."""
