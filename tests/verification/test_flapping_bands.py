@@ -184,19 +184,19 @@ def test_over_a_motion_shares_hold_every_coefficient_at_every_pose():
 
 
 def rubbing(case: Case, mu: float, ends: tuple[float, float]) -> Case:
-    """The same in one plane and 25 poses, with friction in all pins."""
+    """The same in one plane and 25 poses, with friction in the crank's pins."""
     stated = {"friction": mu, "friction_range": ends}
-    joints = {name: j.model_copy(update=stated) if j.pin_diameter else j for name, j in case.joints.items()}
+    joints = {name: j.model_copy(update=stated) if name in ("O", "A") else j for name, j in case.joints.items()}
     motion = case.motion.model_copy(update={"poses": 25})
     return case.model_copy(update={"joints": joints, "layer_spacing": None, "motion": motion})
 
 
 def test_the_motors_bands_hold_the_worst_air_and_the_worst_friction_together():
     """Each was in the band beside the stated value of the other alone."""
-    found, alone = motor(rubbing(ornithopter(), 0.1, (0.05, 0.15))), motor(rubbing(direct(3.5), 0.1, (0.05, 0.15)))
-    worst, least = motor(rubbing(direct(5.0), 0.15, (0.15, 0.15))), motor(rubbing(direct(1.2), 0.05, (0.05, 0.05)))
+    found = motor(rubbing(ornithopter(), 0.2, (0.1, 0.4)))
+    worst, least = motor(rubbing(direct(5.0), 0.4, (0.4, 0.4))), motor(rubbing(direct(1.2), 0.1, (0.1, 0.1)))
     for quantity in ("drive power", "drive torque over time"):
         band = found[quantity].value
-        assert alone[quantity].value.high < worst[quantity].value.high <= band.high < 1.1 * worst[quantity].value.high
+        assert worst[quantity].value.high <= band.high < 1.1 * worst[quantity].value.high
         assert band.low <= least[quantity].value.low
         assert {SourceKind.AIR, SourceKind.FRICTION} <= {source.kind for source in band.sources}
