@@ -1,7 +1,7 @@
 """Linkages in layers whose pins run in their holes, and the free motion of such rigid links by linear programming."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -39,23 +39,37 @@ l = { forces = [{ link = "rocker", at = "P", force = ["0 N", "-20 N"] }] }
 """
 """Bars of 8 x 4 mm, 0.5 mm apart, with pins of 3 mm."""
 
+ALUMINIUM = {"youngs_modulus": "70000 MPa", "poissons_ratio": 0.33, "yield_strength": "240 MPa"}
+PLA = {"youngs_modulus": "2500 MPa", "poissons_ratio": 0.36, "yield_strength": "50 MPa"}
 TIGHT = {"O2": "crank", "A": "crank", "B": "rocker", "O4": "rocker"}
 LOOSE = {"O2": "base", "A": "coupler", "B": "coupler", "O4": "base"}
 """The other links of the joints."""
 _CORNERS = 64
 
 
-def four_bar(*, tight: Mapping[str, str] = TIGHT, play: str | None = None, **further: Any) -> dict[str, Any]:
-    """Return the data of the four-bar, with pins tight in one link and play in all joints."""
+def four_bar(
+    *, tight: Mapping[str, str | Sequence[str]] = TIGHT, play: str | None = None, **further: Any
+) -> dict[str, Any]:
+    """Return the data of the four-bar, with pins tight in one link or in both, and play in all joints."""
     data = tomllib.loads(FOUR_BAR)
     material = data["materials"]["m"]
     entries = ("youngs_modulus", "poissons_ratio", "density", "yield_strength")
     material |= {table: dict.fromkeys(entries, "assumed") for table in ("sources", "status")}
-    for name, link in tight.items():
-        data["joints"][name]["tight_in"] = link
+    for name, links in tight.items():
+        data["joints"][name]["tight_in"] = links if isinstance(links, str) else list(links)
     for joint in data["joints"].values() if play else ():
         joint["clearance"] = play
     return {**data, **further}
+
+
+def loaded(
+    material: Mapping[str, object], force: list[str], tight: Mapping[str, str | Sequence[str]] | None = None
+) -> Case:
+    """The four-bar of a material under a force at its rocker, with a check of its strength."""
+    data = four_bar(tight=tight or {}, checks={"s": {"type": "safety-factor", "minimum": 2.0}})
+    data["materials"]["m"] |= material
+    data["load_cases"]["l"]["forces"][0]["force"] = force
+    return checked(data)
 
 
 def place_of(case: Case, link: str, point: str) -> NDArray[np.float64]:

@@ -128,8 +128,8 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
     Returns
     -------
     list of CheckOutcome
-        Under these load cases links and pins that passed are not applicable, nor are points. What fails or is open in
-        the undeformed pose stays so. Motors are judged on a rigid linkage and stay.
+        Under these load cases links, pins and gaps between layers that passed are not applicable, nor are points.
+        What fails or is open in the undeformed pose stays so. Motors are judged on a rigid linkage and stay.
     """
     failed = {one.load_case for one in outcomes if one.gives_way}
     failed |= set(lost)
@@ -137,7 +137,9 @@ def unless_it_gives_way(outcomes: Sequence[CheckOutcome], lost: Collection[str] 
 
 
 def _rests_on_it(outcome: CheckOutcome) -> bool:
-    return outcome.subject != LINKAGE and outcome.quantity not in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES)
+    if outcome.subject == LINKAGE:
+        return outcome.quantity is Quantity.LAYER_GAP
+    return outcome.quantity not in (*MOTOR_QUANTITIES, *UNLOADED_QUANTITIES)
 
 
 def _in_no_equilibrium(outcome: CheckOutcome) -> CheckOutcome:

@@ -67,11 +67,15 @@ def with_known_stiffness(
         return moved
     soft = softness(case, moved.frame, moved.solution, known)
     soft = replace(soft, low=min(soft.low, moved.eyes.low), sources=distinct((MESHES, PIN_PRESSURE), soft.sources))
-    found = replace(moved, softness=soft, alone=alone, blind="")
+
+    def known_of(one: LargeDisplacement) -> LargeDisplacement:
+        return replace(one, softness=soft, alone=alone, blind="")
+
     return replace(
-        found,
-        shaken=tuple(replace(one, softness=soft, alone=alone, blind="") for one in moved.shaken),
-        airs=tuple((c, replace(one, softness=soft, alone=alone, blind="")) for c, one in moved.airs),
+        known_of(moved),
+        shaken=tuple(map(known_of, moved.shaken)),
+        airs=tuple((c, known_of(one)) for c, one in moved.airs),
+        rubbed=tuple(map(known_of, moved.rubbed)),
     )
 
 

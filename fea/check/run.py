@@ -19,10 +19,11 @@ from fea.check.solid_frame import with_solids
 from fea.common.clock import Clock
 from fea.common.link_loads import LinkLoads
 from fea.common.scatter import Scatter
+from fea.common.source import distinct
 from fea.common.threads import bounded_run
 from fea.common.verdict import CheckOutcome, overall
 from fea.doubts.force_doubt import sharing_doubt, stiffness_doubt, ways_borne
-from fea.doubts.load_growth import SOURCES, Growths, growths
+from fea.doubts.load_growth import Growths, growths
 from fea.doubts.other_case import Doubt, Plates, widened
 from fea.doubts.play_doubt import play_doubt, play_warnings, shaken
 from fea.doubts.range_doubt import AirDoubt, FrictionDoubt, air_warnings, friction_warnings
@@ -105,7 +106,8 @@ class _LoadCase:
     """One load case by hand: what acts on every link cut free, its hand calculation, and what is out of proportion.
 
     ``plates`` has one of every link; of a pair whose plates bear differently both, first the worse one by hand.
-    ``shared`` is what the ways of sharing couples between layers make by hand, and ``uneven`` all else.
+    ``shared`` is what the ways of sharing couples between layers make by hand, and ``uneven`` all else; ``grown`` is
+    ``uneven`` without ``doubts``.
     """
 
     case: Case
@@ -131,8 +133,8 @@ class _LoadCase:
         hands = {link: found[0][1] for link, found in plates.items()}
         forces = statics.forces[load_case]
         grown = growths(case, load_case, statics.pose, loads, moved, reactions, hands)
-        uneven = grown.times(stiffness_doubt(case, load_case, forces, loads))
-        uneven = uneven.times(play_doubt(case, load_case, forces, loads))
+        grown = grown.times(stiffness_doubt(case, load_case, forces, loads))
+        uneven = grown = grown.times(play_doubt(case, load_case, forces, loads))
         for doubt in doubts:
             uneven = uneven.times(doubt.growths)
         return cls(
@@ -200,7 +202,7 @@ class _LoadCase:
         return found
 
     def _with_growth(self, outcome: CheckOutcome) -> CheckOutcome:
-        """Return the buckling factor of a link with what its joint forces grow by, over the largest, in its band."""
+        """Return the buckling factor of a link with what its joint forces may be, over the largest, in its band."""
         joints, grown = self.forces.reactions.joints, self.grown.joints
         every = self.case.linkage.joints_of(outcome.subject.name)
         own, largest = [x for x in every if x in grown], max((joints[x].magnitude for x in every), default=0.0)
@@ -208,7 +210,8 @@ class _LoadCase:
             return outcome
         low = min(joints[name].magnitude * (grown[name].low - 1.0) for name in own) / largest
         high = max(joints[name].magnitude * (grown[name].high - 1.0) for name in own) / largest
-        return widened(outcome, Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=SOURCES))
+        sources = distinct(*(grown[name].sources for name in own))
+        return widened(outcome, Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources))
 
     def solid_shares(self, decided: Mapping[str, DecidedLink], threads: int) -> dict[str, Shares]:
         """Return what the ways of sharing couples make of the links that are solved as solids."""
@@ -241,7 +244,9 @@ class _LoadCase:
         case, load_case, links = self.case, self.load_case, self.links(decided, solved)
         moved = with_known_stiffness(case, self.moved, self.forces, links, self.cut)
         reactions = moved.reactions or self.statics.reactions[load_case]
-        pins, joints = _pins(case, reactions, self.forces), self.uneven.times(self.shared).joints
+        pins = _pins(case, reactions, self.forces)
+        in_plane = {x: one for x, one in self.shared.joints.items() if case.linkage.rise(x) == 0.0}
+        pinned = self.uneven.times(Growths(joints=in_plane)).joints  # ``pins`` and bearing hold the sharing of others
         linkage = linkage_numbers(case, load_case, moved, self.forces, links, self.free)
         columns = {x: slenderest(case, x, self._columns(x)) for x in self.plates}
         solids = {x: found for x, found in links.items() if self.acts_on(x)}
@@ -250,8 +255,8 @@ class _LoadCase:
             *solid_buckling_outcomes(case, load_case, solids),
         )
         every = (
-            *outcomes(case, load_case, links, pins, moved, self.free, joints, self.forces),
-            *_bearing(case, load_case, reactions, self.forces, joints),
+            *outcomes(case, load_case, links, pins, moved, self.free, pinned, self.forces),
+            *_bearing(case, load_case, reactions, self.forces, self.uneven.joints),
             *(self._with_growth(one) for one in buckling),
             *limit_load_outcomes(case, load_case, linkage),
             *whole,

@@ -233,7 +233,8 @@ class Doubt(ABC):
             return one.numbers[link][2] if link else 1.0 / (one.moved.factor or float("inf"))
 
         spread = self.scatter(inverse)
-        if spread.high == float("inf") and not inverse(self.stated) > 0.0:
+        endless = self.scatter(lambda _: 1.0).high == float("inf")  # it may lock itself
+        if spread.high == float("inf") and not inverse(self.stated) > 0.0 and not endless:
             # no compression as stated: the outcome is that of the worst other
             spread = Scatter(low=0.0, sources=spread.sources)
         return widened(outcome, spread)

@@ -162,7 +162,8 @@ def _statements(case: Case, link: str) -> Iterator[tuple[str, dict[str, tuple[st
     """Yield what may be stated of pins, the least first: in words, and joint by joint."""
     joints = case.linkage.joints
     unknown = [name for name, joint in joints.items()
-               if joint.type == "revolute" and case.linkage.rise(name) != 0.0 and not joint.tight_in]  # fmt: skip
+               if joint.type == "revolute" and case.linkage.rise(name) != 0.0
+               and not (joint.tight_in or joint.bonded)]  # fmt: skip
     own = [name for name in unknown if link in joints[name].links]
     for names, links, which in (
         (own, "both links", slice(2)),

@@ -45,7 +45,8 @@ NOTHING = 1e-9
 def bore_presses(case: Case, wrenches: Mapping[str, Real]) -> dict[str, Real]:
     """Return what presses on the walls of bores over their forces.
 
-    A pin turns in the link in which it is not tight. Where that is not stated, the bore counts on which more presses.
+    A pin turns in the link in which it is not tight. Where that is not one of them, the bore counts on which more
+    presses.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def bore_presses(case: Case, wrenches: Mapping[str, Real]) -> dict[str, Real]:
             pressing(wrench[:, 0] + 1j * wrench[:, 1], wrench[:, 3] + 1j * wrench[:, 4], ring)
             / np.where(size > least, size, np.inf)
             for link, ring, wrench in zip(joint.links, rings, (first, second), strict=True)
-            if not joint.is_tight_in(link)
+            if len(joint.tight_in) != 1 or link not in joint.tight_in
         ]
         ratio = np.where(size > least, np.max(ratios, axis=0), 1.0)
         if np.any(ratio > 1.0):

@@ -90,8 +90,8 @@ def deciding_load_case(found: CaseFrequencies) -> str:
     cases, every = found.case.load_cases, found.histories
     turning = {name: one for name, one in every.items() if cases[name].speed != 0.0}
     driven = turning or {name: one for name, one in every.items() if one.driving > 0.0} or every
-    names = list(driven)
-    return names[first_least([least_frequency(driven[name]).low / (driven[name].driving or 1.0) for name in names])]
+    bands = [least_frequency(one).times(1.0 / (one.driving or 1.0)) for one in driven.values()]
+    return list(driven)[lowest_pose(np.array([band.low for band in bands]), np.array([band.value for band in bands]))]
 
 
 def least_frequency(history: FrequencyHistory) -> Band:

@@ -3,11 +3,12 @@
 Links of different layers keep a gap along the pins. Under load they bend and twist across the plane, and with play
 their pins tilt in their holes. Where two outlines lie over each other in the pose, the gap at every corner of what they
 share is reduced by how far the lower link rises there against the upper one: by the linear frame of beams, in the band
-of its flexibility, of the load and of the moduli, and by the play at all rims at its worst
+of its flexibility, of the load, the moduli, air and friction, and by the play at all rims at its worst
 (``fea.outcomes.free_motion``), for links that do not bend by it.
 """
 
 import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,14 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.common.band import Band
-from fea.common.scatter import compliance_scatter, load_scatter
 from fea.common.source import distinct, play_source
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity
 from fea.frame.displacement_band import compliance_range
 from fea.frame.linear import FrameSolution
 from fea.frame.linkage_frame import LinkageFrame
 from fea.frame.model import NodeLoad
-from fea.nonlinear.large_displacement import LargeDisplacement
+from fea.nonlinear.large_displacement import LargeDisplacement, stated_scatter
 from fea.outcomes.free_motion import loose_holes, rim_forces
 from geometry.clearance.shape import TOUCHING
 from loads.case.case import Case
@@ -187,28 +187,35 @@ class LayerGaps:
         frame, solution = self.moved.frame, self.moved.solution
         assert frame is not None
         assert solution is not None
-        soft = compliance_range(self.case, frame, solution).times(load_scatter(self.case, self.load_case))
-        for material in {
-            self.case.part_of(link).material: self.case.material_of(link) for link in frame.stations
-        }.values():
-            soft = soft.times(compliance_scatter(material))
+        soft = compliance_range(self.case, frame, solution).times(stated_scatter(self.case, self.load_case))
         loose = clearances(self.case)
-        sources = distinct(soft.sources, (play_source(loose),) if loose else ())
-        raised, found = Raised(frame=frame, solution=solution), []
+        doubts = self.moved.air, self.moved.friction, play_source(loose) if loose else None
+        sources = distinct(soft.sources, tuple(source for source in doubts if source is not None))
+        found = []
         for over in overlaps(frame, self.assembly):
-            closed = raised.at(over.lower, over.places) - raised.at(over.upper, over.places)
-            free = self._free(frame, over) if loose else np.zeros(len(closed))
-            ends = np.sort([soft.low * closed, soft.high * closed, closed], axis=0)
+            closed = np.array(
+                [one.at(over.lower, over.places) - one.at(over.upper, over.places) for one in self._shapes]
+            )
+            free = self._free(frame, over) if loose else np.zeros(len(over.places))
+            ends = np.sort(np.vstack([soft.low * closed, soft.high * closed, closed]), axis=0)
             k = int(np.argmax(ends[-1] + free))
             left = Band(
-                value=over.gap - float(closed[k]),
-                low=over.gap - float(ends[-1][k] + free[k]),
+                value=over.gap - float(closed[0, k]),
+                low=-math.inf if self.moved.locks else over.gap - float(ends[-1][k] + free[k]),
                 high=over.gap - float(ends[0][k] - free[k]),
                 sources=sources,
             )
             place = float(over.places[k, 0]), float(over.places[k, 1])
             found.append(LayerGap(names=(over.lower, over.upper), gap=over.gap, left=left, place=place))
         return min(found, key=lambda one: one.left.low, default=None)
+
+    @cached_property
+    def _shapes(self) -> list[Raised]:
+        """As stated first, then with other air and friction that may be."""
+        moved = self.moved
+        every = (moved, *(other for _, other in moved.airs[1:]), *moved.rubbed)
+        known = [(one.frame, one.solution) for one in every]
+        return [Raised(frame=frame, solution=solution) for frame, solution in known if frame and solution]
 
     def _free(self, frame: LinkageFrame, over: Overlap) -> Real:
         """How far play lets both links come nearer to each other at places (n,), by forces at rims there."""

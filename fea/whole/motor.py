@@ -137,24 +137,26 @@ def motor_outcomes(case: Case, name: str, check: MotorCheck) -> dict[str, tuple[
 
 
 def _band(moved: CaseMotion, title: str, of: Callable[[Real], tuple[float, float, float]]) -> Band:
-    """Return what is calculated from the drive torque: value, low and high, with what air and play may make of it."""
-    value, low, high, sources = _loosened(moved, title, of)
+    """Return what is calculated from the drive torque, with what play, air and friction may make of it."""
+    value, plain_low, plain_high, sources = _loosened(moved, title, of)
+    low, high, least, most = plain_low, plain_high, plain_low, plain_high
     air, airs = moved.case.load_cases[title].flapping, air_range(moved)
     if air is not None and airs is not None and (others := airs.at(title)):
         lows = {air.normal_coefficient: low}
         for coefficient, other in zip(air.ends, others, strict=True):
-            _, lows[coefficient], most, _ = _loosened(other, title, of)
-            high = max(high, most)
+            _, lows[coefficient], end, _ = _loosened(other, title, of)
+            high = max(high, end)
         low = max(least_of_convex(lows.items()), 0.0)
         sources = (*sources, air_source(*air.ends))
     for other in friction_range(moved):
-        if np.isfinite(other.torque[title]).all():
-            _, least, most, _ = _loosened(other, title, of)
-        else:  # the linkage locks itself
-            least, most = low, math.inf
-        low, high = min(low, least), max(high, most)
+        locks = not np.isfinite(other.torque[title]).all()
+        _, own, end, _ = (0.0, plain_low, math.inf, ()) if locks else _loosened(other, title, of)
+        least, most = min(least, own), max(most, end)
     if moved.rubbing:
         sources = (*sources, friction_source(friction_ranges(moved.case)))
+    # Air and friction, each alone so far, at their worst together: what either takes adds up, what it makes multiplies.
+    low = max(low + least - plain_low, 0.0)
+    high = high * most / plain_high if 0.0 < plain_high < math.inf else max(high, most)
     return Band(value=value, low=low, high=high, sources=sources)
 
 

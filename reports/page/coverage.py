@@ -15,8 +15,8 @@ STACKING = (
 )
 LAYERS = (
     "Pins between layers are beams from mid-plane to mid-plane. The bands hold how they share couples: with the pins "
-    "of any link tilting in it or in their other link, and with all holes open that are not tight_in. Washers, heads "
-    "and faces that touch take none of these."
+    "of any link tilting in it or in their other link, and with all holes open that are not tight_in. That "
+    "washers, heads and faces that touch bear some of them is left out."
 )
 TILT = (
     " How far pins without a stated clearance tilt in their holes is in no displacement, and not in the gaps between "

@@ -69,7 +69,7 @@ def print_result(result: CheckResult, console: "Console") -> None:
                 say(console, f"Motor: {check.reason}.")
             elif check.quantity is Quantity.DISPLACEMENT and check.applies:
                 say(console, f"Displacement of {check.subject}: {check.reason}.")
-            elif check.quantity in (Quantity.LAYER_GAP, *UNLOADED_QUANTITIES):
+            elif check.quantity in (Quantity.LAYER_GAP, *UNLOADED_QUANTITIES) and check.applies:
                 say(console, sentence(f"{check.quantity}: {check.reason}"))
         for line in _hand(case):
             say(console, line)

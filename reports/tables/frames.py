@@ -312,10 +312,12 @@ def play_line(play: Play) -> str:
     held = "" if drive is None else f" with {drive.link} held"
     told = f"Play of pins: {point} of {link} can move by {number(most, 3)} mm to either side{held}"
     told += f", {number(2.0 * most, 3)} mm both ways"
-    if play.case.layered:
-        told += " while its pins stay along z; as they tilt in their holes points move further, as checks of them tell"
     if play.settled is not None:
         told += f"; under the load it rests {number(abs(complex(play.shift(link, point))), 3)} mm off"
+    if play.case.layered:
+        told += (
+            ". That is with pins along z; where they tilt in their holes points move further, as checks of points hold"
+        )
     if drive is None or play.nominal is None:
         return f"{told}."
     pushes = drive.pushes(play.case.linkage)

@@ -58,7 +58,8 @@ def change_sentences(change: VerdictChange, result: CheckResult) -> list[str]:
     if change.refuted and not told:
         told.append("Other loads and materials were tried, and none within reach does.")
     elif check.verdict is Verdict.UNDECIDED and not told:
-        told.append(sentence(check.reason))
+        known = change.widest and check.quantity is Quantity.FREQUENCY_RATIO
+        told.append(_of_itself(check) if known else sentence(check.reason))
     if change.widest:
         told.append(_of_sources(change, result))
     if not told:

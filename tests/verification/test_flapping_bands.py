@@ -181,3 +181,22 @@ def test_over_a_motion_shares_hold_every_coefficient_at_every_pose():
         largest = [np.linalg.norm(one.forces["air"].forces[joint], axis=1).max() for one in (moved, *others)]
         assert growth.low - 1e-9 <= min(largest[1:]) / largest[0]
         assert growth.high == pytest.approx(max(largest) / largest[0], rel=1e-9)
+
+
+def rubbing(case: Case, mu: float, ends: tuple[float, float]) -> Case:
+    """The same in one plane and 25 poses, with friction in the crank's pins."""
+    stated = {"friction": mu, "friction_range": ends}
+    joints = {name: j.model_copy(update=stated) if name in ("O", "A") else j for name, j in case.joints.items()}
+    motion = case.motion.model_copy(update={"poses": 25})
+    return case.model_copy(update={"joints": joints, "layer_spacing": None, "motion": motion})
+
+
+def test_the_motors_bands_hold_the_worst_air_and_the_worst_friction_together():
+    """Each was in the band beside the stated value of the other alone."""
+    found = motor(rubbing(ornithopter(), 0.2, (0.1, 0.4)))
+    worst, least = motor(rubbing(direct(5.0), 0.4, (0.4, 0.4))), motor(rubbing(direct(1.2), 0.1, (0.1, 0.1)))
+    for quantity in ("drive power", "drive torque over time"):
+        band = found[quantity].value
+        assert worst[quantity].value.high <= band.high < 1.1 * worst[quantity].value.high
+        assert band.low <= least[quantity].value.low
+        assert {SourceKind.AIR, SourceKind.FRICTION} <= {source.kind for source in band.sources}

@@ -9,7 +9,7 @@ from edited_cases import PLANAR, edited
 
 from fea.check.run import check_case
 from fea.common.source import SourceKind
-from fea.common.verdict import Verdict
+from fea.common.verdict import Quantity, Verdict
 from fea.frame.case_statics import solve_case_statics, with_ends
 from fea.frame.rubbing import at_end, bore_presses
 from fea.motion.loosened import column_growth, joint_growth, otherwise
@@ -104,6 +104,34 @@ def test_where_the_largest_friction_locks_the_linkage_bands_have_no_end() -> Non
 
 def with_least() -> float:
     return solve_case_statics(toggle(0.175, (0.175, 0.175))).reactions["push"].drive_force
+
+
+def layer_gap(friction: float, stated: tuple[float, float]):
+    """Gap between the layers of the slider-crank, whose slider pushes the crank some degrees from its dead point."""
+    rubs = [f"joints.{pin}.friction={friction}" for pin in PINS]
+    rubs += [f"joints.{pin}.friction_range=[{stated[0]}, {stated[1]}]" for pin in PINS]
+    case = edited(
+        "slider-crank",
+        [
+            *(*rubs, "joints.guide.friction=0", 'drive.link="slider"', 'drive.joint="guide"', 'pose.angle="12 deg"'),
+            *('load_cases.push.direction="forward"', 'large_displacement="off"'),
+            'load_cases.push.forces=[{link="crank",at="A",force=["0 N","-100 N"]}]',
+        ],
+    )
+    checks = check_case(case, fidelity="beam").load_cases["push"].checks
+    return next(one for one in checks if one.quantity is Quantity.LAYER_GAP)
+
+
+def test_the_gap_between_layers_is_what_all_friction_that_may_be_leaves() -> None:
+    """Links bend further with more friction; where the linkage may lock itself, no gap is sure."""
+    told, locked = layer_gap(0.1, (0.05, 0.2)), layer_gap(0.1, (0.05, 2.0))
+    direct = [layer_gap(mu, (mu, mu)).value for mu in (0.05, 0.1, 0.2)]
+    assert min(one.low for one in direct) < direct[1].low
+    assert told.value.low == pytest.approx(min(one.low for one in direct), rel=1e-3)
+    assert told.value.high >= max(one.high for one in direct) - 1e-9
+    assert (told.verdict, locked.verdict) == (Verdict.PASS, Verdict.UNDECIDED)
+    assert locked.value.low == -math.inf
+    assert SourceKind.FRICTION in {source.kind for source in locked.value.sources}
 
 
 def torque(*entries: str) -> dict[str, float]:

@@ -12,7 +12,7 @@ import pytest
 import slotted_cases
 
 from fea.frame.case_statics import solve_case_statics
-from fea.frame.rubbing import presses_of
+from fea.frame.rubbing import bore_presses, presses_of
 from fea.whole.rubbed_motion import rubbed_motion
 from geometry.bodies.features import Ring
 from loads.case.case_file import read_case
@@ -249,3 +249,17 @@ def test_a_pin_rubs_in_the_bore_in_which_it_turns(tight: int | None) -> None:
 
 def _with_part(case, joint: str) -> str:
     return next(link for link in case.joints[joint].links if case.links[link].part is not None)
+
+
+def test_a_pin_that_is_tight_in_both_links_rubs_in_the_bore_on_which_more_presses() -> None:
+    """It tilts in neither and turns in one of them, as where nothing is stated; tight in one it rubs in the other."""
+    pressed = []
+    for stated in ("[]", '["crank", "rod"]', '"crank"', '"rod"'):
+        entry = [] if stated == "[]" else [f"joints.A.tight_in={stated}"]
+        statics = solve_case_statics(read_case("slider-crank", entry))
+        wrenches = {name: one.wrench[None] for name, one in statics.reactions["push forward"].joints.items()}
+        pressed.append(float(bore_presses(statics.case, wrenches)["A"][0]))
+    unstated, both, crank, rod = pressed
+    assert both == pytest.approx(unstated, rel=1e-9)
+    assert both == pytest.approx(max(crank, rod), rel=0.05)
+    assert min(crank, rod) < max(crank, rod)

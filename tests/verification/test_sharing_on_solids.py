@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tilting_bars import PLA, four_bar
+from tilting_pins import PLA, loaded
 
 from fea.beam.cut_free import link_loads
 from fea.check.solid_frame import with_solids
@@ -32,7 +32,7 @@ OWN = frozenset({("B", "coupler"), ("O4", "base")})
 
 @cache
 def in_plane() -> tuple[Case, CaseStatics, JointForces]:
-    case = four_bar(PLA, ["0 N", "-1 N"])
+    case = loaded(PLA, ["0 N", "-1 N"])
     statics = solve_case_statics(case)
     return case, statics, statics.forces["l"]
 
@@ -105,7 +105,7 @@ def test_outermost_points(points, corners):
 def test_a_small_force_across_the_plane_leaves_the_ways_of_sharing():
     """0.001 N of it brings the links in as condensed solids; thrust once fell from 0.285 to 0.0065 N by that."""
     case, statics, plain = in_plane()
-    out = solve_case_statics(four_bar(PLA, ["0 N", "-1 N", "0.001 N"]))
+    out = solve_case_statics(loaded(PLA, ["0 N", "-1 N", "0.001 N"]))
     solved, _ = with_solids(out, {"l": SimpleNamespace(followed=False)}, START, always=True)  # type: ignore[dict-item]
     forces = solved.forces["l"]
     assert set(forces.solids) == set(case.checked_links)

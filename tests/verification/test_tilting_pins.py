@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tilting_bars import ALUMINIUM, PLA, four_bar
+from tilting_pins import ALUMINIUM, PLA, loaded
 
 import fea.frame.sharing
 from fea.beam.cut_free import beam_loads, link_loads
@@ -30,7 +30,7 @@ PRESSED = {"O2": ("crank",), "A": ("crank",), "B": ("rocker",), "O4": ("rocker",
 
 @cache
 def pressed() -> tuple[Case, CaseStatics]:
-    case = four_bar(ALUMINIUM, ["0 N", "-20 N"], PRESSED)
+    case = loaded(ALUMINIUM, ["0 N", "-20 N"], PRESSED)
     return case, solve_case_statics(case)
 
 
@@ -56,7 +56,7 @@ def section_stress(case: Case, reactions: Reactions, statics: CaseStatics, link:
 )
 def test_the_ways_of_sharing_hold_pins_that_run_with_clearance(tight, times):
     """Of a link whose own pins tilt alone the coupler once had 0.16 to 1.00 times its stress with tight pins."""
-    case = four_bar(ALUMINIUM, ["0 N", "-20 N"], tight)
+    case = loaded(ALUMINIUM, ["0 N", "-20 N"], tight)
     statics = solve_case_statics(case)
     forces = statics.forces["l"]
     for link, share in times.items():
@@ -84,11 +84,11 @@ def test_all_holes_that_are_not_tight_are_open_at_once():
 
 def test_a_pin_that_is_tight_in_both_links_tilts_nowhere():
     both = {"A": ("crank", "coupler"), "B": ("coupler", "rocker")}
-    case = four_bar(ALUMINIUM, ["0 N", "-20 N"], both)
+    case = loaded(ALUMINIUM, ["0 N", "-20 N"], both)
     hinges = {name for one in solve_case_statics(case).forces["l"].sharings for name, _ in one.hinges}
     assert hinges == {"O2", "O4"}
     every = {name: joint.links for name, joint in case.joints.items()}
-    forces = solve_case_statics(four_bar(ALUMINIUM, ["0 N", "-20 N"], every)).forces["l"]
+    forces = solve_case_statics(loaded(ALUMINIUM, ["0 N", "-20 N"], every)).forces["l"]
     assert forces.sharings == ()
     [thrust] = {round(band.high / band.low, 9) for band in thrusts(forces).values()}
     assert thrust == 1.0
@@ -96,14 +96,14 @@ def test_a_pin_that_is_tight_in_both_links_tilts_nowhere():
 
 def test_what_the_warning_recommends_decides_the_check():
     """Of two links whose checks sharing leaves open, each by its own entry; one whose eye opens it is not told of."""
-    found = check_case(four_bar(ALUMINIUM, ["0 N", "-20 N"]), fidelity="beam")
+    found = check_case(loaded(ALUMINIUM, ["0 N", "-20 N"]), fidelity="beam")
     told = {link: text for link in ("crank", "coupler", "rocker") for text in found.warnings if f"of {link} " in text}
     assert told.keys() == {"crank", "coupler"}
     assert told["crank"].endswith("tight_in of joints O2, A, B, O4, in the first link of each, would decide its check")
     assert told["coupler"].endswith("tight_in of joints O2, A, B, O4, in both links, would decide its check")
-    joints = four_bar(ALUMINIUM, ["0 N", "-20 N"]).linkage.joints
+    joints = loaded(ALUMINIUM, ["0 N", "-20 N"]).linkage.joints
     for link, count in (("crank", 1), ("coupler", 2)):
-        case = four_bar(ALUMINIUM, ["0 N", "-20 N"], {n: joint.links[:count] for n, joint in joints.items()})
+        case = loaded(ALUMINIUM, ["0 N", "-20 N"], {n: joint.links[:count] for n, joint in joints.items()})
         [check] = [one for one in check_case(case, fidelity="beam").load_cases["l"].checks
                    if one.name == "s" and one.link == link]  # fmt: skip
         assert check.verdict is Verdict.PASS
@@ -111,7 +111,7 @@ def test_what_the_warning_recommends_decides_the_check():
 
 def test_a_search_finds_the_ends_of_all_states(monkeypatch):
     """What is tried beyond 64 states, here of a case that has 17 and can be enumerated."""
-    case = four_bar(PLA, ["0 N", "-1 N"])
+    case = loaded(PLA, ["0 N", "-1 N"])
     statics = solve_case_statics(case)
     every = statics.forces["l"].sharings
     monkeypatch.setattr(fea.frame.sharing, "MOST_STATES", 0)

@@ -16,6 +16,7 @@ from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.sizing.changes import _change
+from fea.vibration import over_motion
 from fea.vibration.frequency_outcomes import (
     asked_frequencies,
     deciding_load_case,
@@ -78,6 +79,26 @@ def test_over_a_motion_value_and_ends_of_the_lowest_frequency_are_each_the_least
     assert math.degrees(least_at(own)) == pytest.approx(45.0)
 
 
+@pytest.mark.parametrize("low", [lambda i: 0.0, lambda i: 5.0 + abs(i - 61.0)])
+def test_the_pose_of_the_lowest_frequency_is_sought_by_low_ends_and_where_these_are_alike_by_values(monkeypatch, low):
+    """The least of 81 poses is the 61st: by its low end, or by its value where pins that run leave all poses at 0."""
+
+    def at(case, name, pose, *_):
+        value = 60.0 + abs(pose - 61.0)
+        mode = SimpleNamespace(frequency=Band(value=value, low=low(pose), high=2.0 * value))
+        return SimpleNamespace(modes=[mode], notes=(), pose=pose)
+
+    monkeypatch.setattr(over_motion, "_at", at)
+    monkeypatch.setattr(over_motion, "pose_at", lambda motion, i: i)
+    case = SimpleNamespace(motion=SimpleNamespace(speed=0.0), load_cases={"turning": SimpleNamespace(speed=10.0)})
+    motion = SimpleNamespace(angles=np.linspace(0.0, 80.0, 81))
+    moved = SimpleNamespace(case=case, motion=motion, torque={"turning": np.zeros(81)}, loads={"turning": ()})
+    own = over_motion._over(moved, "turning", {}, 1)
+    assert own.lowest.pose == 61
+    assert least_at(own) == 61.0
+    assert len(own.at) < 30
+
+
 def test_the_load_case_that_decides_is_the_one_nearest_to_its_own_driving_frequency():
     """30 Hz at 20 Hz is nearer than 15 Hz at 5 Hz, whichever comes first, though 15 Hz is the lower one."""
     near, far = history([30.0], [31.0], driving=20.0), history([15.0], [16.0], driving=5.0)
@@ -86,6 +107,8 @@ def test_the_load_case_that_decides_is_the_one_nearest_to_its_own_driving_freque
         case = SimpleNamespace(load_cases=dict.fromkeys(names, turning))
         every = {name: {"near": near, "far": far}[name] for name in names}
         assert deciding_load_case(SimpleNamespace(case=case, histories=every)) == "near"
+        loose = {name: replace(one, low=0.0 * one.low) for name, one in every.items()}  # pins may run: both begin at 0
+        assert deciding_load_case(SimpleNamespace(case=case, histories=loose)) == "near"
 
 
 def test_a_harmonic_meets_a_frequency_where_it_lies_in_its_band():

@@ -7,12 +7,15 @@ import pytest
 from edited_cases import PLANAR
 
 from fea.buckling.linkage import NO_EQUILIBRIUM, linkage_outcomes, unless_it_gives_way
+from fea.check import known_stiffness
+from fea.check.known_stiffness import with_known_stiffness
 from fea.common.band import Band
 from fea.common.scatter import Scatter
 from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict
 from fea.nonlinear.large_displacement import LargeDisplacement
 from fea.nonlinear.stability import SNAP
+from fea.outcomes.result import SolidResult
 from fea.outcomes.solid_buckling import _outcome, solid_growth
 from fea.refine.link_buckling import SolidBuckling
 from loads.case.case_file import read_case
@@ -29,6 +32,7 @@ def test_bending_of_a_solid_grows_as_towards_the_least_factor_that_its_mesh_allo
     assert solid_growth(buckling(8.0, 4.0, 0.2)).high == pytest.approx(3.2 / 2.2)
     assert solid_growth(buckling(30.0, 4.0)).high == pytest.approx(4.0 / 3.0)
     assert solid_growth(buckling(30.0, 10.0)).high == pytest.approx(10.0 / 9.0)
+    assert solid_growth(buckling(300.0, 100.0)).high == pytest.approx(100.0 / 99.0)
     for least in (0.9, 1.1):  # 1.1 may be 0.99
         assert solid_growth(buckling(30.0, least, 0.1)).high == 1.0
     assert solid_growth(None).sources == solid_growth(SolidBuckling.unknown("coarse")).sources == ()
@@ -90,10 +94,10 @@ def linear(factor, **entries):
     return LargeDisplacement(span=100.0, buckling=factor, **entries)
 
 
-PLAY, AIR = Source(kind=SourceKind.PLAY), Source(kind=SourceKind.AIR)
+PLAY, AIR, FRICTION = (Source(kind=kind) for kind in (SourceKind.PLAY, SourceKind.AIR, SourceKind.FRICTION))
 
 
-def test_a_limit_load_holds_those_of_all_places_of_its_pins_and_of_all_airs():
+def test_a_limit_load_holds_those_of_all_places_of_its_pins_of_all_airs_and_of_all_friction():
     """The outer ends come from the second of two other places, and from the second of two other airs."""
     one = linear(8.0)
     assert (one.limit_load.low, one.limit_load.high) == pytest.approx((8.0 / SNAP, 8.0))
@@ -102,7 +106,31 @@ def test_a_limit_load_holds_those_of_all_places_of_its_pins_and_of_all_airs():
     airs = tuple((c, linear(f)) for c, f in ((2.0, 8.0), (1.0, 9.5), (3.0, 4.0), (2.5, 6.0)))
     blown = replace(shaken, air=AIR, airs=airs)
     assert (blown.limit_load.low, blown.limit_load.high) == pytest.approx((4.0 / SNAP, 9.5))
-    assert {SourceKind.PLAY, SourceKind.AIR} <= {source.kind for source in blown.limit_load.sources}
+    rubbed = replace(blown, friction=FRICTION, rubbed=(linear(7.0), linear(3.0)))
+    assert (rubbed.limit_load.low, rubbed.limit_load.high) == pytest.approx((3.0 / SNAP, 9.5))
+    assert {SourceKind.PLAY, SourceKind.AIR, SourceKind.FRICTION} <= {one.kind for one in rubbed.limit_load.sources}
+
+
+def test_what_solids_tell_of_their_links_is_told_with_other_air_play_and_friction_as_well(monkeypatch):
+    soft, solid = Band(value=0.5, low=0.4, high=0.6), object.__new__(SolidResult)
+    object.__setattr__(solid, "buckling", SimpleNamespace(least=3.0, error=0.0))
+    answers = {"_tells": True, "_beams": 1.0, "_solids": soft, "blind_link": "", "softness": soft}
+    for name, answer in {**answers, "works_of_links": [("bar", Band.exact(1.0))]}.items():
+        monkeypatch.setattr(known_stiffness, name, lambda *_, answer=answer: answer)
+    airs = ((1.0, linear(8.0)), (2.0, linear(6.0)))
+    one = linear(8.0, solution=object(), shaken=(linear(7.0),), airs=airs, rubbed=(linear(5.0), linear(9.0)))
+    case, cut = SimpleNamespace(bending_links=("bar",)), {"bar": SimpleNamespace(name="a")}
+    found = with_known_stiffness(case, one, None, {"bar": solid}, cut)
+    every = [found, *found.shaken, *(other for _, other in found.airs), *found.rubbed]
+    assert [(other.softness.value, other.alone) for other in every] == [(0.5, 3.0)] * 6
+
+
+def test_where_the_linkage_gives_way_no_gap_between_layers_passes():
+    gap = CheckOutcome.of("c", LINKAGE, "a", Quantity.LAYER_GAP, Band.exact(0.4), 0.0)
+    plane = CheckOutcome.of("c", LINKAGE, "a", Quantity.CLEARANCE, Band.exact(0.4), 0.0)
+    one, other = unless_it_gives_way([gap, plane], {"a"})
+    assert (one.verdict, one.applies, other) == (Verdict.UNDECIDED, False, plane)
+    assert unless_it_gives_way([gap], {"b"}) == [gap]
 
 
 def test_play_that_may_pass_a_dead_point_leaves_no_load_that_is_held_for_sure():
@@ -112,6 +140,12 @@ def test_play_that_may_pass_a_dead_point_leaves_no_load_that_is_held_for_sure():
     through = replace(one, passes=True)
     assert (through.limit_load.low, through.held_share.low) == (0.0, 0.0)
     assert through.limit_load.high == one.limit_load.high
+
+
+def test_friction_with_which_it_may_lock_itself_leaves_no_load_that_is_held_for_sure():
+    one = replace(linear(8.0), friction=FRICTION, rubbed=(linear(7.0),))
+    assert one.limit_load.low > 1.0
+    assert (replace(one, locks=True).limit_load.low, replace(one, locks=True).held_share.low) == (0.0, 0.0)
 
 
 def test_what_is_stated_and_what_eyes_do_both_take_of_a_limit_load():

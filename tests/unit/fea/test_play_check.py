@@ -171,3 +171,18 @@ def test_stress_reaches_as_far_as_slopes_add_up_and_as_far_as_it_does_at_the_wor
     stress, displacement = found.stress["arm"], found.displacement["arm"]
     assert (stress.low, stress.high) == pytest.approx((0.25, 1.9))
     assert (displacement.low, displacement.high) == pytest.approx((0.3, 1.7))
+
+
+def test_the_buckling_factor_of_a_link_holds_what_play_makes_of_its_compression() -> None:
+    """The force at B changes more than that at O4, the rocker's other pin; its band was that without play."""
+    plain, loose = (
+        next(one.value for one in rocker(play).checks if (one.name, one.link) == ("buckling", "rocker"))
+        for play in ("0 mm", "1 mm")
+    )
+    forces = rocker("1 mm").forces.play.forces
+    near, far = ((forces[x].low / forces[x].value, forces[x].high / forces[x].value) for x in ("B", "O4"))
+    assert near[0] < far[0] < 1.0 < far[1] < near[1]
+    assert (loose.value, loose.low, loose.high) == pytest.approx(
+        (plain.value, plain.low / near[1], plain.high / near[0]), rel=1e-3
+    )
+    assert SourceKind.PLAY in {source.kind for source in loose.sources}
