@@ -185,10 +185,9 @@ def beyond_undeformed(
 def _slack(case: Case, load_case: str, links: Iterable[str]) -> tuple[float, float]:
     """Least and largest load over modulus, over what it is."""
     load, slack = load_scatter(case, load_case), [compliance_scatter(case.material_of(link)) for link in links]
-    return (
-        load.low * min((s.low for s in slack), default=1.0),
-        load.high * max((s.high for s in slack), default=1.0),
-    )
+    low = load.low * min((s.low for s in slack), default=1.0)
+    high = load.high * max((s.high for s in slack), default=1.0)
+    return low, high
 
 
 def _told(ends: Sequence[Mapping[str, tuple[float, float]]]) -> Growths:

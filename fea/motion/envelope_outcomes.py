@@ -15,9 +15,8 @@ from fea.doubts.other_case import widened
 from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
-from fea.motion.grown import MotionGrowth
 from fea.motion.layered import forces_at
-from fea.motion.loosened import column_growth, joint_growth
+from fea.motion.loosened import MotionGrowth, column_growth, joint_growth
 from fea.outcomes.bearing import bearing_outcome, pressing
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
