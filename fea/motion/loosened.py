@@ -9,11 +9,11 @@ with either end of the range, and its largest stress of each is compared, as in 
 (``fea.doubts.range_doubt``). And so does friction, at either end of what it may be.
 
 Growth on the deformed shape is sought at some poses, by hand, as a check of each has it (``fea.doubts.load_growth``),
-without a threshold: where a link or joint bears most, a link under compression with the growth of a column; where a
-link is nearest to buckling as one; and where the linkage as a whole is looked at (``fea.motion.linkage_history``),
-next to a dead point, at the largest torque and at poses spread over the range. The largest of these numbers on the
-deformed shape, over the largest in the undeformed pose, widens the bands of the whole motion. Growth that makes a
-number largest at a pose between these is in no band.
+without a threshold: where the linkage as a whole is looked at (``fea.motion.linkage_history``), next to a dead point,
+at the largest torque and at poses spread over the range; and, where it does not bear nearly as much at one of these,
+where a link or joint bears most, a link under compression with the growth of a column, or is nearest to buckling as
+one. The largest of these numbers on the deformed shape, over the largest of them in the undeformed pose, widens the
+bands of the whole motion. Growth that makes a number largest at a pose between these is in no band.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -46,6 +46,9 @@ from loads.records.applied import chosen
 from loads.states.case_motion import CaseMotion
 from loads.states.dead_point_reach import pose_at
 from loads.states.loose_motion import LooseMotion, loose_motion
+
+NEARLY = 0.98
+"""Share of the most that a link or joint bears at one of the poses at which growth is sought, at least."""
 
 
 def loosened(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[tuple[str, str], Scatter]:
@@ -309,8 +312,13 @@ def _poses(
             column = factors_over_motion(moved.case, link, history).value
             bent = 1.0 / (1.0 - 1.0 / np.maximum(column, LEAST_FACTOR))
             sizes += [history.size(moved.case.linkage.longest) * bent, 1.0 / column]
-    largest = {first_largest(np.where(evaluated, size, -np.inf)) for size in sizes}
-    return sorted({*largest, *looked_at(moved, load_case, evaluated)})
+    found = set(looked_at(moved, load_case, evaluated))
+    for size in sizes:
+        counted = np.where(evaluated, size, -np.inf)
+        most = first_largest(counted)
+        if counted[list(found)].max() < NEARLY * counted[most]:
+            found.add(most)
+    return sorted(found)
 
 
 def _grown_at(moved: CaseMotion, load_case: str, i: int, histories: Mapping[str, Sequence[LinkLoads]]) -> _GrownPose:
