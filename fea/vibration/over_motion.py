@@ -169,7 +169,7 @@ def _over(moved: CaseMotion, name: str, masses: Mapping[str, PartMass], count: i
 
     size = len(motion.angles)
     coarse = range(0, size, FINE)
-    best = coarse[first_least([least(i) for i in coarse])]
+    best = coarse[lowest_pose(*np.array([least(i) for i in coarse]).T)]
     if modes(best) is None:
         raise CannotRunError(f"load case {name}: no pose of the motion has an equilibrium that a frame can hold")
     _least_between(least, max(best - FINE, 0), min(best + FINE, size - 1))
@@ -193,7 +193,7 @@ def _least_between(function: Callable[[int], tuple[float, float]], low: int, hig
         first, second = low + step, high - step
         if first >= second:
             first, second = low + 1, high - 1
-        low, high = (low, second) if first_least([function(second), function(first)]) else (first, high)
+        low, high = (low, second) if lowest_pose(*np.array([function(second), function(first)]).T) else (first, high)
     for i in range(low, high + 1):
         function(i)
 
