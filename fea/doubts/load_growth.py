@@ -10,7 +10,7 @@ bounds it as well where no deformed shape was found.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -71,7 +71,8 @@ class Growths:
         return Growths(stress=stress, displacement=displacement, joints=joints)
 
 
-_Numbers = tuple[dict[str, float], dict[str, float], dict[str, float]]
+Numbers = tuple[dict[str, float], dict[str, float], dict[str, float]]
+"""Stress and displacement of links, forces of joints."""
 
 
 def growths(
@@ -103,11 +104,8 @@ def growths(
     -------
     Growths
     """
-    load, materials = load_scatter(case, load_case), [case.material_of(link) for link in hands]
-    slack = [compliance_scatter(material) for material in materials]
-    low = load.low * min((s.low for s in slack), default=1.0)
-    high = load.high * max((s.high for s in slack), default=1.0)
-    plain = _numbers(hands, moved.reactions or reactions)
+    low, high = _slack(case, load_case, hands)
+    plain = by_hand_numbers(hands, moved.reactions or reactions)
     if moved.state == "small":
         return _of_small(case, load_case, loads, moved, reactions, plain, high)
     if low == high or moved.state not in ("deformed", "off", "unknown"):
@@ -128,6 +126,70 @@ def growths(
     return _told(found)
 
 
+def beyond_undeformed(
+    case: Case,
+    load_case: str,
+    pose: Pose,
+    loads: Sequence[Load],
+    moved: LargeDisplacement,
+    reactions: Reactions,
+    hands: Mapping[str, LinkByHand],
+) -> Growths:
+    """Return what the deformed shape makes of numbers of the undeformed pose, whatever became of it.
+
+    Those are told over a motion. Bands hold them too, and what the largest load over modulus makes of them.
+
+    Parameters
+    ----------
+    case : Case
+    load_case : str
+    pose : Pose
+    loads : sequence of Load
+        Of the load case, in that pose.
+    moved : LargeDisplacement
+        The frame's answer (``with_growth``).
+    reactions : Reactions
+        In the undeformed pose.
+    hands : mapping of str to LinkByHand
+        Link -> its hand calculation there.
+
+    Returns
+    -------
+    Growths
+        With upper ends that are infinite where the linkage gives way.
+    """
+    high, plain = _slack(case, load_case, hands)[1], by_hand_numbers(hands, reactions)
+    if moved.state == "small":
+        return _of_small(case, load_case, loads, moved, reactions, plain, high)
+    if moved.gives_way:
+        return _told([dict.fromkeys(kind, (1.0, math.inf)) for kind in plain])
+    every: list[Numbers | None] = [_by_hand(case, load_case, moved, reactions, loads)]
+    if high > 1.0:
+        every.append(_at(case, load_case, pose, loads, reactions, high))
+    found = []
+    for i, before in enumerate(plain):
+        least = NOTHING * max(before.values(), default=0.0)
+        found.append(
+            {
+                name: (
+                    min(1.0, *(after[i][name] / value for after in every if after is not None)),
+                    max(1.0, *(math.inf if after is None else after[i][name] / value for after in every)),
+                )
+                for name, value in before.items()
+                if value > least
+            }
+        )
+    return _told(found)
+
+
+def _slack(case: Case, load_case: str, links: Iterable[str]) -> tuple[float, float]:
+    """Least and largest load over modulus, over what it is."""
+    load, slack = load_scatter(case, load_case), [compliance_scatter(case.material_of(link)) for link in links]
+    low = load.low * min((s.low for s in slack), default=1.0)
+    high = load.high * max((s.high for s in slack), default=1.0)
+    return low, high
+
+
 def _told(ends: Sequence[Mapping[str, tuple[float, float]]]) -> Growths:
     stress, displacement, joints = (
         {
@@ -146,7 +208,7 @@ def _of_small(
     loads: Sequence[Load],
     moved: LargeDisplacement,
     reactions: Reactions,
-    plain: _Numbers,
+    plain: Numbers,
     high: float,
 ) -> Growths:
     """Growth of the numbers of the undeformed pose, at the largest load over modulus."""
@@ -164,10 +226,10 @@ def _of_small(
 
 def _by_hand(
     case: Case, load_case: str, moved: LargeDisplacement, reactions: Reactions, loads: Sequence[Load]
-) -> _Numbers:
+) -> Numbers:
     cut = {link: cut_link(case, link, load_case, moved, reactions, loads) for link in case.checked_links}
     hands = {link: plates_by_hand(case, link, borne)[0][1] for link, borne in cut.items()}
-    return _numbers(hands, moved.reactions or reactions)
+    return by_hand_numbers(hands, moved.reactions or reactions)
 
 
 def _at(
@@ -177,7 +239,7 @@ def _at(
     loads: Sequence[Load],
     reactions: Reactions,
     factor: float,
-) -> _Numbers | None:
+) -> Numbers | None:
     """Numbers of the load case where load over modulus is ``factor`` times its own; None where nothing holds it.
 
     In the undeformed pose the joint forces are the same.
@@ -191,11 +253,32 @@ def _at(
         return None
 
 
-def _numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> _Numbers:
+def by_hand_numbers(hands: Mapping[str, LinkByHand], reactions: Reactions) -> Numbers:
+    """Return the numbers that grow.
+
+    Parameters
+    ----------
+    hands : mapping of str to LinkByHand
+        Link -> its hand calculation.
+    reactions : Reactions
+
+    Returns
+    -------
+    tuple of 3 dict of str to float
+        Link -> stress [MPa], of a link without beam its largest joint force [N]; link -> displacement [mm];
+        joint -> force [N].
+    """
+    forces = {name: float(np.linalg.norm(joint.wrench[:3])) for name, joint in reactions.joints.items()}
+    joints = reactions.pose.linkage.joints_of
     return (
-        {link: hand.worst[1].equivalent for link, hand in hands.items()},
+        {
+            link: max((forces[name] for name in joints(link)), default=0.0)
+            if hand.check.without
+            else hand.worst[1].equivalent
+            for link, hand in hands.items()
+        },
         {link: hand.displacement for link, hand in hands.items()},
-        {name: float(np.linalg.norm(joint.wrench[:3])) for name, joint in reactions.joints.items()},
+        forces,
     )
 
 

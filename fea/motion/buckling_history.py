@@ -49,7 +49,8 @@ def factors_over_motion(case: Case, link: str, history: LinkLoads) -> ColumnFact
 def with_second_order(case: Case, link: str, history: LinkLoads, evaluated: NDArray[np.bool_]) -> LinkLoads:
     """Return a history with what bending under compression adds, at the evaluated poses near to buckling.
 
-    As ``fea.links.second_order.second_order_loads`` does for one pose with ``stays=False``.
+    As ``fea.links.second_order.second_order_loads`` does for one pose with ``stays=False``. What it adds at poses
+    further from buckling is in the bands (``fea.motion.loosened.motion_growth``).
 
     Parameters
     ----------

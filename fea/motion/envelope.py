@@ -29,7 +29,7 @@ from fea.motion.layered import with_couples
 from fea.motion.link_envelope import LinkMotion, link_motion
 from fea.motion.link_history import link_histories
 from fea.motion.linkage_history import limit_load_outcomes, linkage_outcomes, over_motion
-from fea.motion.loosened import loosened, otherwise
+from fea.motion.loosened import MotionGrowth, loosened, motion_growth, otherwise
 from fea.outcomes.limits import layers_of
 from fea.outcomes.unchecked import unusual_materials
 from fea.outcomes.unloaded import acts, nothing_acts, stated_size, undecided, unloaded_links
@@ -64,15 +64,12 @@ class _Envelope:
     progress: Progress
     shares: Mapping[tuple[str, str], Scatter] = field(default_factory=dict)
     ways: Mapping[tuple[str, str], Sequence[tuple[LinkLoads, ...]]] = field(default_factory=dict)
+    grown: Mapping[str, MotionGrowth] = field(default_factory=dict)
     ended: threading.Event = field(default_factory=threading.Event)
 
     @classmethod
     def of(cls, moved: CaseMotion, evaluated: NDArray[np.bool_], threads: int, progress: Progress) -> "_Envelope":
         layered = with_couples(moved, evaluated)
-        shares: dict[tuple[str, str], Scatter] = {}
-        for doubt in (loosened(layered.moved, evaluated), otherwise(layered.moved, evaluated)):
-            for key, scatter in doubt.items():
-                shares[key] = shares.get(key, Scatter()).times(scatter)
         moved, case, loaded = layered.moved, moved.case, {}
         sizes = {load_case: stated_size(case, load_case) for load_case in case.load_cases}
         for link in case.checked_links:
@@ -83,6 +80,12 @@ class _Envelope:
             )
             if found:
                 loaded[link] = found
+        grown = motion_growth(moved, loaded, evaluated)
+        bent = {(load_case, link): one for load_case, of in grown.items() for link, one in of.stress.items()}
+        shares: dict[tuple[str, str], Scatter] = {}
+        for doubt in (loosened(moved, evaluated), otherwise(moved, evaluated), bent):
+            for key, scatter in doubt.items():
+                shares[key] = shares.get(key, Scatter()).times(scatter)
         return cls(
             moved=moved,
             evaluated=evaluated,
@@ -92,6 +95,7 @@ class _Envelope:
             progress=progress,
             shares=shares,
             ways=layered.ways,
+            grown=grown,
         )
 
     @property
@@ -181,10 +185,8 @@ class _Envelope:
     def outcomes(self, links: Mapping[str, LinkEnvelope], *, lasting: bool) -> list[CheckOutcome]:
         """Return the outcome of every check; undecided under load cases that load no link."""
         moved, evaluated = self.moved, self.evaluated
-        checks = [
-            *envelope_outcomes(moved, links, evaluated, lasting=lasting),
-            *column_outcomes(moved, self.loaded, evaluated),
-        ]
+        checks = envelope_outcomes(moved, links, evaluated, self.grown, lasting=lasting)
+        checks += column_outcomes(moved, self.loaded, evaluated, self.grown)
         checks = unless_it_gives_way([*checks, *linkage_outcomes(moved, evaluated)])
         for load_case in self.idle:
             joints = moved.forces[load_case].forces

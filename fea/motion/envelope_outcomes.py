@@ -16,7 +16,7 @@ from fea.motion.buckling_history import axial_compression, factors_over_motion
 from fea.motion.envelope_result import LayerEnvelope, LayerFatigue, LinkEnvelope, LinkFatigue
 from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.motion.layered import forces_at
-from fea.motion.loosened import column_growth, joint_growth
+from fea.motion.loosened import MotionGrowth, column_growth, joint_growth
 from fea.outcomes.bearing import bearing_outcome, pressing
 from fea.outcomes.judge import safety_factor_outcome
 from fea.outcomes.layers import CHECK as LAYERS
@@ -52,7 +52,12 @@ FOLLOWED = (
 
 
 def envelope_outcomes(
-    moved: CaseMotion, links: Mapping[str, LinkEnvelope], evaluated: NDArray[np.bool_], *, lasting: bool = False
+    moved: CaseMotion,
+    links: Mapping[str, LinkEnvelope],
+    evaluated: NDArray[np.bool_],
+    grown: Mapping[str, MotionGrowth] | None = None,
+    *,
+    lasting: bool = False,
 ) -> list[CheckOutcome]:
     """Return the outcomes of links, pins, bearing and fatigue; no link or joint passes where poses were left out.
 
@@ -62,6 +67,8 @@ def envelope_outcomes(
     links : mapping of str to LinkEnvelope
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
+    grown : mapping of str to MotionGrowth, optional
+        Load case -> what the deformed shape makes of joint forces; nothing when left out.
     lasting : bool, optional
         Whether repetitions of the motion are asked for, so that fatigue that is not known leaves a link undecided.
 
@@ -83,7 +90,7 @@ def envelope_outcomes(
                     outcome = safety_factor_outcome(case, name, check, load_case, link, over.safety_factor, meshes)
                     found.append(_complete(outcome, evaluated))
         elif isinstance(check, PinCheck | BearingCheck):
-            found += _joints(moved, name, check, evaluated)
+            found += _joints(moved, name, check, evaluated, grown or {})
     for link, envelope in links.items():
         found += [_complete(outcome, evaluated) for outcome in layer_outcomes(moved, link, envelope)]
         for load_case, over in envelope.load_cases.items():
@@ -202,7 +209,11 @@ def fatigue_outcomes(
 
 
 def _joints(
-    moved: CaseMotion, name: str, check: PinCheck | BearingCheck, evaluated: NDArray[np.bool_]
+    moved: CaseMotion,
+    name: str,
+    check: PinCheck | BearingCheck,
+    evaluated: NDArray[np.bool_],
+    grown: Mapping[str, MotionGrowth],
 ) -> Iterator[CheckOutcome]:
     """Outcome of every joint at the pose of its largest force, to which in a plane all its stresses are in proportion.
 
@@ -231,6 +242,8 @@ def _joints(
                 )
             pose = first_largest(size)
             growth = joint_growth(moved, load_case, joint, evaluated)
+            if load_case in grown and joint in grown[load_case].joints:
+                growth = growth.times(grown[load_case].joints[joint])
             force = float(np.linalg.norm(solved.forces[joint][pose]))
             if isinstance(check, BearingCheck):
                 every = [wrenches[pose]]
@@ -253,7 +266,10 @@ def _at(reaction: JointReaction, pose: int) -> JointReaction:
 
 
 def column_outcomes(
-    moved: CaseMotion, loaded: Mapping[str, Sequence[LinkLoads]], evaluated: NDArray[np.bool_]
+    moved: CaseMotion,
+    loaded: Mapping[str, Sequence[LinkLoads]],
+    evaluated: NDArray[np.bool_],
+    grown: Mapping[str, MotionGrowth] | None = None,
 ) -> Iterator[CheckOutcome]:
     """Yield the least buckling factor of every link that is compressed at some pose, and where it is.
 
@@ -264,6 +280,8 @@ def column_outcomes(
         Link -> what acts on it, one record per load case.
     evaluated : ndarray of bool, shape (n,)
         The poses that count.
+    grown : mapping of str to MotionGrowth, optional
+        Load case -> what the deformed shape makes of columns; nothing when left out.
 
     Yields
     ------
@@ -285,7 +303,10 @@ def column_outcomes(
                 column = min(columns, key=lambda one: one.value)
                 where = f" at {_when(moved, column.pose)}"
                 outcome = column_outcome(moved.case, load_case, link, column, where=where)
-                yield _complete(widened(outcome, column_growth(moved, load_case, link, evaluated)), evaluated)
+                spread = column_growth(moved, load_case, link, evaluated)
+                if grown and link in grown[load_case].columns:
+                    spread = spread.times(grown[load_case].columns[link])
+                yield _complete(widened(outcome, spread), evaluated)
 
 
 def _when(moved: CaseMotion, pose: int) -> str:

@@ -15,9 +15,9 @@ from fea.common.source import distinct
 from fea.common.verdict import CheckOutcome, Verdict
 from fea.frame.build import build_frame
 from fea.frame.displacement_band import compliance_range
-from fea.frame.joint_forces import joint_forces
 from fea.frame.linear import solve_frame
-from fea.nonlinear.large_displacement import blind_link, examine, stated_scatter
+from fea.motion.layered import forces_at
+from fea.nonlinear.large_displacement import LargeDisplacement, blind_link, examine, stated_scatter
 from fea.nonlinear.stability import dead_point_factor, linkage_factor
 from geometry.base.errors import CannotRunError, CaseError
 from geometry.base.ties import first_largest, first_least
@@ -119,13 +119,52 @@ def over_motion(moved: CaseMotion, evaluated: NDArray[np.bool_]) -> dict[str, Li
     dict of str to LinkageOverMotion
         By load case.
     """
-    counted = np.flatnonzero(evaluated)
-    spread = counted[np.linspace(0, len(counted) - 1, SPREAD).round().astype(int)]
     found = {}
     for load_case in moved.loads:
-        poses = sorted({*map(int, spread), *_worst(moved, load_case, evaluated)})
+        poses = looked_at(moved, load_case, evaluated)
         found[load_case] = _over(poses, [_at(moved, load_case, i) for i in poses])
     return found
+
+
+def looked_at(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> list[int]:
+    """Return the numbers of the poses at which the linkage as a whole is looked at.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    load_case : str
+        Its name.
+    evaluated : ndarray of bool, shape (n,)
+        The poses that count.
+
+    Returns
+    -------
+    list of int
+        In order.
+    """
+    counted = np.flatnonzero(evaluated)
+    spread = counted[np.linspace(0, len(counted) - 1, SPREAD).round().astype(int)]
+    return sorted({*map(int, spread), *_worst(moved, load_case, evaluated)})
+
+
+@lru_cache(maxsize=64)
+def shape_at(moved: CaseMotion, load_case: str, pose: int) -> LargeDisplacement:
+    """Return what becomes of a load case at one pose in large displacement.
+
+    Parameters
+    ----------
+    moved : CaseMotion
+    load_case : str
+        Its name.
+    pose : int
+        Its number.
+
+    Returns
+    -------
+    LargeDisplacement
+    """
+    loads = [chosen(load, pose) for load in moved.loads[load_case]]
+    return examine(moved.case, load_case, forces_at(moved, load_case, pose), loads)
 
 
 @lru_cache(maxsize=1)
@@ -180,11 +219,9 @@ def _worst(moved: CaseMotion, load_case: str, evaluated: NDArray[np.bool_]) -> l
 
 def _at(moved: CaseMotion, load_case: str, i: int) -> tuple[Band, Band, str]:
     """Limit-load factor and largest displacement at a pose, and the place of the latter."""
-    case, loads = moved.case, [chosen(load, i) for load in moved.loads[load_case]]
     try:
-        forces = joint_forces(case, pose_at(moved.motion, i), loads)
-        shape = examine(case, load_case, forces, loads)
-        numbers = linkage_numbers(case, load_case, shape, forces)
+        forces, shape = forces_at(moved, load_case, i), shape_at(moved, load_case, i)
+        numbers = linkage_numbers(moved.case, load_case, shape, forces)
         return numbers.limit_load, numbers.displacement, numbers.where
     except (CaseError, CannotRunError) as error:
         return Band.unknown(str(error)), Band.unknown(str(error)), ""

@@ -20,6 +20,7 @@ from fea.common.source import Source, SourceKind
 from fea.common.verdict import LINKAGE, Quantity, Verdict
 from fea.frame.build import build_frame
 from fea.frame.case_statics import solve_case_statics
+from fea.motion.envelope import _Envelope
 from fea.motion.linkage_history import linkage_outcomes, over_motion
 from fea.nonlinear.equilibrium_path import NoEquilibriumError
 from fea.nonlinear.softened import followed
@@ -286,6 +287,70 @@ def test_bands_hold_what_the_deformed_shape_bears_on_both_sides_of_a_factor_of_t
             assert all(lows[key] == pytest.approx(before[key], rel=5e-3) for key in asked)
         before = lows
     assert states == ["small"] * 4 + ["deformed"] * 2
+
+
+def turning(force: float, high: float = 1.0, ends: tuple[float, float] = (90.0, 91.0)) -> tuple[Case, list[Case]]:
+    """The toggle over a motion of its lever of three poses, and each of these poses; scattered loads."""
+    slope = math.degrees(math.atan2(10.0, HALF))
+    text = TOGGLE.format(force=force, length=math.hypot(HALF, 10.0), slope=slope, down=-slope, way="auto", bars="bar")
+    data = tomllib.loads(text)
+    data["load_cases"]["push"]["scatter"] = ["100 %", f"{100.0 * high} %"]
+    data["checks"] |= {name: {"type": name, "minimum": 1.0} for name in ("pins", "bearing")}
+    poses = [
+        validate(data | {"pose": data["pose"] | {"angle": f"{angle} deg"}}) for angle in np.linspace(*ends, 3).tolist()
+    ]
+    return validate(data | {"motion": {"poses": 3, "range": [f"{angle} deg" for angle in ends]}}), poses
+
+
+def over_toggle(case: Case) -> tuple[_Envelope, dict[tuple[str, str], Band], dict[str, Scatter]]:
+    """Bands of pins and columns over a motion, and what widens those of its links' stress."""
+    over = _Envelope.of(solve_case_motion(case), np.ones(3, dtype=bool), 1, print)
+    # Stress of links is that of solids, which these bands do without.
+    checks = over.outcomes({})
+    return over, {(c.name, c.link): c.value for c in checks}, {link: s for (_, link), s in over.shares.items()}
+
+
+def test_bands_of_a_motion_hold_the_deformed_shape_on_both_sides_of_a_factor_of_ten() -> None:
+    """Over a motion pins, eyes, columns and stress were once those of the undeformed poses alone."""
+    case = toggle(-1.0)
+    at, (_, one, _) = exact(case, 10.0), linkage(case)
+    before: dict[tuple[str, str], float] = {}
+    for factor in (40.0, 10.05, 9.95, 8.0):
+        force = one.factor / factor
+        height = brentq(lambda y, force=force: at(y)[0] - force, 7.0, 10.0, xtol=1e-13)
+        thrusts = at(height)[1], force * HALF / 20.0  # the latter in the undeformed pose
+        along, grown = (np.divide(*(math.hypot(t, p) for t in thrusts)) for p in (force / 2.0, 0.0))
+        motion, poses = turning(-force)
+        _, found, stress = over_toggle(motion)
+        single = [check_case(pose, fidelity="beam").load_cases["push"] for pose in poses]
+        # The lever at a right angle is the flattest toggle of the motion, where most acts.
+        assert stress["lever"].high == pytest.approx(grown, rel=2e-3)
+        assert stress["left"].high == pytest.approx(along, rel=2e-3)
+        lows = {}
+        for key in (("pins", "pin B"), ("pins", "pin C"), ("bearing", "pin B"), ("buckling", "left")):
+            alone = [c.value for result in single for c in result.checks if (c.name, c.link) == key]
+            assert found[key].low == pytest.approx(min(band.low for band in alone), rel=5e-3), (factor, key)
+            assert found[key].low <= 1.002 * min(band.value for band in alone)
+            assert found[key].value / found[key].low > (0.999 * along if key[0] != "buckling" else 3.0 * 0.99 * along)
+            lows[key] = found[key].low * force
+        if factor == 9.95:
+            assert all(lows[key] == pytest.approx(before[key], rel=5e-3) for key in lows)
+        before = lows
+
+
+def test_growth_over_a_motion_holds_scattered_loads_and_poses_that_give_way() -> None:
+    """The largest load is as one that is stated; where the flattest pose does not hold the load, nothing is known."""
+    force = linkage(toggle(-1.0))[1].factor / 8.0
+    _, wide, stress = over_toggle(turning(-force, 1.3)[0])
+    _, larger, theirs = over_toggle(turning(-1.3 * force)[0])
+    for key in (("pins", "pin B"), ("bearing", "pin C")):
+        assert wide[key].low == pytest.approx(larger[key].low, rel=2e-3)
+    assert stress["lever"].high == pytest.approx(theirs["lever"].high, rel=2e-3)
+    for ends in ((90.0, 95.0), (95.0, 90.0)):
+        over, found, stress = over_toggle(turning(-3.0, ends=ends)[0])
+        assert stress["lever"].high == math.inf
+        assert all(found[name, "pin B"].low == 0.0 for name in ("pins", "bearing"))
+        assert {c.verdict for c in over.outcomes({})} == {Verdict.UNDECIDED}
 
 
 @pytest.mark.parametrize("way", ["auto", "off"])

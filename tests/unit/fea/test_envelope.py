@@ -400,7 +400,7 @@ def test_a_pair_bears_at_the_pose_where_either_eye_is_pressed_most(monkeypatch, 
     motion = SimpleNamespace(coordinate="crank", angles=np.zeros(4))
     check = BearingCheck.model_validate({"type": "bearing"})
     moved = SimpleNamespace(case=case, forces={"push": solved}, motion=motion)
-    list(outcomes_over_motion._joints(moved, "eyes", check, np.arange(4) < 3))
+    list(outcomes_over_motion._joints(moved, "eyes", check, np.arange(4) < 3, {}))
     [[wrench]] = told
     assert wrench[0] == 2.0
 
@@ -419,7 +419,10 @@ def test_a_dead_point_of_the_drive_leaves_the_verdict_open(path):
     assert found.verdict is Verdict.UNDECIDED
     assert 0 < found.evaluated.sum() < 25
     assert any("has a dead point at" in warning for warning in found.warnings)
-    assert "dead point" in found.checks[0].reason
+    strength = {check.load_case: check for check in found.checks if check.name == "strength"}
+    assert "dead point" in strength["push"].reason
+    # At one of the poses next to it the soft linkage does not hold its own inertia.
+    assert strength["spin"].value.low == 0.0
     assert found.links["rocker"].no_fatigue
     assert np.isnan(found.links["rocker"].worst.value[~found.evaluated]).all()
 
