@@ -106,7 +106,17 @@ class Piecewise:
         return values(self.coefficients[interval], x - self.breaks[interval])
 
     def along(self, stations: Floats) -> Floats:
-        """Return the functions (..., m) at many stations (...) on the beam [mm]; where they jump, those after."""
+        """Return the functions at many stations; where they jump, those after.
+
+        Parameters
+        ----------
+        stations : ndarray, shape (...)
+            On the beam [mm].
+
+        Returns
+        -------
+        ndarray, shape (..., m)
+        """
         interval = np.searchsorted(self.breaks, stations, side="right") - 1
         interval = np.clip(interval, 0, len(self.coefficients) - 1)
         return values(self.coefficients[interval], (stations - self.breaks[interval])[..., None])
