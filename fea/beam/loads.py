@@ -1,11 +1,13 @@
 """A balanced set of loads on a straight beam, in its link's frame."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geometry.base.errors import CannotRunError
+from loads.records.applied import shifted
 
 Floats = NDArray[np.float64]
 
@@ -40,11 +42,10 @@ class PointLoad:
         object.__setattr__(self, "point", _frozen([*point, 0.0][:3], "the point of a load", 3))
         object.__setattr__(self, "wrench", _frozen(self.wrench, "the wrench of a load", 6))
 
-    @property
+    @cached_property
     def on_axis(self) -> Floats:
         """The same wrench (6,), reduced to the point (x, 0, 0) of the axis."""
-        arm = np.array([0.0, self.point[1], self.point[2]])
-        return np.concatenate([self.wrench[:3], self.wrench[3:] + np.cross(arm, self.wrench[:3])])
+        return shifted(self.wrench, np.array([0.0, self.point[1], self.point[2]]))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,7 +103,7 @@ class BeamLoads:
     points: tuple[PointLoad, ...]
     lines: tuple[LineLoad, ...] = ()
 
-    @property
+    @cached_property
     def span(self) -> tuple[float, float]:
         """The x of the first and of the last loaded station [mm]."""
         stations = [float(p.point[0]) for p in self.points] + [x for q in self.lines for x in (q.start, q.end)]
@@ -110,14 +111,13 @@ class BeamLoads:
             raise CannotRunError("a beam needs loads at two stations or more; give the point loads of every joint")
         return min(stations), max(stations)
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Length scale for moments: the largest extent of the loaded points along any axis [mm]."""
         x0, x1 = self.span
-        across = [np.abs(p.point[1:]).max() for p in self.points]
-        return max(x1 - x0, *map(float, across), 0.0)
+        return max(x1 - x0, *(abs(float(end)) for p in self.points for end in p.point[1:]), 0.0)
 
-    @property
+    @cached_property
     def scale(self) -> float:
         """Sum of the magnitudes of all loads [N], moments divided by ``size``."""
         total = 0.0
@@ -128,7 +128,7 @@ class BeamLoads:
             total += float(mean) * (q.end - q.start)
         return total
 
-    @property
+    @cached_property
     def resultant(self) -> Floats:
         """The wrench (6,) of all loads about the middle of the span [N, N·mm]; zero where they balance."""
         middle = sum(self.span) / 2.0

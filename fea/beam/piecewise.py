@@ -105,6 +105,22 @@ class Piecewise:
         interval = min(max(interval, 0), len(self.coefficients) - 1)
         return values(self.coefficients[interval], x - self.breaks[interval])
 
+    def along(self, stations: Floats) -> Floats:
+        """Return the functions at many stations; where they jump, those after.
+
+        Parameters
+        ----------
+        stations : ndarray, shape (...)
+            On the beam [mm].
+
+        Returns
+        -------
+        ndarray, shape (..., m)
+        """
+        interval = np.searchsorted(self.breaks, stations, side="right") - 1
+        interval = np.clip(interval, 0, len(self.coefficients) - 1)
+        return values(self.coefficients[interval], (stations - self.breaks[interval])[..., None])
+
     @cached_property
     def samples(self) -> tuple[Floats, Floats]:
         """Stations (n,) [mm], and the functions (n, m) there: both ends of every interval, and more where they bend."""

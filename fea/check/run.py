@@ -47,7 +47,7 @@ from fea.refine.refinement import START, Effort
 from fea.solid.solution import require_compressible
 from fea.superposition.solid_shares import Shares, solid_shares
 from fea.whole.layer_gaps import layer_gap_outcomes
-from fea.whole.outcomes import whole_numbers, whole_outcomes
+from fea.whole.outcomes import WholeNumbers, whole_numbers, whole_outcomes
 from geometry.base.errors import CaseError
 from geometry.bodies.body import PartKind
 from geometry.linkage.pose import NEAR_DEAD_POINT
@@ -291,6 +291,7 @@ def check_case(
     effort: Effort | None = None,
     frames: Mapping[str, LargeDisplacement] | None = None,
     only: Collection[str] | None = None,
+    bare: bool = False,
     progress: Progress = lambda message: None,
 ) -> CheckResult:
     """Check a case: every link under every load case, against every check.
@@ -311,6 +312,9 @@ def check_case(
         Those of an earlier check of the very same case, which are solved anew otherwise.
     only : collection of str, optional
         Links that the model is wanted for; the others, and points, are left to beam theory. All when left out.
+    bare : bool, optional
+        True where only the load cases are wanted, of a case without checks of the linkage's gaps, mass, size, motor and
+        frequencies: these numbers and all warnings are left out.
     progress : callable
         Called with a sentence before every stage that may take long.
 
@@ -331,7 +335,9 @@ def check_case(
     statics = solve_case_statics(case, name)
     case = statics.case
     clock("pose and statics")
-    whole = whole_numbers(case, statics.pose, solids=fidelity not in BY_HAND, threads=threads)
+    whole = WholeNumbers(case=case)
+    if not bare:
+        whole = whole_numbers(case, statics.pose, solids=fidelity not in BY_HAND, threads=threads)
     clock("the linkage as a whole")
     moved = frames or {
         load_case: examine(statics.standing[load_case].case, load_case, forces, statics.loads[load_case])
@@ -362,6 +368,16 @@ def check_case(
     solved = {load_case: one.solid_shares(decided, threads) for load_case, one in by_load_case.items()}
     load_cases = {x: one.judged(decided, solved[x], judged[x]) for x, one in by_load_case.items()}
     clock("stress")
+    warnings: tuple[str, ...] = ()
+    if not bare:
+        warnings = (
+            *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),
+            *tight_pin_warnings([one.couples(solved[x], load_cases[x].checks) for x, one in by_load_case.items()]),
+            *_warnings(case, statics, moved),
+            *play_warnings(moved, statics.forces),
+            *air_warnings(moved),
+            *friction_warnings(moved),
+        )
     return CheckResult(
         name=name,
         case=case,
@@ -375,14 +391,7 @@ def check_case(
         audit=statics.audit,
         verdict=overall(check.verdict for result in load_cases.values() for check in result.checks),
         timings=clock.stages,
-        warnings=(
-            *(nothing_acts(load_case, one.size) for load_case, one in by_load_case.items() if one.idle),
-            *tight_pin_warnings([one.couples(solved[x], load_cases[x].checks) for x, one in by_load_case.items()]),
-            *_warnings(case, statics, moved),
-            *play_warnings(moved, statics.forces),
-            *air_warnings(moved),
-            *friction_warnings(moved),
-        ),
+        warnings=warnings,
     )
 
 

@@ -160,9 +160,11 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
     bonded = [name for name, joint in case.linkage.joints.items() if joint.bonded]
     which = "its joints are bonded" if case.joint_model == "bonded" else _named(bonded)
     model = BONDED_FRAME if bonded else PINNED_FRAME
+    system = assemble(pose.placement, case.pinned_drive, ())
+    rows, columns = system.matrix.shape
     if out_of_plane(loads):
         reason = "a load acts out of the linkage's plane, where pins carry moments"
-    elif _redundant(case, pose):
+    elif columns > rows:
         reason = "the linkage has more constraints than equilibrium has equations"
         if bonded:
             reason = f"the case says that {which}, and so {reason}"
@@ -175,7 +177,7 @@ def joint_forces(case: Case, pose: Pose, loads: Sequence[Load]) -> JointForces:
             model=BONDED_STATICS if bonded else PINNED_STATICS,
             reason=f"the case says that {which}; {reason}" if bonded else reason,
         )
-    refuse_dead_point(assemble(pose.placement, case.pinned_drive, ()), case.pinned_drive)
+    refuse_dead_point(system, case.pinned_drive)
     frame, solution = solved_frame(case, pose, loads, case.pinned_drive)
     return JointForces(
         reactions=frame.reactions(solution.joint_wrenches, solution.residual),
@@ -226,11 +228,6 @@ def solved_frame(
 def _named(bonded: Sequence[str]) -> str:
     """Say which joints are bonded."""
     return f"joint {bonded[0]} is bonded" if len(bonded) == 1 else f"joints {', '.join(bonded)} are bonded"
-
-
-def _redundant(case: Case, pose: Pose) -> bool:
-    rows, columns = assemble(pose.placement, case.pinned_drive, ()).matrix.shape
-    return bool(columns > rows)
 
 
 @dataclass(frozen=True, kw_only=True)

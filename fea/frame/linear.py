@@ -191,6 +191,15 @@ class FactorisedFrame:
         self._size = len(v0)
         self._own = self._refined(np.concatenate([v0 / self._scale, p]))
 
+    @cached_property
+    def _basic(self) -> tuple[Floats, Floats]:
+        """From natural forces (scaled) to forces (m, 12, 6) at beams' ends, and those (m, 12) of line loads alone."""
+        system, model = self.system, self.system.model
+        every = list(enumerate(zip(model.elements, system.lengths, strict=True)))
+        natural = [natural_deformations(length).T * system.natural_unit(i) for i, (_, length) in every]
+        held = [line_load_effect(e.section, e.young, length, *model.line_load(i))[1] for i, (e, length) in every]
+        return np.array(natural).reshape(-1, 12, 6), np.array(held).reshape(-1, 12)
+
     def _refined(self, right: Floats) -> Floats:
         found = self._factors.solve(right)
         return np.asarray(found + self._factors.solve(right - self._matrix @ found))
@@ -262,7 +271,7 @@ class FactorisedFrame:
             inverse = LinearOperator(self._matrix.shape, matvec=solve, rmatvec=solve, dtype=np.float64)
             condition = float(abs(self._matrix).sum(axis=0).max() * onenormest(inverse, t=1))
         q, u = unknowns[: self._size], unknowns[self._size :] * self._scale * self.system.unit
-        found = _collect(self.system, q, u, condition)
+        found = _collect(self.system, *self._basic, q, u, condition)
         allowed = LARGEST_RESIDUAL if further is None else OPENED_RESIDUAL
         if not found.residual <= allowed:
             raise CannotRunError(
@@ -273,19 +282,18 @@ class FactorisedFrame:
         return found
 
 
-def _collect(system: FrameSystem, q: Floats, u: Floats, condition: float) -> FrameSolution:
+def _collect(
+    system: FrameSystem, natural: Floats, held: Floats, q: Floats, u: Floats, condition: float
+) -> FrameSolution:
     """Turn natural forces (scaled) and displacements into the record, and check their balance."""
     model = system.model
     n, m = len(model.nodes), len(model.elements)
     displacements = np.where(system.number >= 0, u[system.number] if len(u) else 0.0, 0.0).reshape(n, 6)
-    ends, forces, joints = np.zeros((m, 12)), np.zeros((m, 12)), np.zeros((n, 6))
-    for i, e in enumerate(model.elements):
-        length = system.lengths[i]
-        numbers, matrix = system.place(i)
-        ends[i] = matrix @ u[numbers]
-        _, held = line_load_effect(e.section, e.young, length, *model.line_load(i))
-        forces[i] = natural_deformations(length).T @ (system.natural_unit(i) * q[6 * i : 6 * i + 6]) + held
-        np.add.at(joints, list(e.nodes), system.to_nodes(i, forces[i]))
+    nodes = np.array([e.nodes for e in model.elements], dtype=np.int64).reshape(m, 2)
+    ends = np.einsum("mij,mj->mi", system.matrices, displacements[nodes].reshape(m, 12))
+    forces = np.einsum("mij,mj->mi", natural, q[: 6 * m].reshape(m, 6)) + held
+    joints = np.zeros((n, 6))
+    np.add.at(joints, nodes.ravel(), np.einsum("mji,mj->mi", system.matrices, forces).reshape(2 * m, 6))
     start = 6 * m + len(model.guides)
     for link in model.condensed:
         unit = np.tile(system.condensed_unit, len(link.nodes) - 1)

@@ -16,6 +16,7 @@ along it and to tilt along the slot. A slider is free to slide, and carries all 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
 from loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
 from loads.statics.joint_reaction import JointReaction, travelled
-from loads.statics.statics import Drive, Reactions, assemble
+from loads.statics.statics import Drive, Reactions, System, assemble
 
 Real = NDArray[np.float64]
 
@@ -133,7 +134,7 @@ class LinkageFrame:
             joints[name] = JointReaction(
                 joint=name, on=joint.links[1], by=joint.links[0], wrench=wrench, arm=self._arm(name, shape)
             )
-        system = assemble(self.pose.placement, self.held, self.loads)
+        system = self._equilibrium
         value = {f"R{name}{axis}": joints[name].wrench[k] for name in joints for k, axis in enumerate("xy")}
         for name in joints:
             value[f"N{name}"] = float(slot_normal(self.pose, name) @ joints[name].wrench[:3])
@@ -154,6 +155,11 @@ class LinkageFrame:
             drive_force=push,
             residual=residual,
         )
+
+    @cached_property
+    def _equilibrium(self) -> System:
+        """Of the moving links in the plane: the same for all solutions of the frame."""
+        return assemble(self.pose.placement, self.held, self.loads)
 
     def _arm(self, name: str, shape: Real) -> Real:
         """From the point of a joint's first link to its pin (3,), with the nodes displaced by ``shape`` (n, 3)."""

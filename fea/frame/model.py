@@ -373,7 +373,7 @@ class FrameModel:
         R = self.axes(i)
         return R @ self.elements[i].load_first, R @ self.elements[i].load_last
 
-    @property
+    @cached_property
     def load_scale(self) -> float:
         """Sum of the magnitudes of all loads [N], moments divided by ``size``."""
         total = 0.0

@@ -174,6 +174,8 @@ class FrameSystem:
         Factor from the scaled forces of the guides to N or N·mm.
     condensed_unit : ndarray, shape (6,)
         Factors from the scaled natural forces at a node of a condensed link to N and N·mm.
+    matrices : ndarray, shape (m, 12, 12)
+        From the displacements of every element's nodes, global axes, to those of its beam's ends, local axes.
     """
 
     def __init__(self, model: FrameModel) -> None:
@@ -184,7 +186,7 @@ class FrameSystem:
         self.condensed_unit = np.array([1.0, 1.0, 1.0, mean, mean, mean])
         self.guide_unit = np.array([1.0 if guide.axis is None else mean for guide in model.guides])
         self.owner = self._owners()
-        self._matrices = [to_ends(model, i) for i in range(m)]
+        self.matrices = np.array([to_ends(model, i) for i in range(m)]).reshape(m, 12, 12)
         supported = {int(self.owner[6 * s.node + DOFS.index(dof)]) for s in model.supports for dof in s.dofs}
         idle = self._idle()
         free = [i for i in range(6 * n) if self.owner[i] == i and i not in supported and not idle[i]]
@@ -217,7 +219,7 @@ class FrameSystem:
         """
         needed = np.zeros(len(self.owner), dtype=bool)
         needed[np.arange(len(needed)) % 6 < 3] = True
-        for i in range(len(self._matrices)):
+        for i in range(len(self.matrices)):
             needed[self.owner[self._node_columns(i)]] = True
         for link in self.model.condensed:
             needed[self.owner[link.columns]] = True
@@ -241,24 +243,7 @@ class FrameSystem:
             Numbers (k,) of the unknowns, and the matrix (12, k) from them to the beam's ends.
         """
         numbers = self.number[self._node_columns(i)]
-        return numbers[numbers >= 0], self._matrices[i][:, numbers >= 0]
-
-    def to_nodes(self, i: int, end_forces: Floats) -> Floats:
-        """Return the wrenches at both nodes of an element from the forces at its beam's ends.
-
-        Parameters
-        ----------
-        i : int
-            Number of the element.
-        end_forces : ndarray, shape (12,)
-            At its beam's ends, local axes [N, N·mm].
-
-        Returns
-        -------
-        ndarray, shape (2, 6)
-            Global axes [N, N·mm].
-        """
-        return np.asarray((self._matrices[i].T @ end_forces).reshape(2, 6))
+        return numbers[numbers >= 0], self.matrices[i][:, numbers >= 0]
 
     def natural_unit(self, i: int) -> Floats:
         """Return the factors from the scaled natural forces of an element to N and N·mm.

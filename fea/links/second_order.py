@@ -238,7 +238,7 @@ def _transverse(
     points, weights = GAUSS
     length = float(nodes[-1] - nodes[0])
     at = nodes[:-1, None] + np.diff(nodes)[:, None] * points
-    inner = np.array([[forces.at(float(x)) for x in row] for row in at])
+    inner = forces.along(at)
     pressed = np.maximum(-inner[..., 0], 0.0)
     K, G = stiffness_matrices(nodes, pressed[..., None], bend.stretches)
     K, G = K * bend.stiffness / length**2, G[0]

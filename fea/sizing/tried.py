@@ -149,9 +149,10 @@ class Trials:
         checks = {name: check for name, check in case.all_checks.items() if isinstance(check, _STATIC)}
         alone = case.model_copy(update={"load_cases": {load_case: case.load_cases[load_case]}, "checks": checks})
         try:
-            return check_case(alone, name=self.result.name, fidelity="beam", threads=1).load_cases[load_case]
+            found = check_case(alone, name=self.result.name, fidelity="beam", threads=1, bare=True)
         except (CaseError, CannotRunError):
             return None
+        return found.load_cases[load_case]
 
 
 def _shares(

@@ -273,7 +273,8 @@ def layer_gap_outcomes(
     CheckOutcome
         Against 0: washers may fill the gap, so that what a check asks for in the plane is no measure of it.
     """
-    if assembly is None or moved.frame is None or moved.solution is None:
+    checks = [name for name, check in case.all_checks.items() if isinstance(check, ClearanceCheck)]
+    if not checks or assembly is None or moved.frame is None or moved.solution is None:
         return
     found = LayerGaps(case=case, load_case=load_case, moved=moved, assembly=assembly).least
     if found is None:
@@ -283,6 +284,5 @@ def layer_gap_outcomes(
         f"links {found.names[0]} and {found.names[1]}, {found.gap:.3g} mm apart along the pins without load, come "
         f"nearest at x = {x:.4g}, y = {y:.4g} mm"
     ).replace("= -", "= −")
-    for name, check in case.all_checks.items():
-        if isinstance(check, ClearanceCheck):
-            yield CheckOutcome.of(name, LINKAGE, load_case, Quantity.LAYER_GAP, found.left, 0.0, reason)
+    for name in checks:
+        yield CheckOutcome.of(name, LINKAGE, load_case, Quantity.LAYER_GAP, found.left, 0.0, reason)

@@ -37,10 +37,10 @@ class WholeNumbers:
     """
 
     case: Case
-    clearance: Clearance | None
-    mass: Weighed | None
-    size: Extent | None
-    frequencies: CaseFrequencies | None
+    clearance: Clearance | None = None
+    mass: Weighed | None = None
+    size: Extent | None = None
+    frequencies: CaseFrequencies | None = None
 
 
 def whole_numbers(case: Case, pose: Pose | None = None, *, solids: bool = False, threads: int = 2) -> WholeNumbers:

@@ -368,7 +368,7 @@ def shifted(wrench: Real, arm: Real) -> Real:
     array (..., 6)
         About the other point.
     """
-    (fx, fy, fz), (x, y, z) = (np.moveaxis(part, -1, 0) for part in (wrench[..., :3], arm))
+    (fx, fy, fz), (x, y, z) = ([part[..., i] for i in range(3)] for part in (wrench, arm))
     found = np.empty((*np.broadcast_shapes(wrench.shape[:-1], arm.shape[:-1]), 6))
     found[...] = wrench
     found[..., 3] += y * fz - z * fy
