@@ -191,6 +191,7 @@ def rubbing(case: Case, mu: float, ends: tuple[float, float]) -> Case:
     return case.model_copy(update={"joints": joints, "layer_spacing": None, "motion": motion})
 
 
+@pytest.mark.converged
 def test_the_motors_bands_hold_the_worst_air_and_the_worst_friction_together():
     """Each was in the band beside the stated value of the other alone."""
     found = motor(rubbing(ornithopter(), 0.2, (0.1, 0.4)))
