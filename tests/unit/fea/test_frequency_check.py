@@ -245,7 +245,7 @@ def test_a_solid_decides_on_a_link_that_its_beams_leave_open(monkeypatch):
 
 @pytest.mark.parametrize("at", [3, 11, 17])
 def test_between_poses_that_are_all_at_zero_the_least_value_is_sought(at: int) -> None:
-    """Low ends and values once counted as one list, so that the wrong side was followed, or a pose that is not there."""
+    """Low ends and values once counted as one list: the wrong side was followed, or a pose that is not there."""
     known: dict[int, tuple[float, float]] = {}
     _least_between(lambda i: known.setdefault(i, (0.0, 5.0 + (i - at) ** 2)), 0, 20)
     assert at in known
