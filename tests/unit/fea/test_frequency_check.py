@@ -28,6 +28,7 @@ from fea.vibration.frequency_outcomes import (
     most_moved,
 )
 from fea.vibration.harmonics import meetings
+from fea.vibration.over_motion import _least_between, lowest_pose
 from geometry.base.errors import CaseError
 from loads.case.case_file import validate
 from reports.words.changes import change_sentences
@@ -263,3 +264,13 @@ def test_a_solid_decides_on_a_link_that_its_beams_leave_open(monkeypatch):
     again = asked_frequencies(lever(minimum=13.5), solids=True)
     [one] = [o for o in frequency_outcomes(again) if o.subject.kind == "link"]
     assert (solved, again.links["lever"].model, one.verdict) == ([("lever", True)], "solid", Verdict.FAIL)
+
+
+@pytest.mark.parametrize("at", [3, 11, 17])
+def test_between_poses_that_are_all_at_zero_the_least_value_is_sought(at: int) -> None:
+    """Low ends and values once counted as one list: the wrong side was followed, or a pose that is not there."""
+    known: dict[int, tuple[float, float]] = {}
+    _least_between(lambda i: known.setdefault(i, (0.0, 5.0 + (i - at) ** 2)), 0, 20)
+    assert at in known
+    assert len(known) < 15
+    assert lowest_pose(np.array([2.0, 1.0, 1.0]), np.array([3.0, 9.0, 8.0])) == 2
