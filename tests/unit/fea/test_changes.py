@@ -83,6 +83,14 @@ def test_what_passes_by_far_is_told_as_far_as_linear_theory_is_enough(thick):
         assert again.load_cases["lift"].large_displacement.state == state
 
 
+def test_a_bare_check_gives_the_same_load_cases_without_what_the_loads_do_not_make(thick):
+    result, _ = thick
+    case = result.case
+    bare = check_case(case, name=case.origin, fidelity="beam", threads=1, bare=True)
+    assert [lc.checks for lc in bare.load_cases.values()] == [lc.checks for lc in result.load_cases.values()]
+    assert bare.warnings == ()
+
+
 def test_the_linkage_holds_the_told_share_of_its_load():
     """The owl wing fails; just below that share of its load the same check passes, and just above it does not.
 
