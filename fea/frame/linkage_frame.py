@@ -26,7 +26,8 @@ from geometry.base.errors import CaseError
 from geometry.linkage.pose import Pose
 from loads.records.applied import FrictionLoad, LineLoad, Load, PointLoad, shifted
 from loads.statics.joint_reaction import JointReaction, travelled
-from loads.statics.statics import Drive, Reactions, System, assemble
+from loads.statics.statics import Drive, Reactions, assemble
+from loads.statics.system import System
 
 Real = NDArray[np.float64]
 
