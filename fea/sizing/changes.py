@@ -170,7 +170,7 @@ def changes(result: CheckResult) -> tuple[VerdictChange, ...]:
     """
     if _latest and _latest[0][0] is result:
         return _latest[0][1]
-    checks = by_nearness(check for case in result.load_cases.values() for check in case.checks)
+    checks = by_nearness(check for case in result.load_cases.values() for check in case.checks if check.applies)
     chosen = [check for check in checks if check.verdict is not Verdict.PASS and not _rests_on_nothing(result, check)]
     every: dict[object, CheckOutcome] = {}
     for check in chosen or checks[:1]:

@@ -4,6 +4,7 @@ import io
 import re
 
 import pytest
+import solved
 from edited_cases import PLANAR, edited
 from html_pages import Page
 from rich.console import Console
@@ -13,6 +14,7 @@ from fea.check.run import check_case
 from fea.common.band import Band
 from fea.common.verdict import LINKAGE, CheckOutcome, Quantity, Subject, Verdict, by_nearness, overall
 from fea.outcomes.unloaded import undecided
+from fea.sizing.changes import changes
 from fea.study.margin import least_margin, nearest
 from fea.study.numbers import VariantNumber, VariantResult
 from reports.notebook.check_report import CheckReport
@@ -155,6 +157,14 @@ def test_a_notebook_tells_them_below_the_table(wing):
     assert report._repr_html_().count("<tr>") == 1 + len(applies)
     rows = report.table()
     assert [row["verdict"] for row in rows] == [c.answer for c in checks_of(wing)]
+
+
+def test_nothing_would_change_what_does_not_apply():
+    """In layers the gap between them, of the linkage as a whole, was told beside the check that fails."""
+    result = solved.by_hand("owl-wing-static")
+    gaps = [c for c in checks_of(result) if c.quantity is Quantity.LAYER_GAP]
+    assert [c.answer for c in gaps] == ["not applicable"]
+    assert [(c.check.quantity, c.check.applies) for c in changes(result)] == [(Quantity.LOAD_SHARE, True)]
 
 
 def test_a_study_measures_how_near_a_limit_is_without_them():
