@@ -32,6 +32,7 @@ from fea.frame.case_statics import CaseStatics, solve_case_statics, with_ends
 from fea.frame.joint_forces import LAYERED_FRAME, JointForces, ways_to_hold
 from fea.links.fidelity import DecidedLink, by_hand, decide
 from fea.links.link_by_hand import LinkByHand, cut_link, plates_by_hand, slenderest
+from fea.links.second_order import NEGLIGIBLE
 from fea.links.solid_result import link_task
 from fea.nonlinear.large_displacement import LargeDisplacement, examine, with_growth
 from fea.outcomes.bearing import bearing_outcome
@@ -208,8 +209,10 @@ class _LoadCase:
         own, largest = [x for x in every if x in grown], max((joints[x].magnitude for x in every), default=0.0)
         if not own or not largest > 0.0:
             return outcome
-        low = min(joints[name].magnitude * (grown[name].low - 1.0) for name in own) / largest
-        high = max(joints[name].magnitude * (grown[name].high - 1.0) for name in own) / largest
+        # A joint that bears next to nothing may bear a thousand times as much, which is little to its link.
+        parts = {x: min(joints[x].magnitude / (NEGLIGIBLE * largest), 1.0) for x in own}
+        low, high = (min(part * (grown[x].low - 1.0) for x, part in parts.items()),
+                     max(part * (grown[x].high - 1.0) for x, part in parts.items()))  # fmt: skip
         sources = distinct(*(grown[name].sources for name in own))
         return widened(outcome, Scatter(low=max(1.0 + low, 0.0), high=1.0 + high, sources=sources))
 

@@ -182,7 +182,7 @@ class _Envelope:
             returns=self.moved.motion.returns,
         )
 
-    def outcomes(self, links: Mapping[str, LinkEnvelope], *, lasting: bool) -> list[CheckOutcome]:
+    def outcomes(self, links: Mapping[str, LinkEnvelope], *, lasting: bool = False) -> list[CheckOutcome]:
         """Return the outcome of every check; undecided under load cases that load no link."""
         moved, evaluated = self.moved, self.evaluated
         checks = envelope_outcomes(moved, links, evaluated, self.grown, lasting=lasting)

@@ -227,10 +227,12 @@ def _joints(
             bearing = isinstance(check, BearingCheck)
             pressed = np.max([*pressing(case, joint, wrenches).values()], axis=0)
             size = np.where(evaluated, pressed if bearing else np.linalg.norm(solved.forces[joint], axis=1), -np.inf)
-            turning = np.broadcast_to(np.asarray(solved.drive_torque, dtype=float), evaluated.shape)
-            twists = [twist_of(case, joint, *of) for of in zip(wrenches[:, 5], turning, strict=True)]
-            by_itself = case.linkage.rise(joint) != 0.0 or any(twist.high > 0.0 for twist in twists)
-            by_itself = by_itself and isinstance(check, PinCheck)
+            twists: list[Band] = []
+            if isinstance(check, PinCheck):
+                turning = np.broadcast_to(np.asarray(solved.drive_torque, dtype=float), evaluated.shape)
+                twists = [twist_of(case, joint, *of) for of in zip(wrenches[:, 5], turning, strict=True)]
+            between_layers = isinstance(check, PinCheck) and case.linkage.rise(joint) != 0.0
+            by_itself = between_layers or any(twist.high > 0.0 for twist in twists)
             if by_itself:
                 at_poses = [_at(solved.joints[joint], i) for i in range(len(evaluated))]
                 found = zip(at_poses, twists, evaluated, strict=True)

@@ -86,6 +86,8 @@ def _starter(changes: dict[str, str]) -> dict[str, Any]:
     card = tomllib.loads(files("geometry.materials").joinpath("materials.toml").read_text(encoding="utf-8"))[
         "pla-fdm-xy"
     ]
+    for entry in ("youngs_modulus_range", "sustained_modulus"):  # which the changed modulus would contradict
+        card.pop(entry, None)
     tables["materials"] = {"plate": card}
     tables["parts"]["bar"]["material"] = "plate"
     tables["motion"] = {

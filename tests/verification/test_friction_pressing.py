@@ -225,7 +225,7 @@ def test_a_pin_rubs_in_the_bore_in_which_it_turns(tight: int | None) -> None:
     case = slotted_cases.slider_crank()
     pins = [name for name, joint in case.joints.items() if joint.type == "revolute"]
     if tight is not None:
-        case = layered(case, **{name: {"tight_in": case.joints[name].links[tight]} for name in pins})
+        case = layered(case, **{name: {"tight_in": (case.joints[name].links[tight],)} for name in pins})
     else:
         case = layered(case)
     statics, more = solve_case_statics(case), set()

@@ -149,7 +149,7 @@ def test_no_link_passes_where_the_linkage_gives_way(result, monkeypatch):
     fails = replace(some, subject=LINKAGE, verdict=Verdict.FAIL)
     monkeypatch.setattr(envelope, "linkage_outcomes", lambda moved, evaluated: [fails])
     over = envelope._Envelope.of(result.moved, result.evaluated, 1, lambda message: None)
-    checks = [one for one in over.outcomes(result.links, lasting=False) if one.subject.kind == "link"]
+    checks = [one for one in over.outcomes(result.links) if one.subject.kind == "link"]
     verdicts = {name: {one.verdict for one in checks if one.load_case == name} for name in ("spin", "push")}
     assert Verdict.PASS in verdicts["spin"]
     assert verdicts["push"] <= {Verdict.UNDECIDED, Verdict.FAIL}

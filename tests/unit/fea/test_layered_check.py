@@ -14,7 +14,7 @@ from reports.page.coverage import not_covered
 LINKS = ("AG", "GF", "AE", "CF", "CH", "ED")
 OFF = ['layer_spacing="7.5 mm"', 'large_displacement="off"']
 LAYERS = [*OFF, *(f"links.{link}.layer={layer}" for link, layer in zip(LINKS, (-1, 0, 0, 1, 0, 1), strict=True))]
-FLAT = [*OFF, *(f"links.{link}.layer=0" for link in LINKS)]
+FLAT = [*OFF, *(f"links.{link}.layer=0" for link in LINKS), 'layer_spacing="0 mm"']
 IN = ("AG", "CF", "CF", "ED", "ED", "CF", "AG")
 TIGHT = [f'joints.{joint}.tight_in="{link}"' for joint, link in zip("ABCDEFG", IN, strict=True)]
 

@@ -225,18 +225,11 @@ def test_a_pin_through_a_foreign_link_in_the_stated_pose_is_refused():
 
 
 def test_without_layers_nothing_is_checked_and_a_check_is_refused():
-    assert clearance(parallel_bars((0, 0, 0, 0))) is None
+    assert clearance(read_case("four-bar")) is None
     with pytest.raises(CaseError, match=r"checks.gap: a check of clearance needs to know which links lie at"):
-        four_bars(
-            (0, 0, 0, 0),
-            (120.0, 100.0, 120.0, 100.0),
-            start=60,
-            end=12,
-            near=(0, 60),
-            more='[checks.gap]\ntype = "clearance"\n',
-        )
+        read_case("four-bar", ['checks={gap={type="clearance"}}'])
 
 
 def test_links_in_layers_are_checked_unasked():
     assert "clearance" in parallel_bars().all_checks
-    assert "clearance" not in parallel_bars((0, 0, 0, 0)).all_checks
+    assert "clearance" in parallel_bars((0, 0, 0, 0)).all_checks
