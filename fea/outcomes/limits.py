@@ -1,11 +1,22 @@
 """The limits that a case states on its links, for what decides whether hand calculation or a mesh is good enough."""
 
+from collections.abc import Iterator
+
 from fea.common.scatter import Scatter, compliance_scatter, layer_scatter, load_scatter, strength_scatter
 from fea.solid.layers import Layers
+from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.base.errors import CaseError
 from geometry.materials.material import Material
 from loads.case.case import Case
-from loads.records.check_spec import DisplacementCheck, SafetyFactorCheck, SustainedCheck
+from loads.records.check_spec import (
+    BearingCheck,
+    DisplacementCheck,
+    FrequencyCheck,
+    LimitLoadCheck,
+    PinCheck,
+    SafetyFactorCheck,
+    SustainedCheck,
+)
 
 Ends = tuple[float, float]
 
@@ -160,3 +171,35 @@ def _widest_load(case: Case) -> Scatter:
 
 def _spread(limit: float, scatter: Scatter) -> Ends:
     return limit * scatter.low, limit * scatter.high
+
+
+def limit_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield limits that let pass what fails under its own load, of checks or of the cards that stand for them.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    breaks, rings = "below 1 it lets pass what the load breaks", "below 1 it lets pass what rings below its drive"
+    least: dict[str, tuple[float | None, str]] = {}
+    for name, check in case.checks.items():
+        if isinstance(check, FrequencyCheck):
+            least[f"checks.{name}.minimum"] = (check.minimum, rings)
+        elif isinstance(check, SafetyFactorCheck | PinCheck | BearingCheck | LimitLoadCheck):
+            least[f"checks.{name}.minimum"] = (check.minimum, breaks)
+        if isinstance(check, SafetyFactorCheck | PinCheck) and check.minimum is None:
+            cards = (
+                [case.part_of(link).material for link in check.links or case.checked_links]
+                if isinstance(check, SafetyFactorCheck)
+                else [case.joints[joint].pin_material for joint in check.joints or case.pinned_joints]
+            )
+            for card in cards:
+                own = case.all_materials[card].minimum_safety_factor
+                least[f"materials.{card}.minimum_safety_factor"] = (own, breaks)
+    for entry, (minimum, why) in least.items():
+        if minimum is not None and minimum < 1.0:
+            yield Caveat(heading=Heading.UNUSUAL, topic=Topic.LIMIT, what=f"{entry} = {minimum:g}", why=why)

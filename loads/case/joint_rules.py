@@ -2,9 +2,14 @@
 
 import itertools
 import math
+from collections.abc import Iterator
 
+from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
+
+LOOSE = 0.1
+"""Play over the diameter of its pin above which it is unusual: ISO 286 H11/c11, a loose fit, leaves 0.06 at 3 mm."""
 
 
 def rubbing_joints(case: CoreCase) -> tuple[str, ...]:
@@ -158,3 +163,37 @@ def _redundant(case: CoreCase) -> bool:
     """Whether equilibrium has fewer equations than unknowns."""
     unknowns = sum(1 if j.type == "pin-in-slot" else 2 + j.bonded for j in case.linkage.joints.values())
     return unknowns + bool(case.drive) > 3 * len(case.linkage.moving)
+
+
+def joint_caveats(case: CoreCase) -> Iterator[Caveat]:
+    """Yield what is taken of the joints without a check: bonds, guides without length, play that is large.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Yields
+    ------
+    Caveat
+    """
+    bonded = [name for name, joint in case.linkage.joints.items() if joint.bonded]
+    if bonded:
+        yield Caveat(topic=Topic.BONDS, what=f"bonds {', '.join(bonded)}", why="what holds them is not judged")
+    short = [name for name in rubbing_joints(case) if case.joints[name].type == "slider"]
+    short = [name for name in short if case.joints[name].guide_length is None]
+    if short:
+        yield Caveat(
+            heading=Heading.ASSUMED,
+            topic=Topic.FRICTION,
+            what=f"no couple on {', '.join(short)}",
+            why="no guide_length stated",
+        )
+    for name, play in clearances(case).items():
+        diameter = case.joints[name].pin_diameter or math.inf
+        if play > LOOSE * diameter:
+            yield Caveat(
+                heading=Heading.UNUSUAL,
+                topic=Topic.PLAY,
+                what=f"play of {play:g} mm at {name}",
+                why=f"its pin has {diameter:g} mm",
+            )

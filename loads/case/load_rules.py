@@ -1,7 +1,10 @@
 """What must fit together between a case's links and what acts on them: places of loads and masses, weight."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
 from loads.case.places import check_moving, check_point
@@ -222,4 +225,36 @@ def check_masses(case: CoreCase) -> None:
         raise CaseError(
             f"{asking[0]}: link '{unknown[0]}' has neither a part nor a mass, so its weight is unknown; give it a "
             f'part, a mass under [[carried]], or state massless = ["{unknown[0]}"]{off}'
+        )
+
+
+def load_caveats(case: CoreCase) -> Iterator[Caveat]:
+    """Yield what load cases leave out of a linkage that has it, and what is taken of where loads act.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Yields
+    ------
+    Caveat
+    """
+    light = [name for name, one in case.load_cases.items() if case.carried and one.carried and not one.own_weight]
+    if light:
+        yield Caveat(topic=Topic.WEIGHT, what="weight of what links carry", why=f"no own_weight in {', '.join(light)}")
+    if case.carried and not any(one.carried for one in case.load_cases.values()):
+        yield Caveat(topic=Topic.WEIGHT, what="what links carry", why="carried is false in every load case")
+    pinned = {(link, case.linkage.point_of(name, link)) for name, joint in case.joints.items() for link in joint.links}
+    on_pins = dict.fromkeys(
+        f"{force.at} of {force.link}"
+        for load_case in case.load_cases.values()
+        for force in load_case.forces
+        if (force.link, force.at) in pinned
+    )
+    if on_pins:
+        yield Caveat(
+            heading=Heading.ASSUMED,
+            topic=Topic.LOADS,
+            what=f"force{'s' if len(on_pins) > 1 else ''} at {', '.join(on_pins)}",
+            why="the pin there bears it, not the link's eye",
         )

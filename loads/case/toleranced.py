@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic_core import PydanticCustomError
 
+from geometry.base.caveat import Caveat, Topic
 from geometry.base.errors import CaseError
 from loads.case.core import CoreCase
 from loads.records.tolerances import Distribution, Tolerance
@@ -186,3 +187,18 @@ def _half(entry: str, tolerance: Tolerance, dimension: str | None, nominal: floa
         return tolerance.half_width(dimension, nominal)
     except PydanticCustomError as error:
         raise CaseError(f"{entry}: it is '{printable(tolerance.plus_minus)}', but {error.message()}") from None
+
+
+def tolerance_caveats(case: CoreCase) -> Iterator[Caveat]:
+    """Yield the tolerances, which only ``alula tolerance`` looks at.
+
+    Parameters
+    ----------
+    case : CoreCase
+
+    Yields
+    ------
+    Caveat
+    """
+    if case.tolerances:
+        yield Caveat(topic=Topic.TOLERANCES, what="tolerances", why="alula tolerance looks at them")

@@ -1,12 +1,13 @@
 """The motion of a case: poses, joint forces and drive torque over its range, for every load case."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.caveat import Caveat, Topic
 from geometry.base.errors import CaseError
 from geometry.linkage.motion import Motion, solve_motion
 from geometry.linkage.pose import Pose
@@ -348,3 +349,57 @@ def drive_speeds(case: Case, angles: Real) -> tuple[Real, Real]:
             "state a smaller deceleration, a higher speed or a shorter range"
         )
     return sense * np.sqrt(square), np.full(len(angles), sense * rate)
+
+
+COARSE = math.radians(5.0)
+"""Step between poses beyond which a peak between them may be missed: of a fourth harmonic, 1.5 % of its amplitude."""
+
+
+def step_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield that poses of the motion lie so far apart that a peak between them may be missed.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    motion = case.motion
+    if motion is None or motion.travel is not None:
+        return
+    first, last = motion.range or (0.0, math.tau)
+    step = abs(last - first) / (motion.poses - 1)
+    if step > COARSE:
+        yield Caveat(
+            topic=Topic.MOTION,
+            what=f"what lies between the {motion.poses} poses of the motion",
+            why=f"they are {math.degrees(step):.3g}° apart",
+        )
+
+
+def inertia_caveats(case: Case, *, over_motion: bool) -> Iterator[Caveat]:
+    """Yield inertia that a stated speed would give, and that the case leaves out or no single pose has.
+
+    Parameters
+    ----------
+    case : Case
+    over_motion : bool
+        True for a verdict on the motion, False for one on the stated pose.
+
+    Yields
+    ------
+    Caveat
+    """
+    motion = case.motion
+    if motion is None or motion.rate == (0.0, 0.0):
+        return
+    if motion.inertia is False:
+        yield Caveat(topic=Topic.INERTIA, what="inertia", why="motion.inertia is false")
+    elif case.pose.equilibrium:
+        yield Caveat(topic=Topic.INERTIA, what="inertia", why="the pose is found at rest, pose.equilibrium is true")
+    elif case.inert and not case.turns_steadily and not over_motion:
+        yield Caveat(topic=Topic.INERTIA, what="inertia in this pose", why="alula envelope has that of the motion")
+    elif case.inert and case.turns_steadily and all(one.speed == 0.0 for one in case.load_cases.values()):
+        yield Caveat(topic=Topic.INERTIA, what="inertia", why="every load case states that it stands still")

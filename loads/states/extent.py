@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from geometry.base.caveat import Caveat, Topic
 from geometry.clearance.least import Spot
 from geometry.clearance.reach import Sides, Standing, reaches, reaches_at
 from geometry.clearance.shape import point_shape
@@ -14,6 +15,7 @@ from geometry.linkage.placement import Placement
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.layers import slab
+from loads.records.check_spec import SizeCheck
 from loads.states.clearance import Assembly, along, assembly, start_of, way_of
 from loads.states.flapping import wing_span
 
@@ -140,3 +142,18 @@ def unmeasured(case: Case) -> tuple[str, ...]:
     found += [f"what {', '.join(carrying)} carr{'ies' if len(carrying) == 1 else 'y'}"] if carrying else []
     kinds = (("spring", case.springs), ("tendon", case.tendons))
     return (*found, *(f"{kind} {name}" for kind, records in kinds for name in records))
+
+
+def size_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield what a check of the size leaves out.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    if any(isinstance(check, SizeCheck) for check in case.all_checks.values()):
+        yield from (Caveat(topic=Topic.SIZE, what=f"size of {what}") for what in unmeasured(case))

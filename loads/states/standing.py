@@ -7,13 +7,14 @@ it then takes the place of the drive.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.caveat import Caveat, Heading, Topic
 from geometry.base.errors import CaseError
 from geometry.linkage.continuation import DeadPointError, Track
 from geometry.linkage.driven import DrivenClosure
@@ -396,4 +397,24 @@ def refuse_stops(case: Case, motion: Motion) -> None:
         raise CaseError(
             f"stops.{name}: the motion {how}, but this stop lets joint '{case.stops[name].joint}' be "
             f"{_rule(case, name)}; end the motion there, or change the stop"
+        )
+
+
+def drive_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield that the drive holds its link without giving, where a case states how stiffly it does.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    if case.drive is not None and case.drive.stiffness is not None:
+        yield Caveat(
+            heading=Heading.ASSUMED,
+            topic=Topic.DRIVE,
+            what="a drive that does not give",
+            why="its stiffness counts for natural frequencies alone",
         )

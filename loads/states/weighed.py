@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.base.caveat import Caveat, Topic
 from geometry.linkage.pose import Pose
 from loads.case.case import Case
 from loads.case.layers import on_one_axis, pin_masses
+from loads.records.check_spec import MassCheck
 from loads.states.masses import laden_masses, part_masses
 
 Real = NDArray[np.float64]
@@ -125,3 +127,18 @@ def _pins_left(case: Case) -> Iterator[str]:
         names = [name for group in left for name in group if (case.joints[name].pin_diameter is None) is unknown]
         if names:
             yield f"pin{'s' if len(names) > 1 else ''} {', '.join(names)} ({why})"
+
+
+def mass_caveats(case: Case) -> Iterator[Caveat]:
+    """Yield what a check of the mass leaves out.
+
+    Parameters
+    ----------
+    case : Case
+
+    Yields
+    ------
+    Caveat
+    """
+    if any(isinstance(check, MassCheck) and check.others is None for check in case.all_checks.values()):
+        yield from (Caveat(topic=Topic.MASS, what=f"mass of {what}") for what in unweighed(case))

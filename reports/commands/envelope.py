@@ -16,7 +16,6 @@ from fea.motion.fatigue import LIFE_FACTOR, STRESS_FACTOR
 from fea.outcomes.unchecked import caveats, unchecked
 from geometry.base.version import result_stamp
 from geometry.materials.material import Material
-from loads.records.check_spec import SafetyFactorCheck
 from reports.page.output import MARK, write_folder
 from reports.tables.console import say_checks, verdict_line
 from reports.tables.data import check_records, data, entries, finite
@@ -182,8 +181,8 @@ def record(result: EnvelopeResult) -> dict[str, Any]:
         "linkage": {name: motion_linkage_record(result.moved, over) for name, over in result.linkage.items()},
         **({"friction": {n: motion_friction_record(result.moved, n) for n in rubbing}} if rubbing else {}),
         "idle_links": list(result.idle),
-        "not_checked": list(unchecked(result.case, (SafetyFactorCheck,))),
-        "caveats": [entries(one, "heading topic what why") for one in caveats(result.case, (SafetyFactorCheck,))],
+        "not_checked": list(unchecked(result.case, over_motion=True)),
+        "caveats": [entries(one, "heading topic what why") for one in caveats(result.case, over_motion=True)],
         "checks": check_records(result.checks),
         "warnings": list(result.warnings),
         "timings_s": dict(result.timings),
@@ -296,7 +295,7 @@ def print_envelope(result: EnvelopeResult, console: "Console") -> None:
         f"Motion: {coordinate} from {first:.6g} to {last:.6g} deg, driven at {result.drive.link}; "
         f"{int(result.evaluated.sum())} of {len(result.angles)} poses.",
     )
-    if left_out := besides(caveats(result.case, (SafetyFactorCheck,))):
+    if left_out := besides(caveats(result.case, over_motion=True)):
         say(console, left_out)
     _links(result, console)
     fatigued = {n: link for n, link in result.links.items() if any(c.fatigue for c in link.load_cases.values())}

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from fea.common.band import Band
 from fea.common.verdict import CheckOutcome, Quantity, Verdict, by_nearness
-from fea.outcomes.unchecked import Caveat, Heading, caveats
+from fea.outcomes.unchecked import caveats
+from geometry.base.caveat import Caveat, Heading
 
 if TYPE_CHECKING:
     from fea.outcomes.result import CheckResult, SectionComparison

@@ -9,7 +9,7 @@ from materials import with_material
 from fea.check.run import check_case
 from fea.outcomes.unchecked import caveats, unchecked
 from loads.case.case_file import validate
-from loads.records.check_spec import SafetyFactorCheck, SustainedCheck
+from loads.records.check_spec import SustainedCheck
 from reports.tables.record import result_record
 from reports.words.wording import headline
 
@@ -59,7 +59,7 @@ def test_what_is_left_out(checks, bare, left_out):
 def test_a_sustained_check_looks_at_stress_but_not_in_an_envelope():
     lasting = starter({}).model_copy(update={"checks": {"long": SustainedCheck(type="sustained")}})
     assert unchecked(lasting) == (NO_PINS,)
-    assert unchecked(lasting, (SafetyFactorCheck,)) == ("stress of crank, coupler, rocker (no check)", NO_PINS)
+    assert unchecked(lasting, over_motion=True) == ("stress of crank, coupler, rocker (no check)", NO_PINS)
 
 
 def test_verdict_and_record_name_a_link_without_part():
@@ -93,7 +93,7 @@ def told(**tables):
     data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     data["load_cases"]["held"] = {"own_weight": True, "speed": "0 rpm"}
     for name, more in tables.items():
-        data[name] = more if isinstance(more, list) else data.get(name, {}) | more
+        data[name] = data.get(name, {}) | more if isinstance(more, dict) else more
     found = caveats(validate(data))
     return {(one.heading.value, one.topic.value): str(one) for one in found if one.topic not in ("stress", "pins")}
 
@@ -108,8 +108,18 @@ def test_inertia_that_is_left_out_is_told():
     assert told(motion=FAST) == {VIBRATION: 'vibration (no check of type "frequency")'}
     assert told(motion=FAST, checks={"f": SPRING}) == {}
     assert told(motion=FAST | {"inertia": False}) == {INERTIA: "inertia (motion.inertia is false)"}
+    still = {"own_weight": True, "speed": "0 rpm"}
+    assert told(motion=FAST, load_cases={"lift": still}) == {
+        INERTIA: "inertia (every load case states that it stands still)"
+    }
     running_up = told(motion=FAST | {"acceleration": "1 rad/s^2"})
     assert running_up == {INERTIA: "inertia in this pose (alula envelope has that of the motion)"}
+
+
+def test_a_pose_in_equilibrium_has_no_inertia_and_says_so():
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    case = validate(data | {"motion": FAST, "pose": data["pose"] | {"equilibrium": True}})
+    assert "inertia (the pose is found at rest, pose.equilibrium is true)" in unchecked(case)
 
 
 def test_weight_that_is_left_out_is_told_with_its_load_cases():
@@ -119,6 +129,10 @@ def test_weight_that_is_left_out_is_told_with_its_load_cases():
         ("not checked", "weight"): "weight of what links carry (no own_weight in light)"
     }
     assert told(load_cases=light) == {}
+    bare = {name: {"own_weight": True, "carried": False} for name in ("lift", "held")}
+    assert told(carried=[mass], load_cases=bare) == {
+        ("not checked", "weight"): "what links carry (carried is false in every load case)"
+    }
 
 
 def test_what_is_assumed_of_pins_is_told_where_they_are_checked():
@@ -146,3 +160,73 @@ def test_limits_below_one_and_large_play_are_told():
     data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
     loose = {name: data["joints"][name] | {"clearance": play} for name, play in (("A", "2.9 mm"), ("B", "0.3 mm"))}
     assert told(joints=loose) == {("unusual", "play"): "play of 2.9 mm at A (its pin has 3 mm)"}
+
+
+def test_limits_of_cards_below_one_are_told_where_they_decide():
+    own = "materials.steel-wire.minimum_safety_factor = 0.5 (below 1 it lets pass what the load breaks)"
+    case = starter({"a": STRENGTH | {"minimum": 2.0}, "b": {"type": "pins"}})
+    weak = case.all_materials["steel-wire"].model_copy(update={"minimum_safety_factor": 0.5})
+    assert own in [str(one) for one in caveats(with_material(case, "steel-wire", weak))]
+    stated = starter({"a": STRENGTH | {"minimum": 2.0}, "b": PINS | {"minimum": 2.0}})
+    assert own not in [str(one) for one in caveats(with_material(stated, "steel-wire", weak))]
+
+
+@pytest.mark.parametrize(
+    ("tables", "key", "text"),
+    [
+        (
+            {"motion": FAST, "checks": {"f": SPRING | {"minimum": 0.01}}},
+            ("unusual", "limit"),
+            "checks.f.minimum = 0.01 (below 1 it lets pass what rings below its drive)",
+        ),
+        (
+            {"tolerances": {"parts.bar.thickness": {"plus_minus": "0.5 mm"}}},
+            ("not checked", "tolerances"),
+            "tolerances (alula tolerance looks at them)",
+        ),
+        (
+            {"drive": {"stiffness": "0.1 N*m/rad"}},
+            ("assumed", "drive"),
+            "a drive that does not give (its stiffness counts for natural frequencies alone)",
+        ),
+        (
+            {"joint_model": "bonded"},
+            ("not checked", "bonds"),
+            "bonds O2, A, B, O4 (what holds them is not judged)",
+        ),
+        (
+            {
+                "load_cases": {
+                    "push": {
+                        "own_weight": False,
+                        "forces": [
+                            {"link": "rocker", "at": "P", "force": ["0 N", "-5 N"]},
+                            {"link": "rocker", "at": "O4", "force": ["0 N", "-5000 N"]},
+                        ],
+                    }
+                }
+            },
+            ("assumed", "loads"),
+            "force at O4 of rocker (the pin there bears it, not the link's eye)",
+        ),
+    ],
+)
+def test_what_a_case_states_and_no_check_looks_at_is_told(tables, key, text):
+    assert told(**tables) == {key: text}
+
+
+def test_a_guide_that_rubs_without_a_length_is_told():
+    data = tomllib.loads((files("loads") / "cases" / "slider-crank.toml").read_text(encoding="utf-8"))
+    guide = ("assumed", "friction", "no couple on guide (no guide_length stated)")
+    for length, is_told in (({}, True), ({"guide_length": "30 mm"}, False)):
+        joints = data["joints"] | {"guide": data["joints"]["guide"] | length}
+        found = [(x.heading.value, x.topic.value, str(x)) for x in caveats(validate(data | {"joints": joints}))]
+        assert (guide in found) is is_told
+
+
+@pytest.mark.parametrize(("poses", "found"), [(72, "they are 5.07° apart"), (73, None)])
+def test_poses_far_apart_are_told_of_the_motion_alone(poses, found):
+    data = tomllib.loads((files("loads") / "cases" / "four-bar.toml").read_text(encoding="utf-8"))
+    case = validate(data | {"motion": {"turn": True, "poses": poses}})
+    assert [one.why for one in caveats(case, over_motion=True) if one.topic == "motion"] == ([found] if found else [])
+    assert not [one for one in caveats(case) if one.topic == "motion"]
