@@ -57,6 +57,8 @@ def growth(factor: float) -> float:
     return factor * (1.0 - 2.0 / math.sqrt(3.0) * math.cos(math.acos(-SNAP / factor) / 3.0))
 
 
+_MANY = 1000
+"""Unknowns from which on one eigenvalue is sought, in place of all."""
 _ROUNDING = 1e-9
 _FAR = 1e6
 """Factor from which on two terms of the series are exact to rounding."""
@@ -81,14 +83,27 @@ def buckling_factor(model: FrameModel, subdivisions: int = SUBDIVISIONS) -> floa
     float
         Infinite where no factor does.
     """
-    from scipy.linalg import eigh
-
     divided = subdivide(model, subdivisions)
     linear = solve_frame(divided)
     path = EquilibriumPath(divided)
     K, G = (path.free(part) for part in stiffness_parts(path, linear.end_forces, linear.guide_forces))
-    largest = float(eigh(-(G + G.T) / 2.0, (K + K.T) / 2.0, eigvals_only=True)[-1])
+    largest = _largest(-(G + G.T) / 2.0, (K + K.T) / 2.0)
     return 1.0 / largest if largest > 1e-12 else np.inf
+
+
+def _largest(A: Floats, B: Floats) -> float:
+    """Return the largest λ of A x = λ B x; of many unknowns by Lanczos, which needs one factorisation of B."""
+    from scipy.linalg import cho_factor, cho_solve, eigh
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+
+    if len(A) > _MANY:
+        factor = cho_factor(B)
+        inverse = LinearOperator(A.shape, matvec=lambda x: cho_solve(factor, x), dtype=float)
+        try:
+            return float(eigsh(A, 1, B, which="LA", Minv=inverse, v0=np.ones(len(A)), return_eigenvectors=False)[0])
+        except ArpackNoConvergence:
+            pass  # where nothing buckles, the largest of them lie close together about zero
+    return float(eigh(A, B, eigvals_only=True)[-1])
 
 
 def stiffness_parts(path: EquilibriumPath, end_forces: Floats, guide_forces: Floats) -> tuple[Floats, Floats]:

@@ -10,12 +10,14 @@ from scipy.optimize import brentq
 from fea.check.run import check_case
 from fea.common.verdict import LINKAGE, Verdict
 from fea.frame.build import build_frame
+from fea.nonlinear import stability
 from fea.nonlinear.corotational import solve_large_displacement
 from fea.nonlinear.equilibrium_path import NoEquilibriumError
 from fea.nonlinear.stability import buckling_factor
 from loads.case.case import Case
 from loads.case.case_file import read_case, validate
 from loads.records.applied import PointLoad
+from loads.states.actions import stated_loads
 
 HEIGHT, WIDTH = 120.0, 90.0
 
@@ -124,6 +126,17 @@ def test_where_the_case_leaves_large_displacement_out_the_factor_decides(share, 
     assert moved.state == "off"
     assert found.verdict is verdict
     assert found.value.value == pytest.approx(1.0 / share, rel=3e-3)
+
+
+@pytest.mark.parametrize("share", [0.3, -0.2])
+def test_one_sought_factor_is_the_least_of_all(share, monkeypatch) -> None:
+    """Frames of many unknowns are asked for one eigenvalue, pulled ones, where all lie about zero, too."""
+    case = parallelogram(share * critical())
+    loads = stated_loads(case, case.load_cases["weight"])
+    frame = build_frame(case, case.solve_pose(), loads, held=case.pinned_drive)
+    every = buckling_factor(frame.model)
+    monkeypatch.setattr(stability, "_MANY", 0)
+    assert buckling_factor(frame.model) == pytest.approx(every, rel=1e-9)
 
 
 def test_pulled_it_never_buckles() -> None:
