@@ -15,6 +15,7 @@ from fea.common.verdict import Verdict
 from fea.sizing.search import Search
 from fea.study.margin import counterpart, margin, nearest
 from fea.study.numbers import VariantNumber, VariantResult
+from geometry.base.caveat import Caveat
 from geometry.base.errors import CaseError
 
 SCANNED = 33
@@ -39,6 +40,8 @@ class Sized:
         Steps: the first that passes, and the last before it that fails; None where there is none.
     turns : tuple of int
         Steps that fail beyond one that passes.
+    caveats : tuple of Caveat
+        What a verdict of the case stands on that no check judges.
     """
 
     path: str
@@ -48,6 +51,7 @@ class Sized:
     passing: int | None
     failing: int | None
     turns: tuple[int, ...]
+    caveats: tuple[Caveat, ...]
 
     @property
     def opened(self) -> tuple[int, ...]:
@@ -99,7 +103,7 @@ class Sized:
         return None if limit is None else counterpart(self.results[step], limit)
 
 
-def least_size(search: Search, path: str, values: Sequence[object]) -> Sized:
+def least_size(search: Search, path: str, values: Sequence[object], *, caveats: tuple[Caveat, ...] = ()) -> Sized:
     """Find the value nearest to failing that passes over its whole band.
 
     Parameters
@@ -110,6 +114,8 @@ def least_size(search: Search, path: str, values: Sequence[object]) -> Sized:
         The entry.
     values : sequence
         Its steps, ascending, as a case file states them.
+    caveats : tuple of Caveat, optional
+        Of the case; handed on.
 
     Returns
     -------
@@ -139,6 +145,7 @@ def least_size(search: Search, path: str, values: Sequence[object]) -> Sized:
         passing=best,
         failing=before[-1] if before else None,
         turns=tuple(sorted(beyond)),
+        caveats=caveats,
     )
 
 

@@ -20,6 +20,7 @@ from fea.sizing.candidates import Candidates, Objective, Place
 from fea.sizing.search import Search
 from fea.study.margin import counterpart, margin, nearest
 from fea.study.numbers import VariantNumber, VariantResult
+from geometry.base.caveat import Caveat
 from geometry.base.errors import CaseError
 from loads.plans.axis import Axis
 
@@ -76,6 +77,8 @@ class Lightest:
         The check of the best one that is nearest to its limit.
     gains : tuple of Gain
         Of the best one, for each entry, the larger first.
+    caveats : tuple of Caveat
+        What a verdict of the case stands on that no check judges.
     """
 
     axes: tuple[Axis, ...]
@@ -86,6 +89,7 @@ class Lightest:
     complete: bool
     limit: VariantNumber | None
     gains: tuple[Gain, ...]
+    caveats: tuple[Caveat, ...]
 
     def point(self, place: Place) -> dict[str, object]:
         """Return a combination.
@@ -103,7 +107,13 @@ class Lightest:
 
 
 def lightest(
-    search: Search, axes: Sequence[Axis], objective: Objective, *, most: int = SOLVED, seed: int = 0
+    search: Search,
+    axes: Sequence[Axis],
+    objective: Objective,
+    *,
+    most: int = SOLVED,
+    seed: int = 0,
+    caveats: tuple[Caveat, ...] = (),
 ) -> Lightest:
     """Find the best combination that passes over its whole band.
 
@@ -118,6 +128,8 @@ def lightest(
         Combinations that the model that decides may solve.
     seed : int
         Of differential evolution.
+    caveats : tuple of Caveat, optional
+        Of the case; handed on.
 
     Returns
     -------
@@ -150,6 +162,7 @@ def lightest(
         complete=complete,
         limit=limit,
         gains=() if best is None or limit is None else _gains(candidates, best, limit),
+        caveats=caveats,
     )
 
 

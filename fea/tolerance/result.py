@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.outcomes.result import CheckResult
+from fea.outcomes.unchecked import caveats
+from geometry.base.caveat import Caveat, Topic
 
 Real = NDArray[np.float64]
 
@@ -186,3 +188,8 @@ class ToleranceResult:
     left_out: tuple[str, ...]
     notes: tuple[str, ...]
     timings: Mapping[str, float]
+
+    @property
+    def caveats(self) -> tuple[Caveat, ...]:
+        """What the nominal verdict stands on besides; the tolerances are what is looked at here."""
+        return tuple(one for one in caveats(self.nominal.case) if one.topic is not Topic.TOLERANCES)

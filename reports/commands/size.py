@@ -162,6 +162,7 @@ def find_size(
     CaseError
         For options that do not go together, and for a wrong case, entry or range.
     """
+    from fea.outcomes.unchecked import caveats
     from fea.sizing.candidates import Objective
     from fea.sizing.least import least_size
     from fea.sizing.lightest import lightest
@@ -169,6 +170,7 @@ def find_size(
     from fea.study.compute import engine_for
     from fea.study.store import Store
     from geometry.base.errors import CaseError
+    from loads.case.case_file import read_case
     from loads.plans.plan import plan_of
     from loads.plans.variants import Variants
 
@@ -193,10 +195,11 @@ def find_size(
         store = stack.enter_context(Store.writing(kept))
         engine = stack.enter_context(engine_for(variants, kept, workers=workers))
         search = Search(plan, Path(), store, engine, tell=tell)
+        told = caveats(read_case(case).with_values(dict(values) | points[0]), over_motion=analysis == "envelope")
         found: Sized | Lightest = (
-            lightest(search, axes, objective, most=most, seed=seed)
+            lightest(search, axes, objective, most=most, seed=seed, caveats=told)
             if several
-            else least_size(search, axes[0].path, axes[0].values)
+            else least_size(search, axes[0].path, axes[0].values, caveats=told)
         )
         if folder is not None:
             search.finish()
@@ -213,18 +216,24 @@ def print_found(found: "Sized | Lightest", console: "Console") -> None:
     """
     from fea.sizing.least import Sized
     from reports.commands.lightest import print_lightest
+    from reports.words.terminal import say
+    from reports.words.wording import besides
 
     if isinstance(found, Sized):
         print_size(found, console)
     else:
         print_lightest(found, console)
+    if left := besides(found.caveats):
+        say(console, left)
 
 
 def _record(found: "Sized | Lightest") -> Mapping[str, Any]:
     from fea.sizing.least import Sized
     from reports.commands.lightest import record_of
+    from reports.tables.data import entries
 
-    return record(found) if isinstance(found, Sized) else record_of(found)
+    told = record(found) if isinstance(found, Sized) else record_of(found)
+    return {**told, "caveats": [entries(one, "heading topic what why") for one in found.caveats]}
 
 
 def _status(found: "Sized | Lightest") -> int:

@@ -11,7 +11,7 @@ from fea.tolerance.result import Probability, ToleranceNumber, ToleranceResult
 from geometry.base.version import result_stamp
 from reports.tables.data import entries, finite
 from reports.words.terminal import say, say_table
-from reports.words.wording import number
+from reports.words.wording import besides, number
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -57,6 +57,7 @@ def as_json(result: ToleranceResult) -> str:
         "corner": None if result.corner is None else entries(result.corner, "number value low high deviations"),
         "left_out": list(result.left_out),
         "notes": list(result.notes),
+        "caveats": [entries(one, "heading topic what why") for one in result.caveats],
         "timings": dict(result.timings),
     }
     nulls: dict[str, str] = {}
@@ -114,6 +115,8 @@ def print_tolerance(result: ToleranceResult, console: "Console") -> None:
     _say_corner(result, console)
     for note in result.notes:
         say(console, f"Note: {note}.")
+    if left := besides(result.caveats):
+        say(console, left)
 
 
 def _between(certain: Probability, possible: Probability) -> str:

@@ -21,6 +21,10 @@ def test_a_starter_is_sampled_printed_and_written(tmp_path: Path) -> None:
     for words in ("500 samples of 9 tolerances", "passes with a probability", "Sobol' indices", "Worst corner"):
         assert words in done.stdout
     record = json.loads((tmp_path / "out" / "tolerance" / "result.json").read_text(encoding="utf-8"))
+    left = "stress of coupler, rocker"
+    assert left in " ".join(done.stdout.split())
+    assert left in [one["what"] for one in record["caveats"]]
+    assert "tolerances" not in [one["topic"] for one in record["caveats"]]
     with np.load(tmp_path / "out" / "tolerance" / "samples.npz") as samples:
         values = samples["values"]
         assert samples["deviations"].shape == (500, 17)
