@@ -286,13 +286,14 @@ class CheckReport:
         Raises
         ------
         CaseError
-            Where files that alula did not write are in the way.
+            Where files that alula did not write are in the way, and for an empty name.
         CannotRunError
             Where the folder cannot be written.
         """
         from reports.page.folder import write_report
+        from reports.page.output import folder_named
 
-        write_report(self.result, Path(folder), progress=progress)
+        write_report(self.result, folder_named(folder), progress=progress)
 
     def __str__(self) -> str:
         checks = checks_of(self.result)

@@ -1,16 +1,23 @@
 """What a user may type or have set: each time one sentence and the status that goes with it, or the usual output."""
 
+import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any, cast
 
 import programs
 import pytest
+import typer
 
+import alula
 from fea.study.store import Store
 from geometry.base.errors import CaseError
 from loads.case.case_file import read_case, validate
 from loads.plans.plan import plan_of
 from loads.plans.variants import Variants
 from loads.text.nesting import DEEPEST
+from reports.commands.cli import app
+from reports.notebook.check_report import CheckReport
 
 CASE = "four-bar-synthesis"
 DOTS = ".".join(["a"] * 500)
@@ -105,3 +112,76 @@ def test_a_study_that_holds_nothing(begun: str, more: list[str], tmp_path: Path)
     told = refused("study", "show", str(tmp_path), *more, folder=tmp_path)
     assert told.startswith(f"alula: '{tmp_path}' holds no study yet: study.sqlite has no plan and no point; compute")
     assert not {"pictures", "all.csv"} & {path.name for path in tmp_path.iterdir()}
+
+
+def _options(command: Any, *path: str) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Yield every option that names a folder, with the command that has it."""
+    for name, inner in getattr(command, "commands", {}).items():
+        yield from _options(inner, *path, name)
+    yield from (
+        (path, one.opts[-1]) for one in getattr(command, "params", ()) if {"--output", "--pictures"} & {*one.opts}
+    )
+
+
+FOLDERS = [*_options(typer.main.get_command(app))]
+
+
+@pytest.mark.parametrize(("command", "option"), FOLDERS, ids=[" ".join((*path, name)) for path, name in FOLDERS])
+def test_a_folder_without_a_name(command: tuple[str, ...], option: str, tmp_path: Path) -> None:
+    """It meant the current folder, into which the files went."""
+    told = refused(*command, "four-bar", option, "", folder=tmp_path)
+    assert told == "alula: output: the name of the folder is empty; name a folder, or '.' for the current one\n"
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_without_a_name_in_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    report = CheckReport(cast(Any, None))  # refused before it is looked at
+    for call in (
+        lambda: report.write(""),
+        lambda: alula.study(CASE, {"pose.angle": ["9 deg"]}, ""),
+        lambda: alula.size(CASE, {T: "9 mm..10 mm"}, folder=""),
+    ):
+        with pytest.raises(CaseError, match="the name of the folder is empty"):
+            call()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["COLUMNS", "LINES"])
+@pytest.mark.parametrize("size", ["0", "00", "-3", "abc", "1e3", "²", "9" * 5000, ""])
+def test_a_terminal_of_no_size(name: str, size: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing at all was printed in 0 columns, and digits that Python does not count with ended as a fault."""
+    monkeypatch.delenv(name, raising=False)
+    usual = programs.inside("materials")
+    monkeypatch.setenv(name, size)
+    assert programs.inside("materials").stdout == usual.stdout != ""
+
+
+def test_a_terminal_of_one_column_shows_every_word(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = programs.inside("materials", "pom-c").stdout.split()
+    monkeypatch.setenv("COLUMNS", "1")
+    assert programs.inside("materials", "pom-c").stdout.split() == usual
+
+
+@pytest.mark.parametrize("command", ["check", "envelope", "claims", "tolerance"])
+def test_a_limit_of_memory_below_what_is_held_already(command: str) -> None:
+    """It had no effect where no solid was solved."""
+    told = refused(command, CASE, "--memory", "1 MB")
+    assert re.fullmatch(
+        r"alula: memory: it is '1 MB', but alula and its libraries hold \d+ MB before anything is solved; "
+        r'write more, for example "4 GB"\n',
+        told,
+    )
+
+
+def test_the_old_name_of_threads(tmp_path: Path) -> None:
+    """``--workers`` of study and size meant what is called ``--threads`` elsewhere; here nothing varies."""
+    for command in ("study", "size"):
+        asked = (command, CASE, "-o", "out", "--workers", "1")
+        warned, told = programs.inside(*asked, folder=tmp_path).stderr.splitlines()
+        assert warned.startswith("Warning: --workers is called --threads now")
+        assert "nothing varies" in told
+        assert "is the old name of --threads" in refused(*asked, "--threads", "1", folder=tmp_path)
+    for call in (alula.study, alula.size):
+        with pytest.warns(FutureWarning, match="workers is called threads now"), pytest.raises(CaseError):
+            call(CASE, {}, folder=tmp_path / "out", workers=1)  # type: ignore[operator]
