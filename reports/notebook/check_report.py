@@ -10,6 +10,7 @@ from fea.common.verdict import CheckOutcome, Verdict
 from fea.outcomes.result import CheckResult, LoadCaseResult, SolidResult
 from fea.whole.size import size_limits
 from geometry.base.errors import CannotRunError, CaseError
+from loads.case.heights import layer_of
 from loads.statics.rounding import without_rounding
 from reports.notebook.shown import Picture, Row, Table, pick, summary
 from reports.tables.record import worst_load_case
@@ -133,7 +134,8 @@ class CheckReport:
         from reports.outlines.assembly import assembly_drawing
 
         if self.result.clearance is None:
-            raise CaseError("the case states no layers, so all links lie in one plane; state links.A.layer = 1")
+            layer = layer_of(self.result.case.links)
+            raise CaseError(f"the case states no layers, so all links lie in one plane; give every link one: {layer}")
         return Picture(assembly_drawing(self.result.clearance))
 
     def plot_box(self) -> Picture:

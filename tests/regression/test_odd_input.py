@@ -1,6 +1,7 @@
 """What a user may type or have set: each time one sentence and the status that goes with it, or the usual output."""
 
 import re
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
@@ -12,7 +13,7 @@ import typer
 import alula
 from fea.study.store import Store
 from geometry.base.errors import CaseError
-from loads.case.case_file import read_case, validate
+from loads.case.case_file import read_case, read_text, validate
 from loads.plans.plan import plan_of
 from loads.plans.variants import Variants
 from loads.text.nesting import DEEPEST
@@ -185,3 +186,20 @@ def test_the_old_name_of_threads(tmp_path: Path) -> None:
     for call in (alula.study, alula.size):
         with pytest.warns(FutureWarning, match="workers is called threads now"), pytest.raises(CaseError):
             call(CASE, {}, folder=tmp_path / "out", workers=1)  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("entry", "value"), [("layer_spacing", "9 mm"), ("washer", "1 mm"), ("checks", {"near": {"type": "clearance"}})]
+)
+@pytest.mark.parametrize("rename", ["base plate", "Grundplatte"])
+def test_what_is_advised_bears_the_names_of_the_case(entry: str, value: object, rename: str) -> None:
+    """It spoke of a link A where none was called so."""
+    text = read_text("four-bar-synthesis")[0]
+    tables = tomllib.loads(text.replace("links.d]", f'links."{rename}"]').replace('["d", ', f'["{rename}", '))
+    del tables["layer_spacing"], tables["checks"]
+    for link in tables["links"].values():
+        del link["layer"]
+    with pytest.raises(CaseError) as error:
+        validate(tables | {entry: value})
+    shown = f'"{rename}"' if " " in rename else rename
+    assert f"such as links.{shown}.layer = 0" in str(error.value)
